@@ -18,7 +18,7 @@
 //! | states of first order | [`State`] |
 //! | configurations at rest | [`Equilibrium`] |
 //! | places | [`Point`], [`Frame`], [`Coordinate`] |
-//! | expressions | [`Scalar`], [`Vector`], [`Matrix`], [`Potential`], [`Rayleigh`], [`Speed`] |
+//! | expressions | [`Scalar`], [`Vector`], [`Matrix`], [`FreeBody`], [`Potential`], [`Rayleigh`], [`Speed`] |
 //!
 //! # Vectors and places
 //!

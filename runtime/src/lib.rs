@@ -116,6 +116,7 @@ pub mod elements;
 mod first_order;
 mod forward;
 mod frame;
+pub mod free_body;
 #[cfg(any(doc, doctest))]
 pub mod guide;
 pub mod identification;
@@ -149,9 +150,9 @@ mod trigonometry;
 pub mod prelude {
     pub use crate::elements::{
         Attraction, Ball, Body, Collar, Contact, Coordinate, Dashpot, Equilibrium, Force, Frame, Free,
-        Friction, Gravity, Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar, Potential,
-        Rayleigh, Rolling, Screw, Sleeve, Slipping, Slot, Speed, Spring, Stage, State, Torque, Universal,
-        Weld,
+        FreeBody, Friction, Gravity, Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar,
+        Potential, Rayleigh, Rolling, Screw, Sleeve, Slipping, Slot, Speed, Spring, Stage, State, Torque,
+        Universal, Weld,
     };
     pub use crate::integrate::{
         DormandPrince, DormandPrince8, Error, EventDriven, ImplicitMidpoint, Rk4, Rodas, Rosenbrock,

@@ -369,6 +369,11 @@ impl Source {
             velocities: m.velocities.iter().map(|(name, _)| name.clone()).collect(),
             inputs: m.inputs.iter().map(|(name, _)| name.clone()).collect(),
             frames: m.frames.iter().map(|f| f.name.clone()).collect(),
+            diagrams: m
+                .outputs
+                .iter()
+                .filter_map(|output| Some((output.name.clone(), output.diagram.clone()?)))
+                .collect(),
             units: m.units.clone(),
             constraints: Constraints::of(m),
             contacts: emit::Touching::of(m),
@@ -397,6 +402,7 @@ impl Source {
             figures: Vec::new(),
             states: d.states.iter().map(|(name, k)| (name.text.clone(), *k)).collect(),
             outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
+            diagrams: Vec::new(),
             units: mechanism::Units::default(),
             facts: Facts::default(),
             detect: !self.mechanism.requests.target_only,
@@ -453,6 +459,7 @@ impl Source {
             velocities: outline.velocities,
             inputs: outline.inputs,
             frames: outline.frames,
+            diagrams: outline.diagrams.into_iter().filter(|(name, _)| can_be_a_function(name)).collect(),
             constraints: if outline.constrained {
                 Constraints::unknown(outline.slipping)
             } else {

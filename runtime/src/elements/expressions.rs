@@ -105,4 +105,19 @@ pub enum Vector {}
 #[doc(alias = "dyadic")]
 pub enum Matrix {}
 
-derivable! { Coordinate Frame Point State Equilibrium Speed Scalar Vector Matrix }
+/// Free-body diagram: all that acts on a body at once.
+///
+/// `#[output(body, resolved_in = frame)]`: a generated function of that name that gives a
+/// [`Diagram`](crate::free_body::Diagram): gravity, force elements, inputs, joints and constraints, each with its name, the point
+/// where it acts (from the centre of mass, m), its force (N) and its torque about that point (N·m), in the axes of a body or frame
+/// (the ground's if not given). It takes `(&q, &v)`, and `(&q, &v, &u)` where the mechanism has inputs, and follows from the motion.
+///
+/// The body is freed of its joints, by virtual work. What a joint transmits is one action, at the origin of the joint's frame, with
+/// the motors, springs and dashpots on its own coordinates in it; a [`Free`](super::Free) joint transmits nothing. A force of an
+/// element that acts at one point stands there; other elements stand at the centre of mass, with their torque about it. Particles
+/// and bodies that are fixed on the body by `at` belong to it; what a joint holds, a [`Weld`](super::Weld) too, is another body.
+/// Mechanisms with contacts that open and close have no free-body diagrams, and neither have bodies that are placed by `at` or
+/// `frame` instead of a joint.
+pub enum FreeBody {}
+
+derivable! { Coordinate Frame Point State Equilibrium Speed Scalar Vector Matrix FreeBody }

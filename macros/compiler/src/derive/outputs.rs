@@ -16,7 +16,8 @@ pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
             symbols_in(&output.values).into_iter().map(Quantity::of).any(|q| f(&q))
         };
         let touched = names(|q| matches!(q, Quantity::ContactForce(_)));
-        match (touched || reactions::names_one(&output.values), facts.kinematic) {
+        let follows = touched || output.diagram.is_some() || reactions::names_one(&output.values);
+        match (follows, facts.kinematic) {
             (true, true) => Vec::new(),
             (true, false) if touched => vec![catalogue::touched(&output.name, size, facts)],
             (true, false) => vec![catalogue::reaction(&output.name, size, facts)],

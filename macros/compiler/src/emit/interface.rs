@@ -6,7 +6,7 @@ use super::limits::Limited;
 use super::signature::Signature;
 use super::validate::Figure;
 use crate::catalogue::{Argument, Facts, Row};
-use crate::mechanism::Units;
+use crate::mechanism::{Diagram, Units};
 use crate::syntax::{ScalarType, Shell};
 use quote::ToTokens;
 
@@ -38,6 +38,8 @@ pub struct Interface<'a> {
     pub states: Vec<(String, usize)>,
     /// Names of the outputs.
     pub outputs: Vec<String>,
+    /// The free-body diagrams among them.
+    pub diagrams: Vec<(String, Diagram)>,
     /// Units of all of these and of the parameters.
     pub units: Units,
     /// The files that were read: when one changes, the crate is compiled again.

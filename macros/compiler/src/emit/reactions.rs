@@ -6,6 +6,7 @@ use super::interface::Interface;
 use super::signature::Signature;
 use crate::catalogue::{Argument, REACTION, TOUCHED};
 use crate::derive::Function;
+use crate::mechanism::{Diagram, Origin};
 use std::fmt::Write;
 
 /// Writes the outputs whose hidden functions are among these.
@@ -32,21 +33,68 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
                 format!("let (a, lambda) = self.constrained_dynamics({t}q, v, &tau);")
             }
         };
+        let call = format!("self.{}({t}{pass})", f.name);
+        let (docs, shape, result) = match i.diagrams.iter().find(|(known, _)| known == name) {
+            Some((_, diagram)) => (diagram_docs(diagram, s), diagram_type(diagram, s), made(diagram, &call)),
+            None => (about(s), s.shape(f.shape), call),
+        };
         let _ = writeln!(
             out,
             "#[doc = {:?}]
             #[must_use]
-            pub fn {name}({}) -> {} {{
+            pub fn {name}({}) -> {shape} {{
                 let tau = {tau};
                 {solve}
-                self.{}({t}{pass})
+                {result}
             }}",
-            output_docs(i, name, &about(s)),
+            output_docs(i, name, &docs),
             s.parameters(&s.timed(&arguments)),
-            s.shape(f.shape),
-            f.name
         );
     }
+}
+
+/// Free-body diagrams of a mechanism that failed to compile: what acts is not known.
+pub fn write_unknown(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+    for (name, diagram) in &i.diagrams {
+        let mut arguments = vec![Argument::Q, Argument::V];
+        arguments.extend((s.nu > 0).then_some(Argument::U));
+        let parameters = s.parameters(&s.timed(&arguments));
+        let _ = writeln!(out, "pub fn {name}({parameters}) -> {} {{ loop {{}} }}", diagram_type(diagram, s));
+    }
+}
+
+/// The type of a free-body diagram.
+fn diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
+    format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.name(), diagram.actions.len())
+}
+
+/// A free-body diagram from its numbers.
+fn made(diagram: &Diagram, numbers: &str) -> String {
+    let origin =
+        |(name, origin): &(String, Origin)| format!("({name:?}, ::linkwork::free_body::Origin::{origin:?})");
+    let actions: Vec<String> = diagram.actions.iter().map(origin).collect();
+    format!(
+        "::linkwork::free_body::Diagram::new({:?}, [{}], ({numbers}).as_slice())",
+        diagram.body,
+        actions.join(", ")
+    )
+}
+
+/// What the function of a free-body diagram gives.
+fn diagram_docs(diagram: &Diagram, s: &Signature<'_>) -> String {
+    let motion = match s.nu {
+        0 => "in the motion that the state determines",
+        _ => "in the motion under the inputs",
+    };
+    let all: Vec<String> = diagram.actions.iter().map(|(name, _)| format!("`{name}`")).collect();
+    let actions = match all.is_empty() {
+        true => "nothing acts".to_string(),
+        false => all.join(", "),
+    };
+    format!(
+        "the free-body diagram of `{}` {motion}: {actions}. Points are from the centre of mass, m, forces in N, torques about their points in N·m.",
+        diagram.body
+    )
 }
 
 /// What the function of a reaction's output gives.

@@ -28,7 +28,7 @@ pub use gradients::{Gradient, Gradients};
 pub use inertia::Inertia;
 pub use limit::Limit;
 pub use link::{Chart, Coordinate, Link, LinkId, Motion, NamedFrame, Space};
-pub use model::{Model, OutputValue, Released, Uses};
+pub use model::{Diagram, Model, Origin, OutputValue, Released, Uses};
 pub use passive::PassiveForces;
 pub use pose::Pose;
 pub use quantity::Quantity;

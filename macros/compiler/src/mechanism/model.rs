@@ -118,8 +118,34 @@ pub struct Released<'g> {
 pub struct OutputValue<'g> {
     /// Its name.
     pub name: String,
-    /// One component, or three.
+    /// One component, three or nine; of a diagram nine for each action.
     pub values: Vec<Expr<'g>>,
+    /// What the values are, if they are a free-body diagram.
+    pub diagram: Option<Diagram>,
+}
+
+/// A free-body diagram: what acts on a body. By action its values are the point, the force and the torque.
+#[derive(Clone, Debug)]
+pub struct Diagram {
+    /// The body.
+    pub body: String,
+    /// Name of each action, and what of the declaration it is.
+    pub actions: Vec<(String, Origin)>,
+}
+
+/// Where an action of a free-body diagram comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Uniform gravity.
+    Gravity,
+    /// A force element.
+    Element,
+    /// An input.
+    Input,
+    /// A joint.
+    Joint,
+    /// A constraint.
+    Constraint,
 }
 
 /// What a value depends on beside the configuration and time.

@@ -35,6 +35,7 @@ impl<'g> Builder<'_, 'g> {
         for action in &self.description.actions {
             let before = Counts::of(&self.model);
             self.add_action(action, cx);
+            self.know_applied(&before, &action.name.text);
             if is_asked(self.description, &action.name) {
                 let power = self.power_since(&before, &action.name.text);
                 self.scope.kinematics.borrow_mut().powers.insert(action.name.text.clone(), power);

@@ -44,9 +44,14 @@ pub fn build_model<'g>(
         return None;
     }
     let mut model = build(description, graph, None, cx)?;
-    let joints = reaction::to_release(&model);
+    let joints = reaction::to_release(&model, description);
     if !joints.is_empty() {
         let same = build(description, graph, Some((&joints, &model.constraints)), cx)?;
+        for output in model.outputs.iter_mut().filter(|output| output.diagram.is_some()) {
+            // What acts on a body follows from its joints being released.
+            let found = same.outputs.iter().find(|other| other.name == output.name);
+            found.into_iter().for_each(|found| output.clone_from(found));
+        }
         model.released = Some(Rc::new(Released { model: same, joints }));
     }
     Some(model)
@@ -244,6 +249,9 @@ impl<'a, 'g> Builder<'a, 'g> {
             masses: Vec::new(),
             solved_loops: Vec::new(),
             releasing: None,
+            joint_frames: BTreeMap::new(),
+            applied: Vec::new(),
+            touching: BTreeMap::new(),
             partials: Partials::default(),
             group: 0,
             mobility: Diagnostics::new(),

@@ -2,12 +2,13 @@
 
 use super::figures::Range;
 use super::joint::full_name;
-use super::scope::{MassProperties, Placed, PlacedKind, Scope};
+use super::scope::{MassProperties, Placed, PlacedKind, Scope, Terms};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::{Rotation, Vec3};
+use crate::expr::{self, Rotation, Vec3};
 use crate::kinematics::{Partials, joint, symbols_in};
 use crate::mechanism::{Constraint, Coordinate, Inertia, Link, LinkId, Model, Motion, Pose, Quantity, Rule};
 use crate::syntax::{Description, Endpoint, Expr, ExprKind, GROUND, Name};
+use std::collections::BTreeMap;
 
 /// What is known of a joint once its coordinates are numbered.
 pub struct JointCoordinates {
@@ -58,6 +59,12 @@ pub struct Builder<'a, 'g> {
     pub solved_loops: Vec<ClosedFormLoop>,
     /// Joints to be released, and the names of the constraints that a mechanism with released joints keeps.
     pub releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
+    /// By joint of the tree: its frame on the parent, before it is released.
+    pub joint_frames: BTreeMap<usize, Placed<'g>>,
+    /// By force element, energy and dissipation: its generalized forces on the coordinates of released joints.
+    pub applied: Vec<(String, Vec<expr::Expr<'g>>)>,
+    /// By constraint of surfaces that touch at a point: where, from the ground's origin.
+    pub touching: BTreeMap<String, Terms<'g>>,
     /// Derivatives of the places of the links so far.
     pub partials: Partials<'g>,
     /// Number of the group of constraints that is being added.

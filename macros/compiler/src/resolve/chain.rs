@@ -3,7 +3,7 @@
 use super::axis::align;
 use super::builder::Builder;
 use super::joint::{self, Elementary, own_coordinate};
-use super::scope::PlacedKind;
+use super::scope::{Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Vec3};
 use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Motion, Pose, Rule};
@@ -37,6 +37,8 @@ impl<'g> Builder<'_, 'g> {
         if let Some((link, pose)) = start {
             let frame = pose.then(&on_parent);
             self.transmit(j, link, &frame.rotation);
+            let placed = Placed { link, pose: frame.clone(), kind: PlacedKind::Body };
+            self.joint_frames.insert(j, placed);
             let (joints, _) = self.releasing.unwrap_or_default();
             let (link, frame) = match joints.iter().position(|open| *open == j) {
                 Some(at) => self.release(at, joints.len(), link, frame),

@@ -4,7 +4,7 @@
 use super::carriers::expressions;
 use super::joint::{coordinate_names, full_name};
 use crate::diag::Diagnostics;
-use crate::mechanism::Uses;
+use crate::mechanism::{Diagram, Uses};
 use crate::syntax::{
     Action, ActionKind, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind,
     Law, Rank,
@@ -31,7 +31,9 @@ pub struct Outline {
     pub constrained: bool,
     /// Some of those are contacts that slip.
     pub slipping: bool,
-    /// The outputs, in order.
+    /// Free-body diagrams, whose actions are not known.
+    pub diagrams: Vec<(String, Diagram)>,
+    /// The other outputs, in order.
     pub outputs: Vec<OutlinedOutput>,
 }
 
@@ -63,7 +65,8 @@ pub fn outline(d: &Description) -> Outline {
         }),
         constrained: !d.constraints.is_empty() || super::tree::closing(d).contains(&true),
         slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
-        outputs: d.outputs.iter().map(|output| outlined(d, output)).collect(),
+        diagrams: d.outputs.iter().filter_map(diagram).collect(),
+        outputs: d.outputs.iter().filter_map(|output| outlined(d, output)).collect(),
         frames: frames(d),
         bodies: bodies(d),
         configuration,
@@ -112,16 +115,20 @@ fn bodies(d: &Description) -> Vec<String> {
     all.filter(|name| !welded(name)).collect()
 }
 
-fn outlined(d: &Description, output: &Definition) -> OutlinedOutput {
-    OutlinedOutput {
-        name: output.name.text.clone(),
-        size: match output.rank {
-            Rank::Scalar => 1,
-            Rank::Vector => 3,
-            Rank::Matrix => 9,
-        },
-        uses: uses(d, &output.value),
-    }
+fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
+    let size = match output.rank {
+        Rank::Scalar => 1,
+        Rank::Vector => 3,
+        Rank::Matrix => 9,
+        Rank::FreeBody => return None,
+    };
+    Some(OutlinedOutput { name: output.name.text.clone(), size, uses: uses(d, &output.value) })
+}
+
+fn diagram(output: &Definition) -> Option<(String, Diagram)> {
+    let is_one = output.rank == Rank::FreeBody;
+    let body = output.value.name().unwrap_or_default().to_string();
+    is_one.then(|| (output.name.text.clone(), Diagram { body, actions: Vec::new() }))
 }
 
 /// The value or law of a force element.

@@ -11,13 +11,14 @@ use crate::syntax::{self, Description, Name};
 /// How many forces of each kind there are.
 #[derive(Clone, Copy)]
 pub struct Counts {
-    springs: usize,
-    dashpots: usize,
-    frictions: usize,
-    loads: usize,
-    potentials: usize,
-    dissipations: usize,
-    others: usize,
+    pub(super) springs: usize,
+    pub(super) dashpots: usize,
+    pub(super) frictions: usize,
+    pub(super) loads: usize,
+    pub(super) potentials: usize,
+    pub(super) dissipations: usize,
+    pub(super) inertances: usize,
+    pub(super) by_acceleration: usize,
 }
 
 impl Counts {
@@ -30,7 +31,8 @@ impl Counts {
             loads: model.loads.len(),
             potentials: model.potentials.len(),
             dissipations: model.dissipations.len(),
-            others: model.inertances.len() + model.acceleration_forces.len(),
+            inertances: model.inertances.len(),
+            by_acceleration: model.acceleration_forces.len(),
         }
     }
 }
@@ -53,7 +55,7 @@ impl<'g> Builder<'_, 'g> {
     /// motion.
     pub fn power_since(&self, before: &Counts, element: &str) -> Delivered<'g> {
         let (m, now) = (&self.model, Counts::of(&self.model));
-        if now.others > before.others {
+        if now.inertances > before.inertances || now.by_acceleration > before.by_acceleration {
             return Err("its force depends on accelerations");
         }
         let mut power = m.graph.zero();
@@ -103,7 +105,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// The power of an input that acts on a coordinate or a body.
-    fn power_of_input(&self, element: &str) -> Expr<'g> {
+    pub fn power_of_input(&self, element: &str) -> Expr<'g> {
         let m = &self.model;
         let Some(k) = m.inputs.iter().position(|(name, _)| name == element) else { return m.graph.zero() };
         let u = Quantity::Input(k).expr(m.graph);

@@ -1,10 +1,10 @@
 //! Force elements that are more than linear springs and dashpots on a coordinate: laws, elements between two points,
-//! gravity towards a point, energies, friction, forces with a value; and the outputs.
+//! gravity towards a point, energies, friction, forces with a value.
 
 use super::builder::Builder;
 use super::constraint::Constrained;
-use super::contact;
-use super::scope::{Allowed, Context, Placed, Value};
+use super::power::Counts;
+use super::scope::{Allowed, Context, Placed};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
 use crate::expr::eval::eval;
@@ -12,8 +12,8 @@ use crate::expr::replace::replace;
 use crate::expr::sample::sample;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol, Vec3};
 use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
-use crate::mechanism::{Coordinate, Inertance, LinkId, Load, OutputValue, Pose, Quantity, Rule};
-use crate::syntax::{self, Definition, ExprKind, IF, Law, Rank};
+use crate::mechanism::{Coordinate, Inertance, Load, Pose, Quantity, Rule};
+use crate::syntax::{self, ExprKind, IF, Law};
 use std::collections::BTreeSet;
 
 /// Regularisation speed of friction, unless given.
@@ -76,14 +76,16 @@ impl<'g> Builder<'_, 'g> {
         let terms = kinematics.between(&second, &first);
         let axes = terms.first().and_then(|(link, _)| *link);
         let r = kinematics.resolve(&terms, axes, zero);
-        if always_zero(r) {
+        // What moves along a line does so whichever joints are released.
+        let held = Vec3(self.with_released_at_rest(&r.0).try_into().unwrap_or(r.0));
+        if always_zero(held) {
             cx.error(b.place.clone(), "these two points are always at the same place")
                 .help("let the element act between points that move apart");
             return None;
         }
         let mut v = kinematics.velocity(&second);
         v.extend(kinematics.velocity(&first).into_iter().map(|(link, v)| (link, -v)));
-        if let Some(line) = constant_direction(r) {
+        if let Some(line) = constant_direction(held) {
             let e = Vec3::numbers(self.scope.graph, line);
             let rate = e.dot(kinematics.resolve(&v, axes, zero));
             let value = r.dot(e);
@@ -309,16 +311,18 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Potential energies and dissipation functions given as expressions, and outputs.
+    /// Potential energies and dissipation functions given as expressions; then the outputs.
     pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
         let ground = || Some((None, Pose::identity(self.scope.graph)));
-        for (_, e) in &d.energies {
+        for (name, e) in &d.energies {
             let context = Context::new(Allowed::Placement, ground());
             let energy = self.scope.in_context(context, |scope| scope.scalar(e, cx));
+            let before = Counts::of(&self.model);
             self.model.potentials.extend(energy);
+            self.know_applied(&before, &name.text);
         }
-        for (_, e) in &d.dissipations {
+        for (name, e) in &d.dissipations {
             let context = Context::new(Allowed::Motion, ground());
             let function = self.scope.in_context(context, |scope| scope.scalar(e, cx));
             // Between bodies that are welded together it is zero, which is no mistake.
@@ -326,76 +330,17 @@ impl<'g> Builder<'_, 'g> {
                 cx.error(e.place.clone(), "this contains no velocity, and has no effect")
                     .help("dissipation is a function of rates, half the power that is lost: `c / 2 * rate(hinge) * rate(hinge)`");
             }
+            let before = Counts::of(&self.model);
             self.model.dissipations.extend(function);
+            self.know_applied(&before, &name.text);
         }
-        for output in &d.outputs {
-            if let Some(values) = self.output(output, cx) {
-                if !contact::stands_alone(&values) {
-                    cx.error(output.value.place.clone(), "a force at a contact beside a reaction or an acceleration")
-                        .help("the reactions and accelerations of the language are those without contacts: make it an output of its own");
-                    continue;
-                }
-                self.model.outputs.push(OutputValue { name: output.name.text.clone(), values });
-            }
-        }
+        self.add_outputs(cx);
         // Definitions that nothing uses are checked all the same.
         for definition in &d.definitions {
             let context = Context::new(Allowed::Reaction, ground());
             let name = ExprKind::Name(definition.name.text.clone());
             let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
             let _ = self.scope.in_context(context, |scope| scope.value(&e, cx));
-        }
-    }
-
-    fn output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
-        let home = Some((None, Pose::identity(self.scope.graph)));
-        let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
-        let context = Context::new(allowed, home);
-        if output.rank == Rank::Scalar {
-            return match self.scope.in_context(context, |scope| scope.value(&output.value, cx))? {
-                Value::Scalar(s) => Some(vec![s]),
-                other => {
-                    let what = other.word();
-                    cx.error(output.value.place.clone(), format!("expected a scalar, found {what}")).help(
-                        match other {
-                            Value::Matrix(_) => "declare it as a `Matrix`, or take an entry, `dot(x, M * y)`",
-                            _ => "declare it as a `Vector`, or take a component, `dot(v, x)`",
-                        },
-                    );
-                    None
-                }
-            };
-        }
-        if output.rank == Rank::Matrix {
-            let found = self.scope.in_context(context, |scope| scope.physical_matrix(&output.value, cx));
-            let (link, pose) = self.output_axes(output, cx)?;
-            return Some(self.scope.kinematics.borrow().matrix_entries(found?, link, &pose.rotation));
-        }
-        let terms = self.scope.in_context(context, |scope| scope.terms(&output.value, cx));
-        let (link, pose) = self.output_axes(output, cx)?;
-        let v = self.scope.kinematics.borrow().resolve(&terms?, link, Vec3::zero(self.scope.graph));
-        Some(pose.rotation.to_child(v).0.to_vec())
-    }
-
-    /// The axes of the components of an output.
-    fn output_axes(&self, output: &Definition, cx: &mut Diagnostics) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let ground = Some((None, Pose::identity(self.scope.graph)));
-        let Some(e) = &output.resolved_in else { return ground };
-        match &e.kind {
-            ExprKind::Name(name) if name == super::tree::GROUND => ground,
-            ExprKind::Name(name) => {
-                let kinematics = self.scope.kinematics.borrow();
-                let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
-                if found.is_none() {
-                    let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
-                    cx.error(e.place.clone(), format!("unknown frame `{name}`")).suggest(name, known);
-                }
-                found
-            }
-            _ => {
-                cx.error(e.place.clone(), "expected a body or a frame");
-                None
-            }
         }
     }
 

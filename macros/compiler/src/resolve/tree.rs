@@ -56,7 +56,7 @@ fn carries(parents: &BTreeMap<&str, &str>, carrier: &str, carried: &str) -> bool
 }
 
 /// The name that `body.at(vector)` starts with.
-fn base_name(e: &Expr) -> Option<&str> {
+pub fn base_name(e: &Expr) -> Option<&str> {
     match &e.kind {
         ExprKind::Name(name) => Some(name),
         ExprKind::Method(base, ..) => base_name(base),

@@ -44,7 +44,7 @@ const ACTIONS: [&str; 8] =
     ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
 
 /// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 18] = [
+const OTHERS: [(&str, &[&str]); 19] = [
     ("Coordinate", &[]),
     ("Input", &[]),
     ("Frame", &["frame"]),
@@ -63,6 +63,7 @@ const OTHERS: [(&str, &[&str]); 18] = [
     ("Scalar", &["define", "output"]),
     ("Vector", &["define", "output"]),
     ("Matrix", &["define", "output"]),
+    ("FreeBody", &["output"]),
 ];
 
 /// Types of Rust that are no parameter.
@@ -450,7 +451,7 @@ fn read_expression(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let has_axes = matches!(kind, "Vector" | "Matrix");
+    let has_axes = matches!(kind, "Vector" | "Matrix" | "FreeBody");
     let resolved_in = if has_axes { arguments.take_expr("resolved_in", cx) } else { None };
     let mut plain = arguments.take_plain();
     let value = plain.pop();

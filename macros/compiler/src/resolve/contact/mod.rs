@@ -63,6 +63,7 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         let Some(contact) = self.contact(&pair) else { return };
+        self.know_contact(&constraint.name.text, &pair, &contact);
         let slip = self.slip(&pair, contact.point);
         self.hold(constraint, &contact, slip, Vec::new());
         let [_, tangents @ ..] = contact.axes;
@@ -99,6 +100,14 @@ impl<'g> Builder<'_, 'g> {
                 row.determines = true;
             }
         }
+    }
+
+    /// Remembers where a pair touches, for free-body diagrams.
+    fn know_contact(&mut self, name: &str, pair: &Pair<'g>, contact: &Contact<'g>) {
+        let home = &pair.a.home;
+        let mut place = self.scope.kinematics.borrow().position(home.link, home.pose.translation);
+        place.push((pair.on_a.ancestor, contact.point));
+        self.touching.insert(name.to_string(), place);
     }
 
     /// Reads a pair, for its mistakes alone.

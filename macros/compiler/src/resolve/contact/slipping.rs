@@ -20,6 +20,7 @@ impl<'g> Builder<'_, 'g> {
             );
             return;
         };
+        self.know_contact(&constraint.name.text, &pair, &contact);
         let slip = self.slip(&pair, contact.point);
         let [_, tangents @ ..] = contact.axes;
         let rates: Vec<Expr<'g>> = tangents.iter().map(|(_, e)| e.dot(slip)).collect();

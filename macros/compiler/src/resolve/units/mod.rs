@@ -44,6 +44,10 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     let mut places = places::collect(d, &mut inference);
     let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.variable()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
+        // A diagram names a body, and has forces and torques.
+        if output.rank == Rank::FreeBody {
+            continue;
+        }
         let (dimension, locals) = (Dimension::variable(*v), Vec::new());
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
     }
@@ -76,7 +80,11 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     for (output, v) in d.outputs.iter().zip(outputs) {
         let unit = shown(&mut inference, &Dimension::variable(v), v);
         let energy = output.rank == Rank::Scalar && unit == "N·m";
-        units.outputs.push(if energy { "J".to_string() } else { unit });
+        units.outputs.push(match output.rank {
+            Rank::FreeBody => "N, N·m".to_string(),
+            _ if energy => "J".to_string(),
+            _ => unit,
+        });
     }
     units.constraints = model.constraints.iter().map(|c| of_constraint(c, &sides, &mut inference)).collect();
     units

@@ -29,6 +29,8 @@ pub enum Rank {
     Vector,
     /// A physical matrix, which takes vectors to vectors.
     Matrix,
+    /// All that acts on a body, which the expression names.
+    FreeBody,
 }
 
 impl Rank {
@@ -37,6 +39,7 @@ impl Rank {
         match kind {
             "Vector" => Rank::Vector,
             "Matrix" => Rank::Matrix,
+            "FreeBody" => Rank::FreeBody,
             _ => Rank::Scalar,
         }
     }
@@ -47,6 +50,7 @@ impl Rank {
             Rank::Scalar => "Scalar",
             Rank::Vector => "Vector",
             Rank::Matrix => "Matrix",
+            Rank::FreeBody => "FreeBody",
         }
     }
 }

@@ -1,0 +1,428 @@
+//! Free-body diagrams: all that acts on a body at once, for outputs of the type `FreeBody`. The joints of the body are released,
+//! six motions each; what a force element, a constraint or a contact does to the body is its generalized force on the joint that
+//! holds the body, less those on the joints that the body holds (virtual work: the body moves alone while all others stay). What
+//! joints transmit are their reactions, with the motors, springs and dashpots on their own coordinates.
+
+use super::builder::Builder;
+use super::power::Counts;
+use super::reaction::RELEASED;
+use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};
+use super::tree;
+use crate::diag::Diagnostics;
+use crate::expr::eval::eval;
+use crate::expr::replace::replace_all;
+use crate::expr::sample::sample;
+use crate::expr::{Expr, Function, Symbol, Vec3};
+use crate::kinematics::{random_configuration, time_derivative, velocity_gradient};
+use crate::mechanism::{Diagram, LinkId, Origin, OutputValue, Pose, Quantity};
+use crate::syntax::{self, ActionKind, Definition, Description, Endpoint, ExprKind, JointKind, Target};
+use std::collections::BTreeMap;
+
+/// States in which is looked at what acts.
+const SAMPLES: u64 = 3;
+/// Below this part of what it is the sum of, a force is none.
+const ROUNDING: f64 = 1e-10;
+
+/// A force and a torque about the centre of mass of the body, in the axes of one link.
+#[derive(Clone, Copy)]
+struct Wrench<'g> {
+    force: Vec3<'g>,
+    torque: Vec3<'g>,
+}
+
+/// The body of a diagram, in the axes of one link.
+struct Freed<'g> {
+    name: String,
+    link: Option<LinkId>,
+    mass: Expr<'g>,
+    center: Placed<'g>,
+    /// The released joints: number among them, whether it holds the body.
+    joints: Vec<(usize, bool)>,
+    /// The axes of the result.
+    axes: (Option<LinkId>, Pose<'g>),
+}
+
+/// An action: its name, where it comes from, where it acts, and what it does.
+type Acting<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
+
+/// The joints of the tree that hold a body or are held by it.
+pub fn joints_of<'a>(d: &'a Description, body: &'a str) -> impl Iterator<Item = usize> + 'a {
+    let closing = tree::closing(d);
+    let tree = move |j: &usize| closing.get(*j) == Some(&false);
+    let joins = move |j: &usize| {
+        let joint = &d.joints[*j];
+        joint.child.body.text == body || carrier(d, &joint.parent.body.text) == body
+    };
+    (0..d.joints.len()).filter(tree).filter(joins)
+}
+
+/// The body that carries a point or a particle; a body itself.
+fn carrier<'a>(d: &'a Description, name: &'a str) -> &'a str {
+    let on = |name: &str| {
+        let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
+        let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
+        tree::base_name(point.or(particle)?)
+    };
+    (0..=d.points.len() + d.particles.len()).fold(name, |at, _| on(at).unwrap_or(at))
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// Expressions with the coordinates of released joints at zero, and their rates.
+    pub fn with_released_at_rest(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let Some((joints, _)) = self.releasing else { return e.to_vec() };
+        let open = RELEASED * joints.len();
+        let (nq, nv) = (self.model.nq() - open, self.model.nv() - open);
+        replace_all(e, &|s| {
+            let released = match Quantity::of(s) {
+                Quantity::Configuration(k) => k >= nq,
+                Quantity::Velocity(k) | Quantity::Acceleration(k) => k >= nv,
+                _ => false,
+            };
+            released.then(|| self.model.graph.zero())
+        })
+    }
+
+    /// Remembers what an element has added since then: its generalized forces on the coordinates of released joints.
+    pub fn know_applied(&mut self, before: &Counts, name: &str) {
+        let Some((joints, _)) = self.releasing else { return };
+        if self.description.outputs.iter().all(|output| output.rank != syntax::Rank::FreeBody) {
+            return;
+        }
+        let (m, open) = (&self.model, RELEASED * joints.len());
+        let first = m.nv() - open;
+        let mut forces = vec![m.graph.zero(); open];
+        let mut add = |rate: Expr<'g>, force: Expr<'g>| {
+            for (k, d) in velocity_gradient(rate).into_iter().filter(|(k, _)| *k >= first) {
+                forces[k - first] += force * d;
+            }
+        };
+        let a = |k: usize| Quantity::Acceleration(k).expr(m.graph);
+        for load in &m.loads[before.loads..] {
+            add(load.rate, load.force);
+        }
+        for energy in &m.potentials[before.potentials..] {
+            add(time_derivative(m.space(), *energy), -m.graph.one());
+        }
+        for function in &m.dissipations[before.dissipations..] {
+            add(*function, -m.graph.one());
+        }
+        for element in &m.inertances[before.inertances..] {
+            let gradient = velocity_gradient(element.rate);
+            let start = time_derivative(m.space(), element.rate);
+            let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * a(k));
+            add(element.rate, -(element.inertance * change));
+        }
+        for force in &m.acceleration_forces[before.by_acceleration..] {
+            let value = force.factors.iter().fold(m.graph.zero(), |sum, (k, factor)| sum + *factor * a(*k));
+            add(force.rate, value);
+        }
+        add(self.power_of_input(name), m.graph.one());
+        self.applied.push((name.to_string(), forces));
+    }
+
+    /// The free-body diagram that an output asks for. Before joints are released it has no actions yet.
+    pub fn free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<OutputValue<'g>> {
+        let name = self.check_free_body(output, cx)?;
+        let axes = self.output_axes(output, cx)?;
+        let empty = Diagram { body: name.clone(), actions: Vec::new() };
+        let named =
+            |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
+        let Some((released, _)) = self.releasing else { return Some(named(Vec::new(), empty)) };
+        let joints = joints_of(self.description, &name).filter_map(|j| {
+            let holds = self.description.joints[j].child.body.text == name;
+            Some((released.iter().position(|open| *open == j)?, holds))
+        });
+        let joints: Vec<(usize, bool)> = joints.collect();
+        let (link, mass, center) = self.rigid_part(&name, &joints, output, cx)?;
+        let body = Freed { name, link, mass, center, joints, axes };
+        let mut all: Vec<Acting<'g>> = self.gravity_on(&body).into_iter().collect();
+        all.extend(self.elements_on(&body));
+        all.extend(self.joints_on(&body));
+        all.extend(self.constraints_on(&body));
+        let (mut values, mut actions) = (Vec::new(), Vec::new());
+        let rotation = &body.axes.1.rotation;
+        for (name, origin, place, wrench) in all {
+            let zero = Vec3::zero(self.scope.graph);
+            let point = place.map_or(zero, |terms| self.arm_to(&body, &terms));
+            values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
+            actions.push((name, origin));
+        }
+        Some(named(self.with_released_at_rest(&values), Diagram { body: body.name, actions }))
+    }
+
+    /// The name of the body, if it can have a diagram.
+    fn check_free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<String> {
+        let ground = Some((None, Pose::identity(self.scope.graph)));
+        let e = &output.value;
+        self.scope.in_context(Context::new(Allowed::Reaction, ground), |scope| scope.heavy(e, cx))?;
+        let name = e.name()?;
+        if let Some(contact) = self.description.contacts.first().filter(|_| !self.model.contacts.is_empty()) {
+            cx.error(e.place.clone(), "a free-body diagram beside contacts that open and close")
+                .help(format!("joints and accelerations would have to follow from them: `contact_force({})` gives their forces", contact.name.text));
+            return None;
+        }
+        if joints_of(self.description, name).all(|j| self.description.joints[j].child.body.text != name) {
+            cx.error(e.place.clone(), format!("no joint holds `{name}`, so that it cannot be freed"))
+                .help("a free-body diagram is that of a body or a particle with a joint; what is placed by `at` or `frame` is held by what its place says");
+            return None;
+        }
+        Some(name.to_string())
+    }
+
+    /// What moves as one with a body: its link, its mass and its centre of mass. Reports what moves on it without a joint.
+    fn rigid_part(
+        &self,
+        name: &str,
+        joints: &[(usize, bool)],
+        output: &Definition,
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, Expr<'g>, Placed<'g>)> {
+        let g = self.scope.graph;
+        let kinematics = self.scope.kinematics.borrow();
+        let link = kinematics.places.get(name)?.link;
+        let released: Vec<Option<LinkId>> =
+            joints.iter().filter_map(|(at, holds)| (!holds).then_some(self.first_of_released(*at))).collect();
+        let (mut mass, mut sum) = (g.zero(), Vec3::zero(g));
+        for (other, (m, com, _)) in &kinematics.masses {
+            let Some(placed) = kinematics.places.get(other) else { continue };
+            let path = std::iter::successors(placed.link, |l| self.model.links[l.0].parent);
+            let path: Vec<LinkId> = path.collect();
+            let freed = path.iter().any(|l| released.contains(&Some(*l)));
+            if freed || !path.iter().any(|l| Some(*l) == link) {
+                continue;
+            }
+            if placed.link != link {
+                cx.error(
+                    output.value.place.clone(),
+                    format!("`{other}` moves on `{name}` without a joint, so that `{name}` cannot be freed"),
+                )
+                .help("hold it by a joint, whose reaction acts on both");
+                return None;
+            }
+            mass += *m;
+            sum += placed.pose.point(*com) * *m;
+        }
+        let at = &kinematics.places.get(name)?.pose;
+        let translation = if mass.is_zero() { at.translation } else { sum.map(|c| c / mass) };
+        let pose = Pose { translation, rotation: at.rotation.clone() };
+        Some((link, mass, Placed { link, pose, kind: PlacedKind::Point }))
+    }
+
+    /// The first link of the motions of a released joint.
+    fn first_of_released(&self, at: usize) -> Option<LinkId> {
+        let count = self.releasing?.0.len();
+        let v = self.model.nv() - RELEASED * (count - at);
+        let links = self.scope.kinematics.borrow();
+        let is_it = |joint: &crate::kinematics::Joint<'g>| joint.dofs.iter().any(|dof| dof.index == v);
+        links.joints.iter().position(is_it).map(LinkId)
+    }
+
+    /// A place from the centre of mass, in the axes' link.
+    fn arm_to(&self, body: &Freed<'g>, place: &Terms<'g>) -> Vec3<'g> {
+        let kinematics = self.scope.kinematics.borrow();
+        let mut terms = place.clone();
+        let center = kinematics.position(body.center.link, body.center.pose.translation);
+        for (axes, v) in center {
+            match terms.iter_mut().find(|(known, _)| *known == axes) {
+                Some((_, total)) => *total -= v,
+                None => terms.push((axes, -v)),
+            }
+        }
+        terms.retain(|(_, v)| !v.is_zero());
+        kinematics.resolve(&terms, body.axes.0, Vec3::zero(self.scope.graph))
+    }
+
+    fn position_of(&self, placed: &Placed<'g>) -> Terms<'g> {
+        self.scope.kinematics.borrow().position(placed.link, placed.pose.translation)
+    }
+
+    fn gravity_on(&self, body: &Freed<'g>) -> Option<Acting<'g>> {
+        let zero = Vec3::zero(self.scope.graph);
+        let weight = self.model.gravity * body.mass;
+        if weight.is_zero() {
+            return None;
+        }
+        let force = self.scope.kinematics.borrow().resolve(&vec![(None, weight)], body.axes.0, zero);
+        Some(("gravity".to_string(), Origin::Gravity, None, Wrench { force, torque: zero }))
+    }
+
+    /// A force and a torque on the coordinates of released joints as what acts on the body.
+    fn on_body(&self, body: &Freed<'g>, forces: &[Expr<'g>]) -> Wrench<'g> {
+        let zero = Vec3::zero(self.scope.graph);
+        let mut sum = Wrench { force: zero, torque: zero };
+        for (at, holds) in &body.joints {
+            let part = |k: usize| Vec3([0, 1, 2].map(|i| forces[RELEASED * at + k + i]));
+            let Some(w) = self.at_joint(body, *at, part(0), part(3)) else { continue };
+            let sign = self.scope.graph.num(if *holds { 1.0 } else { -1.0 });
+            sum.force += w.force * sign;
+            sum.torque += w.torque * sign;
+        }
+        sum
+    }
+
+    /// What a force and a torque at a released joint, in its frame, are about the centre of mass.
+    fn at_joint(&self, body: &Freed<'g>, at: usize, force: Vec3<'g>, torque: Vec3<'g>) -> Option<Wrench<'g>> {
+        let zero = Vec3::zero(self.scope.graph);
+        if force.is_zero() && torque.is_zero() {
+            return Some(Wrench { force: zero, torque: zero });
+        }
+        let j = self.releasing?.0.get(at)?;
+        let frame = self.joint_frames.get(j)?;
+        let out = |v: Vec3<'g>| {
+            let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
+            self.scope.kinematics.borrow().resolve(&terms, body.axes.0, zero)
+        };
+        let (force, torque) = (out(force), out(torque));
+        let arm = self.arm_to(body, &self.position_of(frame));
+        Some(Wrench { force, torque: torque + arm.cross(force) })
+    }
+
+    fn elements_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+        let mut all = Vec::new();
+        for (name, forces) in &self.applied {
+            let forces = self.with_released_at_rest(forces);
+            let wrench = self.on_body(body, &forces);
+            if !self.acts(&wrench, &forces) {
+                continue;
+            }
+            let is_input = self.model.inputs.iter().any(|(input, _)| input == name);
+            let origin = if is_input { Origin::Input } else { Origin::Element };
+            let place = self.place_of_element(body, name);
+            let wrench = match &place {
+                // A force through its point, where nothing is left of its torque.
+                Some(_) => Wrench { torque: Vec3::zero(self.scope.graph), ..wrench },
+                None => wrench,
+            };
+            all.push((name.clone(), origin, place, wrench));
+        }
+        all
+    }
+
+    /// Where an element pulls at a body, if it does so at one point.
+    fn place_of_element(&self, body: &Freed<'g>, name: &str) -> Option<Terms<'g>> {
+        let action = self.description.actions.iter().find(|action| action.name.text == name)?;
+        let mut unread = Diagnostics::unread();
+        let mut here = |e: &syntax::Expr| {
+            let placed = self.scope.place_now(e, &mut unread)?;
+            (placed.link == body.link).then(|| self.position_of(&placed))
+        };
+        match (&action.on, &action.kind) {
+            // Bodies of finite size are turned as well.
+            (_, ActionKind::Gravity { .. } | ActionKind::Torque { .. }) => None,
+            (Target::Between(a, b), _) => here(a).or_else(|| here(b)),
+            (Target::On(e), ActionKind::Force { .. }) => match &e.kind {
+                ExprKind::Name(name) if self.joint_coordinates(name).is_some() => None,
+                ExprKind::Name(_) | ExprKind::Method(..) => here(e),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// What the joints of the tree transmit to the body.
+    fn joints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+        let g = self.scope.graph;
+        let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
+        let mut all = Vec::new();
+        for (at, holds) in &body.joints {
+            let Some(joint) = released.get(*at).map(|j| (*j, &self.description.joints[*j])) else { continue };
+            let (j, joint) = joint;
+            let Some(frame) = self.joint_frames.get(&j).filter(|_| joint.kind != JointKind::Free) else {
+                continue;
+            };
+            let sign = g.num(if *holds { 1.0 } else { -1.0 });
+            let out = |k: usize| {
+                let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
+                let terms = vec![(frame.link, frame.pose.rotation.to_parent(v))];
+                self.scope.kinematics.borrow().resolve(&terms, body.axes.0, Vec3::zero(g))
+            };
+            let wrench = Wrench { force: out(0), torque: out(3) };
+            all.push((joint.name.text.clone(), Origin::Joint, Some(self.position_of(frame)), wrench));
+        }
+        all
+    }
+
+    /// What constraints, and the joints that close loops, do to the body.
+    fn constraints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+        let g = self.scope.graph;
+        let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
+        let first = self.model.nv() - open;
+        let mut by_name: Vec<(String, Vec<Expr<'g>>)> = Vec::new();
+        let mut index: BTreeMap<String, usize> = BTreeMap::new();
+        for (k, c) in self.model.constraints.iter().enumerate() {
+            let multiplier = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g);
+            let size = multiplier.call(Function::Abs);
+            let name = c.name.split('.').next().unwrap_or(&c.name).to_string();
+            let slot = *index.entry(name.clone()).or_insert(by_name.len());
+            if slot == by_name.len() {
+                by_name.push((name, vec![g.zero(); open]));
+            }
+            let normal = std::iter::once((c.rate, multiplier));
+            let friction = c.friction.iter().map(|term| (term.rate, term.share * size));
+            for (rate, force) in normal.chain(friction) {
+                for (v, d) in velocity_gradient(rate).into_iter().filter(|(v, _)| *v >= first) {
+                    by_name[slot].1[v - first] += force * d;
+                }
+            }
+        }
+        let act = |(name, forces): (String, Vec<Expr<'g>>)| {
+            let forces = self.with_released_at_rest(&forces);
+            let wrench = self.on_body(body, &forces);
+            if !self.acts(&wrench, &forces) {
+                return None;
+            }
+            let joint = self.description.joints.iter().find(|joint| joint.name.text == name);
+            if let Some(joint) = joint {
+                let place = self.end_on(body, [&joint.parent, &joint.child]);
+                let wrench = self.moved_to(body, place.as_ref(), wrench);
+                return Some((name, Origin::Joint, place, wrench));
+            }
+            let place = self.touching.get(&name).cloned();
+            let wrench = match &place {
+                Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
+                None => wrench,
+            };
+            Some((name, Origin::Constraint, place, wrench))
+        };
+        by_name.into_iter().filter_map(act).collect()
+    }
+
+    /// The end of a joint that belongs to the body.
+    fn end_on(&self, body: &Freed<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
+        let mut unread = Diagnostics::unread();
+        ends.into_iter().find_map(|end| {
+            let (link, pose) = self.joint_parent(&end.body, &mut unread)?;
+            let on_body = self.endpoint(end, &mut unread)?;
+            let placed = Placed { link, pose: pose.then(&on_body), kind: PlacedKind::Point };
+            (link == body.link).then(|| self.position_of(&placed))
+        })
+    }
+
+    /// The same about another point.
+    fn moved_to(&self, body: &Freed<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
+        let Some(place) = place else { return w };
+        let arm = self.arm_to(body, place);
+        Wrench { torque: w.torque - arm.cross(w.force), ..w }
+    }
+
+    /// Whether something is left where forces on several joints are added: what acts between two bodies that the same joint
+    /// carries cancels, up to rounding.
+    fn acts(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
+        let all = self.with_released_at_rest(&[wrench.force.0, wrench.torque.0].concat());
+        if all.iter().all(|e| e.is_zero()) {
+            return false;
+        }
+        (0..SAMPLES).any(|seed| {
+            // Quaternions are unit: what cancels does so for rotations alone.
+            let q = random_configuration(&self.model, seed);
+            let number = |s: Symbol| match Quantity::of(s) {
+                Quantity::Configuration(k) => q[k],
+                _ => sample(s, seed),
+            };
+            let largest = |e: &[Expr<'g>]| eval(e, &number).iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+            let (left, size) = (largest(&all), largest(forces));
+            // Numbers that are not finite tell nothing.
+            !left.is_finite() || left > ROUNDING * size
+        })
+    }
+}

@@ -1,0 +1,90 @@
+//! Outputs: expressions that become functions, in the axes that they say.
+
+use super::builder::Builder;
+use super::contact;
+use super::scope::{Allowed, Context, Value};
+use crate::diag::Diagnostics;
+use crate::expr::{Expr, Vec3};
+use crate::mechanism::{LinkId, OutputValue, Pose};
+use crate::syntax::{Definition, ExprKind, Rank};
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds all outputs.
+    pub fn add_outputs(&mut self, cx: &mut Diagnostics) {
+        for output in &self.description.outputs {
+            if output.rank == Rank::FreeBody {
+                let found = self.free_body(output, cx);
+                self.model.outputs.extend(found);
+                continue;
+            }
+            if let Some(values) = self.output(output, cx) {
+                if !contact::stands_alone(&values) {
+                    cx.error(output.value.place.clone(), "a force at a contact beside a reaction or an acceleration")
+                        .help("the reactions and accelerations of the language are those without contacts: make it an output of its own");
+                    continue;
+                }
+                self.model.outputs.push(OutputValue {
+                    name: output.name.text.clone(),
+                    values,
+                    diagram: None,
+                });
+            }
+        }
+    }
+
+    fn output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
+        let home = Some((None, Pose::identity(self.scope.graph)));
+        let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
+        let context = Context::new(allowed, home);
+        if output.rank == Rank::Scalar {
+            return match self.scope.in_context(context, |scope| scope.value(&output.value, cx))? {
+                Value::Scalar(s) => Some(vec![s]),
+                other => {
+                    let what = other.word();
+                    cx.error(output.value.place.clone(), format!("expected a scalar, found {what}")).help(
+                        match other {
+                            Value::Matrix(_) => "declare it as a `Matrix`, or take an entry, `dot(x, M * y)`",
+                            _ => "declare it as a `Vector`, or take a component, `dot(v, x)`",
+                        },
+                    );
+                    None
+                }
+            };
+        }
+        if output.rank == Rank::Matrix {
+            let found = self.scope.in_context(context, |scope| scope.physical_matrix(&output.value, cx));
+            let (link, pose) = self.output_axes(output, cx)?;
+            return Some(self.scope.kinematics.borrow().matrix_entries(found?, link, &pose.rotation));
+        }
+        let terms = self.scope.in_context(context, |scope| scope.terms(&output.value, cx));
+        let (link, pose) = self.output_axes(output, cx)?;
+        let v = self.scope.kinematics.borrow().resolve(&terms?, link, Vec3::zero(self.scope.graph));
+        Some(pose.rotation.to_child(v).0.to_vec())
+    }
+
+    /// The axes of the components of an output.
+    pub fn output_axes(
+        &self,
+        output: &Definition,
+        cx: &mut Diagnostics,
+    ) -> Option<(Option<LinkId>, Pose<'g>)> {
+        let ground = Some((None, Pose::identity(self.scope.graph)));
+        let Some(e) = &output.resolved_in else { return ground };
+        match &e.kind {
+            ExprKind::Name(name) if name == super::tree::GROUND => ground,
+            ExprKind::Name(name) => {
+                let kinematics = self.scope.kinematics.borrow();
+                let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
+                if found.is_none() {
+                    let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
+                    cx.error(e.place.clone(), format!("unknown frame `{name}`")).suggest(name, known);
+                }
+                found
+            }
+            _ => {
+                cx.error(e.place.clone(), "expected a body or a frame");
+                None
+            }
+        }
+    }
+}
