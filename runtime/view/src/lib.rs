@@ -4,6 +4,7 @@ mod collada;
 mod encode;
 mod error;
 mod figure;
+mod free_body;
 mod live;
 mod log;
 mod mcap;
@@ -16,6 +17,7 @@ mod text;
 
 pub use error::Error;
 pub use figure::Figure;
+pub use free_body::{Side, free_body};
 pub use live::Live;
 pub use log::csv;
 pub use mcap::mcap;

@@ -1,0 +1,63 @@
+//! Free-body diagrams as SVG.
+
+use linkwork::prelude::*;
+use linkwork_view::{Side, free_body};
+
+/// A level rod on a pin with a motor.
+#[mechanism(gravity = -9.81 * y)]
+struct Rod {
+    #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    hinge: Pin,
+    #[acts(on = rod, about = z)]
+    motor: Torque,
+    #[output(rod)]
+    loads: FreeBody,
+}
+
+/// Ends of the straight lines of a colour, right and up.
+fn arrows(svg: &str, colour: &str) -> Vec<[f64; 2]> {
+    let number = |line: &str, name: &str| -> f64 {
+        let rest = line.split(&format!("{name}=\"")).nth(1).expect("an attribute");
+        rest.split('"').next().and_then(|text| text.parse().ok()).expect("a number")
+    };
+    let lines = svg.lines().filter(|line| line.starts_with("<line") && line.contains(colour));
+    let along = |line: &str| [["x2", "x1"], ["y1", "y2"]].map(|[a, b]| number(line, a) - number(line, b));
+    lines.map(along).collect()
+}
+
+#[test]
+fn arrows_are_forces_and_arcs_torques() {
+    let rod = Rod {};
+    let (q, v) = ([0.0].into(), [0.0].into());
+    let svg = free_body(&rod.loads(&q, &v, &[9.81].into()), Side::Xy);
+    assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+    // The weight goes down, the hinge pushes up: the motor holds the rod, and the hinge carries all.
+    let [weight, hinge] = ["#5a5a5a", "#005aa0"].map(|colour| arrows(&svg, colour));
+    assert!(weight.len() == 1 && hinge.len() == 1, "{svg}");
+    assert!(weight[0][0] == 0.0 && weight[0][1] < -90.0 && hinge[0][1] > 90.0);
+    // A torque towards the viewer turns counterclockwise: no sweep.
+    let arc = svg.lines().find(|line| line.contains(" A ") && line.contains("#d55e00")).expect("an arc");
+    assert!(arc.contains(" 0 1 0 "), "{arc}");
+    let back = free_body(&rod.loads(&q, &v, &[-9.81].into()), Side::Xy);
+    let arc = back.lines().find(|line| line.contains(" A ") && line.contains("#d55e00")).expect("an arc");
+    assert!(arc.contains(" 0 1 1 "), "{arc}");
+    for listed in
+        ["gravity at (0, 0, 0) m", "force (0.00, -19.62, 0.00) N", "torque (0.000, 0.000, 9.810) N·m"]
+    {
+        assert!(svg.contains(listed), "{listed}: {svg}");
+    }
+    // From the side the torque lies in the picture: an arrow with two heads, and no arc.
+    let aside = free_body(&rod.loads(&q, &v, &[9.81].into()), Side::Xz);
+    assert!(!aside.contains(" A ") && arrows(&aside, "#d55e00").len() == 1);
+    assert_eq!(svg.matches("<line").count() - 3, aside.matches("<line").count() - 2);
+}
+
+#[test]
+fn what_is_not_finite_is_listed_alone() {
+    let mut loads = Rod {}.loads(&[0.0].into(), &[0.0].into(), &[1.0].into());
+    loads.actions[1].force[0] = f64::NAN;
+    let svg = free_body(&loads, Side::Isometric);
+    assert!(svg.contains("(NaN, ") && !svg.contains("\"NaN"));
+}
