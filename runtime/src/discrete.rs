@@ -43,6 +43,7 @@ use crate::private::to_f64;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
+mod curvature;
 mod explicit;
 mod implicit;
 mod parameters;

@@ -7,7 +7,7 @@
 /// Rows `name(argument: kind, …) -> result` in groups, handed to a macro that writes a function for each: `space` depends on
 /// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators
 /// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time (`given_derivatives` without those of
-/// accelerations), `second` those of second ones.
+/// accelerations), `second` those of second ones, of which `second_tangent` has no time.
 /// A kind is the length of a vector, or `scalar`.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
@@ -66,6 +66,11 @@ macro_rules! each_function {
             inverse_dynamics_second_derivatives(q: NQ, v: NV, a: NV, lambda: NV) -> $crate::SecondOrder<Self::Scalar, NV>;
             forward_dynamics_second_derivatives(q: NQ, v: NV, tau: NV, lambda: NV) -> $crate::SecondOrder<Self::Scalar, NV>;
             generalized_forces_second_derivatives(q: NQ, v: NV, u: NU, lambda: NV) -> $crate::InputSecondOrder<Self::Scalar, NV, NU>;
+        }
+    };
+    (second_tangent, $($how:tt)+) => {
+        $crate::forward::write! { $($how)+;
+            tangent_rate_second_derivatives(dv: NV, v: NV, lambda: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
         }
     };
     (methods, $($how:tt)+) => {

@@ -185,6 +185,9 @@ pub mod __private {
     pub use crate::first_order::columns;
     pub use crate::frame::{Message, identity_placement, join, origin, placement, six, sum, twist};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};
+    pub use crate::lie::curvature::{
+        ball_tangent_rate_second_derivatives, free_tangent_rate_second_derivatives,
+    };
     pub use crate::lie::jacobians::{
         ball_integrate_derivatives, ball_tangent_rate_derivatives, free_integrate_derivatives,
         free_tangent_rate_derivatives,

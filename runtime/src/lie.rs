@@ -4,6 +4,7 @@
 //! child (body) frame; SE(3) vectors hold the linear part first (m), then the angular part (rad). Conventions of
 //! Pinocchio's `JointModelSpherical` and `JointModelFreeFlyer`.
 
+pub mod curvature;
 pub mod jacobians;
 
 use crate::Real;

@@ -62,6 +62,16 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> InputSecondOrder<Self::Scalar, NV, NU>;
 
+    /// `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Mechanism::tangent_rate), of mixed ones with `dv` as rows; zero for plain coordinates.
+    fn tangent_rate_second_derivatives(
+        &self,
+        _dv: &SVector<Self::Scalar, NV>,
+        _v: &SVector<Self::Scalar, NV>,
+        _lambda: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+        (SMatrix::zeros(), SMatrix::zeros())
+    }
+
     /// Hands the mechanism to `visitor` with the numbers of its constraints, where those have second derivatives; `None` elsewhere.
     fn visit_constraint_curvature<V>(&self, _visitor: V) -> Option<V::Output>
     where
@@ -158,6 +168,16 @@ pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> InputSecondOrder<Self::Scalar, NV, NU>;
 
+    /// `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Rheonomic::tangent_rate), of mixed ones with `dv` as rows; zero for plain coordinates.
+    fn tangent_rate_second_derivatives(
+        &self,
+        _dv: &SVector<Self::Scalar, NV>,
+        _v: &SVector<Self::Scalar, NV>,
+        _lambda: &SVector<Self::Scalar, NV>,
+    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+        (SMatrix::zeros(), SMatrix::zeros())
+    }
+
     /// Hands the mechanism to `visitor` with the numbers of its constraints ([`SecondDerivatives::visit_constraint_curvature`]).
     fn visit_constraint_curvature<V>(&self, _visitor: V) -> Option<V::Output>
     where
@@ -187,6 +207,7 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> SecondDerivatives<NQ,
 where
     M: SecondDerivatives<NQ, NV, NU> + ?Sized,
 {
+    each_function!(second_tangent, plain SecondDerivatives, self => *self);
     each_function!(second, plain SecondDerivatives, self => *self);
 
     fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
@@ -202,6 +223,7 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> RheonomicSecondDeriva
 where
     M: SecondDerivatives<NQ, NV, NU>,
 {
+    each_function!(second_tangent, plain SecondDerivatives, self => self);
     each_function!(second, drop SecondDerivatives, self => self);
 
     fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>
@@ -217,6 +239,7 @@ where
     T: Real,
     M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
+    each_function!(second_tangent, plain RheonomicSecondDerivatives, self => self.mechanism);
     each_function!(second, at RheonomicSecondDerivatives, self => self.mechanism, self.t);
 
     fn visit_constraint_curvature<V>(&self, visitor: V) -> Option<V::Output>

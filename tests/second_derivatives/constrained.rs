@@ -31,7 +31,7 @@ struct FourBar {
 
 /// A flying body and a rod on a ball joint, which a ball joint ties to each other.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
-struct Tied {
+pub struct Tied {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.05, 0.06, 0.07))]
     flyer: Body,
     #[body(mass = 0.6, com = -0.4 * z, inertia = diagonal(0.04, 0.05, 0.01))]
@@ -48,7 +48,7 @@ struct Tied {
 
 /// A marble with its centre of mass off its middle, on a plane.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
-struct Marble {
+pub struct Marble {
     #[body(mass = 0.5, com = 0.05 * x, inertia = diagonal(0.01, 0.012, 0.013))]
     marble: Body,
     #[joint(ground -> marble)]

@@ -4,6 +4,7 @@
 mod constrained;
 mod hyper;
 mod reference;
+mod turning;
 
 use linkwork::prelude::*;
 use linkwork::{RheonomicDerivatives, RheonomicSecondDerivatives, discrete};

@@ -25,6 +25,12 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
         Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
     }
 
+    /// A displacement of the start itself, of no length.
+    pub(super) fn displacement() -> Self {
+        let (by_v, by_u) = (SMatrix::zeros(), SMatrix::zeros());
+        Self { value: SVector::zeros(), by_q: SMatrix::identity(), by_v, by_u }
+    }
+
     /// `self + s other`.
     pub(super) fn plus(&self, s: T, other: &Self) -> Self {
         Self {
@@ -125,8 +131,7 @@ where
 
     /// Where it starts: the configuration moves as itself.
     pub(super) fn here(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
-        let (value, zero) = (SVector::zeros(), SMatrix::zeros());
-        (*self.q, Sensitive { value, by_q: SMatrix::identity(), by_v: zero, by_u: SMatrix::zeros() })
+        (*self.q, Sensitive::displacement())
     }
 }
 

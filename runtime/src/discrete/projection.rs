@@ -1,5 +1,6 @@
-//! Second derivatives of the projection onto constraints that ends a step, in plain coordinates.
+//! Second derivatives of the projection onto constraints that ends a step.
 
+use super::curvature::{Curvature, Displacement};
 use super::projected::{Correction, MOST_CORRECTIONS, Stop, balance, check_regular, correction, stop};
 use crate::Real;
 use crate::blocks::product;
@@ -8,17 +9,15 @@ use crate::constraint::{
     with_transpose,
 };
 use crate::integrate::Error;
-use crate::private::to_f64;
+use crate::private::{constant, to_f64};
 use nalgebra::{SMatrix, SVector};
 
 /// What factors of the configuration and of the velocity after a projection make of it, by those before.
-pub(super) struct Curvature<T, const NV: usize> {
+pub(super) struct Contraction<T, const NV: usize> {
     /// The gradient.
     pub(super) gradient: (SVector<T, NV>, SVector<T, NV>),
-    /// Second derivatives by configuration twice.
-    pub(super) qq: SMatrix<T, NV, NV>,
-    /// Those by configuration (rows) and velocity; by velocity twice there are none.
-    pub(super) qv: SMatrix<T, NV, NV>,
+    /// Second derivatives, of which there are none by velocity twice.
+    pub(super) second: Curvature<T, NV>,
 }
 
 /// Equations of a correction `x` with multipliers `λ`, contracted with `w`, `z` and `y`: `wᵀ (M x − Jᵀ λ) + zᵀ J x + yᵀ (J v + …)`.
@@ -99,6 +98,8 @@ where
     let of_residual = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
     let holonomic = SVector::from_fn(|k, _| of_residual(k));
     let residuals = balance(m, t, q, &still, &holonomic).0;
+    // Along body axes they are not symmetric, but those along `q ⊕ ε dq` are.
+    let residuals = with_transpose(SMatrix::zeros(), &(residuals * constant::<T>(0.5)));
     let multipliers = multiplier_changes(m, t, q, change, forces);
     let mixed = product(&equations.qa, change) + product(&equations.q_lambda, &multipliers);
     with_transpose(equations.qq + residuals, &mixed)
@@ -118,7 +119,7 @@ pub(super) fn curvature<
     t: T,
     (q_free, v_free): (&SVector<T, NQ>, &SVector<T, NV>),
     (of_q, of_v): (&SVector<T, NV>, &SVector<T, NV>),
-) -> Result<Curvature<T, NV>, Error>
+) -> Result<Contraction<T, NV>, Error>
 where
     T: Real,
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
@@ -126,14 +127,18 @@ where
     let failed = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, q_free, v_free).map_err(failed)?;
     check_regular(m, t, &q)?;
-    // The configurations on the way, with how they move with the first.
+    // The configurations on the way, with how they move with the first; plain coordinates stay as they are where they are moved.
+    let displaced = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::of(m, x));
     let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
     let (mut near, mut moved, mut count) = (*q_free, SMatrix::<T, NV, NV>::identity(), 0);
     for stage in &mut way {
         *stage = (near, moved);
         count += 1;
         let found = correction(m, t, &near);
-        moved += product(&found.change, &moved);
+        moved = match displaced(&found.x) {
+            Some(along) => product(&(along.by_q + product(&along.by_dv, &found.change)), &moved),
+            None => moved + product(&found.change, &moved),
+        };
         near = m.integrate(&near, &found.x);
         if found.done {
             break;
@@ -159,8 +164,20 @@ where
     let mut gradient = of_q + turned.tr_mul(of_v);
     for (near, moved) in way.iter().take(count).rev() {
         let found = correction(m, t, near);
-        qq += moved.tr_mul(&product(&of_correction(m, t, near, &found, &gradient), moved));
-        gradient += found.change.tr_mul(&gradient);
+        let mut of_x = gradient;
+        let mut own = SMatrix::zeros();
+        if let Some(along) = displaced(&found.x) {
+            of_x = along.by_dv.tr_mul(&gradient);
+            let Curvature { mixed, second, .. } = along.curvature(m, &gradient);
+            let twice =
+                second.map_or_else(SMatrix::zeros, |b| found.change.tr_mul(&product(&b, &found.change)));
+            own = with_transpose(twice, &product(&mixed, &found.change));
+            gradient = along.by_q.tr_mul(&gradient);
+        }
+        own += of_correction(m, t, near, &found, &of_x);
+        qq += moved.tr_mul(&product(&own, moved));
+        gradient += found.change.tr_mul(&of_x);
     }
-    Ok(Curvature { gradient: (gradient, kept.tr_mul(of_v)), qq, qv })
+    let second = Curvature { first: Some(qq), mixed: qv, second: None };
+    Ok(Contraction { gradient: (gradient, kept.tr_mul(of_v)), second })
 }

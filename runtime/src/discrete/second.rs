@@ -1,20 +1,24 @@
 //! Second derivatives of steps, contracted with factors: the curvature that differential dynamic programming adds to costs.
 
+use super::curvature::{Curvature, Displacement};
 use super::explicit::{Sensitive, Start};
 use super::{DifferentiableStep, Through, projection};
 use crate::constraint::{ConstrainedSecondDerivatives, ConstraintError, CurvatureVisitor};
 use crate::derivatives::LinearMotion;
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::{constant, to_f64};
-use crate::{At, InputSecondOrder, Real, RheonomicSecondDerivatives, SecondDerivatives, at};
+use crate::{At, Derivatives, InputSecondOrder, Real, RheonomicSecondDerivatives, SecondDerivatives, at};
 use nalgebra::{SMatrix, SVector};
 
 /// The second derivatives of `λᵀ x⁺` by state and inputs, with `x⁺` the state after a step
 /// ([`transition`](super::transition)): `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)`, exact to rounding. The factors
 /// are those of the configuration and of the velocity after the step.
 ///
-/// All coordinates of the mechanism are plain (`NQ` is `NV`: no ball and free joints); others do not compile here. Under constraints
-/// the method is [`Rk4`], and the derivatives are those of the whole step, with the projection that ends it.
+/// Displacements of ball and free joints are in body axes, before the step and after it: where the state before moves by `x`, that
+/// after it moves by `A x + ½ xᵀ H x` beyond what it was, as [`difference`](crate::Mechanism::difference) measures, and `H` contracted with
+/// the factors is what this returns. That is what the costs to go of [`optimal`](crate::optimal) are functions of. Declared speeds do
+/// not compile here. Under constraints the method is [`Rk4`], and the derivatives are those of the whole step, with the projection
+/// that ends it.
 ///
 /// ```
 /// use linkwork::discrete;
@@ -58,7 +62,10 @@ where
     S: TwiceDifferentiableStep<T>,
 {
     const {
-        assert!(NQ == NV && !M::SPEEDS, "a step with second derivatives is one in plain coordinates");
+        assert!(
+            !M::SPEEDS,
+            "a step with second derivatives is one in the velocities of joints: declared speeds have none"
+        );
         assert!(
             !M::CONTACTING,
             "a step with second derivatives is one of a mechanism whose contacts do not open and close: leave them out by `contact::apart`"
@@ -105,26 +112,12 @@ where
         let added = projection::curvature(mechanism, end, (&free.q, &free.v), self.factors)?;
         let mut sum =
             method.differentiate_twice(mechanism, t, q, v, u, (&added.gradient.0, &added.gradient.1));
-        add_along(&mut sum.0, &added, (&free.q_by_q, &free.v_by_q), (&free.q_by_q, &free.v_by_q));
-        add_along(&mut sum.1, &added, (&free.q_by_q, &free.v_by_q), (&free.q_by_v, &free.v_by_v));
-        add_along(&mut sum.2, &added, (&free.q_by_v, &free.v_by_v), (&free.q_by_v, &free.v_by_v));
-        add_along(&mut sum.3, &added, (&free.q_by_q, &free.v_by_q), (&free.q_by_u, &free.v_by_u));
-        add_along(&mut sum.4, &added, (&free.q_by_v, &free.v_by_v), (&free.q_by_u, &free.v_by_u));
-        add_along(&mut sum.5, &added, (&free.q_by_u, &free.v_by_u), (&free.q_by_u, &free.v_by_u));
+        let moved = |value, by_q, by_v, by_u| Sensitive { value, by_q, by_v, by_u };
+        let displacement = moved(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
+        let velocity = moved(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
+        added.second.add_to(&mut sum, &displacement, &velocity);
         Ok(sum)
     }
-}
-
-/// Adds what the curvature of a projection is along columns of displacements and changes of velocity before it.
-fn add_along<T: Real, const NV: usize, const R: usize, const C: usize>(
-    sum: &mut SMatrix<T, R, C>,
-    added: &projection::Curvature<T, NV>,
-    (left_q, left_v): (&SMatrix<T, NV, R>, &SMatrix<T, NV, R>),
-    (right_q, right_v): (&SMatrix<T, NV, C>, &SMatrix<T, NV, C>),
-) {
-    // There is none by the velocity twice.
-    let of_q = added.qq * right_q + added.qv * right_v;
-    *sum += left_q.tr_mul(&of_q) + left_v.tr_mul(&(added.qv.tr_mul(right_q)));
 }
 
 /// A method whose steps have second derivatives.
@@ -136,7 +129,7 @@ pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
     /// The period of a step, s.
     fn period(&self) -> T;
 
-    /// The second derivatives of a step of a mechanism with plain coordinates, before it is brought onto constraints.
+    /// The second derivatives of a step, before it is brought onto constraints.
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -169,15 +162,28 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
     where
         M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        // q⁺ = q + h v⁺, v⁺ = v + h v̇.
-        let h = self.length();
-        at(mechanism, t).second_order_motion(q, v, u, &((by_v + by_q * h) * h))
+        // q⁺ = q ⊕ h v⁺, v⁺ = v + h v̇.
+        let (h, now) = (self.length(), at(mechanism, t));
+        if NQ == NV {
+            return now.second_order_motion(q, v, u, &((by_v + by_q * h) * h));
+        }
+        let motion = Derivatives::linear_motion(&now, q, v, u);
+        let first = Sensitive::velocity(v);
+        let change =
+            Sensitive { value: motion.acceleration, by_q: motion.by_q, by_v: motion.by_v, by_u: motion.by_u };
+        let displacement = first.plus(h, &change).scaled(h);
+        let moved = Displacement::of(mechanism, &displacement.value);
+        let of_displacement = moved.by_dv.tr_mul(by_q);
+        let mut sum = now.second_order_motion(q, v, u, &((by_v + of_displacement * h) * h));
+        moved.curvature(mechanism, by_q).add_to(&mut sum, &Sensitive::displacement(), &displacement);
+        sum
     }
 }
 
-/// A stage of a step: where it is evaluated, and the acceleration there.
+/// A stage of a step: its displacement from the start, where it is evaluated, and the acceleration there.
 struct Stage<T, const NQ: usize, const NV: usize, const NU: usize> {
     after: T,
+    displacement: Sensitive<T, NV, NU>,
     q: (SVector<T, NQ>, Sensitive<T, NV, NU>),
     v: Sensitive<T, NV, NU>,
     motion: LinearMotion<T, NV, NU>,
@@ -205,31 +211,67 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
         let half = h * constant(0.5);
         let first = Sensitive::velocity(v);
-        let begin = Stage::new(&start, T::zero(), start.here(), first);
+        let begin = Stage::new(&start, T::zero(), first.scaled(T::zero()), first);
         let next = |after: T, stage: &Stage<T, NQ, NV, NU>| {
             let v = first.plus(after, &stage.acceleration());
-            Stage::new(&start, after, start.moved(&stage.v.scaled(after)), v)
+            Stage::new(&start, after, stage.rate(&start).scaled(after), v)
         };
         let second = next(half, &begin);
         let third = next(half, &second);
         let fourth = next(h, &third);
-        // Backwards: what the end takes of each stage's rates, and what later stages do.
         let (sixth, third_part) = (h / constant(6.0), h / constant(3.0));
         let mut sum = zeros();
-        let (mut of_q, mut of_v) = (SVector::zeros(), SVector::zeros());
+        let mut of_end = *by_q;
+        if NQ != NV {
+            let two = constant::<T>(2.0);
+            let [k1, k2, k3, k4] = [&begin, &second, &third, &fourth].map(|stage| stage.rate(&start));
+            let displacement = k1.plus(two, &k2).plus(two, &k3).plus(T::one(), &k4).scaled(sixth);
+            of_end = add_displacement(mechanism, &displacement, by_q, &mut sum);
+        }
+        // Backwards: what the end takes of each stage's rates, and what later stages do.
+        let (mut of_displacement, mut of_v) = (SVector::zeros(), SVector::zeros());
         for (stage, weight, reach) in [
             (&fourth, sixth, T::zero()),
             (&third, third_part, h),
             (&second, third_part, half),
             (&begin, sixth, half),
         ] {
-            let (rate, acceleration) = (by_q * weight + of_q * reach, by_v * weight + of_v * reach);
+            let (rate, acceleration) =
+                (of_end * weight + of_displacement * reach, by_v * weight + of_v * reach);
             stage.add_curvature(&start, &acceleration, &mut sum);
-            of_q = stage.motion.by_q.tr_mul(&acceleration);
-            of_v = stage.motion.by_v.tr_mul(&acceleration) + rate;
+            of_displacement = stage.motion.by_q.tr_mul(&acceleration);
+            of_v = stage.motion.by_v.tr_mul(&acceleration);
+            if NQ == NV {
+                of_v += rate;
+                continue;
+            }
+            let (way, v) = (&stage.displacement, &stage.v);
+            of_displacement = add_displacement(mechanism, way, &of_displacement, &mut sum);
+            let (by_way, by_v) = mechanism.tangent_rate_derivatives(&way.value, &v.value);
+            of_displacement += by_way.tr_mul(&rate);
+            of_v += by_v.tr_mul(&rate);
+            let (twice, mixed) = mechanism.tangent_rate_second_derivatives(&way.value, &v.value, &rate);
+            Curvature { first: Some(twice), mixed, second: None }.add_to(&mut sum, way, v);
         }
         sum
     }
+}
+
+/// Adds the second derivatives of `λᵀ ξ`, with `ξ` how a configuration moves that is displaced from the start; the gradient by the
+/// displacement.
+fn add_displacement<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    displacement: &Sensitive<T, NV, NU>,
+    lambda: &SVector<T, NV>,
+    sum: &mut InputSecondOrder<T, NV, NU>,
+) -> SVector<T, NV>
+where
+    T: Real,
+    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    let moved = Displacement::of(mechanism, &displacement.value);
+    moved.curvature(mechanism, lambda).add_to(sum, &Sensitive::displacement(), displacement);
+    moved.by_dv.tr_mul(lambda)
 }
 
 fn zeros<T: Real, const NV: usize, const NU: usize>() -> InputSecondOrder<T, NV, NU> {
@@ -241,16 +283,29 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
     fn new<M>(
         start: &Start<'_, M, T, NQ, NV, NU>,
         after: T,
-        q: (SVector<T, NQ>, Sensitive<T, NV, NU>),
+        displacement: Sensitive<T, NV, NU>,
         v: Sensitive<T, NV, NU>,
     ) -> Self
     where
         M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        use crate::Derivatives;
-        let now: At<'_, M, T> = at(start.mechanism, start.t + after);
+        let (now, q): (At<'_, M, T>, _) = (at(start.mechanism, start.t + after), start.moved(&displacement));
         let motion = now.linear_motion(&q.0, &v.value, start.u);
-        Self { after, q, v, motion }
+        Self { after, displacement, q, v, motion }
+    }
+
+    /// The rate of displacements from the start, and how it changes with the start of the step.
+    fn rate<M>(&self, start: &Start<'_, M, T, NQ, NV, NU>) -> Sensitive<T, NV, NU>
+    where
+        M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        if NQ == NV {
+            return self.v;
+        }
+        let (way, v) = (&self.displacement, &self.v);
+        let (by_way, by_v) = start.mechanism.tangent_rate_derivatives(&way.value, &v.value);
+        let value = start.mechanism.tangent_rate(&way.value, &v.value);
+        Sensitive::of(value, (&by_way, way), (&by_v, v))
     }
 
     /// The acceleration, and how it changes with the start of the step.
@@ -271,21 +326,12 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
     {
         let now: At<'_, M, T> = at(start.mechanism, start.t + self.after);
         let (qq, qv, vv, qu, vu, uu) = now.second_order_motion(&self.q.0, &self.v.value, start.u, lambda);
+        // Inputs are the same in all stages.
         let (q, v) = (&self.q.1, &self.v);
-        // Rows of H D, with D the derivatives of the stage by the start; inputs are the same in all stages.
-        let rows = |by: &SMatrix<T, NV, NV>, velocity: &SMatrix<T, NV, NV>| {
-            (qq * by + qv * velocity, qv.tr_mul(by) + vv * velocity)
-        };
-        let (q_by_q, v_by_q) = rows(&q.by_q, &v.by_q);
-        let (q_by_v, v_by_v) = rows(&q.by_v, &v.by_v);
-        let q_by_u = qq * q.by_u + qv * v.by_u + qu;
-        let v_by_u = qv.tr_mul(&q.by_u) + vv * v.by_u + vu;
-        let u_by_u = qu.tr_mul(&q.by_u) + vu.tr_mul(&v.by_u) + uu;
-        sum.0 += q.by_q.tr_mul(&q_by_q) + v.by_q.tr_mul(&v_by_q);
-        sum.1 += q.by_q.tr_mul(&q_by_v) + v.by_q.tr_mul(&v_by_v);
-        sum.2 += q.by_v.tr_mul(&q_by_v) + v.by_v.tr_mul(&v_by_v);
-        sum.3 += q.by_q.tr_mul(&q_by_u) + v.by_q.tr_mul(&v_by_u);
-        sum.4 += q.by_v.tr_mul(&q_by_u) + v.by_v.tr_mul(&v_by_u);
-        sum.5 += q.by_u.tr_mul(&q_by_u) + v.by_u.tr_mul(&v_by_u) + u_by_u;
+        sum.3 += q.by_q.tr_mul(&qu) + v.by_q.tr_mul(&vu);
+        sum.4 += q.by_v.tr_mul(&qu) + v.by_v.tr_mul(&vu);
+        let crossed = qu.tr_mul(&q.by_u) + vu.tr_mul(&v.by_u);
+        sum.5 += crossed + crossed.transpose() + uu;
+        Curvature { first: Some(qq), mixed: qv, second: Some(vv) }.add_to(sum, q, v);
     }
 }

@@ -113,7 +113,7 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
 }
 
 /// Derivatives by `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3).
-fn even_slopes<T: Real>(square: T) -> [T; 2] {
+pub(super) fn even_slopes<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
         constant(super::SERIES_ANGLE),

@@ -35,7 +35,14 @@ pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'
         );
         match charts {
             None => out.push_str("loop {}\n"),
-            Some(charts) => write_blocks(out, name, first, charts, &square),
+            Some(charts) => {
+                let _ = writeln!(
+                    out,
+                    "let (mut first, mut second) = (<{square}>::{first}(), <{square}>::identity());"
+                );
+                let of: &[&str] = if name == "integrate" { &["dv"] } else { &["dv", "v"] };
+                write_blocks(out, name, of, charts);
+            }
         }
         out.push_str("}\n");
     }
@@ -65,9 +72,12 @@ pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'
 
 /// Second derivatives of forward dynamics: those of inverse dynamics along with the accelerations, and with the multipliers of
 /// constraints.
-pub fn write_second(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_>, s: &Signature<'_>) {
     if !has_second(i) {
         return;
+    }
+    if curves(i, s) {
+        write_rate_curvature(out, charts, s);
     }
     let (square, pass) = (s.shape(Shape::Square(s.nv)), if s.time { "t, " } else { "" });
     let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau, Argument::Factors(s.nv)]);
@@ -111,6 +121,29 @@ pub fn has_second(i: &Interface<'_>) -> bool {
     !i.facts.kinematic && i.facts.requests.second_derivatives && !slips
 }
 
+/// True if displacements of the configuration do not simply add up, and their rates have second derivatives that are given.
+fn curves(i: &Interface<'_>, s: &Signature<'_>) -> bool {
+    s.nq != s.nv && !i.facts.speeds
+}
+
+/// Second derivatives of the rate of displacements.
+fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    let _ = writeln!(
+        out,
+        "#[doc(hidden)]\n#[inline]\n#[must_use]\npub fn __tangent_rate_second_derivatives(&self, dv: &{v}, v: &{v}, lambda: &{v}) -> ({square}, {square}) {{"
+    );
+    match charts {
+        None => out.push_str("loop {}\n"),
+        Some(charts) => {
+            let _ =
+                writeln!(out, "let (mut first, mut second) = (<{square}>::zeros(), <{square}>::zeros());");
+            write_blocks(out, "tangent_rate_second", &["dv", "v", "lambda"], charts);
+        }
+    }
+    out.push_str("}\n");
+}
+
 /// The trait of second derivatives of constrained mechanisms.
 pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
     let (scalar, nv) = (s.scalar.name(), s.nv);
@@ -125,28 +158,25 @@ pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature
     );
 }
 
-/// The blocks of ball and free joints.
-fn write_blocks(out: &mut String, name: &str, first: &str, charts: &[Chart], square: &str) {
-    let _ = writeln!(out, "let (mut first, mut second) = (<{square}>::{first}(), <{square}>::identity());");
+/// The blocks of ball and free joints, of these arguments.
+fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
     for chart in charts {
         let (kind, v, n) = match *chart {
             Chart::Plain(..) => continue,
             Chart::Ball(_, v) => ("ball", v, 3),
             Chart::Free(_, v) => ("free", v, 6),
         };
-        let entries = |of: &str| {
+        let entries = |of: &&str| {
             let list: Vec<String> = (v..v + n).map(|k| format!("{of}.data.0[0][{k}]")).collect();
             format!("[{}]", list.join(", "))
         };
-        let mut arguments = entries("dv");
-        if name == "tangent_rate" {
-            arguments = format!("{arguments}, {}", entries("v"));
-        }
+        let arguments: Vec<String> = of.iter().map(entries).collect();
         let _ = writeln!(
             out,
-            "let blocks = ::linkwork::__private::{kind}_{name}_derivatives({arguments});
+            "let blocks = ::linkwork::__private::{kind}_{name}_derivatives({});
             ::linkwork::__private::put_block(&mut first, {v}, &blocks.0);
-            ::linkwork::__private::put_block(&mut second, {v}, &blocks.1);"
+            ::linkwork::__private::put_block(&mut second, {v}, &blocks.1);",
+            arguments.join(", ")
         );
     }
     out.push_str("(first, second)\n");
@@ -165,6 +195,13 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
             s.nq,
             s.nv,
             s.nu
+        );
+    }
+    if curves(i, s) {
+        let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+        let _ = writeln!(
+            out,
+            "#[inline]\nfn tangent_rate_second_derivatives(&self, dv: &{v}, v: &{v}, lambda: &{v}) -> ({square}, {square}) {{ self.__tangent_rate_second_derivatives(dv, v, lambda) }}"
         );
     }
     let n = s.nv;

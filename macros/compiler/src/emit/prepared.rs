@@ -57,7 +57,7 @@ pub fn write_prepared(
         write_carry(&mut methods, content.charts, s);
     }
     differentiable::write_methods(&mut methods, content.charts, i, s);
-    differentiable::write_second(&mut methods, i, s);
+    differentiable::write_second(&mut methods, content.charts, i, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     write_impls(&head, out, &name, &methods, i, s);
     bodies.write(out, &name, &head);

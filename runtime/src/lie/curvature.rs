@@ -1,0 +1,203 @@
+//! Second derivatives of `tangent_rate(dv, v)` of ball and free joints, contracted with factors. Blocks are given as lists of
+//! columns.
+
+use super::jacobians::{ball_tangent_rate_derivatives, even_slopes, free_tangent_rate_derivatives};
+use super::{SERIES_ANGLE, bracket, choose, cross, dot, even_brackets, second_bracket, series};
+use crate::Real;
+use crate::arithmetic::{Arithmetic, Compiled};
+use crate::private::constant;
+
+/// A square block, column by column.
+type Block<T, const N: usize> = [[T; N]; N];
+
+/// Second derivatives by `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3).
+fn even_curvatures<T: Real>(square: T) -> [T; 2] {
+    choose(
+        square,
+        constant(SERIES_ANGLE),
+        |square| {
+            [
+                series(square, 3, |k| (2.0 - k) * (k - 1.0) * (k - 2.0)),
+                series(square, 4, |k| (1.0 - k) * (k - 2.0) * (k - 3.0)),
+            ]
+        },
+        |square| {
+            let half = square.sqrt() * constant(0.5);
+            let (sin, cos) = Compiled::sin_cos(half);
+            let number = constant::<T>;
+            let along = half * cos / sin;
+            let over = half * half / (sin * sin);
+            // c = along, and x c', x (x c')', x (x (x c')')' by x = θ².
+            let value = T::one() - along;
+            let first = (along - over) * number(0.5);
+            let second = (along - number(3.0) * over + number(2.0) * over * along) * number(0.25);
+            let bent = number(6.0) * over * along - number(3.5) * over;
+            let third = (number(0.5) * along + bent - number(2.0) * over * along * along - over * over)
+                * number(0.25);
+            let of_twice = third - number(5.0) * second + number(8.0) * first + number(4.0) * value;
+            let of_four = third - number(6.0) * second + number(11.0) * first + number(6.0) * value;
+            let cube = square * square * square;
+            [of_twice / cube, of_four / (cube * square)]
+        },
+    )
+}
+
+/// A factor of a power of `ad` as a function of `θ²`: its value, slope and curvature.
+type Factor<T> = [T; 3];
+
+/// The second derivatives by `dv` of `λᵀ (f ad² v + g ad⁴ v)`, with `ad` the bracket with `dv`, whose last three numbers are the
+/// rotation vector.
+fn of_brackets<T: Real, const N: usize>(
+    dv: [T; N],
+    v: [T; N],
+    lambda: [T; N],
+    bracket: impl Fn([T; N], [T; N]) -> [T; N],
+    factors: [Factor<T>; 2],
+) -> Block<T, N> {
+    let two = constant::<T>(2.0);
+    let along = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
+    let unit = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
+    let sum = |a: [T; N], b: [T; N]| core::array::from_fn(|k| a[k] + b[k]);
+    // adᵏ v, and how it changes along each direction.
+    let mut powers = [v; 5];
+    let mut changes = [[[T::zero(); N]; N]; 5];
+    for k in 1..5 {
+        powers[k] = bracket(dv, powers[k - 1]);
+        for j in 0..N {
+            changes[k][j] = sum(bracket(unit(j), powers[k - 1]), bracket(dv, changes[k - 1][j]));
+        }
+    }
+    // θ² changes by 2 dvⱼ along a direction of the rotation vector.
+    let by_square = |j: usize| if j + 3 < N { T::zero() } else { two * dv[j] };
+    let entry = |i: usize, j: usize| {
+        let mut second = [T::zero(); N];
+        let mut total = T::zero();
+        for k in 1..5 {
+            let crossed = sum(bracket(unit(i), changes[k - 1][j]), bracket(unit(j), changes[k - 1][i]));
+            second = sum(crossed, bracket(dv, second));
+            if k % 2 == 1 {
+                continue;
+            }
+            let [value, slope, curvature] = factors[k / 2 - 1];
+            let bent = if i == j && i + 3 >= N { two * slope } else { T::zero() };
+            total = total
+                + value * along(&second)
+                + slope * (by_square(i) * along(&changes[k][j]) + by_square(j) * along(&changes[k][i]))
+                + (curvature * by_square(i) * by_square(j) + bent) * along(&powers[k]);
+        }
+        total
+    };
+    let mut block = [[T::zero(); N]; N];
+    for j in 0..N {
+        for i in 0..=j {
+            block[j][i] = entry(i, j);
+            block[i][j] = block[j][i];
+        }
+    }
+    block
+}
+
+/// `λᵀ` of derivatives by `dv` for every unit of `v`.
+fn contracted<T: Real, const N: usize>(lambda: [T; N], by_dv: impl Fn([T; N]) -> Block<T, N>) -> Block<T, N> {
+    core::array::from_fn(|j| {
+        let columns = by_dv(core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }));
+        columns.map(|column| column.iter().zip(&lambda).fold(T::zero(), |sum, (x, l)| sum + *x * *l))
+    })
+}
+
+/// The second derivatives of `λᵀ tangent_rate(dv, v)` of a ball joint by `dv` twice, and by `dv` (rows) and `v`.
+pub fn ball_tangent_rate_second_derivatives<T: Real>(
+    dv: [T; 3],
+    v: [T; 3],
+    lambda: [T; 3],
+) -> (Block<T, 3>, Block<T, 3>) {
+    let square = dot(dv, dv);
+    // The factor falls with θ² by that of the fourth bracket of SE(3).
+    let ([_, fall], [_, slope]) = (even_brackets(square), even_slopes(square));
+    let factors = [[second_bracket(square), -fall, -slope], [T::zero(); 3]];
+    (
+        of_brackets(dv, v, lambda, cross, factors),
+        contracted(lambda, |e| ball_tangent_rate_derivatives(dv, e).0),
+    )
+}
+
+/// The second derivatives of `λᵀ tangent_rate(dv, v)` of a free joint by `dv` twice, and by `dv` (rows) and `v`; linear parts first.
+pub fn free_tangent_rate_second_derivatives<T: Real>(
+    dv: [T; 6],
+    v: [T; 6],
+    lambda: [T; 6],
+) -> (Block<T, 6>, Block<T, 6>) {
+    let [_, _, _, x, y, z] = dv;
+    let square = dot([x, y, z], [x, y, z]);
+    let ([f, g], [f1, g1], [f2, g2]) = (even_brackets(square), even_slopes(square), even_curvatures(square));
+    (
+        of_brackets(dv, v, lambda, bracket, [[f, f1, f2], [g, g1, g2]]),
+        contracted(lambda, |e| free_tangent_rate_derivatives(dv, e).0),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers between −1 and 1 that repeat nothing.
+    fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
+        core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
+    }
+
+    /// Central differences of fourth order, column by column, of `λᵀ` of a block of columns.
+    fn slope<const N: usize>(lambda: [f64; N], f: impl Fn([f64; N]) -> Block<f64, N>) -> Block<f64, N> {
+        let h = 1e-3;
+        core::array::from_fn(|j| {
+            let at = |x: f64| {
+                f(core::array::from_fn(|i| if i == j { x } else { 0.0 }))
+                    .map(|column| column.iter().zip(&lambda).map(|(x, l)| x * l).sum::<f64>())
+            };
+            let (a, b, c, d) = (at(-2.0 * h), at(-h), at(h), at(2.0 * h));
+            core::array::from_fn(|i| (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * h))
+        })
+    }
+
+    fn sum<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+        core::array::from_fn(|k| a[k] + b[k])
+    }
+
+    fn assert_same<const N: usize>(found: Block<f64, N>, expected: Block<f64, N>, what: &str) {
+        for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9, "{what}: {found:?} instead of {expected:?}");
+        }
+    }
+
+    const SIZES: [f64; 9] = [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.57, 0.6, 1.0, 1.7];
+
+    #[test]
+    fn rates_of_balls_curve_as_their_derivatives_change() {
+        for (seed, size) in SIZES.into_iter().enumerate() {
+            let (dv, v, lambda): ([f64; 3], _, _) =
+                (figures(seed, size), figures(seed + 50, 1.0), figures(seed + 90, 1.0));
+            let (twice, mixed) = ball_tangent_rate_second_derivatives(dv, v, lambda);
+            assert_same(twice, slope(lambda, |e| ball_tangent_rate_derivatives(sum(dv, e), v).0), "twice");
+            assert_same(mixed, slope(lambda, |e| ball_tangent_rate_derivatives(dv, sum(v, e)).0), "mixed");
+        }
+    }
+
+    #[test]
+    fn rates_of_free_bodies_curve_as_their_derivatives_change() {
+        for (seed, size) in SIZES.into_iter().enumerate() {
+            let (dv, v, lambda): ([f64; 6], _, _) =
+                (figures(seed, size), figures(seed + 50, 1.0), figures(seed + 90, 1.0));
+            let (twice, mixed) = free_tangent_rate_second_derivatives(dv, v, lambda);
+            assert_same(twice, slope(lambda, |e| free_tangent_rate_derivatives(sum(dv, e), v).0), "twice");
+            assert_same(mixed, slope(lambda, |e| free_tangent_rate_derivatives(dv, sum(v, e)).0), "mixed");
+        }
+    }
+
+    /// On both sides of the limit series and closed form agree.
+    #[test]
+    fn the_series_meets_the_closed_form() {
+        let [below, above] = [1.0 - 1e-12, 1.0 + 1e-12].map(|x| even_curvatures(SERIES_ANGLE * x));
+        for (a, b) in below.iter().zip(&above) {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+    }
+}

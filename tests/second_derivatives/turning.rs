@@ -1,0 +1,89 @@
+//! Second derivatives of steps where displacements turn: ball and free joints, also under constraints. They are held against second
+//! differences of the steps themselves, along the tangent space at the start and measured in that at the end.
+
+use super::constrained::{Marble, Tied};
+use super::{Carrier, Solo};
+use linkwork::prelude::*;
+use linkwork::{RheonomicSecondDerivatives, discrete};
+use support::random::Random;
+
+/// Weights of the second difference of tenth order at one step, two and so on to both sides, of what is zero at none.
+const WEIGHTS: [f64; 5] = [5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1.0 / 3150.0];
+
+/// Quadratic forms of the second derivatives along random changes of state and inputs, next to differences.
+fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+    name: &str,
+    m: &M,
+    method: &S,
+    state: (&SVector<f64, NQ>, &SVector<f64, NV>),
+) where
+    M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = f64>,
+    S: discrete::TwiceDifferentiableStep<f64>,
+{
+    let (mut random, t, (q, v)) = (Random::new(5), 0.3, state);
+    let u = random.vector::<NU>(2.0);
+    let (of_q, of_v) = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
+    let (qq, qv, vv, qu, vu, uu) =
+        discrete::second_order(m, method, t, q, v, &u, (&of_q, &of_v)).expect("it moves");
+    for symmetric in [&qq, &vv] {
+        assert!((symmetric - symmetric.transpose()).amax() < 1e-11 * (1.0 + symmetric.amax()), "{name}");
+    }
+    let end = discrete::step(m, method, t, q, v, &u).expect("it moves");
+    // Each block by itself, then all at once.
+    for (case, weights) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3], [1.0; 3]]
+        .into_iter()
+        .cycle()
+        .take(30)
+        .enumerate()
+    {
+        let dq = random.vector::<NV>(weights[0]);
+        let dv = random.vector::<NV>(weights[1]);
+        let du = random.vector::<NU>(weights[2]);
+        let along = |s: f64| {
+            let (q, v) = (m.integrate(q, &(dq * s)), v + dv * s);
+            let found = discrete::step(m, method, t, &q, &v, &(u + du * s)).expect("it moves");
+            of_q.dot(&m.difference(&end.0, &found.0)) + of_v.dot(&(found.1 - end.1))
+        };
+        let step = 0.02;
+        let mut expected = 0.0;
+        for (k, weight) in (1..).zip(&WEIGHTS) {
+            expected += weight * (along(f64::from(k) * step) + along(f64::from(-k) * step));
+        }
+        expected /= step * step;
+        let form = dq.dot(&(qq * dq)) + dv.dot(&(vv * dv)) + du.dot(&(uu * du));
+        let found = form + 2.0 * (dq.dot(&(qv * dv)) + dq.dot(&(qu * du)) + dv.dot(&(vu * du)));
+        let size = qq.norm() * dq.norm_squared() + vv.norm() * dv.norm_squared() + 1.0;
+        assert!((found - expected).abs() < 1e-9 * size, "{name}, {case}: {found} instead of {expected}");
+    }
+}
+
+#[test]
+fn steps_of_turning_bodies_curve_as_second_derivatives_say() {
+    let mut random = Random::new(3);
+    let m = Carrier {};
+    let q = m.integrate(&m.neutral(), &random.vector(1.2));
+    // Fast turns, so that displacements of a step turn what comes after.
+    let v = random.vector(4.0);
+    check_along("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
+    check_along("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
+    check_along("carrier from rest", &m, &Rk4::step(0.1), (&q, &SVector::zeros()));
+    let q = Solo.integrate(&Solo.neutral(), &random.vector(0.8));
+    check_along("quadruped, Euler", &Solo, &SemiImplicitEuler::step(0.02), (&q, &random.vector(2.0)));
+}
+
+#[test]
+fn constrained_steps_of_turning_bodies_curve_as_second_derivatives_say() {
+    let m = Tied {};
+    let start = m.integrate(&m.neutral(), &(SVector::from_element(0.2)));
+    let q = m.assemble(&start, &[]).expect("it can be assembled");
+    let v = m.project_velocity(&q, &SVector::from_fn(|k, _| 0.4 + 0.1 * k as f64)).expect("it moves");
+    check_along("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
+    // Off the constraints, where the projection has more to do.
+    let torn = m.integrate(&q, &SVector::from_element(0.03));
+    check_along("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
+
+    let m = Marble {};
+    let q = m.integrate(&m.neutral(), &SVector::from([0.1, 0.0, 0.3, 0.2, -0.3, 0.4]));
+    let v = m.project_velocity(&q, &SVector::from([0.3, 0.1, 0.0, 1.0, 2.0, 0.5])).expect("it rolls");
+    check_along("marble", &m, &Rk4::step(0.02), (&q, &v));
+}
