@@ -30,25 +30,16 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
 {
     type Output = ();
 
-    /// Eight rows of four columns at a time, or as many as are left, which leaves registers for what is added.
+    /// As many rows of four columns at a time as registers hold with room for what is added.
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, sum: &mut SMatrix<T, R, C>) {
         let (columns, a, b) = (&mut sum.data.0, rolled(&self.a.data.0), &self.b.data.0);
-        let mut from = 0;
-        for _ in 0..R / 8 {
-            strip::<A, T, 8, R, K, C>(columns, a, b, from);
-            from += 8;
-        }
-        if R % 8 >= 4 {
-            strip::<A, T, 4, R, K, C>(columns, a, b, from);
-            from += 4;
-        }
-        if R % 4 >= 2 {
-            strip::<A, T, 2, R, K, C>(columns, a, b, from);
-            from += 2;
-        }
-        if R % 2 == 1 {
-            strip::<A, T, 1, R, K, C>(columns, a, b, from);
+        if A::WIDE && R >= 8 {
+            all_rows::<A, T, 8, R, K, C>(columns, a, b);
+        } else if R >= 4 {
+            all_rows::<A, T, 4, R, K, C>(columns, a, b);
+        } else {
+            all_rows::<A, T, 1, R, K, C>(columns, a, b);
         }
     }
 }
@@ -59,9 +50,39 @@ fn rolled<T>(list: &[T]) -> &[T] {
     core::hint::black_box(list)
 }
 
-/// So many rows from one on, of all columns.
+/// All rows, in registers of so many: two registers at a time, and at last as many as are left, up to three. The last of these begins
+/// as much earlier as it would be too long; both read before either writes.
 #[inline(always)]
-fn strip<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
+fn all_rows<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
+    columns: &mut [[T; R]; C],
+    a: &[[T; R]],
+    b: &[[T; K]; C],
+) {
+    let left = if R > 3 * W { (R - W - 1) % (2 * W) + W + 1 } else { R };
+    let mut from = 0;
+    for _ in 0..(R - left) / (2 * W) {
+        strip::<A, T, W, 2, R, K, C>(columns, a, b, from);
+        from += 2 * W;
+    }
+    match left.div_ceil(W) {
+        1 => strip::<A, T, W, 1, R, K, C>(columns, a, b, from),
+        2 => strip::<A, T, W, 2, R, K, C>(columns, a, b, from),
+        3 => strip::<A, T, W, 3, R, K, C>(columns, a, b, from),
+        _ => {}
+    }
+}
+
+/// So many registers of rows from one on, of all columns.
+#[inline(always)]
+fn strip<
+    A: Arithmetic,
+    T: Real,
+    const W: usize,
+    const V: usize,
+    const R: usize,
+    const K: usize,
+    const C: usize,
+>(
     columns: &mut [[T; R]; C],
     a: &[[T; R]],
     b: &[[T; K]; C],
@@ -70,32 +91,64 @@ fn strip<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize,
     let (fours, rest) = columns.as_chunks_mut::<4>();
     let (factors, last) = b.as_chunks::<4>();
     for (columns, b) in fours.iter_mut().zip(factors) {
-        tile::<A, T, W, 4, R, K>(columns, a, b, from);
+        tile::<A, T, W, V, 4, R, K>(columns, a, b, from);
     }
-    for (column, b) in rest.iter_mut().zip(last) {
-        tile::<A, T, W, 1, R, K>(from_mut(column), a, from_ref(b), from);
+    match (rest, last) {
+        ([x, y, z], [d, e, f]) => {
+            let mut three = [*x, *y, *z];
+            tile::<A, T, W, V, 3, R, K>(&mut three, a, &[*d, *e, *f], from);
+            [*x, *y, *z] = three;
+        }
+        ([x, y], [d, e]) => {
+            let mut two = [*x, *y];
+            tile::<A, T, W, V, 2, R, K>(&mut two, a, &[*d, *e], from);
+            [*x, *y] = two;
+        }
+        ([x], [d]) => tile::<A, T, W, V, 1, R, K>(from_mut(x), a, from_ref(d), from),
+        _ => {}
     }
 }
 
-/// So many rows from one on, of some columns.
+/// So many registers of rows from one on, of some columns.
 #[inline(always)]
-fn tile<A: Arithmetic, T: Real, const W: usize, const G: usize, const R: usize, const K: usize>(
+fn tile<
+    A: Arithmetic,
+    T: Real,
+    const W: usize,
+    const V: usize,
+    const G: usize,
+    const R: usize,
+    const K: usize,
+>(
     columns: &mut [[T; R]; G],
     a: &[[T; R]],
     b: &[[T; K]; G],
     from: usize,
 ) {
-    let mut all: [Vector<A, T, W>; G] = core::array::from_fn(|g| part(&columns[g], from));
-    for (k, column) in a.iter().enumerate() {
-        let x = part::<A, T, W>(column, from);
-        for (entry, factors) in all.iter_mut().zip(b) {
+    let mut all = [[A::splat(T::zero()); V]; G];
+    for (registers, column) in all.iter_mut().zip(columns.iter()) {
+        for (v, register) in registers.iter_mut().enumerate() {
+            *register = part::<A, T, W>(column, from + v * W);
+        }
+    }
+    for (k, column) in a.iter().enumerate().take(K) {
+        let mut rows = [A::splat(T::zero()); V];
+        for (v, register) in rows.iter_mut().enumerate() {
+            *register = part::<A, T, W>(column, from + v * W);
+        }
+        for (registers, factors) in all.iter_mut().zip(b) {
             if let Some(factor) = factors.get(k) {
-                *entry = A::mul_add(x, A::splat(*factor), *entry);
+                let factor = A::splat(*factor);
+                for (entry, x) in registers.iter_mut().zip(&rows) {
+                    *entry = A::mul_add(*x, factor, *entry);
+                }
             }
         }
     }
-    for (column, register) in columns.iter_mut().zip(&all) {
-        put(register, column, from);
+    for (column, registers) in columns.iter_mut().zip(&all) {
+        for (v, register) in registers.iter().enumerate() {
+            put(register, column, from + v * W);
+        }
     }
 }
 
@@ -113,7 +166,8 @@ pub fn product<T: Real, const R: usize, const K: usize, const C: usize>(
 /// Whether all entries are zero.
 #[inline]
 pub fn is_zero<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> bool {
-    a.data.0.iter().all(|column| column.iter().all(|x| *x == T::zero()))
+    // Without a way out early a column is compared at once.
+    a.data.0.iter().all(|column| column.iter().fold(true, |zero, x| zero & (*x == T::zero())))
 }
 
 /// Zeros, without nalgebra's own construction entry by entry.
@@ -122,11 +176,28 @@ pub fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::from_array_storage(ArrayStorage([[T::zero(); R]; C]))
 }
 
-/// `Aᵀ`.
+/// `Aᵀ`, in squares of four, whose rows are put together in registers.
 #[inline(never)]
 pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> SMatrix<T, C, R> {
     let mut turned = [[T::zero(); C]; R];
-    for (j, column) in a.data.0.iter().enumerate() {
+    let (fours, rest) = a.data.0.as_chunks::<4>();
+    for (j, columns) in fours.iter().enumerate() {
+        let [a, b, c, d] = columns.each_ref().map(|column| column.as_chunks::<4>().0);
+        let (rows, left) = turned.as_chunks_mut::<4>();
+        for ((((a, b), c), d), rows) in a.iter().zip(b).zip(c).zip(d).zip(rows) {
+            for (i, row) in rows.iter_mut().enumerate() {
+                if let Some(place) = row.get_mut(4 * j..).and_then(<[T]>::first_chunk_mut::<4>) {
+                    *place = [a[i], b[i], c[i], d[i]];
+                }
+            }
+        }
+        for (i, row) in (R - R % 4..).zip(left) {
+            for (place, column) in row.iter_mut().skip(4 * j).zip(columns) {
+                *place = column[i];
+            }
+        }
+    }
+    for (j, column) in (C - C % 4..).zip(rest) {
         for (row, x) in turned.iter_mut().zip(column) {
             if let Some(entry) = row.get_mut(j) {
                 *entry = *x;
@@ -136,22 +207,92 @@ pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>)
     SMatrix::from_array_storage(ArrayStorage(turned))
 }
 
-/// Whether a column is that of the identity.
-fn is_unit<T: Real, const N: usize>(column: &[T; N], j: usize) -> bool {
-    column.iter().enumerate().all(|(i, x)| *x == if i == j { T::one() } else { T::zero() })
+/// A matrix with the columns and rows of the identity but for some neighbouring ones.
+pub struct NearlyIdentity<T, const N: usize> {
+    matrix: SMatrix<T, N, N>,
+    first: usize,
+    end: usize,
 }
 
-/// `A D`, where most columns of `D` are those of the identity.
-pub fn times_nearly_identity<T: Real, const R: usize, const N: usize>(
-    a: &SMatrix<T, R, N>,
-    d: &SMatrix<T, N, N>,
-) -> SMatrix<T, R, N> {
-    let mut out = *a;
-    for (j, (to, factors)) in out.data.0.iter_mut().zip(&d.data.0).enumerate() {
-        if is_unit(factors, j) {
-            continue;
+impl<T: Real, const N: usize> NearlyIdentity<T, N> {
+    /// Finds them.
+    pub fn of(matrix: &SMatrix<T, N, N>) -> Self {
+        let (mut first, mut end) = (N, 0);
+        for (j, column) in matrix.data.0.iter().enumerate() {
+            let mut beyond = *column;
+            beyond.iter_mut().skip(j).take(1).for_each(|x| *x -= T::one());
+            // Without a way out early a column is compared at once.
+            if beyond.iter().fold(true, |zero, x| zero & (*x == T::zero())) {
+                continue;
+            }
+            (first, end) = (first.min(j), end.max(j + 1));
+            for (i, _) in beyond.iter().enumerate().filter(|(_, x)| **x != T::zero()) {
+                (first, end) = (first.min(i), end.max(i + 1));
+            }
         }
-        *to = [T::zero(); R];
+        Self { matrix: *matrix, first, end }
+    }
+
+    /// `Dᵀ`.
+    pub fn transposed(&self) -> Self {
+        let mut matrix = self.matrix;
+        for j in self.first..self.end {
+            for i in self.first..self.end {
+                if let (Some(to), Some(from)) = (matrix.get_mut((i, j)), self.matrix.get((j, i))) {
+                    *to = *from;
+                }
+            }
+        }
+        Self { matrix, ..*self }
+    }
+
+    /// `A D` in the place of `A`.
+    pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
+        let given = *a;
+        let some = self.first..self.end;
+        let from = given.data.0.get(some.clone()).unwrap_or(&[]);
+        for j in some {
+            let (Some(to), Some(factors)) = (a.data.0.get_mut(j), self.matrix.data.0.get(j)) else { break };
+            let mut sum = [T::zero(); R];
+            for (from, factor) in from.iter().zip(factors.iter().skip(self.first)) {
+                for (sum, x) in sum.iter_mut().zip(from) {
+                    *sum = Compiled::mul_add(*x, *factor, *sum);
+                }
+            }
+            *to = sum;
+        }
+    }
+
+    /// `D A` in the place of `A`.
+    pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
+        // Eight rows at a time, or those before the end: all others are zero in these columns.
+        let length = N.min(8);
+        for column in &mut a.data.0 {
+            let given = *column;
+            for from in (self.first..self.end).step_by(8) {
+                let start = from.min(N - length);
+                let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
+                for k in self.first..self.end {
+                    let (Some(factor), Some(own)) = (given.get(k), self.matrix.data.0.get(k)) else { break };
+                    sum = Compiled::mul_add(part(own, from), Compiled::splat(*factor), sum);
+                }
+                let kept = self.end.min(start + length);
+                let places = column.get_mut(from..kept).unwrap_or(&mut []);
+                for (place, sum) in places.iter_mut().zip(sum.numbers().iter().skip(from - start)) {
+                    *place = *sum;
+                }
+            }
+        }
+    }
+}
+
+/// `A B`, where most of `B` is zero.
+pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>(
+    a: &SMatrix<T, R, K>,
+    b: &SMatrix<T, K, C>,
+) -> SMatrix<T, R, C> {
+    let mut out = zeros::<T, R, C>();
+    for (to, factors) in out.data.0.iter_mut().zip(&b.data.0) {
         for (factor, from) in factors.iter().zip(&a.data.0).filter(|(factor, _)| **factor != T::zero()) {
             for (sum, x) in to.iter_mut().zip(from) {
                 *sum = Compiled::mul_add(*x, *factor, *sum);
@@ -161,23 +302,11 @@ pub fn times_nearly_identity<T: Real, const R: usize, const N: usize>(
     out
 }
 
-/// `D A`, where most columns of `D` are those of the identity.
-pub fn nearly_identity_times<T: Real, const N: usize, const C: usize>(
-    d: &SMatrix<T, N, N>,
-    a: &SMatrix<T, N, C>,
-) -> SMatrix<T, N, C> {
-    let mut out = *a;
-    for (j, column) in d.data.0.iter().enumerate().filter(|(j, column)| !is_unit(column, *j)) {
-        let mut beyond = *column;
-        beyond.iter_mut().skip(j).take(1).for_each(|x| *x -= T::one());
-        for (to, from) in out.data.0.iter_mut().zip(&a.data.0) {
-            let factor = from.get(j).copied().unwrap_or(T::zero());
-            for (sum, x) in to.iter_mut().zip(&beyond) {
-                *sum = Compiled::mul_add(*x, factor, *sum);
-            }
-        }
-    }
-    out
+/// `A += s (B + Bᵀ)`.
+#[inline(never)]
+pub fn add_with_transpose<T: Real, const N: usize>(sum: &mut SMatrix<T, N, N>, s: T, b: &SMatrix<T, N, N>) {
+    add_multiple(sum, s, b);
+    add_multiple(sum, s, &transposed(b));
 }
 
 /// `A += s B`.
@@ -196,12 +325,9 @@ pub fn add_multiple<T: Real, const R: usize, const C: usize>(
 #[inline(never)]
 pub fn make_symmetric<T: Real, const N: usize>(m: &mut SMatrix<T, N, N>) {
     let half = crate::private::constant::<T>(0.5);
-    let columns = &mut m.data.0;
-    for j in 0..N {
-        for i in 0..j {
-            let mean = (columns[j][i] + columns[i][j]) * half;
-            (columns[j][i], columns[i][j]) = (mean, mean);
-        }
+    let turned = transposed(m);
+    for (entry, x) in m.data.0.as_flattened_mut().iter_mut().zip(turned.data.0.as_flattened()) {
+        *entry = (*entry + *x) * half;
     }
 }
 
@@ -233,32 +359,75 @@ pub fn factors<T: Real, const N: usize>(
     Ok((storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
 }
 
-/// Puts `−(L D Lᵀ)⁻¹ B` in the place of `B`, row by row, so that all columns go at once.
-#[inline(never)]
+/// Puts `−(L D Lᵀ)⁻¹ B` in the place of `B`.
 pub fn solve<T: Real, const N: usize, const C: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
     b: &mut SMatrix<T, N, C>,
 ) {
-    let (l, inverse) = (&l.data.0, &inverse.data.0[0]);
-    let mut rows = transposed(b).data.0;
-    for j in 0..N {
-        let row = rows[j];
-        for i in j + 1..N {
-            for (entry, x) in rows[i].iter_mut().zip(&row) {
-                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
-            }
+    *b = transposed(&solved_rows(l, inverse, &transposed(b)));
+}
+
+/// `−B (L D Lᵀ)⁻¹`.
+#[inline(never)]
+pub fn solved_rows<T: Real, const N: usize, const R: usize>(
+    l: &SMatrix<T, N, N>,
+    inverse: &SVector<T, N>,
+    b: &SMatrix<T, R, N>,
+) -> SMatrix<T, R, N> {
+    let mut solved = zeros();
+    dispatch::<1, T, _, _>(&Solve { l, inverse, b }, &mut solved);
+    solved
+}
+
+/// What is solved.
+struct Solve<'a, T, const N: usize, const R: usize> {
+    l: &'a SMatrix<T, N, N>,
+    inverse: &'a SVector<T, N>,
+    b: &'a SMatrix<T, R, N>,
+}
+
+impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>> for Solve<'_, T, N, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, out: &mut SMatrix<T, R, N>) {
+        let out = &mut out.data.0;
+        if A::WIDE && R >= 8 {
+            // The last rows begin as much earlier as they would be too long, and are solved twice.
+            (0..R).step_by(8).for_each(|from| self.some::<A, 8>(out, from));
+        } else if R >= 4 {
+            (0..R).step_by(4).for_each(|from| self.some::<A, 4>(out, from));
+        } else {
+            (0..R).for_each(|from| self.some::<A, 1>(out, from));
         }
     }
-    for j in (0..N).rev() {
-        let mut row = rows[j];
-        row.iter_mut().for_each(|x| *x *= -inverse[j]);
-        for i in j + 1..N {
-            for (entry, x) in row.iter_mut().zip(&rows[i]) {
-                *entry = Compiled::neg_mul_add(*x, l[j][i], *entry);
+}
+
+impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
+    /// So many rows from one on.
+    #[inline(always)]
+    fn some<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {
+        let (l, inverse) = (&self.l.data.0, &self.inverse.data.0[0]);
+        let mut x = [A::splat(T::zero()); N];
+        for (x, column) in x.iter_mut().zip(&self.b.data.0) {
+            *x = part::<A, T, W>(column, from);
+        }
+        for j in 0..N {
+            let own = x[j];
+            for i in j + 1..N {
+                x[i] = A::neg_mul_add(own, A::splat(l[j][i]), x[i]);
             }
         }
-        rows[j] = row;
+        for j in (0..N).rev() {
+            let mut own = x[j] * A::splat(-inverse[j]);
+            for i in j + 1..N {
+                own = A::neg_mul_add(x[i], A::splat(l[j][i]), own);
+            }
+            x[j] = own;
+        }
+        for (column, x) in out.iter_mut().zip(&x) {
+            put(x, column, from);
+        }
     }
-    *b = transposed(&SMatrix::from_array_storage(ArrayStorage(rows)));
 }

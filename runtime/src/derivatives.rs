@@ -1,6 +1,6 @@
 //! First derivatives of the dynamics for generic code: controllers, estimators and optimisers.
 
-use crate::blocks::{add_product, is_zero, product};
+use crate::blocks::{add_product, is_zero, product_with_few};
 use crate::constraint::{Frozen, Visitor};
 use crate::forward::each_function;
 use crate::private::constant;
@@ -102,6 +102,20 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         tau: &SVector<Self::Scalar, NV>,
     ) -> ByMotion<Self::Scalar, NV, NV>;
 
+    /// The accelerations and their derivatives, [`forward_dynamics`](Mechanism::forward_dynamics) and
+    /// [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives): what is in both may be calculated once.
+    fn forward_dynamics_to_first_order(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> (SVector<Self::Scalar, NV>, ByMotion<Self::Scalar, NV, NV>) {
+        (
+            Mechanism::forward_dynamics(self, q, v, tau),
+            Derivatives::forward_dynamics_derivatives(self, q, v, tau),
+        )
+    }
+
     /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
     fn generalized_forces_derivatives(
         &self,
@@ -167,16 +181,10 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         u: &SVector<Self::Scalar, NU>,
     ) -> LinearMotion<Self::Scalar, NV, NU> {
         let tau = Mechanism::generalized_forces(self, q, v, u);
-        let by_force = Derivatives::forward_dynamics_derivatives(self, q, v, &tau);
+        let (acceleration, by_force) = Derivatives::forward_dynamics_to_first_order(self, q, v, &tau);
         let of_force = Derivatives::generalized_forces_derivatives(self, q, v, u);
         let (by_q, by_v, by_u) = under_inputs(by_force, &of_force);
-        LinearMotion {
-            acceleration: Mechanism::forward_dynamics(self, q, v, &tau),
-            by_q,
-            by_v,
-            by_u,
-            turning: Derivatives::turning(self, q, v),
-        }
+        LinearMotion { acceleration, by_q, by_v, by_u, turning: Derivatives::turning(self, q, v) }
     }
 }
 
@@ -191,7 +199,24 @@ pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
             add_product(by_state, &by_force, of_force);
         }
     }
-    (by_q, by_v, product(&by_force, force_by_u))
+    (by_q, by_v, product_with_few(&by_force, force_by_u))
+}
+
+/// The acceleration under the inputs `u`, and its derivatives by configuration, velocity and inputs.
+pub(crate) fn accelerated<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+) -> (SVector<T, NV>, ByMotion<T, NV, NU>)
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    let tau = m.generalized_forces(t, q, v, u);
+    let (a, by_force) = m.forward_dynamics_to_first_order(t, q, v, &tau);
+    (a, under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
 }
 
 /// [`Mechanism::acceleration_derivatives`] of mechanisms with derivatives.
@@ -291,6 +316,18 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
     ) -> ByMotion<Self::Scalar, NV, NV>;
+
+    /// The accelerations and their derivatives, [`forward_dynamics`](Rheonomic::forward_dynamics) and
+    /// [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives): what is in both may be calculated once.
+    fn forward_dynamics_to_first_order(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+    ) -> (SVector<Self::Scalar, NV>, ByMotion<Self::Scalar, NV, NV>) {
+        (self.forward_dynamics(t, q, v, tau), self.forward_dynamics_derivatives(t, q, v, tau))
+    }
 
     /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' forces ([`Derivatives::generalized_forces_derivatives`]).
     fn generalized_forces_derivatives(

@@ -50,6 +50,7 @@ macro_rules! each_function {
         $crate::forward::each_function!(given_derivatives, $($how)+);
         $crate::forward::write! { $($how)+;
             forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
+            forward_dynamics_to_first_order(q: NQ, v: NV, tau: NV) -> (SVector<Self::Scalar, NV>, $crate::ByMotion<Self::Scalar, NV, NV>);
         }
     };
     (given_derivatives, $($how:tt)+) => {

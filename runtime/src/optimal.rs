@@ -53,7 +53,8 @@
 //! ```
 
 use crate::blocks::{
-    add_multiple, add_product, factors, make_symmetric, product, solve, times_nearly_identity, transposed,
+    NearlyIdentity, add_multiple, add_product, add_with_transpose, factors, make_symmetric, product, solve,
+    solved_rows, transposed,
 };
 use crate::derivatives::entry;
 use crate::discrete::{Chained, Transition};
@@ -208,14 +209,15 @@ pub fn backward<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     after: &Value<T, NV>,
     regularisation: T,
 ) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
-    let before = match &step.chained {
-        Some(chain) => chained(step, cost, after, chain),
-        None => general(step, cost, after),
-    };
-    before.minimised(regularisation)
+    let mut before = Before::of(cost);
+    match &step.chained {
+        Some(chain) => chained(&mut before, step, after, chain),
+        None => general(&mut before, step, after),
+    }
+    minimised(&mut before, regularisation)
 }
 
-/// The costs before a step by state and inputs, those after it included; blocks with inputs have these as their rows.
+/// The costs before a step by state and inputs, those after it included; mixed blocks have states as their rows.
 struct Before<T, const NV: usize, const NU: usize> {
     q: SVector<T, NV>,
     v: SVector<T, NV>,
@@ -223,37 +225,34 @@ struct Before<T, const NV: usize, const NU: usize> {
     qq: SMatrix<T, NV, NV>,
     qv: SMatrix<T, NV, NV>,
     vv: SMatrix<T, NV, NV>,
-    uq: SMatrix<T, NU, NV>,
-    uv: SMatrix<T, NU, NV>,
+    qu: SMatrix<T, NV, NU>,
+    vu: SMatrix<T, NV, NU>,
     uu: SMatrix<T, NU, NU>,
 }
 
 /// For any step.
 fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    before: &mut Before<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
-    cost: &Quadratic<T, NV, NU>,
     after: &Value<T, NV>,
-) -> Before<T, NV, NU> {
-    let mut before = Before::of(cost);
+) {
     let vq = transposed(&after.qv);
     // Column by column of blocks: the rows of S [A B], then what the rows of [A B]ᵀ make of them.
     let (q_by_q, v_by_q) = (transposed(&step.q_by_q), transposed(&step.v_by_q));
     let (q_by_v, v_by_v) = (transposed(&step.q_by_v), transposed(&step.v_by_v));
     let (q_by_u, v_by_u) = (transposed(&step.q_by_u), transposed(&step.v_by_u));
-    let by_q = rows(after, &vq, &step.q_by_q, &step.v_by_q);
-    add_both(&mut before.qq, &q_by_q, &v_by_q, &by_q);
-    add_both(&mut before.uq, &q_by_u, &v_by_u, &by_q);
+    add_both(&mut before.qq, &q_by_q, &v_by_q, &rows(after, &vq, &step.q_by_q, &step.v_by_q));
     let by_v = rows(after, &vq, &step.q_by_v, &step.v_by_v);
     add_both(&mut before.qv, &q_by_q, &v_by_q, &by_v);
     add_both(&mut before.vv, &q_by_v, &v_by_v, &by_v);
-    add_both(&mut before.uv, &q_by_u, &v_by_u, &by_v);
     let by_u = rows(after, &vq, &step.q_by_u, &step.v_by_u);
+    add_both(&mut before.qu, &q_by_q, &v_by_q, &by_u);
+    add_both(&mut before.vu, &q_by_v, &v_by_v, &by_u);
     add_both(&mut before.uu, &q_by_u, &v_by_u, &by_u);
     let gradient = (after.q, after.v);
     add_both(&mut before.q, &q_by_q, &v_by_q, &gradient);
     add_both(&mut before.v, &q_by_v, &v_by_v, &gradient);
     add_both(&mut before.u, &q_by_u, &v_by_u, &gradient);
-    before
 }
 
 /// The rows of configuration and velocity of `S X`.
@@ -283,40 +282,33 @@ fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
 /// For a step with `q⁺ = q ⊕ h v⁺`: with `G` the derivatives of `v⁺`, and those `E` and `D` of `⊕`, `A = [E 0; 0 0] + H G_x` and
 /// `B = H G_u`, `H = [h D; 1]`, so that `W = Hᵀ S H` takes the place of `S`.
 fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    before: &mut Before<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
-    cost: &Quadratic<T, NV, NU>,
     after: &Value<T, NV>,
     chain: &Chained<T, NV>,
-) -> Before<T, NV, NU> {
-    let mut before = Before::of(cost);
-    let Link { own, z, w, back } = Link::of::<NQ>(after, chain);
-    add_multiple(&mut before.qq, T::one(), &own);
+) {
     let (by_q, by_v, by_u) = (&step.v_by_q, &step.v_by_v, &step.v_by_u);
     let (q_rows, v_rows, u_rows) = (transposed(by_q), transposed(by_v), transposed(by_u));
-    // W G_q + Zᵀ, W G_v, W G_u.
-    let mut of_q = transposed(&z);
-    add_product(&mut of_q, &w, by_q);
-    add_product(&mut before.qq, &z, by_q);
-    add_product(&mut before.qq, &q_rows, &of_q);
-    add_product(&mut before.uq, &u_rows, &of_q);
-    let of_v = product(&w, by_v);
-    add_product(&mut before.qv, &z, by_v);
-    add_product(&mut before.qv, &q_rows, &of_v);
-    add_product(&mut before.vv, &v_rows, &of_v);
-    add_product(&mut before.uv, &u_rows, &of_v);
+    let Link { z, w, back: [of_q, gradient] } = Link::of::<NQ>(&mut before.qq, after, chain);
+    // With P = G_qᵀ W + Z the rows of q are P [G_v G_u], and by q twice Eᵀ S_qq E + ½ (P + Z) G_q with its transpose.
+    let mut rows = z;
+    add_product(&mut rows, &q_rows, &w);
+    add_product(&mut before.qv, &rows, by_v);
+    add_product(&mut before.qu, &rows, by_u);
+    add_multiple(&mut rows, T::one(), &z);
+    add_with_transpose(&mut before.qq, constant(0.5), &product(&rows, by_q));
+    let rows = product(&v_rows, &w);
+    add_product(&mut before.vv, &rows, by_v);
+    add_product(&mut before.vu, &rows, by_u);
     add_product(&mut before.uu, &u_rows, &product(&w, by_u));
-    let [of_q, gradient] = &back;
-    add_multiple(&mut before.q, T::one(), of_q);
-    add_product(&mut before.q, &q_rows, gradient);
-    add_product(&mut before.v, &v_rows, gradient);
-    add_product(&mut before.u, &u_rows, gradient);
-    before
+    add_multiple(&mut before.q, T::one(), &of_q);
+    add_product(&mut before.q, &q_rows, &gradient);
+    add_product(&mut before.v, &v_rows, &gradient);
+    add_product(&mut before.u, &u_rows, &gradient);
 }
 
 /// The costs to go by the configuration before a step and by the velocity after it, which the configuration after it follows.
 struct Link<T, const NV: usize> {
-    /// `Eᵀ S_qq E`.
-    own: SMatrix<T, NV, NV>,
     /// `Eᵀ (h S_qq D + S_qv)`.
     z: SMatrix<T, NV, NV>,
     /// `Hᵀ S H`.
@@ -326,59 +318,76 @@ struct Link<T, const NV: usize> {
 }
 
 impl<T: Real, const NV: usize> Link<T, NV> {
-    fn of<const NQ: usize>(after: &Value<T, NV>, chain: &Chained<T, NV>) -> Self {
-        let (h, vq) = (chain.period, transposed(&after.qv));
-        let (mut z, mut w) = (after.qv, after.vv);
+    /// Adds `Eᵀ S_qq E` to the costs by configuration.
+    fn of<const NQ: usize>(
+        qq: &mut SMatrix<T, NV, NV>,
+        after: &Value<T, NV>,
+        chain: &Chained<T, NV>,
+    ) -> Self {
+        let h = chain.period;
+        // With X = Dᵀ (S_qv + ½ h S_qq D), W is S_vv + h (X + Xᵀ).
+        let (mut z, mut half, mut w) = (after.qv, after.qv, after.vv);
         if NQ == NV {
+            add_multiple(qq, T::one(), &after.qq);
             add_multiple(&mut z, h, &after.qq);
-            add_multiple(&mut w, h, &z);
-            add_multiple(&mut w, h, &vq);
-            let back = [after.q, after.v + after.q * h];
-            return Self { own: after.qq, z, w, back };
+            add_multiple(&mut half, h * constant(0.5), &after.qq);
+            add_with_transpose(&mut w, h, &half);
+            return Self { z, w, back: [after.q, after.v + after.q * h] };
         }
-        let (e, d) = (&chain.by_q, &chain.by_displacement);
-        // `Xᵀ A` by way of `Aᵀ X`.
-        let turned = |x: &_, a: &_| transposed(&times_nearly_identity(&transposed(a), x));
-        add_multiple(&mut z, h, &times_nearly_identity(&after.qq, d));
-        add_multiple(&mut w, h, &turned(d, &z));
-        add_multiple(&mut w, h, &times_nearly_identity(&vq, d));
-        let own = turned(e, &times_nearly_identity(&after.qq, e));
-        let back = [e.tr_mul(&after.q), after.v + d.tr_mul(&after.q) * h];
-        Self { own, z: turned(e, &z), w, back }
+        let (e, d) = (NearlyIdentity::of(&chain.by_q), NearlyIdentity::of(&chain.by_displacement));
+        let mut moved = after.qq;
+        d.follow(&mut moved);
+        add_multiple(&mut z, h, &moved);
+        add_multiple(&mut half, h * constant(0.5), &moved);
+        d.transposed().lead(&mut half);
+        add_with_transpose(&mut w, h, &half);
+        let back_by_e = e.transposed();
+        let mut own = after.qq;
+        e.follow(&mut own);
+        back_by_e.lead(&mut own);
+        add_multiple(qq, T::one(), &own);
+        back_by_e.lead(&mut z);
+        let (mut of_q, mut of_dv) = (after.q, after.q);
+        back_by_e.lead(&mut of_q);
+        d.transposed().lead(&mut of_dv);
+        Self { z, w, back: [of_q, after.v + of_dv * h] }
     }
 }
 
 impl<T: Real, const NV: usize, const NU: usize> Before<T, NV, NU> {
     /// Those of the instant alone.
     fn of(cost: &Quadratic<T, NV, NU>) -> Self {
-        let Quadratic { q, v, u, qq, qv, vv, uu, .. } = *cost;
-        Self { q, v, u, qq, qv, vv, uq: transposed(&cost.qu), uv: transposed(&cost.vu), uu }
+        let Quadratic { q, v, u, qq, qv, vv, qu, vu, uu } = *cost;
+        Self { q, v, u, qq, qv, vv, qu, vu, uu }
     }
+}
 
-    /// The best change of the inputs, and what the costs then are.
-    fn minimised(self, regularisation: T) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
-        let Before { mut q, mut v, u, mut qq, mut qv, mut vv, uq, uv, uu } = self;
-        let (factor, pivots) = factors(&uu, regularisation).map_err(|input| Indefinite { input })?;
-        let (mut change, mut by_q, mut by_v) = (u, uq, uv);
-        solve(&factor, &pivots, &mut change);
-        solve(&factor, &pivots, &mut by_q);
-        solve(&factor, &pivots, &mut by_v);
-        let linear = u.dot(&change);
-        // (Q_uu + r) change = −Q_u.
-        let quadratic = (linear + regularisation * change.dot(&change)) * constant(-0.5);
-        // With K = −Q_uu⁻¹ Q_ux the costs to go are Q_xx + Q_xu K; with regularisation r, less by r Kᵀ K.
-        let (mut q_rows, mut v_rows) = (transposed(&uq), transposed(&uv));
-        if regularisation != T::zero() {
-            add_multiple(&mut q_rows, -regularisation, &transposed(&by_q));
-            add_multiple(&mut v_rows, -regularisation, &transposed(&by_v));
-        }
-        add_product(&mut q, &q_rows, &change);
-        add_product(&mut v, &v_rows, &change);
-        add_product(&mut qq, &q_rows, &by_q);
-        add_product(&mut qv, &q_rows, &by_v);
-        add_product(&mut vv, &v_rows, &by_v);
-        make_symmetric(&mut qq);
-        make_symmetric(&mut vv);
-        Ok((Policy { change, by_q, by_v, expected: [linear, quadratic] }, Value { q, v, qq, qv, vv }))
+/// The best change of the inputs, and what the costs then are.
+fn minimised<T: Real, const NV: usize, const NU: usize>(
+    before: &mut Before<T, NV, NU>,
+    regularisation: T,
+) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
+    let Before { q, v, u, qq, qv, vv, qu, vu, uu } = before;
+    let (factor, pivots) = factors(uu, regularisation).map_err(|input| Indefinite { input })?;
+    let mut change = *u;
+    solve(&factor, &pivots, &mut change);
+    let (of_q, of_v) = (solved_rows(&factor, &pivots, qu), solved_rows(&factor, &pivots, vu));
+    let (by_q, by_v) = (transposed(&of_q), transposed(&of_v));
+    let linear = u.dot(&change);
+    // (Q_uu + r) change = −Q_u.
+    let quadratic = (linear + regularisation * change.dot(&change)) * constant(-0.5);
+    // With K = −Q_uu⁻¹ Q_ux the costs to go are Q_xx + Q_xu K; with regularisation r, less by r Kᵀ K.
+    if regularisation != T::zero() {
+        add_multiple(qu, -regularisation, &of_q);
+        add_multiple(vu, -regularisation, &of_v);
     }
+    add_product(q, qu, &change);
+    add_product(v, vu, &change);
+    add_product(qq, qu, &by_q);
+    add_product(qv, qu, &by_v);
+    add_product(vv, vu, &by_v);
+    make_symmetric(qq);
+    make_symmetric(vv);
+    let policy = Policy { change, by_q, by_v, expected: [linear, quadratic] };
+    Ok((policy, Value { q: *q, v: *v, qq: *qq, qv: *qv, vv: *vv }))
 }

@@ -11,11 +11,20 @@ use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
 /// A mechanism while given contacts stay closed and all others open; made by [`hold`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct Holding<'m, M, T, const NK: usize, const NR: usize> {
     mechanism: &'m M,
     touches: [Touch; NK],
     decay: T,
+}
+
+// A reference is copied, whether the mechanism can be or not.
+impl<M, T: Copy, const NK: usize, const NR: usize> Copy for Holding<'_, M, T, NK, NR> {}
+
+impl<M, T: Copy, const NK: usize, const NR: usize> Clone for Holding<'_, M, T, NK, NR> {
+    fn clone(&self) -> Self {
+        *self
+    }
 }
 
 /// The mechanism while given contacts stay closed, whatever that takes, as [`forward_dynamics`](super::forward_dynamics) moves it:
@@ -208,6 +217,19 @@ where
         match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.decay) {
             Ok(found) => (found.by_q, found.by_v, found.by_tau),
             Err(_) => (unknown(), unknown(), unknown()),
+        }
+    }
+
+    fn forward_dynamics_to_first_order(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> (SVector<T, NV>, ByMotion<T, NV, NV>) {
+        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.decay) {
+            Ok(found) => (found.a, (found.by_q, found.by_v, found.by_tau)),
+            Err(_) => (SVector::repeat(constant(f64::NAN)), (unknown(), unknown(), unknown())),
         }
     }
 

@@ -1,12 +1,12 @@
 //! Explicit steps, whose derivatives are carried forwards through their stages.
 
 use super::{Chained, DifferentiableStep, Transition, implicit, projected};
-use crate::blocks::{add_product, nearly_identity_times, product, zeros};
+use crate::Real;
+use crate::blocks::{NearlyIdentity, add_multiple, add_product, product, zeros};
 use crate::constraint::ConstrainedDerivatives;
-use crate::derivatives::{Derivatives, LinearMotion, RheonomicDerivatives};
+use crate::derivatives::{RheonomicDerivatives, accelerated};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::constant;
-use crate::{At, Real, at};
 use nalgebra::{SMatrix, SVector};
 
 /// How a vector of the tangent space changes with the state and the inputs at the start of a step.
@@ -103,8 +103,7 @@ where
         (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
         v: &Sensitive<T, NV, NU>,
     ) -> Sensitive<T, NV, NU> {
-        let now: At<'_, M, T> = at(self.mechanism, self.t + h);
-        let LinearMotion { acceleration, by_q, by_v, by_u, .. } = now.linear_motion(q, &v.value, self.u);
+        let (acceleration, (by_q, by_v, by_u)) = accelerated(self.mechanism, self.t + h, q, &v.value, self.u);
         let found = Sensitive::of(acceleration, (&by_q, motion), (&by_v, v));
         Sensitive { by_u: found.by_u + by_u, ..found }
     }
@@ -150,33 +149,33 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let h = self.length();
-        let motion = at(mechanism, t).linear_motion(q, v, u);
-        let after = Sensitive {
-            value: v + motion.acceleration * h,
-            by_q: motion.by_q * h,
-            by_v: SMatrix::identity() + motion.by_v * h,
-            by_u: motion.by_u * h,
-        };
-        let displacement = after.scaled(h);
-        let (mut q_by_q, mut q_by_v, mut q_by_u) = (displacement.by_q, displacement.by_v, displacement.by_u);
+        let (acceleration, (v_by_q, v_by_v, v_by_u)) = accelerated(mechanism, t, q, v, u);
+        let (v_by_q, mut v_by_v, v_by_u) = (v_by_q * h, v_by_v * h, v_by_u * h);
+        for (j, column) in v_by_v.data.0.iter_mut().enumerate() {
+            column.iter_mut().skip(j).take(1).for_each(|x| *x += T::one());
+        }
+        let after = v + acceleration * h;
+        let displacement = after * h;
+        let (mut q_by_q, mut q_by_v, mut q_by_u) = (v_by_q * h, v_by_v * h, v_by_u * h);
         let (mut by_q, mut by_displacement) = (SMatrix::identity(), SMatrix::identity());
         // q ⊕ h v⁺; in plain coordinates a displacement is added.
         if NQ != NV || M::SPEEDS {
-            (by_q, by_displacement) = mechanism.integrate_derivatives_at(q, &displacement.value);
-            q_by_q = nearly_identity_times(&by_displacement, &q_by_q);
-            q_by_v = nearly_identity_times(&by_displacement, &q_by_v);
-            q_by_u = nearly_identity_times(&by_displacement, &q_by_u);
+            (by_q, by_displacement) = mechanism.integrate_derivatives_at(q, &displacement);
+            let d = NearlyIdentity::of(&by_displacement);
+            d.lead(&mut q_by_q);
+            d.lead(&mut q_by_v);
+            d.lead(&mut q_by_u);
         }
-        q_by_q += by_q;
+        add_multiple(&mut q_by_q, T::one(), &by_q);
         Ok(Transition {
-            q: mechanism.integrate(q, &displacement.value),
-            v: after.value,
+            q: mechanism.integrate(q, &displacement),
+            v: after,
             q_by_q,
             q_by_v,
             q_by_u,
-            v_by_q: after.by_q,
-            v_by_v: after.by_v,
-            v_by_u: after.by_u,
+            v_by_q,
+            v_by_v,
+            v_by_u,
             chained: Some(Chained { period: h, by_q, by_displacement }),
         })
     }

@@ -3,7 +3,7 @@
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, apart, with_diagonal};
 use crate::derivatives::{ByMotion, unknown};
-use crate::{Real, RheonomicDerivatives};
+use crate::{Real, Rheonomic, RheonomicDerivatives};
 use nalgebra::{SMatrix, SVector};
 
 /// A matrix of velocities with something for the states below and beside it.
@@ -116,6 +116,16 @@ where
             bordered(&by_v, &rates.by_v, &by_x, &rates.by_x),
             with_diagonal::<_, NV, NX, NE>(&by_force, nalgebra::one()),
         )
+    }
+
+    fn forward_dynamics_to_first_order(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NE>,
+        tau: &SVector<M::Scalar, NE>,
+    ) -> (SVector<M::Scalar, NE>, ByMotion<M::Scalar, NE, NE>) {
+        (self.forward_dynamics(t, q, v, tau), self.forward_dynamics_derivatives(t, q, v, tau))
     }
 
     fn generalized_forces_derivatives(
