@@ -195,6 +195,10 @@ where
 }
 
 /// Methods with steps of a length that is set: all that are not adaptive.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no steps of a length that is set",
+    note = "single steps are those of `Rk4`, `SemiImplicitEuler`, `ImplicitMidpoint`, `Rosenbrock` and `TimeStepping`"
+)]
 pub trait FixedStep<T: Real>: Method<T> {}
 
 impl<T: Real> FixedStep<T> for Rk4<T> {}
@@ -229,6 +233,10 @@ where
 }
 
 /// Methods whose steps have derivatives: [`SemiImplicitEuler`], [`Rk4`] and [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint).
+#[diagnostic::on_unimplemented(
+    message = "steps of `{Self}` have no derivatives",
+    note = "those of `Rk4`, `SemiImplicitEuler` and `ImplicitMidpoint` have"
+)]
 pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     /// Whether steps need derivatives of momenta, without constraints and with them.
     const IN_MOMENTA: [bool; 2];

@@ -99,7 +99,10 @@ impl<T, const NQ: usize> core::fmt::Display for Unreached<T, NQ> {
         match self {
             Self::UnknownFrame { target } => write!(f, "target {target} names a frame that does not exist"),
             Self::NotFinite { target } => {
-                write!(f, "target {target} has a weight or a placement that is negative or not finite")
+                write!(
+                    f,
+                    "target {target} has a weight that is negative, or a weight or a placement that is not finite"
+                )
             }
             Self::OutOfReach { position, orientation, iterations, .. } => write!(
                 f,

@@ -73,6 +73,10 @@ where
 }
 
 /// A method whose steps have derivatives by parameters.
+#[diagnostic::on_unimplemented(
+    message = "steps of `{Self}` have no derivatives by parameters",
+    note = "those of `Rk4` and `SemiImplicitEuler` have"
+)]
 pub trait StepByParameters<T: Real>: FixedStep<T> {
     /// Those of a step of a mechanism without constraints; what [`by_parameters`] calls.
     #[allow(clippy::type_complexity, reason = "two matrices")]

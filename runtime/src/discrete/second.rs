@@ -121,6 +121,10 @@ where
 }
 
 /// A method whose steps have second derivatives.
+#[diagnostic::on_unimplemented(
+    message = "steps of `{Self}` have no second derivatives",
+    note = "those of `Rk4` and `SemiImplicitEuler` have"
+)]
 pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
     /// A step under constraints is one without them that is brought onto the constraints at its end, so that it has second
     /// derivatives, too.
