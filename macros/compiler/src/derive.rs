@@ -170,7 +170,9 @@ fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Outp
     if let Some(name) = output.misfit() {
         cx.error(
             model.place.clone(),
-            format!("Linkwork made a mistake: the program of `{name}` does not fit its result"),
+            format!(
+                "Linkwork made a mistake: the program of `{name}` does not fit its arguments or its result"
+            ),
         )
         .help("this is no mistake of yours: please report it with the declaration of the mechanism");
         return None;

@@ -17,7 +17,7 @@ const CASES: u64 = 600;
 /// What they begin with.
 const SEED: u64 = 20;
 /// Most errors that one slip leads to.
-const MAX_MUTATIONS: usize = 3;
+const MAX_ERRORS: usize = 3;
 /// Most tokens of a mechanism that is tried: larger ones take long, and their words are the same.
 const LARGEST: usize = 1500;
 /// Longest time for one case in a debug build, on a busy machine.
@@ -205,7 +205,7 @@ fn slips_of_the_hand_are_answered_in_few_words() {
         match run {
             Err(_) => blame("panics".to_string()),
             Ok(found) => {
-                if found.len() > MAX_MUTATIONS {
+                if found.len() > MAX_ERRORS {
                     blame(format!("{} errors:\n{}", found.len(), found.join("\n")));
                 }
                 for message in found.iter().filter(|m| !m.contains("= help: ")) {

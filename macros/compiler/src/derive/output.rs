@@ -1,9 +1,9 @@
 //! What is derived: everything that emission writes.
 
-use crate::catalogue::{Argument, Declared, Id, Shape, Structure};
+use crate::catalogue::{Argument, Called, Declared, Id, Shape, Structure};
 use crate::equations::Written;
 use crate::lower::Program;
-use crate::mechanism::{Chart, Piece};
+use crate::mechanism::{Chart, Piece, Quantity};
 
 /// A generated function.
 #[derive(Clone)]
@@ -55,11 +55,24 @@ impl Function {
         self.docs.is_empty()
     }
 
-    /// True if its program, and the one in lanes, has as many outputs as the result takes.
+    /// True if its program, and the one in lanes, has as many outputs as the result takes, and reads its arguments alone.
     fn is_whole(&self) -> bool {
         let expected = self.shape.outputs(&self.structure);
         let programs = [Some(&self.program), self.program.simd.as_deref()];
-        programs.into_iter().flatten().all(|program| program.outputs.len() == expected)
+        programs.into_iter().flatten().all(|program| {
+            let reads_arguments =
+                || program.symbols().into_iter().map(Quantity::of).all(|q| self.is_given(q));
+            program.outputs.len() == expected && reads_arguments()
+        })
+    }
+
+    /// True for what the mechanism itself has, for an entry of an argument, and for a result of what all functions may call.
+    fn is_given(&self, quantity: Quantity) -> bool {
+        let called = Called::ALL.map(Argument::Called);
+        match quantity {
+            Quantity::Parameter(_) | Quantity::Prepared(_) | Quantity::Time => true,
+            _ => self.arguments.iter().chain(&called).any(|argument| argument.index(quantity).is_some()),
+        }
     }
 }
 
@@ -89,7 +102,7 @@ impl Output {
         self.functions.iter().chain(self.prepared.iter().flat_map(|prepared| &prepared.functions))
     }
 
-    /// The name of a function whose program does not fit its result: a mistake of the compiler's, which would make wrong code.
+    /// The name of a function whose program does not fit its arguments or its result: a mistake of the compiler's, which would make wrong code.
     pub fn misfit(&self) -> Option<&str> {
         let function = self.all_functions().find(|f| !f.is_whole()).map(|f| f.name.as_str());
         let link = self.links.iter().any(|l| !l.is_whole()).then_some("the steps of a link");

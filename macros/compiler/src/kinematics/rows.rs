@@ -4,7 +4,7 @@ use super::rates::velocity_gradients;
 use crate::expr::eval::Tape;
 use crate::expr::sample::sample;
 use crate::expr::{Expr, Symbol};
-use crate::mechanism::{Model, Motion, Quantity};
+use crate::mechanism::{Model, Quantity};
 
 /// Constraints to be evaluated, in their order.
 pub struct Rows<'g> {
@@ -78,11 +78,7 @@ pub fn random_configuration(model: &Model<'_>, seed: u64) -> Vec<f64> {
     let mut q: Vec<f64> =
         (0..model.nq()).map(|k| 2.0 * sample(Quantity::Configuration(k).symbol(), seed) - 2.0).collect();
     for link in &model.links {
-        let first = match link.motion {
-            Motion::Ball { q, .. } => q,
-            Motion::Free { q, .. } => q + 3,
-            _ => continue,
-        };
+        let Some(first) = link.motion.quaternion() else { continue };
         let norm = q[first..first + 4].iter().map(|c| c * c).sum::<f64>().sqrt();
         for c in &mut q[first..first + 4] {
             *c /= norm;

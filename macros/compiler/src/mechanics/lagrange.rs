@@ -12,7 +12,7 @@ use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{Joint, configuration_rate, position};
 use crate::mechanics::passive::passive_forces;
-use crate::mechanism::{Model, Motion, Quantity};
+use crate::mechanism::{Chart, Model, Quantity};
 
 /// The Lagrangian and what follows from it.
 pub struct Lagrange<'g> {
@@ -87,15 +87,15 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
             bias[k + i] += term[i];
         }
     };
-    for link in &model.links {
-        match link.motion {
-            Motion::Ball { v: k, .. } => add(k, three(v, k).cross(three(p, k))),
-            Motion::Free { v: k, .. } => {
+    for chart in &model.charts {
+        match *chart {
+            Chart::Plain(..) => {}
+            Chart::Ball(_, k) => add(k, three(v, k).cross(three(p, k))),
+            Chart::Free(_, k) => {
                 let (linear, w) = (three(v, k), three(v, k + 3));
                 add(k, w.cross(three(p, k)));
                 add(k + 3, w.cross(three(p, k + 3)) + linear.cross(three(p, k)));
             }
-            _ => {}
         }
     }
 }

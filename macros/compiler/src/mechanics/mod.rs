@@ -3,7 +3,7 @@
 //! axes, where motion subspaces are constant. Knows no tokens.
 
 use crate::expr::Expr;
-use crate::mechanism::{Model, Motion, Quantity};
+use crate::mechanism::{Coordinate, Model, Motion, Quantity};
 
 pub mod aba;
 pub mod added_mass;
@@ -47,13 +47,8 @@ pub fn is_plain_tree(model: &Model<'_>) -> bool {
     let mut seen = vec![false; model.nv()];
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()
-        && model.links.iter().all(|link| match &link.motion {
-            Motion::Turn { coordinate, .. }
-            | Motion::Slide { coordinate, .. }
-            | Motion::Helix { coordinate, .. } => {
-                coordinate.ratio == 1.0 && !std::mem::replace(&mut seen[coordinate.v], true)
-            }
-            Motion::Ball { .. } | Motion::Free { .. } => true,
-            Motion::Placed => false,
+        && model.links.iter().all(|link| {
+            let mut own = |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v], true);
+            !matches!(link.motion, Motion::Placed) && link.motion.coordinate().is_none_or(&mut own)
         })
 }

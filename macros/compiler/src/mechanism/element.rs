@@ -1,6 +1,7 @@
 //! Force elements and inputs.
 
-use super::link::{Coordinate, LinkId};
+use super::link::LinkId;
+use super::motion::Coordinate;
 use crate::diag::Place;
 use crate::expr::{Expr, Vec3};
 

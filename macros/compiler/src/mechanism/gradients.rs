@@ -1,7 +1,7 @@
 //! The forces of energies, and derivatives by the velocities, found once: every form of a model and every function asks for
 //! those of the same elements.
 
-use super::link::Chart;
+use super::motion::Chart;
 use crate::expr::{Expr, Id};
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -1,31 +1,12 @@
 //! Frames worth trying for a link.
 
+use super::motions::{Freedom, freedom};
 use super::number::{
     Frame, IDENTITY, Mass, Vector, about, axis, clean, column, cross, dot, norm, times, transpose,
     transposed_times,
 };
-use super::regroup::coordinate_axis;
 use crate::mechanism::{Link, Motion};
 use std::f64::consts::FRAC_PI_2;
-
-/// How a link's frame can be chosen.
-#[derive(Clone, Copy, Debug)]
-pub enum Freedom {
-    /// Not at all.
-    None,
-    /// Along and about coordinate axis `k`.
-    Turn {
-        /// The joint's axis.
-        k: usize,
-        /// The joint's zero can be shifted.
-        offset: bool,
-    },
-    /// Anywhere.
-    Slide {
-        /// The joint's axis.
-        along: Vector,
-    },
-}
 
 /// What the choice of a link's frame depends on.
 pub struct Site {
@@ -47,12 +28,7 @@ impl Site {
     /// The site of a link of some size; where parameters cost nothing (`free`), its mass properties need not be numbers.
     pub fn of(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
         let (place, mass) = (Frame::of(&link.placement), Mass::of(&link.inertia));
-        let free = match &link.motion {
-            Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: true }),
-            Motion::Helix { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: false }),
-            Motion::Slide { axis, .. } => axis.values().map(|along| Freedom::Slide { along }),
-            Motion::Ball { .. } | Motion::Free { .. } | Motion::Placed => None,
-        };
+        let free = freedom(&link.motion);
         let numeric = place.is_some() && (mass.is_some() || free_parameters);
         let place = place.filter(|_| !matches!(link.motion, Motion::Placed));
         Site {

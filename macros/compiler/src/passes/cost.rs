@@ -1,7 +1,8 @@
 //! What placements and mass properties cost, roughly: operations of inverse dynamics, mass matrix and forward dynamics
 //! together, for a link in the middle of an arm.
 
-use super::candidates::{Freedom, Site};
+use super::candidates::Site;
+use super::motions::Freedom;
 use super::number::{
     Frame, Matrix, Vector, axis, clean, clean_rotation, column, cross, dot, norm, times, transposed_times,
 };

@@ -6,11 +6,11 @@
 //! Candidates of all links are weighed together: the cost of a placement depends on the frames of both links, so the
 //! best choice follows from the leaves to the roots (Bellman 1957).
 
-use super::candidates::{Freedom, Site, candidates};
+use super::candidates::{Site, candidates};
 use super::cost;
-use super::number::{Frame, Mass, clean, norm};
-use crate::expr::Vec3;
-use crate::mechanism::{Coordinate, Direction, Inertia, Input, Link, Model, Motion, Pose};
+use super::motions::{Freedom, seen_from};
+use super::number::{Frame, Mass, norm};
+use crate::mechanism::{Direction, Inertia, Input, Link, Model, Pose};
 
 /// A choice for one link.
 #[derive(Clone, Copy)]
@@ -116,11 +116,7 @@ fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
                 Inertia::zero(g).plus_placed(&link.inertia, &back.rotation, back.translation)
             }
         };
-        match &mut link.motion {
-            Motion::Turn { axis, coordinate } => shift(coordinate, *axis, step.offset),
-            Motion::Slide { axis, .. } => *axis = step.frame.pose(g).rotation.to_child(*axis),
-            _ => {}
-        }
+        seen_from(&mut link.motion, &step.frame.pose(g), step.offset);
     }
     let back = steps.iter().map(|s| s.as_ref().map_or(Pose::identity(g), |s| s.frame.pose(g).inverse()));
     move_contents(model, &back.collect::<Vec<_>>());
@@ -195,12 +191,4 @@ fn turn<'g>(direction: &mut Direction<'g>, back: &[Pose<'g>]) {
             *v = back[link.0].rotation.to_parent(*v);
         }
     }
-}
-
-/// The coordinate of a joint about `axis` with an angle about the coordinate axis added.
-fn shift(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
-    let negative = axis.values().is_some_and(|n| n.iter().sum::<f64>() < 0.0);
-    let angle = if negative { -offset } else { offset };
-    let scale = coordinate.offset.abs() + angle.abs();
-    coordinate.offset = clean(coordinate.offset + angle, scale);
 }

@@ -7,14 +7,16 @@ use crate::mechanism::Model;
 mod candidates;
 mod cost;
 mod frames;
+mod motions;
 mod number;
 mod parallel;
 mod regroup;
 mod slide;
 
 pub use frames::{place_frames, sizes};
+pub use motions::Gauge;
 pub use parallel::in_common_axes;
-pub use regroup::{Gauge, Regroup, regroup};
+pub use regroup::{Regroup, regroup};
 
 /// Which passes are run.
 #[derive(Clone, Copy, Debug)]

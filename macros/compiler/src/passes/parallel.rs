@@ -7,7 +7,7 @@
 //! recursions of vectors hold as they are; a link's mass properties become expressions of its angle.
 
 use super::Variant;
-use super::regroup::coordinate_axis;
+use super::motions::coordinate_axis;
 use crate::expr::{Expr, Rotation};
 use crate::kinematics::position_in;
 use crate::mechanism::{Link, Model, Motion};

@@ -6,21 +6,10 @@
 //! `z` these are a mass at the origin, a moment along `z`, and equal moments of inertia about `x` and `y`; for a sliding
 //! joint all moments of inertia; for a screw equal moments about `x` and `y`; for a ball a mass at the centre.
 
+use super::motions::{Gauge, coordinate_axis, movable};
 use super::number::{Frame, Mass};
-use crate::expr::{Sym3, Vec3};
-use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
-/// Which moment of inertia of a turning link vanishes. About an axis `k` the others are `k + 1` and `k + 2`, cyclic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Gauge {
-    /// That about axis `k + 1`.
-    First,
-    /// That about axis `k + 2`.
-    Second,
-    /// The moments about both add up to that about `k`: no mass is off the plane through the origin.
-    #[default]
-    Flat,
-}
+use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
 /// How mass properties are distributed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -127,49 +116,7 @@ fn has_numeric_place(link: &Link<'_>) -> bool {
     link.placement.translation.values().is_some() && link.placement.rotation.matrix().values().is_some()
 }
 
-/// What of a link's mass properties acts as if it were fixed to the parent.
-fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
-    let Inertia { mass, moment, tensor } = link.inertia;
-    let nothing = Inertia::zero(mass.graph());
-    match &link.motion {
-        Motion::Turn { axis, .. } => {
-            let k = coordinate_axis(*axis)?;
-            let mut along = nothing.moment;
-            along.0[k] = moment[k];
-            Some(Inertia { mass, moment: along, tensor: transverse(&tensor, k, gauge) })
-        }
-        Motion::Slide { .. } => Some(Inertia { tensor, ..nothing }),
-        Motion::Helix { axis, .. } => {
-            let k = coordinate_axis(*axis)?;
-            Some(Inertia { tensor: transverse(&tensor, k, gauge), ..nothing })
-        }
-        Motion::Ball { .. } => Some(Inertia { mass, ..nothing }),
-        Motion::Free { .. } | Motion::Placed => None,
-    }
-}
-
-/// Equal moments about the two axes normal to `k`.
-fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    let d = &tensor.diagonal;
-    let both = match gauge {
-        Gauge::First => d[i],
-        Gauge::Second => d[j],
-        Gauge::Flat => (d[i] + d[j] - d[k]) * 0.5,
-    };
-    let mut out = Sym3::scalar(both);
-    out.diagonal[k] = both.zero();
-    out
-}
-
 fn without<'g>(link: &Link<'g>, part: &Inertia<'g>) -> Inertia<'g> {
     let Inertia { mass, moment, tensor } = link.inertia;
     Inertia { mass: mass - part.mass, moment: moment - part.moment, tensor: tensor - part.tensor }
-}
-
-/// The coordinate axis that a vector points along (either way), if it does.
-pub fn coordinate_axis(v: Vec3<'_>) -> Option<usize> {
-    let k = (0..3).find(|k| !v[*k].is_zero())?;
-    let others = v[(k + 1) % 3].is_zero() && v[(k + 2) % 3].is_zero();
-    others.then_some(k)
 }

@@ -4,7 +4,7 @@
 
 use super::cost::{LENGTH, PRODUCT};
 use super::frames::move_contents;
-use super::regroup::coordinate_axis;
+use super::motions::coordinate_axis;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{Inertia, Link, Model, Motion, Pose};
 

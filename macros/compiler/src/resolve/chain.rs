@@ -1,12 +1,12 @@
 //! Joints: each becomes a chain of links, one for each elementary motion.
 
-use super::axis::align;
 use super::builder::Builder;
-use super::joint::{self, Elementary, own_coordinate};
+use super::elementary::Elementary;
+use super::joint::{self, own_coordinate};
 use super::scope::{Placed, PlacedKind};
 use crate::diag::Diagnostics;
-use crate::expr::{Rotation, Vec3};
-use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Motion, Pose, Rule};
+use crate::expr::Vec3;
+use crate::mechanism::{CoulombFriction, Dashpot, Inertia, Input, Link, LinkId, Pose, Rule};
 use crate::syntax::Joint;
 
 impl<'g> Builder<'_, 'g> {
@@ -72,21 +72,7 @@ impl<'g> Builder<'_, 'g> {
         for (k, motion) in motions.iter().enumerate() {
             let own = &self.coordinates[j];
             let coordinate = own.plain.get(k).map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
-            let mut aligned = Rotation::identity(graph);
-            let mut align = |axis| {
-                let (axis, rotation) = align(graph, axis);
-                aligned = rotation;
-                axis
-            };
-            let motion = match motion {
-                Elementary::Turn(axis) => Motion::Turn { axis: align(*axis), coordinate },
-                Elementary::Helix(axis, pitch) => {
-                    Motion::Helix { axis: align(*axis), pitch: *pitch, coordinate }
-                }
-                Elementary::Slide(axis) => Motion::Slide { axis: *axis, coordinate },
-                Elementary::Ball => Motion::Ball { q: own.q, v: own.v },
-                Elementary::Free => Motion::Free { q: own.q, v: own.v },
-            };
+            let (motion, aligned) = motion.motion(graph, coordinate, [own.q, own.v]);
             let placement = Pose { rotation: pose.rotation.then(&aligned), translation: pose.translation };
             link =
                 Some(self.add_link(Link { parent: link, placement, motion, inertia: Inertia::zero(graph) }));

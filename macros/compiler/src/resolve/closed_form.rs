@@ -3,7 +3,7 @@
 //! circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI); `branch` says which of two.
 
 use super::builder::{Builder, ClosedFormLoop};
-use super::joint::Elementary;
+use super::elementary::Elementary;
 use super::reaction::RELEASED;
 use super::scope::{Placed, PlacedKind};
 use crate::diag::Diagnostics;

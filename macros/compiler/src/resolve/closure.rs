@@ -1,7 +1,7 @@
 //! Joints that close loops: what they restrict, as scalar rows.
 
 use super::builder::Builder;
-use super::joint::Elementary;
+use super::elementary::Elementary;
 use super::scope::{Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
@@ -68,7 +68,7 @@ impl<'g> Builder<'_, 'g> {
     /// The child's joint frame has its origin where the slides of the joint let it be.
     fn translation_rows(&mut self, ends: &Closing<'g>, motions: &[Elementary<'g>]) {
         let g = self.scope.graph;
-        let slides: Vec<Vec3<'g>> = motions.iter().filter_map(slide_of).collect();
+        let slides: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::slide).collect();
         let Closing { parent, child, on_parent, on_child, .. } = ends;
         let origin = self.point(on_parent, parent.pose.translation);
         let gap = self.point(on_child, child.pose.translation).minus(&origin);
@@ -109,7 +109,7 @@ impl<'g> Builder<'_, 'g> {
         if matches!(motions, [Elementary::Ball]) {
             return;
         }
-        let turns: Vec<Vec3<'g>> = motions.iter().filter_map(turn_of).collect();
+        let turns: Vec<Vec3<'g>> = motions.iter().filter_map(Elementary::turn).collect();
         let Closing { parent, child, on_parent, on_child, .. } = ends;
         let of_parent = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v));
         let of_child = |v| self.direction(on_child, child.pose.rotation.to_parent(v));
@@ -170,21 +170,5 @@ impl<'g> Builder<'_, 'g> {
         let joints = &self.scope.kinematics.borrow().joints;
         let direction = change_axes(joints, direction, ends.on_child.ancestor, None);
         Transmission { joint: ends.j, torque, direction }
-    }
-}
-
-/// The axis of a slide.
-fn slide_of<'g>(motion: &Elementary<'g>) -> Option<Vec3<'g>> {
-    match motion {
-        Elementary::Slide(axis) | Elementary::Helix(axis, _) => Some(*axis),
-        _ => None,
-    }
-}
-
-/// The axis of a turn.
-fn turn_of<'g>(motion: &Elementary<'g>) -> Option<Vec3<'g>> {
-    match motion {
-        Elementary::Turn(axis) | Elementary::Helix(axis, _) => Some(*axis),
-        _ => None,
     }
 }

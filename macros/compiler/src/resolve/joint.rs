@@ -1,6 +1,7 @@
 //! Joints → elementary motions with their coordinates: a joint of several degrees of freedom is a chain of simple
 //! ones with massless frames between.
 
+use super::elementary::Elementary;
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
@@ -9,20 +10,6 @@ use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::in_plane;
 use crate::mechanism::{Chart, Coordinate};
 use crate::syntax::{self, Joint, JointKind};
-
-/// One motion of a joint.
-pub enum Elementary<'g> {
-    /// Rotation about an axis.
-    Turn(Vec3<'g>),
-    /// Translation along an axis.
-    Slide(Vec3<'g>),
-    /// Rotation about an axis with the given advance per radian.
-    Helix(Vec3<'g>, Expr<'g>),
-    /// All rotations.
-    Ball,
-    /// All motions.
-    Free,
-}
 
 /// Names of the entries of `q` and `v` of a joint; empty for the joint's own name.
 pub fn coordinate_names(kind: JointKind, along: usize) -> (&'static [&'static str], &'static [&'static str]) {

@@ -18,6 +18,7 @@ mod contact;
 mod curves;
 mod drawing;
 mod drive;
+mod elementary;
 mod equilibria;
 mod expression;
 mod figures;

@@ -2,7 +2,7 @@
 
 use crate::expr::lanes::MAX_LANES;
 use crate::kinematics::Joint;
-use crate::mechanism::{Model, Motion};
+use crate::mechanism::Model;
 use std::collections::BTreeMap;
 
 /// Limbs that are alike.
@@ -50,7 +50,9 @@ impl Shapes {
         for k in (0..joints.len()).rev() {
             let mut below: Vec<usize> = children[k].iter().map(|c| shape[*c]).collect();
             below.sort_unstable();
-            let Some(kind) = kind(&model.links[k].motion).filter(|_| !below.contains(&0)) else { continue };
+            let Some(kind) = model.links[k].motion.kind_in_limbs().filter(|_| !below.contains(&0)) else {
+                continue;
+            };
             let next = known.len() + 1;
             shape[k] = *known.entry((kind, below)).or_insert(next);
         }
@@ -113,15 +115,4 @@ fn is_apart(joints: &[Joint<'_>], root: usize) -> bool {
     };
     let own: Vec<usize> = velocities(true).collect();
     !velocities(false).any(|index| own.contains(&index))
-}
-
-/// Joints of one kind have the same number of degrees of freedom.
-fn kind(motion: &Motion<'_>) -> Option<usize> {
-    match motion {
-        Motion::Turn { .. } => Some(1),
-        Motion::Slide { .. } => Some(2),
-        Motion::Helix { .. } => Some(3),
-        Motion::Ball { .. } => Some(4),
-        Motion::Free { .. } | Motion::Placed => None,
-    }
 }

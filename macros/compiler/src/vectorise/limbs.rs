@@ -4,10 +4,10 @@
 
 use super::find::Group;
 use super::merge::Merge;
-use super::velocities::{Location, Velocity, configuration, paired};
+use super::velocities::{Location, Velocity, paired};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
-use crate::mechanism::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity};
+use crate::mechanism::{Inertia, Link, LinkId, Model, Quantity};
 
 /// A mechanism with one limb for each group of alike ones.
 pub struct Limbs<'g> {
@@ -100,14 +100,7 @@ impl<'g> Limbs<'g> {
         let first = *lanes.first()?;
         let inertias: Vec<Inertia<'g>> = lanes.iter().map(|l| l.inertia).collect();
         let mut motion = first.motion.clone();
-        let place = |c: &mut Coordinate| c.v = self.places[c.v].index;
-        match &mut motion {
-            Motion::Turn { coordinate, .. }
-            | Motion::Slide { coordinate, .. }
-            | Motion::Helix { coordinate, .. } => place(coordinate),
-            Motion::Ball { v, .. } | Motion::Free { v, .. } => *v = self.places[*v].index,
-            Motion::Placed => {}
-        }
+        motion.place_velocities(|v| self.places[v].index);
         Some(Link {
             parent,
             placement: first.placement.clone(),
@@ -190,7 +183,7 @@ fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
 /// Tells which entries of `q` become the lanes of one.
 fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_>) {
     for row in rows.iter().filter(|row| row.len() > 1) {
-        let entries = |k: &usize| configuration(&model.links[*k].motion);
+        let entries = |k: &usize| model.links[*k].motion.configuration();
         for i in 0..entries(&row[0]).len() {
             let symbol = |k: &usize| entries(k).nth(i).map(|q| Quantity::Configuration(q).symbol());
             merge.pair_symbols(row.iter().filter_map(symbol).collect());

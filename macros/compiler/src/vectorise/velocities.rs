@@ -1,7 +1,7 @@
 //! Which velocities of a mechanism with alike limbs go together.
 
 use crate::kinematics::{Joint, Spatial};
-use crate::mechanism::{Model, Motion};
+use crate::mechanism::Model;
 
 /// Velocities of the whole mechanism that are the lanes of one.
 #[derive(Clone, Debug)]
@@ -53,18 +53,6 @@ pub fn paired(
         }
     }
     Some((velocities, places))
-}
-
-/// The entries of `q` that a motion depends on.
-pub fn configuration(motion: &Motion<'_>) -> std::ops::Range<usize> {
-    match motion {
-        Motion::Turn { coordinate, .. }
-        | Motion::Slide { coordinate, .. }
-        | Motion::Helix { coordinate, .. } => coordinate.q..coordinate.q + 1,
-        Motion::Ball { q, .. } => *q..q + 4,
-        Motion::Free { q, .. } => *q..q + 7,
-        Motion::Placed => 0..0,
-    }
 }
 
 /// Minus one if the second of two motions is the opposite of the first, as far as their first numbers tell.

@@ -1,0 +1,127 @@
+//! Elementary motions of links, with what they occupy of `q` and `v`.
+
+use crate::expr::{Expr, Vec3};
+use std::ops::Range;
+
+/// A joint coordinate: `ratio × q[index] + offset`, with velocity `ratio × v[index]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coordinate {
+    /// Index in `q`.
+    pub q: usize,
+    /// Index in `v`.
+    pub v: usize,
+    /// Factor.
+    pub ratio: f64,
+    /// Offset.
+    pub offset: f64,
+}
+
+/// The motion of a link in its parent's joint frame.
+#[derive(Clone, Debug)]
+pub enum Motion<'g> {
+    /// Rotation about a unit axis.
+    Turn {
+        /// Axis, in joint axes.
+        axis: Vec3<'g>,
+        /// Angle.
+        coordinate: Coordinate,
+    },
+    /// Translation along a unit axis.
+    Slide {
+        /// Axis, in joint axes.
+        axis: Vec3<'g>,
+        /// Length.
+        coordinate: Coordinate,
+    },
+    /// Rotation about an axis with a proportional translation along it.
+    Helix {
+        /// Axis, in joint axes.
+        axis: Vec3<'g>,
+        /// Advance per radian.
+        pitch: Expr<'g>,
+        /// Angle.
+        coordinate: Coordinate,
+    },
+    /// All rotations: a quaternion from `q`, three angular velocities in link axes from `v`.
+    Ball {
+        /// First of four entries of `q`.
+        q: usize,
+        /// First of three entries of `v`.
+        v: usize,
+    },
+    /// All motions: position and quaternion from `q`, linear and angular velocity in link axes from `v`.
+    Free {
+        /// First of seven entries of `q`.
+        q: usize,
+        /// First of six entries of `v`.
+        v: usize,
+    },
+    /// The link's placement is itself an expression of coordinates and time.
+    Placed,
+}
+
+impl Motion<'_> {
+    /// The coordinate of a motion that has one plain coordinate.
+    pub fn coordinate(&self) -> Option<&Coordinate> {
+        match self {
+            Motion::Turn { coordinate, .. }
+            | Motion::Slide { coordinate, .. }
+            | Motion::Helix { coordinate, .. } => Some(coordinate),
+            Motion::Ball { .. } | Motion::Free { .. } | Motion::Placed => None,
+        }
+    }
+
+    /// The entries of `q` that it depends on.
+    pub fn configuration(&self) -> Range<usize> {
+        match self {
+            Motion::Turn { coordinate, .. }
+            | Motion::Slide { coordinate, .. }
+            | Motion::Helix { coordinate, .. } => coordinate.q..coordinate.q + 1,
+            Motion::Ball { q, .. } => *q..q + 4,
+            Motion::Free { q, .. } => *q..q + 7,
+            Motion::Placed => 0..0,
+        }
+    }
+
+    /// The first of the entries of `q` that are a unit quaternion, if it has one.
+    pub fn quaternion(&self) -> Option<usize> {
+        match self {
+            Motion::Ball { q, .. } => Some(*q),
+            Motion::Free { q, .. } => Some(q + 3),
+            Motion::Turn { .. } | Motion::Slide { .. } | Motion::Helix { .. } | Motion::Placed => None,
+        }
+    }
+
+    /// Gives its entries of `v` other places: `place` says where the first goes.
+    pub fn place_velocities(&mut self, place: impl Fn(usize) -> usize) {
+        match self {
+            Motion::Turn { coordinate, .. }
+            | Motion::Slide { coordinate, .. }
+            | Motion::Helix { coordinate, .. } => coordinate.v = place(coordinate.v),
+            Motion::Ball { v, .. } | Motion::Free { v, .. } => *v = place(*v),
+            Motion::Placed => {}
+        }
+    }
+
+    /// A number for each kind of motion that alike limbs may have: those of one kind have the same number of degrees of freedom.
+    pub fn kind_in_limbs(&self) -> Option<usize> {
+        match self {
+            Motion::Turn { .. } => Some(1),
+            Motion::Slide { .. } => Some(2),
+            Motion::Helix { .. } => Some(3),
+            Motion::Ball { .. } => Some(4),
+            Motion::Free { .. } | Motion::Placed => None,
+        }
+    }
+}
+
+/// A part of the configuration space: first entries of `q` and `v`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Chart {
+    /// A plain coordinate.
+    Plain(usize, usize),
+    /// A ball's quaternion.
+    Ball(usize, usize),
+    /// A free joint's position and quaternion.
+    Free(usize, usize),
+}
