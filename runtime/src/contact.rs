@@ -27,9 +27,7 @@
 
 use crate::constraint::ConstraintError;
 use crate::derivatives::ByMotion;
-use crate::integrate::{
-    ContinuousInputs, Dynamics, Error, State, System, guided, holding, positive, settled,
-};
+use crate::integrate::{Dynamics, Error, State, Steered, System, guided, holding, positive, settled};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -317,7 +315,7 @@ where
 {
     positive("the time", h)?;
     let reported = |reason| Error::Constraint { t: to_f64(t), reason };
-    let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
+    let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
     let mut system = System::new(mechanism, held);
     let start = State { t, q: *q, v: *v };
     let at_start = system.acceleration(t, q, v);
@@ -564,7 +562,9 @@ where
     let moved = (v - free - given) * half;
     let (q, v) = (mechanism.integrate(q, &moved), mechanism.carry(t, &moved, &v));
     let Some(acted) = acted.filter(|acted| acted.is_any) else { return Ok(Touched { q, v }) };
-    let Some(pushes) = acted.problem.close(&acted.impulses, &mechanism.contact_gaps(t, &q), near()) else {
+    let gaps = mechanism.contact_gaps(t, &q);
+    let speed = before.iter().fold(acted.problem.speed(), |most, rate| most.max(rate.abs()));
+    let Some(pushes) = acted.problem.close(&acted.impulses, &gaps, (near(), near::<T>() + speed * h)) else {
         return Ok(Touched { q, v });
     };
     let push = acted.responses * pushes;

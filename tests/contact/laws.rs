@@ -22,7 +22,7 @@ impl Random {
 }
 
 /// Checks an impact against its laws; returns whether restitution was lowered so that it gives no energy.
-fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod both;
+mod boxes;
 mod derivatives;
 mod events;
 mod files;

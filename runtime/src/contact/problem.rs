@@ -321,7 +321,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// The largest rate without impulses, or that is wanted.
-    fn speed(&self) -> T {
+    pub(super) fn speed(&self) -> T {
         let most = self.free.iter().take(self.size).fold(T::zero(), |most, rate| most.max(rate.abs()));
         (0..self.count).fold(most, |most, k| most.max(self.least[k]))
     }
@@ -333,23 +333,27 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together: those that overlap
-    /// are pushed apart, and where none do those that are apart are brought together. `None` if distances are no more than a
-    /// quarter of what is near.
+    /// are pushed apart, and where none do those that are apart by no more than `reach` are brought together. `None` if
+    /// distances are no more than a quarter of what is `near`.
     pub(super) fn close(
         &self,
         impulses: &List<T, NR>,
         gaps: &SVector<T, NK>,
-        near: T,
+        (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
         let rates = self.rates(impulses);
         let rest = self.rounding(impulses);
         let mut kept = Self::none();
         let (mut overlap, mut distance) = (T::zero(), T::zero());
+        let enough = near * constant(0.25);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let n = self.rows[k].first;
-            if impulses[n] > T::zero() && rates[n] <= rest {
-                let (c, (contact, Rows { first, .. })) = (kept.count, self.contacts[k]);
-                let gap = entry(gaps, contact);
+            let (contact, Rows { first, .. }) = self.contacts[k];
+            let gap = entry(gaps, contact);
+            // What is farther away has come to touch elsewhere; of surfaces that overlap others may bear the impulse.
+            let stays = if impulses[n] > T::zero() { gap <= reach } else { gap < -enough };
+            if stays && rates[n] <= rest {
+                let c = kept.count;
                 (overlap, distance) = (overlap.max(-gap), distance.max(gap));
                 kept.contacts[c] = (contact, Rows { first, count: 1 });
                 kept.rows[c] = Rows { first: n, count: 1 };
@@ -359,7 +363,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 kept.count += 1;
             }
         }
-        let enough = near * constant(0.25);
         if overlap <= enough && distance <= enough {
             return None;
         }

@@ -104,9 +104,14 @@ pub enum Slipping {}
 /// | `capsule(radius, length, axis)`: one point, where the axes are nearest | `capsule(radius, length, axis)` |
 /// | `sphere(radius)` with its centre outside | `cuboid(a, b, c)`, `cylinder(radius, length, axis)` |
 /// | `cuboid(a, b, c)`, a box with these lengths along the body's axes: eight points, its corners | `plane(normal)` |
+/// | `cuboid(a, b, c)`: thirteen points, of faces that look at each other where edges begin and end or are cut off, and of two edges that cross | `cuboid(a, b, c)` |
+/// | `capsule(radius, length, axis)`: five points, the ends, where the sides of a face cut it off, and where it crosses an edge | `cuboid(a, b, c)` |
 /// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away | `plane(normal)` |
 /// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
 /// | a point, `sphere(radius)`, the ends of a `capsule(…)`, the corners of a `cuboid(…)` | `terrain(height)` |
+///
+/// What two boxes, or a box and a capsule, touch with is said by the direction along which they are farthest apart. Points with
+/// other features are farther away than where they are, so that least gaps are distances where surfaces nearly touch.
 ///
 /// The height of a terrain is an expression of `u` and `w`, the place along the body's x and y, and of parameters:
 /// `ground.terrain(0.1 * sin(3 * u))`, or `ground.terrain(heights(u, w))` with a [`Table`](crate::Table). Where a sphere touches

@@ -3,6 +3,7 @@
 //! touches along the normal through its centre, and cones touch along a line. On a surface given by its points two
 //! coordinates say where.
 
+mod boxes;
 mod collision;
 mod cones;
 mod contact_point;

@@ -22,7 +22,7 @@ const PARALLEL: f64 = 1e-12;
 /// Square of the sine of an angle that is none: where a rim lies flat on a plane, its centre touches.
 const FLAT: f64 = 1e-24;
 
-const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; spheres on cuboids and cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
+const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
 /// Coefficients of a contact.
 #[derive(Clone, Copy)]
@@ -303,6 +303,9 @@ impl<'g> Builder<'_, 'g> {
         if let Form::Terrain(terrain) = &pair.b.form {
             return self.grounded(pair, terrain, c, &turned_b);
         }
+        if let Form::Cuboid(lengths) = &pair.b.form {
+            return self.on_box(pair, lengths, c);
+        }
         let Form::Plane(n) = &pair.b.form else {
             return self.round(pair, c, &turned_b).into_iter().collect();
         };
@@ -389,12 +392,6 @@ impl<'g> Builder<'_, 'g> {
                 let touch = sphere_contact(radius, &sphere, c + own * near - axis * far, turned_b)?;
                 Some(Touch { point: touch.point + own * near, ..touch })
             }
-            Form::Cuboid(lengths) => {
-                let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| turned_b(Vec3::axis(g, k)));
-                let inner = (0..3)
-                    .fold(Vec3::zero(g), |sum, k| sum + axes[k] * within(axes[k].dot(c), lengths[k] * half));
-                sphere_contact(radius, &Form::Sphere(g.zero()), c - inner, turned_b)
-            }
             Form::Drum(wide, length, axis) => {
                 let axis = turned_b(*axis);
                 let height = axis.dot(c);
@@ -444,14 +441,14 @@ fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'
 }
 
 /// What is nearest to a number between `-most` and `most`.
-fn within<'g>(x: Expr<'g>, most: Expr<'g>) -> Expr<'g> {
+pub(super) fn within<'g>(x: Expr<'g>, most: Expr<'g>) -> Expr<'g> {
     x.extreme(Extreme::Max, -most).extreme(Extreme::Min, most)
 }
 
 /// Where two straight lines of given half lengths are nearest to each other, from their middles along their axes; `c` leads from
 /// the second middle to the first (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). Where they are parallel it is one place
 /// of many.
-fn nearest<'g>(
+pub(super) fn nearest<'g>(
     c: Vec3<'g>,
     (own, own_reach): (Vec3<'g>, Expr<'g>),
     (axis, reach): (Vec3<'g>, Expr<'g>),
@@ -483,7 +480,8 @@ impl<'g> Form<'g> {
             Form::Terrain(_) => {
                 matches!(self, Form::Sphere(_) | Form::Point | Form::Capsule(..) | Form::Cuboid(_))
             }
-            Form::Cuboid(_) | Form::Drum(..) => matches!(self, Form::Sphere(_)),
+            Form::Cuboid(_) => matches!(self, Form::Sphere(_) | Form::Capsule(..) | Form::Cuboid(_)),
+            Form::Drum(..) => matches!(self, Form::Sphere(_)),
             Form::Sphere(_)
             | Form::Bowl(_)
             | Form::Cylinder(..)

@@ -1,0 +1,312 @@
+//! Boxes on boxes, and capsules on boxes: faces, edges and corners.
+
+use super::laws::{Random, check};
+use linkwork::contact;
+use linkwork::nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use linkwork::prelude::*;
+
+const G: f64 = 9.81;
+
+/// Half of the lengths of both boxes.
+const LOW: [f64; 3] = [0.1, 0.1, 0.05];
+const HIGH: [f64; 3] = [0.15, 0.1, 0.025];
+
+/// A box on a box on the floor.
+#[mechanism(gravity = -gravity * z)]
+struct Two {
+    gravity: f64,
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
+    low: Body,
+    #[joint(ground -> low)]
+    below: Free,
+    #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.05))]
+    high: Body,
+    #[joint(ground -> high)]
+    above: Free,
+    #[contact(high.cuboid(0.3, 0.2, 0.05), low.cuboid(0.2, 0.2, 0.1), friction = friction, restitution = restitution)]
+    seat: Contact,
+    #[contact(low.cuboid(0.2, 0.2, 0.1), ground.plane(z), friction = friction)]
+    floor: Contact,
+}
+
+/// The same boxes, named the other way round.
+#[mechanism(gravity = -gravity * z)]
+struct Swapped {
+    gravity: f64,
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
+    low: Body,
+    #[joint(ground -> low)]
+    below: Free,
+    #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.05))]
+    high: Body,
+    #[joint(ground -> high)]
+    above: Free,
+    #[contact(low.cuboid(0.2, 0.2, 0.1), high.cuboid(0.3, 0.2, 0.05), friction = friction, restitution = restitution)]
+    seat: Contact,
+    #[contact(low.cuboid(0.2, 0.2, 0.1), ground.plane(z), friction = friction)]
+    floor: Contact,
+}
+
+/// A log on a beam.
+#[mechanism(gravity = -9.81 * z)]
+struct Log {
+    friction: f64,
+    #[body(mass = 3, inertia = capsule(3, 0.05, 0.6, x))]
+    log: Body,
+    #[joint(ground -> log)]
+    pose: Free,
+    #[contact(log.capsule(0.05, 0.6, x), ground.cuboid(0.2, 2, 0.2), friction = friction)]
+    beam: Contact,
+}
+
+/// Both boxes, the upper one with its centre at `place` and turned.
+fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14> {
+    let mut q = m.neutral();
+    q[2] = LOW[2];
+    (q[7], q[8], q[9]) = (place[0], place[1], place[2]);
+    (0..4).for_each(|k| q[10 + k] = turn.coords[k]);
+    q
+}
+
+/// The distance of two boxes that do not overlap, whose axes times half of their lengths are columns, with centres apart by `c`: the
+/// least of all corners of each from the other, and of all edges from each other.
+fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
+    let signs = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
+    let corner = |block: &Matrix3<f64>, k: usize| block * Vector3::from(signs(k));
+    // From the centre of a box.
+    let to_box = |block: &Matrix3<f64>, point: Vector3<f64>| {
+        let near = block.column_iter().fold(Vector3::zeros(), |sum, axis| {
+            let square = axis.norm_squared();
+            sum + if square > 0.0 { axis * (axis.dot(&point) / square).clamp(-1.0, 1.0) } else { axis * 0.0 }
+        });
+        (point - near).norm()
+    };
+    let mut least = f64::INFINITY;
+    for k in 0..8 {
+        least = least.min(to_box(b, c + corner(a, k))).min(to_box(a, corner(b, k) - c));
+    }
+    // Half of an edge, and its middle.
+    let edges = |block: &Matrix3<f64>| {
+        let edge = |axis: usize, k: usize| {
+            let half: Vector3<f64> = block.column(axis).into();
+            (half, corner(block, k) - half * signs(k)[axis])
+        };
+        (0..24).map(|k| edge(k % 3, k / 3)).collect::<Vec<_>>()
+    };
+    for (own, middle) in edges(a) {
+        for (other, foot) in edges(b) {
+            let (apart, x, y, z) =
+                (c + middle - foot, own.norm_squared(), other.norm_squared(), own.dot(&other));
+            let (by_own, by_other) = (own.dot(&apart), other.dot(&apart));
+            let determinant = x * y - z * z;
+            if determinant > 1e-18 {
+                let s = (z * by_other - y * by_own) / determinant;
+                let t = (x * by_other - z * by_own) / determinant;
+                if s.abs() <= 1.0 && t.abs() <= 1.0 {
+                    least = least.min((apart + own * s - other * t).norm());
+                }
+            }
+        }
+    }
+    least
+}
+
+fn scaled(turn: &UnitQuaternion<f64>, half: [f64; 3]) -> Matrix3<f64> {
+    turn.to_rotation_matrix().into_inner() * Matrix3::from_diagonal(&half.into())
+}
+
+fn any_turn(random: &mut Random) -> UnitQuaternion<f64> {
+    let [x, y, z]: [f64; 3] = random.vector::<3>(3.0).into();
+    UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z))
+}
+
+/// The place on the way from `far` to the middle where the least gap is `wanted`.
+fn met(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vector3<f64> {
+    let mut steps = (0..=200).map(|k| 1.0 - f64::from(k) / 200.0);
+    let mut inside = steps.find(|part| gap(far * *part) <= wanted).expect("surfaces meet");
+    let mut out = inside + 1.0 / 200.0;
+    for _ in 0..70 {
+        let part = (out + inside) / 2.0;
+        if gap(far * part) > wanted { out = part } else { inside = part }
+    }
+    far * out
+}
+
+/// What a box or a capsule is apart from a box where it nearly touches it is the least distance of their points; farther away it is
+/// positive.
+#[test]
+fn gaps_are_distances() {
+    let (m, mut random) = (Two { gravity: G, friction: 0.0, restitution: 0.0 }, Random(3));
+    let (log, mut beside) = (Log { friction: 0.0 }, 0);
+    let (low, bar) = (Matrix3::from_diagonal(&LOW.into()), Matrix3::from_diagonal(&[0.1, 1.0, 0.1].into()));
+    for _ in 0..60 {
+        let (turn, far) = (any_turn(&mut random), Vector3::from(random.vector::<3>(1.0)).normalize() * 2.0);
+        let (high, line) = (scaled(&turn, HIGH), scaled(&turn, [0.3, 0.0, 0.0]));
+        let seat = |place: Vector3<f64>| {
+            let q = placed(&m, [place[0], place[1], place[2] + LOW[2]], turn);
+            m.contact_gaps(&q).rows(0, 13).min()
+        };
+        let beam = |place: Vector3<f64>| {
+            let c = turn.coords;
+            let q = [place[0], place[1], place[2], c[0], c[1], c[2], c[3]].into();
+            log.contact_gaps(&q).min()
+        };
+        for wanted in [0.0, 1e-6] {
+            let place = met(seat, far, wanted);
+            let found = distance(&high, &low, place);
+            beside += usize::from((found - wanted).abs() > 1e-9);
+            assert!(
+                found < 1e-7 + 100.0 * wanted && seat(place * 1.3) > 0.0,
+                "{wanted} {found} {turn} {place}"
+            );
+            let place = met(beam, far, wanted);
+            let found = distance(&line, &bar, place) - 0.05;
+            beside += usize::from((found - wanted).abs() > 1e-9);
+            assert!(
+                found < 1e-7 + 100.0 * wanted && beam(place * 1.3) > 0.0,
+                "{wanted} {found} {turn} {place}"
+            );
+        }
+    }
+    assert!(beside < 4, "{beside}");
+}
+
+/// Face on face, flush, turned, and across each other so that no corner of either is on the other: they lie still, and all points carry
+/// the weight.
+#[test]
+fn boxes_lie_on_each_other() {
+    let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
+    for (yaw, x, y) in
+        [(0.0, 0.0, 0.0), (0.0, 0.05, 0.0), (0.4, 0.03, -0.06), (core::f64::consts::FRAC_PI_2, 0.0, 0.0)]
+    {
+        let q = placed(&m, [x, y, 0.125], UnitQuaternion::from_euler_angles(0.0, 0.0, yaw));
+        let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
+        let rows = Two::CONTACT_ROWS;
+        let carried: f64 = rows.iter().take(13).map(|row| forces[row.first]).sum();
+        assert!((carried - 2.0 * G).abs() < 1e-5, "{yaw}: {carried}");
+        let run = simulate(&m).from(q, [0.0; 12]).method(TimeStepping::step(5e-3)).duration(0.2);
+        let end = run.finish().unwrap();
+        assert!((end.q - q).amax() < 1e-11, "{yaw}: {:e}", (end.q - q).amax());
+    }
+}
+
+/// Edge on edge: the impulse is along the normal `n` of both edges, `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` over both boxes.
+#[test]
+fn edges_strike_edges() {
+    let m = Two { gravity: 0.0, friction: 0.0, restitution: 0.5 };
+    let inertia = |mass: f64, [a, b, c]: [f64; 3]| {
+        Matrix3::from_diagonal(&[b * b + c * c, a * a + c * c, a * a + b * b].into()) * (mass / 3.0)
+    };
+    for (d, lean) in [(0.0, 0.2), (0.03, 0.2), (-0.08, 0.3)] {
+        // The edge of the upper box between its sides −y and −z, over the edge of the lower one at x = 0.1 along y.
+        let lean = UnitQuaternion::from_euler_angles(0.0, lean, 0.0);
+        let turn = lean * UnitQuaternion::from_euler_angles(core::f64::consts::FRAC_PI_4, 0.0, 0.0);
+        let met = Vector3::new(LOW[0], 0.0, LOW[2]);
+        let arm = turn * Vector3::new(d, -HIGH[1], -HIGH[2]);
+        // Of all directions along the lower edge the one from straight above the upper one.
+        let center = met - arm + Vector3::new(0.0, arm[1], 0.0);
+        let met = met + Vector3::new(0.0, arm[1] + center[1], 0.0);
+        let mut q = placed(&m, [center[0], center[1], center[2] + 1.0], turn);
+        q[2] = 1.0;
+        let gaps = m.contact_gaps(&q);
+        assert!(gaps[12].abs() < 1e-15 && gaps.rows(0, 12).min() > 1e-3, "{gaps}");
+        let fall = turn.inverse() * Vector3::new(0.0, 0.0, -2.0);
+        let mut v = SVector::<f64, 12>::zeros();
+        v.fixed_rows_mut::<3>(6).copy_from(&fall);
+        let n = lean * Vector3::z();
+        let share = |arm: Vector3<f64>, turn: &UnitQuaternion<f64>, mass: f64, half: [f64; 3]| {
+            let about = turn.inverse() * arm.cross(&n);
+            1.0 / mass + about.dot(&(inertia(mass, half).try_inverse().unwrap() * about))
+        };
+        let all = share(arm, &turn, 2.0, HIGH) + share(met, &UnitQuaternion::identity(), 1.0, LOW);
+        let wanted = 1.5 * 2.0 * n[2] / all;
+        let found = contact::impact(&m, 0.0, &q, &v).unwrap();
+        let impulse = found.impulses[Two::CONTACT_ROWS[12].first];
+        assert!((impulse - wanted).abs() < 1e-12, "{impulse} {wanted}");
+    }
+}
+
+/// Impacts where they touch somehow obey all laws, and keep the momentum of two boxes that nothing else touches.
+#[test]
+fn boxes_strike_by_the_laws() {
+    let mut random = Random(11);
+    for k in 0..60 {
+        let m = Two {
+            gravity: 0.0,
+            friction: random.one_of([0.0, 0.3, 2.0]),
+            restitution: random.one_of([0.0, 0.6, 1.0]),
+        };
+        let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
+        let far = Vector3::from(random.vector::<3>(1.0)).normalize();
+        // Off the floor.
+        let at = |place: Vector3<f64>| {
+            let mut q = placed(&m, [place[0], place[1], place[2] + 1.0], turn);
+            q[2] = 1.0;
+            q
+        };
+        let place = met(|place| m.contact_gaps(&at(place)).rows(0, 13).min(), far, 0.0);
+        let (q, v) = (at(place), random.vector(2.0));
+        check(&m, &q, &v);
+        let found = contact::impact(&m, 0.0, &q, &v).unwrap();
+        let moment = |v: &SVector<f64, 12>| {
+            let p = m.mass_matrix(&q) * v;
+            let turn =
+                |k: usize| UnitQuaternion::from_quaternion([q[k], q[k + 1], q[k + 2], q[k + 3]].into());
+            let part = |k: usize, turn: UnitQuaternion<f64>| turn * Vector3::new(p[k], p[k + 1], p[k + 2]);
+            let (a, b) = (turn(3), turn(10));
+            let (pa, pb) = (part(0, a), part(6, b));
+            let spin = part(3, a) + part(9, b);
+            let arm = |k: usize| Vector3::new(q[k], q[k + 1], q[k + 2]);
+            (pa + pb, spin + arm(0).cross(&pa) + arm(7).cross(&pb))
+        };
+        let (before, after) = (moment(&v), moment(&found.v));
+        assert!((before.0 - after.0).norm() < 1e-12 && (before.1 - after.1).norm() < 1e-12);
+    }
+}
+
+/// A box falls on an edge of another, tips, and comes to rest or slides off: energy never grows, overlaps stay those of a step, and the
+/// order of the two makes no difference.
+#[test]
+fn a_box_falls_on_an_edge() {
+    let m = Two { gravity: G, friction: 0.5, restitution: 0.0 };
+    let other = Swapped { gravity: G, friction: 0.5, restitution: 0.0 };
+    let q = placed(&m, [0.08, 0.02, 0.3], UnitQuaternion::from_euler_angles(0.3, 0.5, 0.2));
+    let h = 1e-3;
+    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let mut before = energy(&q, &SVector::zeros());
+    let run = simulate(&m).from(q, [0.0; 12]).method(TimeStepping::step(h)).sample_every(h).duration(0.3);
+    let swapped =
+        simulate(&other).from(q, [0.0; 12]).method(TimeStepping::step(h)).sample_every(h).duration(0.3);
+    let (mut least, mut apart) = (0.0_f64, 0.0_f64);
+    for (sample, same) in run.zip(swapped) {
+        let (sample, same) = (sample.unwrap(), same.unwrap());
+        let now = energy(&sample.q, &sample.v);
+        assert!(now < before + 0.01, "{} {now} {before}", sample.t);
+        before = now;
+        least = least.min(m.contact_gaps(&sample.q).min());
+        if sample.t < 0.25 {
+            apart = apart.max((sample.q - same.q).amax());
+        }
+    }
+    assert!(least > -3e-3, "{least}");
+    assert!(apart < 1e-9, "{apart}");
+}
+
+/// A log across a beam rests on both edges of its face, which carry its weight.
+#[test]
+fn a_log_lies_across_a_beam() {
+    let m = Log { friction: 0.5 };
+    let q = [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0].into();
+    let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
+    let normal: Vec<f64> = Log::CONTACT_ROWS.iter().map(|row| forces[row.first]).collect();
+    assert!(
+        (normal.iter().sum::<f64>() - 3.0 * G).abs() < 1e-5 && normal[2].min(normal[3]) > 0.5 * G,
+        "{normal:?}"
+    );
+    let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(5e-3)).duration(0.2);
+    assert!((run.finish().unwrap().q - q).amax() < 1e-12);
+}
