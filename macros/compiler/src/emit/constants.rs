@@ -61,7 +61,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
         (
             "EQUATIONS_LATEX",
             &equations.latex,
-            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, every equation in a line of its own, for where mathematics is displayed: between `\\[` and `\\]`.",
+            "[`EQUATIONS`](Self::EQUATIONS) as LaTeX: an `aligned` environment of `amsmath`, every equation in lines of its own that fit a page, for where mathematics is displayed: between `\\[` and `\\]`.",
         ),
     ];
     for (name, text, about) in texts {

@@ -7,6 +7,7 @@ use crate::expr::node::{Node, Symbol};
 
 use std::fmt;
 
+pub mod aligned;
 pub mod latex;
 pub mod names;
 pub mod style;

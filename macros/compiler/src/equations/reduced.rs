@@ -7,6 +7,7 @@ use super::{Limits, Short, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
+use crate::equations::print::aligned::aligned;
 use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
@@ -148,15 +149,9 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
         all => about += &format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
     }
     plain = plain + "\n" + &filled(&about) + "\n";
-    let lines = self::lines(reduced, Latex { name: &dotted });
-    let first = |text: &String| text.strip_prefix('-').map_or(text.clone(), |rest| format!("{{-}}{rest}"));
-    let rest: Vec<String> = lines[1..].iter().map(|line| format!("& {}", first(line))).collect();
-    let latex = format!(
-        "\\begin{{aligned}}\n& \\mathcal{{R}} = {} \\\\\n{}\n\\end{{aligned}}\n",
-        lines[0],
-        rest.join(" \\\\\n")
-    );
-    Written { plain, latex }
+    let mut lines = self::lines(reduced, Latex { name: &dotted });
+    lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);
+    Written { plain, latex: aligned(&lines) }
 }
 
 /// The Routhian; then the equations of motion, the velocities of cyclic coordinates, their momenta and inertias.

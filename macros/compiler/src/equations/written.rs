@@ -2,6 +2,7 @@
 
 use super::{Canonical, Equations, determinant};
 use crate::diag::all_of;
+use crate::equations::print::aligned::aligned;
 use crate::equations::print::names::Names;
 use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
@@ -93,13 +94,9 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
         all => about += &format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
     }
     plain = plain + "\n" + &filled(&about) + "\n";
-    let lines = canonical_lines(canonical, Latex { name: &dotted });
-    let lines: Vec<String> = lines.iter().map(|line| format!("& {line}")).collect();
-    let latex = format!(
-        "\\begin{{aligned}}\n& \\mathcal{{H}} = {}\n\\end{{aligned}}\n",
-        lines.join(" \\\\\n").split_off(2)
-    );
-    Written { plain, latex }
+    let mut lines = canonical_lines(canonical, Latex { name: &dotted });
+    lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
+    Written { plain, latex: aligned(&lines) }
 }
 
 /// Names of determinants that nothing else has.
@@ -142,8 +139,7 @@ pub(super) fn filled(text: &str) -> String {
     out
 }
 
-/// The Lagrangian and an equation for every velocity, a line each, from the left: aligned at their signs of equality, the
-/// long side of one would begin where that of another ends.
+/// The Lagrangian and an equation for every velocity.
 fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     let names = names(model);
     let name = |symbol| {
@@ -151,18 +147,14 @@ fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
         (names.get(&name), dots)
     };
     let lines = Lines::of(equations, Latex { name: &name });
-    let mut out = format!("\\begin{{aligned}}\n& \\mathcal{{L}} = {}", lines.lagrangian);
+    let mut all = vec![format!("\\mathcal{{L}} = {}", lines.lagrangian)];
     for (k, rate) in &lines.rates {
         let (name, dots) = rate_name(model, *k);
         let left = Latex { name: &|_| (names.get(&name), dots) }.symbol(Quantity::Velocity(*k).symbol(), 1);
-        out += &format!(" \\\\\n& {left} = {rate}");
+        all.push(format!("{left} = {rate}"));
     }
-    for (motion, force) in lines.motion {
-        // At the start of a column a sign would be that of a difference.
-        let motion = motion.strip_prefix('-').map_or(motion.clone(), |rest| format!("{{-}}{rest}"));
-        out += &format!(" \\\\\n& {motion} = {force}");
-    }
-    out + "\n\\end{aligned}\n"
+    all.extend(lines.motion.iter().map(|(motion, force)| format!("{motion} = {force}")));
+    aligned(&all)
 }
 
 /// All names, so that no two look alike.
@@ -192,7 +184,7 @@ pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
 }
 
 /// The name of a velocity that a joint has, or of the coordinate whose rate it is, and the rate of that.
-fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
+pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
     let name = model.speeds.as_ref().map_or("", |speeds| &speeds.velocities[k].0);
     let is_rate = model.charts.iter().any(|chart| match chart {
         Chart::Plain(q, v) => *v == k && model.configuration[*q] == name,

@@ -6,6 +6,7 @@ use super::parts::{ROOT, multiplier};
 use super::stability::{Stability, Verdict};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Term};
 use crate::diag::all_of;
+use crate::equations::print::aligned::aligned;
 use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
@@ -269,11 +270,10 @@ fn legend(words: &Words<'_, '_>) -> String {
 }
 
 fn latex(lines: &Lines, frequency: &str) -> String {
-    let first = |text: &str| text.strip_prefix('-').map_or(text.to_string(), |rest| format!("{{-}}{rest}"));
     let mut all: Vec<String> =
-        lines.equations.iter().map(|(motion, force)| format!("& {} = {force}", first(motion))).collect();
-    all.extend(lines.polynomial.iter().map(|p| format!("& {} = 0", first(p))));
-    all.extend(lines.frequency.iter().map(|value| format!("& {frequency} = {value}")));
-    all.extend(lines.conditions.iter().map(|condition| format!("& {} > 0", first(condition))));
-    format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}\n", all.join(" \\\\\n"))
+        lines.equations.iter().map(|(motion, force)| format!("{motion} = {force}")).collect();
+    all.extend(lines.polynomial.iter().map(|p| format!("{p} = 0")));
+    all.extend(lines.frequency.iter().map(|value| format!("{frequency} = {value}")));
+    all.extend(lines.conditions.iter().map(|condition| format!("{condition} > 0")));
+    aligned(&all)
 }

@@ -32,6 +32,13 @@ impl Style for Latex<'_> {
                     (false, q) => format!("\\tfrac{{{p}}}{{{}{pi}}}", times(q)),
                 }
             }
+            Number::Root(p, q, root) => {
+                let p = if *p == 1 { String::new() } else { p.to_string() };
+                match q {
+                    1 => format!("{p}\\sqrt{{{root}}}"),
+                    q => format!("\\tfrac{{{p}\\sqrt{{{root}}}}}{{{q}}}"),
+                }
+            }
             Number::Scientific(digits, power) => format!("{digits}\\times 10^{{{power}}}"),
             _ => number.to_string(),
         }
@@ -78,7 +85,7 @@ impl Style for Latex<'_> {
             return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(SPACE);
         }
         // A fraction is not put on another one.
-        let small = matches!(&number, Some(Number::Fraction(_, q)) if *q != 1)
+        let small = matches!(&number, Some(Number::Fraction(_, q) | Number::Root(_, q, _)) if *q != 1)
             || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
         let number = number.map(|n| self.number(&n));
         let (before, above) = if small { (number, None) } else { (None, number) };

@@ -61,13 +61,15 @@ pub struct Argument {
 }
 
 /// A number for reading, without sign. One rule for all of them: fractions of halves and thirds are fractions, simple
-/// multiples of π and of its square are such, everything else has digits.
+/// multiples of π, of its square and of the roots of 2 and 3 are such, everything else has digits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
     /// Numerator and denominator.
     Fraction(u32, u32),
     /// Numerator and denominator of the factor of a power of π.
     Pi(u32, u32, i8),
+    /// Numerator and denominator of the factor of the root of 2 or 3.
+    Root(u32, u32, u32),
     /// Digits, with a point or without.
     Decimal(String),
     /// Digits, and the exponent of ten.
@@ -80,13 +82,16 @@ impl Number {
     /// One.
     pub const ONE: Number = Number::Fraction(1, 1);
 
-    /// A positive number: a fraction or a multiple of π where it is one of small numbers, else up to six significant digits.
+    /// A positive number: a fraction or a multiple of π or of a root where it is one of small numbers, else up to six significant digits.
     pub fn of(value: f64) -> Number {
         if let Some((p, q)) = fraction(value) {
             return Number::Fraction(p, q);
         }
         if let Some((p, q, power)) = multiple_of_pi(value) {
             return Number::Pi(p, q, power);
+        }
+        if let Some((p, q, root)) = multiple_of_root(value) {
+            return Number::Root(p, q, root);
         }
         let exponent = value.log10().floor() as i32;
         if !(-4..9).contains(&exponent) {
@@ -99,11 +104,20 @@ impl Number {
     }
 }
 
+/// Most of a numerator of the factor of an irrational number: larger ones are met by chance.
+const SIMPLE: u32 = 48;
+
+/// Numerator and denominator of the factor of the root of 2 or 3, as sines of 45° and 60° are.
+fn multiple_of_root(value: f64) -> Option<(u32, u32, u32)> {
+    [2_u32, 3].into_iter().find_map(|root| {
+        let found = fraction(value / f64::from(root).sqrt());
+        found.filter(|(p, _)| *p <= SIMPLE).map(|(p, q)| (p, q, root))
+    })
+}
+
 /// Numerator and denominator of the factor of a power of π: simple fractions, and of π itself whole parts of two turns in
 /// degrees.
 fn multiple_of_pi(value: f64) -> Option<(u32, u32, i8)> {
-    /// Most of a numerator: larger ones are met by chance.
-    const SIMPLE: u32 = 48;
     for power in [1, 2, -1, -2] {
         let factor = value / PI.powi(power.into());
         if let Some((p, q)) = fraction(factor).filter(|(p, _)| *p <= SIMPLE) {
@@ -140,6 +154,10 @@ impl fmt::Display for Number {
                     (false, p, q) => write!(f, "{p}/({q} {pi})"),
                 }
             }
+            Number::Root(1, 1, root) => write!(f, "sqrt({root})"),
+            Number::Root(1, q, root) => write!(f, "sqrt({root})/{q}"),
+            Number::Root(p, 1, root) => write!(f, "{p} sqrt({root})"),
+            Number::Root(p, q, root) => write!(f, "{p}/{q} sqrt({root})"),
             Number::Decimal(digits) => f.write_str(digits),
             Number::Scientific(digits, power) => write!(f, "{digits}e{power}"),
         }

@@ -44,6 +44,26 @@ fn numbers() {
     }
 }
 
+/// Sines of 45° and 60° and their multiples are exact; what only looks so has digits.
+#[test]
+fn multiples_of_roots() {
+    let (two, three) = (2.0_f64.sqrt(), 3.0_f64.sqrt());
+    for (value, expected) in [
+        (two, "sqrt(2)"),
+        (0.5 * two, "sqrt(2)/2"),
+        (std::f64::consts::FRAC_PI_4.sin(), "sqrt(2)/2"),
+        (1.5 * three, "3/2 sqrt(3)"),
+        (three / 6.0, "sqrt(3)/6"),
+        (5.0 * three, "5 sqrt(3)"),
+        (0.7072, "0.7072"),
+        (1.7322, "1.7322"),
+    ] {
+        assert_eq!(Number::of(value).to_string(), expected);
+    }
+    assert_eq!(latex(|g, [m, ..]| m * g.num(0.5 * two)), r"\tfrac{\sqrt{2}}{2}\,m");
+    assert_eq!(latex(|g, [m, ..]| m * g.num(3.0 * three)), r"3\sqrt{3}\,m");
+}
+
 /// Of what was π, nothing is written with digits; what only looks so is.
 #[test]
 fn multiples_of_pi() {

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Commands of LaTeX and `amsmath` that may occur, besides those of Greek letters.
-const COMMANDS: [&str; 26] = [
+const COMMANDS: [&str; 27] = [
     "phi",
     "lambda",
     "begin",
@@ -30,6 +30,7 @@ const COMMANDS: [&str; 26] = [
     "exp",
     "theta",
     "omega",
+    "quad",
 ];
 /// Commands of one sign: thin spaces, an underscore, the end of a line.
 const SIGNS: [char; 4] = [',', '!', '_', '\\'];
@@ -109,7 +110,8 @@ fn all_mechanisms_are_well_formed() {
             let plain = with_model(&gravity, item, |model| crate::equations(&model));
             let equations = |text: &str, sign: &str| text.matches(sign).count();
             assert_eq!(equations(&text, " = "), equations(&plain, " = "), "{text}");
-            assert_eq!(equations(&text, "\n& "), equations(&plain, " = "), "{text}");
+            let lines = equations(&text, "\n& ") - equations(&text, "\n& \\quad");
+            assert_eq!(lines, equations(&plain, " = "), "{text}");
             assert_eq!(equations(&text, "&"), equations(&text, " \\\\\n") + 1, "{text}");
         }
     }
@@ -120,9 +122,12 @@ fn all_mechanisms_are_well_formed() {
 #[test]
 fn cart_pole() {
     let expected = r"\begin{aligned}
-& \mathcal{L} = \tfrac{1}{2}\,(\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\dot{\mathrm{rail}}^{2} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\dot{\mathrm{rail}}\,\dot{\mathrm{hinge}} + \tfrac{1}{6}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\dot{\mathrm{hinge}}^{2} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge}) \\
-& (\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\ddot{\mathrm{rail}} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{hinge}} + \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge})\,\dot{\mathrm{hinge}}^{2} + \mathrm{rail\_damping}\,\dot{\mathrm{rail}} = \mathrm{push} \\
-& {-}\tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} + \tfrac{1}{3}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\ddot{\mathrm{hinge}} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge}) = 0
+& \mathcal{L} = \tfrac{1}{2}\,(\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\dot{\mathrm{rail}}^{2} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\dot{\mathrm{rail}}\,\dot{\mathrm{hinge}} + \tfrac{1}{6}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\dot{\mathrm{hinge}}^{2} \\
+& \quad {} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge}) \\
+& (\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\ddot{\mathrm{rail}} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{hinge}} \\
+& \quad {} + \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge})\,\dot{\mathrm{hinge}}^{2} + \mathrm{rail\_damping}\,\dot{\mathrm{rail}} = \mathrm{push} \\
+& {-}\tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} + \tfrac{1}{3}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\ddot{\mathrm{hinge}} \\
+& \quad {} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge}) = 0
 \end{aligned}
 ";
     assert_eq!(latex_of("-9.81 * y", CART_POLE), expected);
@@ -133,8 +138,10 @@ fn cart_pole() {
 fn double_pendulum() {
     let item = DOUBLE_PENDULUM.replace("shoulder", "theta1").replace("elbow", "theta2");
     let expected = r"\begin{aligned}
-& \mathcal{L} = \tfrac{1}{2}\,\bigl(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,l_{1}^{2} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2} + m_{2}\,l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}^{2} + m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}\,\dot{\theta}_{2} + \tfrac{1}{6}\,m_{2}\,l_{2}^{2}\,\dot{\theta}_{2}^{2} + g\,l_{1}\,\bigl(\tfrac{1}{2}\,m_{1} + m_{2}\bigr)\,\cos\theta_{1} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\cos(\theta_{1} + \theta_{2}) \\
-& \bigl(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,l_{1}^{2} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2} + m_{2}\,l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{2} - m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{1}\,\dot{\theta}_{2} - \tfrac{1}{2}\,m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{2}^{2} + g\,l_{1}\,\bigl(\tfrac{1}{2}\,m_{1} + m_{2}\bigr)\,\sin\theta_{1} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\sin(\theta_{1} + \theta_{2}) = 0 \\
+& \mathcal{L} = \tfrac{1}{2}\,\bigl(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,l_{1}^{2} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2} + m_{2}\,l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}^{2} + m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}\,\dot{\theta}_{2} + \tfrac{1}{6}\,m_{2}\,l_{2}^{2}\,\dot{\theta}_{2}^{2} \\
+& \quad {} + g\,l_{1}\,\bigl(\tfrac{1}{2}\,m_{1} + m_{2}\bigr)\,\cos\theta_{1} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\cos(\theta_{1} + \theta_{2}) \\
+& \bigl(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,l_{1}^{2} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2} + m_{2}\,l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{2} - m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{1}\,\dot{\theta}_{2} - \tfrac{1}{2}\,m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{2}^{2} \\
+& \quad {} + g\,l_{1}\,\bigl(\tfrac{1}{2}\,m_{1} + m_{2}\bigr)\,\sin\theta_{1} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\sin(\theta_{1} + \theta_{2}) = 0 \\
 & m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2}\,\ddot{\theta}_{2} + \tfrac{1}{2}\,m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{1}^{2} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\sin(\theta_{1} + \theta_{2}) = \mathrm{motor}
 \end{aligned}
 ";

@@ -1,0 +1,193 @@
+//! LaTeX in lines that fit a page: equations one below the other, broken before the signs of their outermost sums.
+
+use std::iter::Peekable;
+use std::str::Chars;
+
+/// Room of a line, in tenths of a character: about the width of a page of letters.
+const ROOM: usize = 1000;
+/// A side of an equation that is not put on a line of its own.
+const SHORT: usize = 240;
+/// What continues a line.
+const INDENT: &str = "\\quad {} ";
+/// Its width.
+const INDENTED: usize = 30;
+
+/// Equations as an `aligned` environment of `amsmath`, a line each or several, from the left: aligned at their signs of equality,
+/// the long side of one would begin where that of another ends.
+pub fn aligned(lines: &[String]) -> String {
+    // At the start of a column a sign would be that of a difference.
+    let first = |text: &str| text.strip_prefix('-').map_or(text.to_string(), |rest| format!("{{-}}{rest}"));
+    let broken = |line: &String| {
+        let parts = broken(line);
+        let parts = parts.iter().enumerate();
+        let parts = parts.map(|(k, part)| if k == 0 { first(part) } else { format!("{INDENT}{part}") });
+        parts.map(|part| format!("& {part}")).collect::<Vec<_>>().join(" \\\\\n")
+    };
+    let all: Vec<String> = lines.iter().map(broken).collect();
+    format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}\n", all.join(" \\\\\n"))
+}
+
+/// A part of a line that begins at a sign.
+struct Part {
+    /// Its end in the line.
+    end: usize,
+    /// How many parentheses its first sign stands in.
+    depth: usize,
+    width: usize,
+}
+
+/// A line in parts that have room on a page.
+fn broken(line: &str) -> Vec<&str> {
+    let parts = parts(line);
+    let total: usize = parts.iter().map(|part| part.width).sum();
+    let (mut lines, mut from, mut start) = (Vec::new(), 0, 0);
+    let mut left = total;
+    loop {
+        let room = if lines.is_empty() { ROOM } else { ROOM - INDENTED };
+        if left <= room {
+            break;
+        }
+        let Some(next) = break_before(&parts, from, room, left) else { break };
+        let end = parts[next - 1].end;
+        lines.push(line[start..end].trim());
+        left -= parts[from..next].iter().map(|part| part.width).sum::<usize>();
+        (from, start) = (next, end);
+    }
+    lines.push(line[start..].trim());
+    lines
+}
+
+/// The part to begin a line with: the last one of the least depth within the room, the next one if there is none.
+fn break_before(parts: &[Part], from: usize, room: usize, left: usize) -> Option<usize> {
+    let (mut taken, mut best) = (0, None::<usize>);
+    for (k, part) in parts.iter().enumerate().skip(from) {
+        // A short side is not worth a line.
+        let near = taken <= SHORT || left - taken <= SHORT;
+        if k > from && !near && best.is_none_or(|b| part.depth <= parts[b].depth) {
+            best = Some(k);
+        }
+        taken += part.width;
+        if taken > room && best.is_some() {
+            break;
+        }
+    }
+    best
+}
+
+/// The parts of a line between signs outside of braces and of parentheses that grow.
+fn parts(line: &str) -> Vec<Part> {
+    let mut parts = Vec::new();
+    let (mut braces, mut grown, mut depth, mut start, mut at_depth) = (0_usize, 0_usize, 0_usize, 0, 0);
+    let mut push = |start: usize, end: usize, depth: usize| {
+        let width = width(&line[start..end]);
+        parts.push(Part { end, depth, width });
+    };
+    for (at, c) in line.char_indices() {
+        match c {
+            '{' => braces += 1,
+            '}' => braces = braces.saturating_sub(1),
+            '\\' if line[at..].starts_with("\\left") => grown += 1,
+            '\\' if line[at..].starts_with("\\right") => grown = grown.saturating_sub(1),
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            '+' | '-' | '=' if braces == 0 && grown == 0 && at > 0 => {
+                let stands = line[..at].ends_with(' ') && line[at + 1..].starts_with(' ');
+                if stands {
+                    push(start, at, at_depth);
+                    (start, at_depth) = (at, depth);
+                }
+            }
+            _ => {}
+        }
+    }
+    push(start, line.len(), at_depth);
+    parts
+}
+
+/// About the width of a formula, in tenths of a character.
+fn width(text: &str) -> usize {
+    let mut chars = text.chars().peekable();
+    let mut sum = 0;
+    while chars.peek().is_some() {
+        sum += group(&mut chars);
+    }
+    sum
+}
+
+/// What stands up to a closing brace.
+fn group(chars: &mut Peekable<Chars<'_>>) -> usize {
+    let mut sum = 0;
+    while let Some(c) = chars.next() {
+        sum += match c {
+            '}' => return sum,
+            '{' => group(chars),
+            ' ' | '&' => 0,
+            '^' | '_' => script(chars) * 6 / 10,
+            '\\' => command(chars),
+            '+' | '-' | '=' | '>' => 20,
+            _ => 10,
+        };
+    }
+    sum
+}
+
+/// A group in braces, or one character.
+fn script(chars: &mut Peekable<Chars<'_>>) -> usize {
+    match chars.next() {
+        Some('{') => group(chars),
+        Some(_) => 10,
+        None => 0,
+    }
+}
+
+fn command(chars: &mut Peekable<Chars<'_>>) -> usize {
+    let mut word = String::new();
+    while let Some(c) = chars.next_if(char::is_ascii_alphabetic) {
+        word.push(c);
+    }
+    match word.as_str() {
+        "" => chars.next().map_or(0, |_| 2),
+        "frac" => script(chars).max(script(chars)),
+        "tfrac" => script(chars).max(script(chars)) * 7 / 10,
+        "sqrt" => 10 + script(chars),
+        "left" | "right" | "bigl" | "bigr" | "mathrm" | "operatorname" | "mathcal" | "dot" | "ddot" => 0,
+        "sin" | "cos" | "tan" | "exp" | "ln" | "sinh" | "cosh" | "tanh" | "arcsin" | "arccos" | "arctan" => {
+            10 * word.len()
+        }
+        "times" => 20,
+        _ => 10,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{aligned, broken, parts, width};
+
+    #[test]
+    fn widths_are_those_of_what_is_seen() {
+        assert_eq!(width("a"), 10);
+        assert_eq!(width("\\theta"), 10);
+        assert_eq!(width("\\frac{a\\,b}{c}"), 22);
+        assert_eq!(width("m\\,l^{2}\\,\\ddot{\\theta} = 0"), 10 + 2 + 10 + 6 + 2 + 10 + 20 + 10);
+    }
+
+    #[test]
+    fn long_lines_are_broken_before_outer_signs() {
+        let term = "a_{1}\\,b\\,\\cos\\theta\\,\\left(c + d\\right)";
+        let long = [term; 12].join(" + ") + " = \\tau";
+        let lines = broken(&long);
+        assert!(lines.len() > 1 && lines.concat().replace(' ', "") == long.replace(' ', ""), "{lines:?}");
+        assert!(lines.iter().all(|line| width(line) <= 1000), "{lines:?}");
+        assert!(lines[1..].iter().all(|line| line.starts_with("+ a") || line.starts_with("= ")), "{lines:?}");
+        // Within parentheses that do not grow only where nothing else is left.
+        let inner = format!("m\\,({}) = 0", ["x\\,y\\,z"; 40].join(" - "));
+        assert!(broken(&inner).len() > 1);
+        assert_eq!(parts("a + (b - c) = d").iter().map(|p| p.depth).collect::<Vec<_>>(), [0, 0, 1, 0]);
+    }
+
+    #[test]
+    fn lines_begin_with_terms() {
+        let text = aligned(&["-a = 0".to_string(), "b = 1".to_string()]);
+        assert_eq!(text, "\\begin{aligned}\n& {-}a = 0 \\\\\n& b = 1\n\\end{aligned}\n");
+    }
+}
