@@ -2,7 +2,7 @@
 
 use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
-use crate::equations::{self, Limits, Written, linear, reduced};
+use crate::equations::{self, Limits, Written, kane, linear, reduced};
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::lower::{Program, lower, pipeline};
@@ -358,7 +358,26 @@ fn printed<'g>(
     match printed {
         Printed::Readable => Some(written((model, speeds), joints, mass)),
         Printed::Structure => Some(Written::default()),
-        Printed::Lagrange => {
+        Printed::Kane if model.constraints.iter().any(|c| !c.friction.is_empty()) => refuse(
+            "the equations of a contact that slips hold its normal force, a multiplier",
+            "write `equations = lagrange`",
+        ),
+        Printed::Kane if !model.constraints.is_empty() => {
+            let named = speeds.map_or(model, |speeds| &speeds.model);
+            match kane::kane(model, joints, speeds) {
+                Ok(found) => Some(kane::written_kane(named, &found)),
+                Err(kane::Without::Choice) => refuse(
+                    "no velocities of this mechanism follow from the others by its constraints everywhere",
+                    "write `equations = lagrange`, which keeps all constraints with multipliers",
+                ),
+                Err(kane::Without::Length) => refuse(
+                    "Kane's equations of this mechanism have thousands of terms",
+                    "write `equations = lagrange`, which keeps the constraints with multipliers, or declare generalized speeds in which they are short",
+                ),
+            }
+        }
+        // Without constraints all velocities are independent, and the equations are the same.
+        Printed::Lagrange | Printed::Kane => {
             let equations = equations::derive(model, joints, mass, speeds, &Limits::ASKED);
             let named = speeds.map_or(model, |speeds| &speeds.model);
             equations.map(|e| equations::written(named, &e)).or_else(|| {

@@ -17,6 +17,7 @@ use crate::mechanics::{accelerations, added_mass, constraints, energy, forces, r
 use crate::mechanism::{Model, Quantity};
 
 mod canonical;
+pub mod kane;
 pub mod linear;
 pub mod print;
 pub mod reduced;

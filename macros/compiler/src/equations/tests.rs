@@ -10,6 +10,7 @@ use crate::mechanics::{crba, lagrange};
 use crate::mechanism::{Chart, Motion, Pose};
 use std::path::Path;
 
+mod kane;
 mod latex;
 mod linear;
 mod mechanisms;

@@ -70,6 +70,8 @@ pub enum Printed {
     Lagrange,
     /// Hamilton's.
     Hamilton,
+    /// Kane's, in independent speeds.
+    Kane,
     /// Routh's.
     Routh,
     /// Their structure alone.
@@ -78,9 +80,10 @@ pub enum Printed {
 
 impl Printed {
     /// The words that ask for others than the readable ones.
-    pub const WORDS: [(&str, Printed); 4] = [
+    pub const WORDS: [(&str, Printed); 5] = [
         ("lagrange", Printed::Lagrange),
         ("hamilton", Printed::Hamilton),
+        ("kane", Printed::Kane),
         ("routh", Printed::Routh),
         ("structure", Printed::Structure),
     ];

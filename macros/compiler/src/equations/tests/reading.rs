@@ -5,7 +5,7 @@ use num_complex::Complex;
 use std::f64::consts::PI;
 
 mod numbers;
-mod text;
+pub(super) mod text;
 
 use numbers::{Numbers, assert_same_roots, eigenvalues, roots};
 use text::{Text, Values, value};

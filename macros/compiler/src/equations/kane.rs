@@ -1,0 +1,314 @@
+//! Kane's equations of mechanisms with constraints, printed: in independent speeds, so that no multipliers occur. With dependent
+//! velocities `w_D = A s + b` by the constraints, and their partial derivatives `Z` by the independent ones `s`,
+//!
+//! ```text
+//! Zᵀ (M ẇ + h − τ) = 0,   w_D = A s + b
+//! ```
+//!
+//! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 6; the equations of Gibbs and Appell in quasi-velocities).
+
+use super::written::{filled, name, names_with, rate_name, rates};
+use super::{Limits, Short, quaternions, rank};
+use crate::algebra::normal::Normal;
+use crate::algebra::polynomial::{Polynomial, Ring};
+use crate::diag::all_of;
+use crate::equations::print::aligned::aligned;
+use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::expr::eval::Tape;
+use crate::expr::replace::replace_all;
+use crate::expr::{Expr, Symbol};
+use crate::kinematics::speeds::{inverse, shortened};
+use crate::kinematics::{Joint, random_configuration, time_derivative, value_of};
+use crate::mechanics::crba::Matrix;
+use crate::mechanics::speeds::InSpeeds;
+use crate::mechanics::{accelerations, constraints, forces, rnea, velocities};
+use crate::mechanism::{Model, Quantity};
+
+/// Columns of text.
+const WIDTH: usize = 100;
+/// Most choices of dependent velocities that are looked at.
+const CHOICES: usize = 20_000;
+/// In how many configurations.
+const SAMPLES: u64 = 4;
+/// Determinants that differ by less are the same everywhere.
+const SAME: f64 = 1e-9;
+
+/// Kane's equations as polynomials of one ring.
+pub struct Kane {
+    /// The atoms.
+    pub ring: Ring,
+    /// The independent velocities, by index.
+    pub independent: Vec<usize>,
+    /// Accelerations and biases, by independent velocity.
+    pub motion: Vec<Polynomial>,
+    /// What inputs contribute to them.
+    pub forces: Vec<Polynomial>,
+    /// The dependent velocities, by index.
+    pub dependent: Vec<(usize, Polynomial)>,
+    /// The velocities of joints that declared speeds replace, by index.
+    pub rates: Vec<(usize, Polynomial)>,
+    /// What holds configurations.
+    pub residuals: Vec<Polynomial>,
+}
+
+/// Why there are no equations in independent speeds.
+pub enum Without {
+    /// No velocities could be told from the others.
+    Choice,
+    /// They would be too long.
+    Length,
+}
+
+/// Kane's equations of a mechanism with constraints. The independent velocities are those of the joints that the user named, else
+/// those from which the others follow with a determinant that is constant, or varies least.
+pub fn kane<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    speeds: Option<&InSpeeds<'g>>,
+) -> Result<Kane, Without> {
+    let own = speeds.map_or(model, |speeds| &speeds.model);
+    let rows = constraints::jacobian(own);
+    let dependent = match &model.dependent {
+        Some(pivots) if speeds.is_none() && pivots.len() == rows.len() => {
+            pivots.iter().map(|(_, v)| *v).collect()
+        }
+        _ => chosen(own, &rows).ok_or(Without::Choice)?,
+    };
+    let solved = Solved::of(own, &rows, dependent).ok_or(Without::Choice)?;
+    let v = velocities(model);
+    let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&accelerations(model)));
+    let mut inputs = forces::generalized_forces(model, joints);
+    let mut rates = Vec::new();
+    if let Some(speeds) = speeds {
+        (needed, inputs) = (speeds.forces(&needed), speeds.forces(&inputs));
+        rates = speeds.replaced().into_iter().map(|k| (k, solved.written(&[speeds.rates[k]])[0])).collect();
+    }
+    let [motion, forces] = [needed, inputs].map(|all| solved.projected(&solved.written(&all)));
+    let residuals: Vec<Expr<'g>> = own.constraints.iter().filter_map(|c| c.residual).collect();
+    let (replaced, rates): (Vec<usize>, Vec<Expr<'g>>) = rates.into_iter().unzip();
+    let lists = [motion, forces, solved.values, rates, residuals];
+    let (ring, found) = polynomials(own, &lists).ok_or(Without::Length)?;
+    let [motion, forces, values, rates, residuals] = found;
+    Ok(Kane {
+        ring,
+        independent: solved.independent,
+        motion,
+        forces,
+        dependent: solved.dependent.into_iter().zip(values).collect(),
+        rates: replaced.into_iter().zip(rates).collect(),
+        residuals,
+    })
+}
+
+/// Lists of expressions as short polynomials of one ring; `None` where they are too long.
+fn polynomials<'g, const N: usize>(
+    model: &Model<'g>,
+    lists: &[Vec<Expr<'g>>; N],
+) -> Option<(Ring, [Vec<Polynomial>; N])> {
+    let all: Vec<Expr<'g>> = lists.concat();
+    if Tape::of(&all).steps() > Limits::ASKED.operations[1] {
+        return None;
+    }
+    let mut normal = Normal::new(model.graph, rank);
+    normal.ring.allow_more();
+    let all: Vec<Polynomial> = all.iter().map(|e| normal.of(*e)).collect::<Option<_>>()?;
+    let mut short = Short::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut all = all.iter().map(|p| short.of(p)).collect::<Option<Vec<_>>>()?.into_iter();
+    let lists = std::array::from_fn(|k| all.by_ref().take(lists[k].len()).collect());
+    Some((short.ring, lists))
+}
+
+/// The dependent velocities that constraints are solved for: those whose determinant has one value in all configurations, or
+/// varies least. `None` if the constraints depend on each other.
+fn chosen<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
+    let (nc, nv) = (rows.len(), model.nv());
+    let tape = Tape::of(&rows.concat());
+    let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES)
+        .map(|seed| {
+            let q = random_configuration(model, seed);
+            tape.values(&|s| value_of(s, &q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
+        })
+        .collect();
+    let mut best: Option<((f64, usize), Vec<usize>)> = None;
+    let mut columns: Vec<usize> = (0..nc).collect();
+    for _ in 0..CHOICES {
+        let sizes = samples.iter().map(|rows| determinant(rows, &columns).abs());
+        let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
+        let even = if most > 0.0 { least / most } else { 0.0 };
+        let even = if even > 1.0 - SAME { 1.0 } else { even };
+        let filled = columns.iter().map(|k| rows.iter().filter(|row| !row[*k].is_zero()).count()).sum();
+        let better = best.as_ref().is_none_or(|((e, f), _)| even > *e || (even == *e && filled < *f));
+        if even > SAME && better {
+            best = Some(((even, filled), columns.clone()));
+        }
+        // The next choice in the order of a dictionary.
+        let Some(k) = (0..nc).rev().find(|k| columns[*k] < nv - nc + k) else { break };
+        columns[k] += 1;
+        for j in k + 1..nc {
+            columns[j] = columns[j - 1] + 1;
+        }
+    }
+    best.map(|(_, columns)| columns)
+}
+
+/// The determinant of some columns, by elimination with pivots.
+fn determinant(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
+    let mut m: Vec<Vec<f64>> = rows.iter().map(|row| columns.iter().map(|k| row[*k]).collect()).collect();
+    let (n, mut product) = (m.len(), 1.0);
+    for k in 0..n {
+        let pivot = (k..n).max_by(|a, b| m[*a][k].abs().total_cmp(&m[*b][k].abs())).unwrap_or(k);
+        m.swap(k, pivot);
+        product *= m[k][k];
+        let own = m[k].clone();
+        if own[k] == 0.0 {
+            return 0.0;
+        }
+        for row in &mut m[k + 1..] {
+            let factor = row[k] / own[k];
+            row.iter_mut().zip(&own).for_each(|(x, own)| *x -= factor * own);
+        }
+    }
+    product
+}
+
+/// Velocities by the independent ones.
+struct Solved<'g> {
+    independent: Vec<usize>,
+    dependent: Vec<usize>,
+    /// Dependent velocities.
+    values: Vec<Expr<'g>>,
+    /// Their rates.
+    changes: Vec<Expr<'g>>,
+    /// How they change with the independent ones: a row for each.
+    partial: Matrix<'g>,
+}
+
+impl<'g> Solved<'g> {
+    fn of(model: &Model<'g>, rows: &Matrix<'g>, mut dependent: Vec<usize>) -> Option<Solved<'g>> {
+        let g = model.graph;
+        dependent.sort_unstable();
+        let independent: Vec<usize> = (0..model.nv()).filter(|k| !dependent.contains(k)).collect();
+        let own: Matrix<'g> = rows.iter().map(|row| dependent.iter().map(|k| row[*k]).collect()).collect();
+        let inverse = inverse(model, &own)?;
+        let times = |column: &dyn Fn(usize) -> Expr<'g>| -> Vec<Expr<'g>> {
+            let entry = |row: &Vec<Expr<'g>>| {
+                let terms = row.iter().enumerate().filter(|(_, e)| !e.is_zero());
+                terms.fold(g.zero(), |sum, (i, e)| sum - *e * column(i))
+            };
+            inverse.iter().map(|row| shortened(model, entry(row))).collect()
+        };
+        let still = |e: Expr<'g>| {
+            replace_all(&[e], &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()))[0]
+        };
+        // What is driven in time moves dependent velocities, too.
+        let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| still(c.rate)).collect();
+        let mut values = times(&|i| drift[i]);
+        let mut partial: Matrix<'g> = vec![Vec::new(); dependent.len()];
+        for k in &independent {
+            let column = times(&|i| rows[i][*k]);
+            for ((row, value), e) in partial.iter_mut().zip(&mut values).zip(column) {
+                row.push(e);
+                *value += e * Quantity::Velocity(*k).expr(g);
+            }
+        }
+        let mut found = Solved { independent, dependent, values, changes: Vec::new(), partial };
+        let rate = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
+            let start = time_derivative(model.space(), *value);
+            let terms = found.independent.iter().zip(row);
+            terms.fold(start, |sum, (k, e)| sum + *e * Quantity::Acceleration(*k).expr(g))
+        };
+        let changes: Vec<Expr<'g>> = found.values.iter().zip(&found.partial).map(rate).collect();
+        found.changes = found.written(&changes);
+        Some(found)
+    }
+
+    /// Expressions of all velocities and accelerations in the independent ones.
+    fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let place = |k: usize| self.dependent.iter().position(|d| *d == k);
+        replace_all(e, &|s| match Quantity::of(s) {
+            Quantity::Velocity(k) => Some(self.values[place(k)?]),
+            Quantity::Acceleration(k) => Some(*self.changes.get(place(k)?)?),
+            _ => None,
+        })
+    }
+
+    /// `Zᵀ` times forces.
+    fn projected(&self, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let one = |(n, k): (usize, &usize)| {
+            let carried = self.dependent.iter().zip(&self.partial);
+            carried.fold(forces[*k], |sum, (d, row)| sum + row[n] * forces[*d])
+        };
+        self.independent.iter().enumerate().map(one).collect()
+    }
+}
+
+/// Kane's equations in all ways of writing.
+pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
+    let rates = rates(model);
+    let names = names_with(model, &[]);
+    let name = |symbol: Symbol| name(model, &rates, symbol);
+    let marked = |symbol| {
+        let (name, dots) = name(symbol);
+        name + &"'".repeat(usize::from(dots))
+    };
+    let dotted = |symbol| {
+        let (name, dots) = name(symbol);
+        (names.get(&name), dots)
+    };
+    let left = |k: usize| {
+        let (name, dots) = rate_name(model, k);
+        name + &"'".repeat(usize::from(dots))
+    };
+    let lines = Lines::of(kane, Plain { name: &marked }, &left);
+    let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let mut plain: String = lines.velocities.iter().map(line).collect();
+    plain += "\n";
+    plain.extend(lines.motion.iter().map(line));
+    plain = plain + "\n" + &filled(&legend(model, kane, &marked)) + "\n";
+    let left = |k: usize| {
+        let (name, dots) = rate_name(model, k);
+        Latex { name: &|_| (names.get(&name), dots) }.symbol(Quantity::Velocity(k).symbol(), 1)
+    };
+    let lines = Lines::of(kane, Latex { name: &dotted }, &left);
+    Written { plain, latex: aligned(&[lines.velocities, lines.motion].concat()) }
+}
+
+/// What is written, an equation each.
+struct Lines {
+    /// Velocities that follow from the independent ones.
+    velocities: Vec<String>,
+    /// The equations of motion, and what holds configurations.
+    motion: Vec<String>,
+}
+
+impl Lines {
+    fn of<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> Lines {
+        let writer = Writer::styled(&kane.ring, style);
+        let of_speeds = kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.polynomial(p)));
+        let dependent = kane.dependent.iter().map(|(k, p)| {
+            format!("{} = {}", style.symbol(Quantity::Velocity(*k).symbol(), 1), writer.polynomial(p))
+        });
+        let sides = kane.motion.iter().zip(&kane.forces);
+        let motion = sides.map(|(a, b)| format!("{} = {}", writer.polynomial(a), writer.polynomial(b)));
+        let held = kane.residuals.iter().map(|p| format!("{} = 0", writer.polynomial(p)));
+        Lines { velocities: of_speeds.chain(dependent).collect(), motion: motion.chain(held).collect() }
+    }
+}
+
+/// What the equations are, in sentences.
+fn legend(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> String) -> String {
+    let independent: Vec<String> =
+        kane.independent.iter().map(|k| marked(Quantity::Velocity(*k).symbol())).collect();
+    let names: Vec<&str> = model.constraints.iter().map(|c| c.name.split('.').next().unwrap_or("")).collect();
+    let mut held: Vec<String> = names.iter().map(ToString::to_string).collect();
+    held.dedup();
+    let (are, equations) = match independent.len() {
+        1 => ("is the independent velocity", "The equation of motion is Kane's for it"),
+        _ => ("are the independent velocities", "The equations of motion are Kane's for them"),
+    };
+    format!(
+        "{} {are}; from them the others follow by {}. {equations}, without multipliers. A prime marks a rate.",
+        all_of(&independent),
+        all_of(&held)
+    )
+}

@@ -1,0 +1,225 @@
+//! Kane's equations in independent speeds, read back: against the accelerations of Lagrange's equations with multipliers.
+
+use super::super::kane::{kane, written_kane};
+use super::reading::text::value;
+use super::*;
+use crate::mechanics::speeds::InSpeeds;
+
+/// Chaplygin's sleigh: a knife edge at the origin of a sled whose centre of mass is ahead of it.
+const SLEIGH: &str = "struct Sleigh { m: f64, a: f64, j: f64,
+    #[body(mass = m, com = a * x, inertia = diagonal(1, 1, j))] sled: Body,
+    #[joint(ground -> sled, about = z)] pose: Planar,
+    #[constraint(dot(v(sled / ground / ground), sled.y) = 0)] blade: Nonholonomic,
+    #[acts(on = sled, along = x)] push: Force, #[acts(on = sled, about = z)] steer: Torque }";
+
+/// The same in speeds along and across the blade.
+const SLEIGH_IN_SPEEDS: &str = "struct Sleigh { m: f64, a: f64, j: f64,
+    #[body(mass = m, com = a * x, inertia = diagonal(1, 1, j))] sled: Body,
+    #[joint(ground -> sled, about = z)] pose: Planar,
+    #[speed(rate(pose.x) * cos(pose.angle) + rate(pose.y) * sin(pose.angle))] along: Speed,
+    #[speed(rate(pose.y) * cos(pose.angle) - rate(pose.x) * sin(pose.angle))] across: Speed,
+    #[constraint(dot(v(sled / ground / ground), sled.y) = 0)] blade: Nonholonomic,
+    #[acts(on = sled, along = x)] push: Force, #[acts(on = sled, about = z)] steer: Torque }";
+
+/// A disk that rolls upright, and a sled on an incline with a knife edge at its centre of mass.
+const WHEEL: &str = "struct Wheel { m: f64, r: f64,
+    px: Coordinate, py: Coordinate, heading: Coordinate, roll: Coordinate,
+    #[frame(ground, z(heading))] fork: Frame,
+    #[frame(fork, y(roll))] turned: Frame,
+    #[body(mass = m, inertia = disk(m, r, y), at = px * ground.x + py * ground.y + r * ground.z, frame = turned)] wheel: Body,
+    #[constraint(rate(px) = r * rate(roll) * cos(heading))] first: Nonholonomic,
+    #[constraint(rate(py) = r * rate(roll) * sin(heading))] second: Nonholonomic,
+    #[acts(on = roll)] drive: Torque, #[acts(on = heading)] steer: Torque }";
+
+/// A ball that rolls on a plane.
+const ROLLING: &str = "struct Ball { m: f64, r: f64,
+    #[body(mass = m, inertia = sphere(m, r))] ball: Body,
+    #[joint(ground -> ball)] pose: Free,
+    #[constraint(rolls(ball.sphere(r), ground.plane(z)))] contact: Rolling }";
+
+/// A disk that rolls and leans, in the angles of heading, lean and roll.
+const DISK: &str = "struct Disk { m: f64, r: f64,
+    px: Coordinate, py: Coordinate, heading: Coordinate, lean: Coordinate, roll: Coordinate,
+    #[frame(ground, z(heading))] fork: Frame,
+    #[frame(fork, x(lean))] leaning: Frame,
+    #[frame(leaning, y(roll))] turned: Frame,
+    #[body(mass = m, inertia = disk(m, r, y), at = px * ground.x + py * ground.y + r * leaning.z, frame = turned)] wheel: Body,
+    #[constraint(rate(px) = r * rate(roll) * cos(heading))] first: Nonholonomic,
+    #[constraint(rate(py) = r * rate(roll) * sin(heading))] second: Nonholonomic }";
+
+/// A slide that follows another one, driven in time.
+const CAM: &str = "struct Cam { m: f64, l: f64, w: f64,
+    #[particle(mass = m)] one: Particle, #[particle(mass = 2 * m)] two: Particle,
+    #[joint(ground -> one, along = x)] first: Sleeve, #[joint(ground -> two, along = y)] second: Sleeve,
+    #[constraint(rate(second) = rate(first) * (2 + sin(first)) + l * w * cos(w * t))] follow: Nonholonomic,
+    #[acts(on = first)] push: Force }";
+
+/// Solves a small linear system with pivots.
+fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
+    let n = rows.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).expect("a row");
+        rows.swap(k, pivot);
+        let own: Vec<f64> = rows[k].iter().map(|x| x / rows[k][k]).collect();
+        for (i, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let (_, factor) = (i, row[k]);
+            row.iter_mut().zip(&own).for_each(|(x, own)| *x -= factor * own);
+        }
+        rows[k] = own;
+    }
+    rows.iter().map(|row| row[n]).collect()
+}
+
+/// The printed text, its equations read at states whose accelerations follow from Lagrange's equations with multipliers; the
+/// text is returned.
+fn check_printed(model: &Model<'_>) -> String {
+    let joints = crate::kinematics::joints(model);
+    let speeds = InSpeeds::of(model);
+    let native = speeds.as_ref().map_or(model, |s| &s.native);
+    let named = speeds.as_ref().map_or(model, |s| &s.model);
+    let found = kane(native, &joints, speeds.as_ref()).unwrap_or_else(|_| panic!("{} is short", model.name));
+    let text = written_kane(named, &found).plain;
+    let lagrange = lagrange::derive(native, &joints);
+    let (nv, nc) = (native.nv(), native.constraints.len());
+    let rows = constraints::jacobian(native);
+    let mut all =
+        [lagrange.mass_matrix.concat(), lagrange.bias, forces::generalized_forces(native, &joints)].concat();
+    all.extend(rows.concat());
+    all.extend(constraints::biases(native));
+    all.extend(constraints::rates(native));
+    for seed in 1..8 {
+        let at = state(native, seed);
+        // Velocities that fulfil the constraints: the nearest ones.
+        let rates = eval(&[rows.concat(), constraints::rates(native)].concat(), &at);
+        let (j, rate) = rates.split_at(nv * nc);
+        let gram = (0..nc).map(|i| {
+            let entry = |k: usize| (0..nv).map(|c| j[i * nv + c] * j[k * nv + c]).sum::<f64>();
+            (0..nc).map(entry).chain([rate[i]]).collect()
+        });
+        let shares = solve(gram.collect());
+        let v: Vec<f64> = (0..nv)
+            .map(|c| {
+                let own = at(Quantity::Velocity(c).symbol());
+                own - (0..nc).map(|i| shares[i] * j[i * nv + c]).sum::<f64>()
+            })
+            .collect();
+        let moving = |s: Symbol| match Quantity::of(s) {
+            Quantity::Velocity(k) => v[k],
+            _ => at(s),
+        };
+        let values = eval(&all, &moving);
+        let (mass, rest) = values.split_at(nv * nv);
+        let (bias, rest) = rest.split_at(nv);
+        let (tau, rest) = rest.split_at(nv);
+        let (j, rest) = rest.split_at(nv * nc);
+        let (drift, left) = rest.split_at(nc);
+        assert!(left.iter().all(|x| x.abs() < 1e-12), "{left:?}");
+        let mut system: Vec<Vec<f64>> = (0..nv)
+            .map(|i| {
+                let multipliers = (0..nc).map(|k| -j[k * nv + i]);
+                mass[i * nv..][..nv].iter().copied().chain(multipliers).chain([tau[i] - bias[i]]).collect()
+            })
+            .collect();
+        system.extend((0..nc).map(|k| {
+            j[k * nv..][..nv].iter().copied().chain(vec![0.0; nc]).chain([-drift[k]]).collect::<Vec<f64>>()
+        }));
+        let a = solve(system)[..nv].to_vec();
+        // In speeds, if there are any.
+        let (v, a) = match &speeds {
+            None => (v, a),
+            Some(speeds) => {
+                let of_rates: Vec<Expr<'_>> = speeds.of_rates().concat();
+                let y = eval(&of_rates, &moving);
+                let w: Vec<f64> = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * v[k]).sum()).collect();
+                let in_speeds = |s: Symbol| match Quantity::of(s) {
+                    Quantity::Velocity(k) => w[k],
+                    _ => at(s),
+                };
+                let still = speeds.without_accelerations(&speeds.accelerations);
+                let change = eval(&still, &in_speeds);
+                let rates = (0..nv).map(|i| (0..nv).map(|k| y[i * nv + k] * (a[k] - change[k])).sum());
+                let rates: Vec<f64> = rates.collect();
+                (w, rates)
+            }
+        };
+        let rates = super::super::written::rates(named);
+        let by_name = |word: &str| {
+            let quantities = (0..named.parameters.len()).map(Quantity::Parameter);
+            let quantities = quantities.chain((0..named.nq()).map(Quantity::Configuration));
+            let quantities = quantities.chain((0..nv).map(Quantity::Velocity));
+            let quantities = quantities.chain((0..nv).map(Quantity::Acceleration));
+            let mut quantities =
+                quantities.chain((0..named.nu()).map(Quantity::Input)).chain([Quantity::Time]);
+            let is_it = |q: &Quantity| {
+                let (name, dots) = super::super::written::name(named, &rates, q.symbol());
+                name + &"'".repeat(usize::from(dots)) == word
+            };
+            match quantities.find(is_it).unwrap_or_else(|| panic!("the name {word} in {text}")) {
+                Quantity::Velocity(k) => v[k],
+                Quantity::Acceleration(k) => a[k],
+                other => at(other.symbol()),
+            }
+        };
+        let joined = text.replace("\n    ", " ");
+        let lines: Vec<&str> = joined.lines().filter(|line| line.contains(" = ")).collect();
+        assert!(lines.len() >= nv, "{text}");
+        for line in lines {
+            let (left, right) = line.split_once(" = ").expect("an equation");
+            // Rates of coordinates that speeds replace are known to nobody else.
+            if speeds.is_some() && left.ends_with('\'') && !left.contains(' ') {
+                continue;
+            }
+            let (left, right) = (value(left, &by_name), value(right, &by_name));
+            // What holds configurations is printed as it is; the states are random.
+            let residuals = eval(&constraints::residuals(native), &at);
+            if residuals.iter().any(|x| (x - left).abs() < 1e-12 && right == 0.0) {
+                continue;
+            }
+            let near = (left - right).abs() <= 1e-9 * (1.0 + left.abs());
+            assert!(near, "{line}: {left} is not {right}, state {seed}");
+        }
+    }
+    assert!(!text.contains("lambda"), "{text}");
+    text
+}
+
+#[test]
+fn printed_equations_are_those_of_the_motion() {
+    for (gravity, item) in [
+        ("-9.81 * y", SLEIGH),
+        ("-9.81 * z", SLEIGH_IN_SPEEDS),
+        ("-9.81 * z", WHEEL),
+        ("-9.81 * z", DISK),
+        ("-9.81 * z", ROLLING),
+        ("-9.81 * y", CAM),
+    ] {
+        with_model(gravity, item, |model| {
+            let text = check_printed(&model);
+            assert!(text.len() < 2500, "{text}");
+        });
+    }
+}
+
+/// The equations of the sleigh as they are found in books: m v' = m a ω² + push, (J + m a²) ω' = −m a v ω + steer.
+#[test]
+fn the_sleigh_in_its_own_speeds() {
+    let text = with_model("-9.81 * z", SLEIGH_IN_SPEEDS, |model| check_printed(&model));
+    let expected = "\
+pose.x' = cos(pose.angle) along
+pose.y' = sin(pose.angle) along
+across = 0
+
+m along' - m a pose.angle'² = push
+(m a² + j) pose.angle'' + m a along pose.angle' = steer
+
+along and pose.angle' are the independent velocities; from them the others follow by blade.";
+    assert!(text.starts_with(expected), "{text}");
+}
+
+/// Rolling upright: 3/2 m r² roll'' = drive, 1/4 m r² heading'' = steer.
+#[test]
+fn an_upright_wheel() {
+    let text = with_model("-9.81 * z", WHEEL, |model| check_printed(&model));
+    assert!(text.contains("\n3/2 m r² roll'' = drive\n"), "{text}");
+    assert!(text.contains("\n1/4 m r² heading'' = steer\n"), "{text}");
+}
