@@ -116,6 +116,46 @@ pub trait Arithmetic: Registers {
         Vector::from(Lanes([x; N]))
     }
 
+    /// `x a`.
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn scale<T: Real, const N: usize>(x: T, a: Vector<Self, T, N>) -> Vector<Self, T, N> {
+        Vector::splat(x) * a
+    }
+
+    /// `x a + c`, fused where the hardware can.
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn scale_add<T: Real, const N: usize>(
+        x: T,
+        a: Vector<Self, T, N>,
+        c: Vector<Self, T, N>,
+    ) -> Vector<Self, T, N> {
+        Self::mul_add(Vector::splat(x), a, c)
+    }
+
+    /// `x a - c`, fused where the hardware can.
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn scale_sub<T: Real, const N: usize>(
+        x: T,
+        a: Vector<Self, T, N>,
+        c: Vector<Self, T, N>,
+    ) -> Vector<Self, T, N> {
+        Self::mul_sub(Vector::splat(x), a, c)
+    }
+
+    /// `c - x a`, fused where the hardware can.
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn neg_scale_add<T: Real, const N: usize>(
+        x: T,
+        a: Vector<Self, T, N>,
+        c: Vector<Self, T, N>,
+    ) -> Vector<Self, T, N> {
+        Self::neg_mul_add(Vector::splat(x), a, c)
+    }
+
     /// The lanes of one vector, then those of another. Does not compile if `M` is not `2 N`.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -144,9 +184,59 @@ pub trait Arithmetic: Registers {
         b: Vector<Self, T, M>,
     ) {
         const { assert!(ROW + 1 < R, "there are not so many rows") };
-        if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut) {
-            *rows = a.with::<I, J, M>(&b);
+        const { assert!(I < N && J < M, "there are not so many lanes") };
+        if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut)
+            && let Some(two) = a.pair(I, &b, J)
+        {
+            *rows = two;
         }
+    }
+
+    /// Puts all lanes of a vector into the rows of a column from `ROW` on. Does not compile if there are fewer rows.
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn store_rows<const ROW: usize, T: Real, const N: usize, const R: usize>(
+        column: &mut [T; R],
+        a: Vector<Self, T, N>,
+    ) {
+        const { assert!(ROW + N <= R, "there are not so many rows") };
+        if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut) {
+            *rows = *a.numbers();
+        }
+    }
+
+    /// Puts the lanes of one vector into row `ROW` of the columns from `COLUMN` on, and those of another into the row below.
+    /// Does not compile if there are fewer rows or columns, or more than eight lanes.
+    #[cfg_attr(debug_assertions, inline)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn store_columns<
+        const ROW: usize,
+        const COLUMN: usize,
+        T: Real,
+        const N: usize,
+        const R: usize,
+        const C: usize,
+    >(
+        columns: &mut [[T; R]; C],
+        a: Vector<Self, T, N>,
+        b: Vector<Self, T, N>,
+    ) {
+        const { assert!(ROW + 1 < R && COLUMN + N <= C, "there are not so many rows or columns") };
+        const { assert!(N <= 8, "there are more lanes") };
+        let columns = columns.get_mut(COLUMN..).and_then(<[_]>::first_chunk_mut::<N>);
+        let Some(columns) = columns else { return };
+        // Not a loop: lanes with numbers that change are kept in memory until it is unrolled.
+        macro_rules! store {
+            ($($lane:literal)+) => {$(
+                if let Some(two) = a.pair($lane, &b, $lane)
+                    && let Some(column) = columns.get_mut($lane)
+                    && let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut)
+                {
+                    *rows = two;
+                }
+            )+};
+        }
+        store!(0 1 2 3 4 5 6 7);
     }
 
     /// Arguments in lanes.

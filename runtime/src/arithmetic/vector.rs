@@ -83,29 +83,27 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
 }
 
 impl<A, T: Real, const N: usize> Vector<A, T, N> {
-    /// Lane `I`, and lane `J` of another. Does not compile if there are fewer.
+    /// A lane, and one of another vector, if both exist. What is said of lanes is known when this is inlined.
     #[inline(always)]
-    pub(crate) fn with<const I: usize, const J: usize, const M: usize>(
-        &self,
-        other: &Vector<A, T, M>,
-    ) -> [T; 2] {
-        const { assert!(I < N && J < M, "there are not so many lanes") };
+    pub(crate) fn pair<const M: usize>(&self, i: usize, other: &Vector<A, T, M>, j: usize) -> Option<[T; 2]> {
         let (a, b) = (self.numbers(), other.numbers());
         // By registers: lanes that are used more than once would be stored one by one.
         #[cfg(feature = "std")]
-        if I % 2 == J % 2
+        if i % 2 == j % 2
+            && i < N
+            && j < M
             && N.is_multiple_of(2)
             && M.is_multiple_of(2)
             && let (Some(a), Some(b)) = (same::<_, [f64; N]>(a), same::<_, [f64; M]>(b))
         {
-            let (i, j) = (I - I % 2, J - J % 2);
-            let (a, b) = (wide::f64x2::new([a[i], a[i + 1]]), wide::f64x2::new([b[j], b[j + 1]]));
-            let two = wide::f64x2::transpose([a, b])[I % 2].to_array();
+            let (k, l) = (i - i % 2, j - j % 2);
+            let (a, b) = (wide::f64x2::new([a[k], a[k + 1]]), wide::f64x2::new([b[l], b[l + 1]]));
+            let two = wide::f64x2::transpose([a, b])[i % 2].to_array();
             if let Some(two) = same(&two) {
-                return *two;
+                return Some(*two);
             }
         }
-        [a[I], b[J]]
+        Some([*a.get(i)?, *b.get(j)?])
     }
 
     /// The sum of all lanes, in the order of [`Lanes::sum`].

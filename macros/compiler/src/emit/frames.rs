@@ -39,6 +39,7 @@ pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps],
     }
     for (k, link) in links.iter().enumerate() {
         write_path(out, k, link, s);
+        write_path_columns(out, k, links, s);
     }
 }
 
@@ -126,7 +127,7 @@ pub fn write_frame_impl(
         format!("&::linkwork::__private::join(&x{l}, &self.__link{l}_path_motion({t}q, v, a))")
     });
     let _ = writeln!(out, "self.__frame{k}_acceleration({last})\n}}");
-    write_jacobian(out, k, frame, links, speeds, s);
+    write_jacobian(out, k, frame, links.len(), speeds, s);
 }
 
 /// The placement of the frame's link.
@@ -171,26 +172,28 @@ fn write_jacobian(
     out: &mut String,
     k: usize,
     frame: &FrameSteps,
-    links: &[LinkSteps],
+    links: usize,
     speeds: bool,
     s: &Signature<'_>,
 ) {
-    let path = path(links, frame.link);
-    let (scalar, nv) = (s.scalar.name(), s.nv);
+    let (scalar, nv, t) = (s.scalar.name(), s.nv, time(s));
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
+    let zero = format!("::linkwork::__private::constant::<{scalar}>(0.0)");
     let _ =
         writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::T, Argument::Q]));
-    for &link in &path {
-        write_link_placement(out, link, &links[link], s);
-    }
-    if !path.is_empty() {
-        let placement = frame_placement(k, frame);
-        let _ = writeln!(out, "let o = ::linkwork::__private::origin(&{placement});");
-    }
-    let _ = writeln!(out, "let mut columns = [[::linkwork::__private::constant::<{scalar}>(0.0); 6]; {nv}];");
-    let mut written = vec![false; nv];
-    for link in path {
-        write_columns(out, link, &links[link], &mut written, s);
+    let _ = writeln!(out, "let mut columns = [[{zero}; 6]; {nv}];");
+    if let Some(l) = frame.link {
+        let placement = match frame.is_link {
+            true => format!("x[{l}]"),
+            false => format!("self.__frame{k}_placement(&x[{l}])"),
+        };
+        let _ = writeln!(
+            out,
+            "let mut x = [[{zero}; 12]; {links}];
+            self.__link{l}_path_placements({t}q, &mut x);
+            let o = ::linkwork::__private::origin(&{placement});
+            self.__link{l}_path_columns({t}q, &x, &o, &mut columns);"
+        );
     }
     let _ = writeln!(
         out,
@@ -199,10 +202,38 @@ fn write_jacobian(
     );
 }
 
+/// Writes what the Jacobians of frames need of a link: the placements of the links from the ground to it, and their columns
+/// for a point at `o`. Each calls that of the link's parent, so that their length does not grow with the square of a chain's.
+fn write_path_columns(out: &mut String, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
+    let (scalar, t, link, count) = (s.scalar.name(), time(s), &links[k], links.len());
+    let state = s.parameters(&s.timed(&[Argument::Q]));
+    let (before, parent) = match link.parent {
+        Some(p) => (format!("self.__link{p}_path_placements({t}q, x);\n"), format!(", &x[{p}]")),
+        None => Default::default(),
+    };
+    let _ = writeln!(
+        out,
+        "#[inline(always)]\nfn __link{k}_path_placements({state}, x: &mut [[{scalar}; 12]; {count}]) {{
+        {before}x[{k}] = self.__link{k}_placement({t}q{parent});\n}}
+        #[inline(always)]
+        fn __link{k}_path_columns({state}, x: &[[{scalar}; 12]; {count}], o: &[{scalar}; 3], columns: &mut [[{scalar}; 6]; {}]) {{",
+        s.nv
+    );
+    if let Some(p) = link.parent {
+        let _ = writeln!(out, "self.__link{p}_path_columns({t}q, x, o, columns);");
+    }
+    let mut written = vec![false; s.nv];
+    for &before in path(links, link.parent).iter().flat_map(|l| &links[*l].velocities) {
+        written[before] = true;
+    }
+    write_columns(out, k, link, &mut written, s);
+    out.push_str("}\n");
+}
+
 /// The columns of a link. Several coordinates that follow one another share a column.
 fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bool], s: &Signature<'_>) {
     let state = if link.driven { format!("{}q, ", time(s)) } else { String::new() };
-    let call = format!("self.__link{k}_columns({state}&x{k}, &o)");
+    let call = format!("self.__link{k}_columns({state}&x[{k}], o)");
     let mut write = |column: usize, value: &str, out: &mut String| {
         let value = match std::mem::replace(&mut written[column], true) {
             false => value.to_string(),

@@ -147,9 +147,9 @@ impl Writer<'_> {
             Op::MulAdd(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "+", c),
             Op::MulSub(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "-", c),
             Op::NegMulAdd(a, b, c) if self.build == Build::Debug => self.less_product(c, [a, b]),
-            Op::MulAdd(a, b, c) => self.fused("mul_add", [a, b, c], lanes),
-            Op::MulSub(a, b, c) => self.fused("mul_sub", [a, b, c], lanes),
-            Op::NegMulAdd(a, b, c) => self.fused("neg_mul_add", [a, b, c], lanes),
+            Op::MulAdd(a, b, c) => self.fused(["mul_add", "scale_add"], [a, b, c], lanes),
+            Op::MulSub(a, b, c) => self.fused(["mul_sub", "scale_sub"], [a, b, c], lanes),
+            Op::NegMulAdd(a, b, c) => self.fused(["neg_mul_add", "neg_scale_add"], [a, b, c], lanes),
             Op::Call(f, a) => self.call(f.name(), &[a], lanes),
             Op::Atan2(a, b) => self.call("atan2", &[a, b], lanes),
             Op::Pow(a, b) => self.call("powf", &[a, b], lanes),
@@ -175,6 +175,12 @@ impl Writer<'_> {
     }
 
     fn infix(&mut self, [a, b]: [Operand; 2], op: &str, lanes: usize, (level, right): (u8, u8)) -> Piece {
+        if op == "*"
+            && let Some(scaled) = self.scaled([a, b], lanes)
+        {
+            let name = self.name("scale", lanes).unwrap_or_else(|| "Ops::scale".to_string());
+            return self.call_with(&name, scaled);
+        }
         let (a, b) = (self.widened(a, lanes), self.widened(b, lanes));
         let text = format!("{} {op} {}", wrap(&a, level), wrap(&b, right));
         let mut needs = a.needs;
@@ -198,10 +204,32 @@ impl Writer<'_> {
         Piece { text, needs: [c.needs, product.needs].concat(), level: 1 }
     }
 
-    /// A call of an operation that large bodies name.
-    fn fused(&mut self, function: &'static str, arguments: [Operand; 3], lanes: usize) -> Piece {
-        let name = self.name(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
-        self.call_by(&name, &arguments, lanes)
+    /// A call of an operation that large bodies name. A number times lanes has an operation of its own: a call less for rustc
+    /// to check and to remember.
+    fn fused(
+        &mut self,
+        [function, scaled]: [&'static str; 2],
+        [a, b, c]: [Operand; 3],
+        lanes: usize,
+    ) -> Piece {
+        let Some(factors) = self.scaled([a, b], lanes) else {
+            let name = self.name(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
+            return self.call_by(&name, &[a, b, c], lanes);
+        };
+        let name = self.name(scaled, lanes).unwrap_or_else(|| format!("Ops::{scaled}"));
+        let c = self.widened(c, lanes);
+        self.call_with(&name, factors.into_iter().chain([c]).collect())
+    }
+
+    /// The factors of a product of a number and lanes, the number first.
+    fn scaled(&mut self, [a, b]: [Operand; 2], lanes: usize) -> Option<Vec<Piece>> {
+        let [x, v] = match (self.width(a), self.width(b)) {
+            _ if lanes == 1 => return None,
+            (1, own) if own == lanes => [a, b],
+            (own, 1) if own == lanes => [b, a],
+            _ => return None,
+        };
+        Some(vec![self.operand(x), self.operand(v)])
     }
 
     /// The name of an operation on so many lanes, if it gets one.
@@ -221,7 +249,9 @@ impl Writer<'_> {
                 _ => (format!("{function}{lanes}"), Some(lanes.to_string())),
             };
             let types = match width {
-                Some(width) if *function == "splat" => format!("{one}, {width}"),
+                Some(width) if *function == "splat" || function.contains("scale") => {
+                    format!("{one}, {width}")
+                }
                 Some(width) => format!("::linkwork::__private::Vector<Ops, {one}, {width}>"),
                 None => one.to_string(),
             };
@@ -242,10 +272,13 @@ impl Writer<'_> {
     }
 
     fn call_by(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
-        let mut needs = Vec::new();
-        let mut list = Vec::new();
-        for argument in arguments {
-            let piece = self.widened(*argument, lanes);
+        let list = arguments.iter().map(|a| self.widened(*a, lanes)).collect();
+        self.call_with(function, list)
+    }
+
+    fn call_with(&mut self, function: &str, arguments: Vec<Piece>) -> Piece {
+        let (mut needs, mut list) = (Vec::new(), Vec::new());
+        for piece in arguments {
             needs.extend(piece.needs);
             list.push(piece.text);
         }

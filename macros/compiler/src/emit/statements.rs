@@ -26,22 +26,24 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
     for need in outputs.iter().flat_map(|p| &p.needs) {
         last_need[*need] = blocks.len();
     }
+    // What leaves a block is declared before it: as the value of the block it would be bound twice, and passed in a tuple.
     for (b, block) in blocks.iter().enumerate() {
-        let leaving: Vec<String> = block
-            .iter()
-            .flat_map(|s| &s.names)
-            .filter(|k| last_need[**k] > b)
-            .map(|k| format!("t{k}"))
-            .collect();
-        let tuple = match leaving.as_slice() {
-            [one] => format!("({one},)"),
-            many => format!("({})", many.join(", ")),
-        };
-        let _ = writeln!(out, "let {tuple} = {{");
-        for statement in *block {
-            write_let(out, statement);
+        let leaves = |s: &&Statement| s.names.iter().any(|k| last_need[*k] > b);
+        let names: Vec<String> =
+            block.iter().filter(leaves).flat_map(|s| &s.names).map(|k| format!("t{k}")).collect();
+        match names.as_slice() {
+            [] => {}
+            [one] => _ = writeln!(out, "let {one};"),
+            many => _ = writeln!(out, "let ({});", many.join(", ")),
         }
-        let _ = writeln!(out, "{tuple}\n}};");
+        out.push_str("{\n");
+        for statement in *block {
+            match leaves(&statement) {
+                true => _ = writeln!(out, "{} = {};", statement.pattern, statement.text),
+                false => write_let(out, statement),
+            }
+        }
+        out.push_str("}\n");
     }
 }
 

@@ -89,16 +89,16 @@ fn as_known(
     let mut left = places.to_vec();
     let known = |name: usize| bound_by.get(name).copied().filter(|at| *at > 0);
     let all_known = |needs: &[usize]| needs.iter().filter_map(|need| known(*need)).max().unwrap_or(0);
+    let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
     for [one, next] in neighbours(lanes(program, places, &known)) {
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
         }
-        let Entry { matrix, column, row } = one.place;
-        let text = format!(
-            "Ops::store_two::<{}, {}, {row}, _, _, _, _>(&mut {matrix}.data.0[{column}], t{}, t{});",
-            one.lane, next.lane, one.vector, next.vector
-        );
-        ready[one.known.max(next.known)].push(store(text, vec![one.vector, next.vector]));
+        pairs[one.known.max(next.known)].push([one, next]);
+    }
+    let widths = program.lanes();
+    for (pairs, ready) in pairs.iter().zip(&mut ready) {
+        ready.extend(together(pairs, &widths));
     }
     for (piece, places) in outputs.pieces.iter().zip(&left).filter(|(_, places)| !places.is_empty()) {
         let text = match places.as_slice() {
@@ -155,6 +155,42 @@ fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
         }
     }
     pairs
+}
+
+/// Statements that store pairs of lanes: all lanes of a vector at once that go below each other, all lanes of two vectors that
+/// go to columns side by side, and what is left pair by pair.
+fn together(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
+    let mut statements = Vec::new();
+    let mut rest = pairs;
+    while let [[one, next], ..] = rest {
+        let Entry { matrix, column, row } = one.place;
+        let (a, b, width) = (one.vector, next.vector, widths[one.vector]);
+        let goes_on = |step: usize, down: usize, right: usize| {
+            move |(k, [x, y]): &(usize, &[Lane; 2])| {
+                let place = Entry { matrix, column: column + k * right, row: row + k * down };
+                let lanes = (one.lane + k * step, next.lane + k * step);
+                x.place == place && (x.vector, y.vector) == (a, b) && (x.lane, y.lane) == lanes
+            }
+        };
+        let run = |step, down, right| rest.iter().enumerate().take_while(goes_on(step, down, right)).count();
+        let (text, taken) = if a == b && (one.lane, next.lane) == (0, 1) && 2 * run(2, 2, 0) == width {
+            (format!("Ops::store_rows::<{row}, _, _, _>(&mut {matrix}.data.0[{column}], t{a});"), width / 2)
+        } else if (one.lane, next.lane) == (0, 0) && widths[b] == width && run(1, 0, 1) == width {
+            (
+                format!(
+                    "Ops::store_columns::<{row}, {column}, _, _, _, _>(&mut {matrix}.data.0, t{a}, t{b});"
+                ),
+                width,
+            )
+        } else {
+            let lanes = format!("{}, {}", one.lane, next.lane);
+            let column = format!("{matrix}.data.0[{column}]");
+            (format!("Ops::store_two::<{lanes}, {row}, _, _, _, _>(&mut {column}, t{a}, t{b});"), 1)
+        };
+        statements.push(store(text, vec![a, b]));
+        rest = &rest[taken..];
+    }
+    statements
 }
 
 /// All results after the last statement.

@@ -1,0 +1,44 @@
+//! How much rustc has to read: its time and memory grow with calls, bindings and statements, whatever they become.
+
+use linkwork_compiler::expand;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The generated code of a chain of pins.
+fn chain(n: usize) -> String {
+    let (mut item, mut parent) = ("struct Chain {".to_string(), "ground".to_string());
+    for k in 1..=n {
+        let axis = ["x", "y", "z"][k % 3];
+        let _ = writeln!(
+            item,
+            "#[body(mass = 1, com = 0.2 * z, inertia = diagonal(0.03, 0.04, 0.02))] link{k}: Body,
+            #[joint({parent} -> link{k}, about = {axis})] joint{k}: Pin,"
+        );
+        parent = format!("link{k}.at(0.4 * z)");
+    }
+    item += "}";
+    let arguments = "gravity = -9.81 * z, derivatives".parse().unwrap();
+    let emitted = expand(arguments, item.parse().unwrap(), Path::new(""));
+    format!("{}{}", emitted.tokens, emitted.text)
+}
+
+#[test]
+fn a_long_chain_is_read_once() {
+    let (short, long) = (chain(16), chain(32));
+
+    // Jacobians of frames: twice as many for twice the links, not four times.
+    let jacobians = |code: &str| code.matches("_columns(").count();
+    assert!(jacobians(&long) < 3 * jacobians(&short), "{} and {}", jacobians(&short), jacobians(&long));
+
+    // A number times lanes is one call, and values leave a block without a tuple.
+    for code in [&short, &long] {
+        assert!(code.contains("scale_add8(") && !code.contains("(splat8("), "numbers are not spread first");
+        assert!(!code.contains(") = {\n"), "blocks have no values");
+    }
+    assert!(long.contains("\n{\n"), "large bodies have blocks");
+
+    // Lanes of one vector go into a column, or side by side into columns, by one call.
+    let each = long.matches("Ops::store_two").count();
+    let together = long.matches("Ops::store_rows").count() + long.matches("Ops::store_columns").count();
+    assert!(together > 4 * each, "{each} pairs and {together} vectors are stored");
+}
