@@ -33,6 +33,8 @@ pub use derive::{derive, derive_with, equations, equations_latex};
 /// Files are looked up in `folder`.
 pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
+    // What rustc has said of the struct's commas is not said again.
+    let item = syntax::separate(&item).map_or(item, |(separated, _)| separated);
     let Some(source) = read(arguments, item, folder, &mut cx) else {
         return Emitted { tokens: cx.into_tokens(), text: String::new() };
     };

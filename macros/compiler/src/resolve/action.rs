@@ -159,7 +159,8 @@ impl<'g> Builder<'_, 'g> {
             ActionKind::Dashpot { law: Law::Linear(written) } => {
                 let damping = self.scope.scalar(written, cx);
                 if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
-                    cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"));
+                    cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
+                        .help("a dashpot takes energy away by itself; what brings energy in is a `Force` or `Torque` with `value = …`");
                 }
                 if let Some(damping) = damping {
                     let figure = || format!("the damping of `{}`", action.name.text);

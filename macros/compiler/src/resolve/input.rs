@@ -171,12 +171,14 @@ impl<'g> Builder<'_, 'g> {
             cx.error(
                 on.place.clone(),
                 "this body is fixed to the ground: nothing that acts on it has an effect",
-            );
+            )
+            .help("name a body that moves");
             return None;
         };
         let sum: Direction<'g> = terms;
         if sum.iter().all(|(_, v)| v.is_zero()) {
-            cx.error(direction.place.clone(), "this direction is zero");
+            cx.error(direction.place.clone(), "this direction is zero")
+                .help("write `x`, `y`, `z` or another vector of some length");
             return None;
         }
         Some(match torque {

@@ -146,7 +146,8 @@ impl<'g> Builder<'_, 'g> {
     /// Says why nothing can act on a name.
     fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if name == GROUND {
-            cx.error(place.clone(), "nothing that acts on the ground has an effect");
+            cx.error(place.clone(), "nothing that acts on the ground has an effect")
+                .help("name a body that moves, or one of its points: `on = body.at(length * x)`");
         } else if self.scope.what(name) == Some("a joint") {
             cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
                 .help(format!("write `on = {name}`, or name a point of a body"));

@@ -222,7 +222,8 @@ impl<'g> Builder<'_, 'g> {
     pub fn add_inerter(&mut self, stretch: &Stretch<'g>, inertance: &syntax::Expr, cx: &mut Diagnostics) {
         if let Some(b) = self.scope.scalar(inertance, cx) {
             if let Some(n) = b.value().filter(|n| *n < 0.0) {
-                cx.error(inertance.place.clone(), format!("an inertance cannot be negative, but it is {n}"));
+                cx.error(inertance.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
+                    .help("it resists accelerations as a mass does: write its size");
             }
             self.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[b]);
             self.model.inertances.push(Inertance { rate: stretch.rate, inertance: b });

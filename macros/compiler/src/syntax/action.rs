@@ -141,7 +141,12 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
             Some(Target::Between(ends.pop()?, second))
         }
         other => {
+            let second = arguments.take_second(&other);
             let help = match &other.kind {
+                _ if second.is_some() => {
+                    let second = second.map_or_else(String::new, |second| second.spelt());
+                    format!("write `between = ({}, {second})`", other.spelt())
+                }
                 ExprKind::Array(ends) if ends.len() == 2 => {
                     format!("write `between = ({}, {})`", ends[0].spelt(), ends[1].spelt())
                 }

@@ -13,7 +13,7 @@ mod parse;
 mod slips;
 
 use parse::parse_arguments;
-use slips::{names_without_brackets_or_quotes, unnamed};
+use slips::{decimal_comma, names_without_brackets_or_quotes, unnamed};
 
 /// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions (of an
 /// equilibrium any number), and `key = value` in any order.
@@ -75,6 +75,10 @@ impl Arguments {
     }
 
     fn parse_with(tokens: TokenStream, span: Span, form: Form, cx: &mut Diagnostics) -> Option<Arguments> {
+        if let Some(error) = decimal_comma(&tokens) {
+            cx.syn(error);
+            return None;
+        }
         let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, form)).parse2(tokens);
         let mut arguments = match parsed {
             Ok(arguments) => arguments,
@@ -141,6 +145,16 @@ impl Arguments {
     /// The expressions without a key.
     pub fn take_plain(&mut self) -> Vec<Expr> {
         std::mem::take(&mut self.plain)
+    }
+
+    /// The one place that stands alone where a place has a key: most likely the second of a pair without parentheses.
+    pub fn take_second(&mut self, first: &Expr) -> Option<Expr> {
+        let is_place =
+            |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
+        match self.plain.as_slice() {
+            [second] if is_place(first) && is_place(second) => self.plain.pop(),
+            _ => None,
+        }
     }
 
     /// Where a word stands alone, without a value.

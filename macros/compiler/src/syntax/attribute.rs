@@ -6,6 +6,7 @@ use super::lists::Lists;
 use super::mechanism::{Mechanism, Requests, Shell};
 use super::options::read_options;
 use super::parameter::type_name;
+use super::separate::separate;
 use super::sound::Reading;
 use super::state::give_type;
 use super::table::table_variables;
@@ -95,11 +96,14 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     Some(Mechanism { description, shell, file, requests, reading })
 }
 
-fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
-    let item = match syn::parse2::<Item>(item) {
+fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
+    let item = match syn::parse2::<Item>(tokens.clone()) {
         Ok(item) => item,
         Err(error) => {
-            cx.syn(error);
+            match separate(&tokens) {
+                Some((_, slip)) => cx.syn(slip),
+                None => _ = cx.error(error.span(), error.to_string()).help(how_fields_are_written(&error)),
+            }
             return None;
         }
     };
@@ -121,6 +125,16 @@ fn parse_struct(item: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct> {
         "a mechanism is a struct with named fields: parameters (`mass: f64`) and elements (`#[body(mass = mass)] cart: Body`)",
     );
     None
+}
+
+/// What to do about an item that is none of Rust's.
+fn how_fields_are_written(error: &syn::Error) -> &'static str {
+    match error.to_string().contains("keyword") {
+        true => "this is a word of Rust's: name the field otherwise, and write it as `name: Type`",
+        false => {
+            "a mechanism is a struct, `pub struct Name { … }`; its fields are written `name: Type,`, with an attribute before them as in `#[body(mass = 1)] cart: Body,`"
+        }
+    }
 }
 
 /// The struct's type parameter, if it has one that can be the scalar type. Those that cannot be are taken away, so that

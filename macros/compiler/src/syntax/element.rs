@@ -87,6 +87,11 @@ pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut 
         {
             diagnostic.suggest(kind, types);
         }
+        if let [letter] = kind.as_bytes()
+            && letter.is_ascii_uppercase()
+        {
+            diagnostic.help(format!("or declare it as the type of all parameters: `struct Robot<{kind}>`"));
+        }
         if diagnostic.is_bare() {
             diagnostic.help("`linkwork::elements` lists them: `Body`, `Pin`, `Sleeve`, `Spring`, `Force`, …");
         }
@@ -241,7 +246,8 @@ fn own_arguments(
     let mut found = None;
     for attribute in attributes {
         let path = attribute.path();
-        let word = path.get_ident().map_or_else(|| "?".to_string(), Ident::to_string);
+        let words: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        let word = words.join("::");
         let span = path.segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         if word == expected {
             if found.is_some() {
@@ -280,8 +286,8 @@ fn check_foreign(word: &str, span: Span, kind: &str, cx: &mut Diagnostics) -> bo
     let diagnostic = cx.error(span, format!("unknown attribute `#[{word}]` on an element"));
     if own.is_empty() {
         diagnostic.help(format!("{} `{kind}` has no attribute", article(kind)));
-    } else if nearest(word, own).is_some() {
-        diagnostic.suggest(word, own.iter().copied());
+    } else if let Some(last) = word.rsplit("::").next().filter(|last| nearest(last, own).is_some()) {
+        diagnostic.suggest(last, own.iter().copied());
         return false;
     } else {
         let list: Vec<String> = own.iter().map(|word| format!("`#[{word}(…)]`")).collect();

@@ -21,6 +21,7 @@ mod lists;
 pub mod mechanism;
 mod options;
 mod parameter;
+mod separate;
 pub mod skipped;
 pub mod sound;
 mod state;
@@ -40,6 +41,7 @@ pub use mechanism::{
     FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, Printed, ROOT_JOINT, Requests,
     Shell, Skipped,
 };
+pub use separate::separate;
 
 /// What stands after a state's name in that of the function for its rate.
 pub const RATE_OF_STATE: &str = "_rate";

@@ -277,12 +277,29 @@ fn read_requests(
     }
     for e in arguments.take_plain() {
         match e.name() {
-            None => cx.error(e.place.clone(), "expected `name = value`").help("write `gravity = -9.81 * y`"),
+            None => {
+                let inside = match &e.kind {
+                    ExprKind::Array(items) => items.first().and_then(Expr::name),
+                    _ => None,
+                };
+                let help = match inside.filter(|word| REQUESTS.contains(word)) {
+                    Some(word) => format!("write `{word}` without brackets"),
+                    None => "write `gravity = -9.81 * y`".to_string(),
+                };
+                cx.error(e.place.clone(), "expected `name = value`").help(help)
+            }
             Some(word) if REQUESTS.contains(&word) => {
                 cx.error(e.place.clone(), format!("`{word}` stands here twice")).help("remove one of the two")
             }
             Some(word) if OPTIONS.contains(&word) => {
-                let value = if word == "gravity" { "-9.81 * y" } else { "…" };
+                let value = match word {
+                    "gravity" => "-9.81 * y",
+                    "equations" => "lagrange",
+                    "formulation" => "speeds",
+                    "scalar" => "f32",
+                    "inertia" => "trust",
+                    _ => "…",
+                };
                 cx.error(e.place.clone(), format!("`{word}` says nothing"))
                     .help(format!("write `{word} = {value}`"))
             }

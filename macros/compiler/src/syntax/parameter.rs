@@ -81,7 +81,13 @@ pub fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &m
                 word.span(),
                 format!("`#[{word}]` says how an element is placed, but `{}` is a parameter", field.text),
             )
-            .help("give the field an element's type, such as `Body` or `Pin`");
+            .help(match word.to_string().as_str() {
+                "output" | "define" => "give the field the type of a result: `Scalar`, or `Vector`",
+                "acts" => {
+                    "give the field an element's type, such as `Spring`, `Dashpot`, `Force` or `Torque`"
+                }
+                _ => "give the field an element's type, such as `Body` or `Pin`",
+            });
         }
     }
 }

@@ -44,7 +44,8 @@ impl<'g> Builder<'_, 'g> {
             .in_context(Context::new(Allowed::Placement, ground), |s| s.scalar(&given.coefficient, cx))?;
         if let Some(n) = coefficient.value().filter(|n| *n < 0.0) {
             let place = given.coefficient.place.clone();
-            cx.error(place, format!("a coefficient of friction cannot be negative, but it is {n}"));
+            cx.error(place, format!("a coefficient of friction cannot be negative, but it is {n}"))
+                .help("friction opposes the motion by itself: write its size");
         }
         let name = &constraint.name.text;
         self.scope.require(Rule::NotNegative, || format!("the friction of `{name}`"), &[coefficient]);

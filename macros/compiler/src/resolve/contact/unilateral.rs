@@ -271,7 +271,12 @@ impl<'g> Builder<'_, 'g> {
         let most = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
         if let Some(n) = value.value().filter(|n| !(0.0..=most).contains(n)) {
             let range = if most < 2.0 { "is between 0 and 1" } else { "cannot be negative" };
-            cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}"));
+            cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}")).help(
+                match most < 2.0 {
+                    true => "the part of the speed that is left after the impact: 0 stays, 1 loses no energy",
+                    false => "it opposes the motion by itself: write its size",
+                },
+            );
             return None;
         }
         self.scope.require(rule, || format!("the {what} of `{name}`"), &[value]);

@@ -4,6 +4,7 @@ use super::{Arguments, Value};
 use crate::diag::{Diagnostics, one_of, syn_error};
 use crate::syntax::expression::{parse_expr, quoted, unexpected};
 use crate::syntax::{Expr, ExprKind, words};
+use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::ParseStream;
 use syn::{Ident, LitStr, Token, token};
@@ -97,6 +98,28 @@ pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> 
 fn is_double(input: ParseStream<'_>) -> bool {
     let ahead = input.fork();
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
+}
+
+/// The error at a number with a decimal comma: the value of an argument ends in a whole number, and another one follows.
+pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
+    let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
+    let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+    let is = |token: &TokenTree, sign| matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign);
+    let mut is_value = false;
+    for (k, token) in tokens.iter().enumerate() {
+        if is(token, ',')
+            && is_value
+            && let (Some(TokenTree::Literal(whole)), Some(TokenTree::Literal(part))) =
+                (tokens.get(k.wrapping_sub(1)), tokens.get(k + 1))
+            && is_whole(&whole.to_string())
+            && is_whole(&part.to_string())
+        {
+            let help = format!("numbers have a decimal point: write `{whole}.{part}`");
+            return Some(syn_error(whole.span(), &format!("`{whole},{part}` is two numbers"), &help));
+        }
+        is_value = is(token, '=') || (is_value && !is(token, ','));
+    }
+    None
 }
 
 /// What is meant by a text alone, or by names in brackets or parentheses, as the inside of a list of texts.

@@ -176,6 +176,7 @@ pub const SPRING: Words = &[
         "free_length",
     ),
     ("angle theta0 phi0 restangle naturalangle q0 rest natural free equilibrium", "free_angle"),
+    ("inertance inerter", "what resists accelerations is an `Inerter`, a field of its own"),
     ("damping c d damper", "a spring does not damp: put a `Dashpot` beside it, a field of its own"),
     ("f law", "force"),
     ("potential u", "energy"),
@@ -186,6 +187,8 @@ pub const DASHPOT: Words = &[
     (ON, "on"),
     ("points ends connects", "between"),
     ("c d b damp dampingcoefficient coefficient viscosity viscous resistance", "damping"),
+    ("inertance inerter", "what resists accelerations is an `Inerter`, a field of its own"),
+    ("coulomb friction mu dry", "dry friction is a `Friction`, a field of its own"),
     ("stiffness k", "a dashpot does not spring back: put a `Spring` beside it, a field of its own"),
     ("f law", "force"),
 ];
@@ -379,7 +382,7 @@ pub const FUNCTIONS: Words = &[
     ("ifelse where when piecewise pieces select", "a law in pieces is written `if a < b { … } else { … }`"),
 ];
 
-const SI: &str = "figures stand alone: all quantities are in SI units, angles in radians or `degrees(90)`";
+const SI: &str = "figures stand alone: all quantities are in SI units, angles in radians or `degrees(90)`; a parameter is a field of this name, of type `f64`";
 const VALUE: &str = "a value is a number, a parameter, a coordinate or an expression of them";
 
 /// Names in expressions.
