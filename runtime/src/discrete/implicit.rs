@@ -5,7 +5,7 @@
 //! `p(q⁺, v⁺) = p(q_m, w) + (h/2) f(q_m, w) + Jᵀ(q⁺) μ`, with constraints on configurations that hold at `q⁺`, those on
 //! velocities at the midpoint, and all of their rates at the end ([`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint)).
 
-use super::projected::{balance, check_regular};
+use super::projected::Corrections;
 use super::{DifferentiableStep, Transition, advanced};
 use crate::constraint::{ConstrainedDerivatives, column, each_column, multipliers};
 use crate::derivatives::{ByMotion, Derivatives, RheonomicDerivatives};
@@ -238,8 +238,8 @@ where
     {
         let (m, t, h, half, still) = (self.m, self.t, self.h, self.half(), SVector::zeros());
         let (middle, (end, after)) = (self.middle(), &self.end);
-        check_regular(m, t, self.q)?;
-        check_regular(m, t + h, end)?;
+        m.check_regular(t, self.q)?;
+        m.check_regular(t + h, end)?;
         let matrix = self.matrix();
         let own = m.generalized_momentum(t + half, &middle, &self.w);
         let lambda = multipliers(m, t, self.q, &(own - self.kick - gain));
@@ -264,12 +264,12 @@ where
             m,
             matrix,
             pushed: eliminated(matrix, jacobian.transpose()),
-            pushes_by_q: -balance(m, t, self.q, &still, &lambda).0,
+            pushes_by_q: -m.balance(t, self.q, &still, &lambda).0,
             by_w,
             by_q,
             t: t + h,
             end,
-            balance_by_q: momentum(m, t + h, end, after).0 + balance(m, t + h, end, &still, &mu).0,
+            balance_by_q: momentum(m, t + h, end, after).0 + m.balance(t + h, end, &still, &mu).0,
             rates_by_q: m.equation_derivatives(t + h, end, after, &still, &SVector::zeros()).rates_by_q,
         };
         Ok(self.transition(&Numbered::<M, T, NQ, NV, NU, NH, NC>(&held)))

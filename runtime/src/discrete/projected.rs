@@ -13,56 +13,6 @@ use nalgebra::{SMatrix, SVector};
 /// Corrections of a configuration that are followed; the second is rounding for what steps leave.
 pub(super) const MOST_CORRECTIONS: usize = 8;
 
-/// Derivatives of `M x − Jᵀ λ` and `J x` by the configuration.
-pub(super) fn balance<
-    M,
-    T,
-    const NQ: usize,
-    const NV: usize,
-    const NU: usize,
-    const NH: usize,
-    const NC: usize,
->(
-    m: &M,
-    t: T,
-    q: &SVector<T, NQ>,
-    x: &SVector<T, NV>,
-    lambda: &SVector<T, NC>,
-) -> (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)
-where
-    T: Real,
-    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
-{
-    let still = SVector::zeros();
-    let with: EquationDerivatives<T, NV, NC> = m.equation_derivatives(t, q, &still, x, lambda);
-    let without = m.equation_derivatives(t, q, &still, &still, &SVector::zeros());
-    (with.forces_by_q - without.forces_by_q, with.accelerations_by_q - without.accelerations_by_q)
-}
-
-/// The error of a step that begins or ends where constraints lose rank, as it counts time.
-pub(super) fn check_regular<
-    M,
-    T,
-    const NQ: usize,
-    const NV: usize,
-    const NU: usize,
-    const NH: usize,
-    const NC: usize,
->(
-    m: &M,
-    t: T,
-    q: &SVector<T, NQ>,
-) -> Result<(), Error>
-where
-    T: Real,
-    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
-{
-    if m.is_nearly_singular(t, q, &SVector::zeros()) {
-        return Err(Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular });
-    }
-    Ok(())
-}
-
 /// A correction `x` of a configuration by Newton's method, `M x = Jᵀ λ`, `J x = −φ`, to first order.
 pub(super) struct Correction<T, const NV: usize, const NC: usize> {
     pub(super) x: SVector<T, NV>,
@@ -74,38 +24,6 @@ pub(super) struct Correction<T, const NV: usize, const NC: usize> {
     pub(super) change: SMatrix<T, NV, NV>,
     /// Nothing is left but rounding.
     pub(super) done: bool,
-}
-
-/// That of a configuration at the time `t`.
-pub(super) fn correction<
-    M,
-    T,
-    const NQ: usize,
-    const NV: usize,
-    const NU: usize,
-    const NH: usize,
-    const NC: usize,
->(
-    m: &M,
-    t: T,
-    near: &SVector<T, NQ>,
-) -> Correction<T, NV, NC>
-where
-    T: Real,
-    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
-{
-    let residuals = m.constraint_residuals(t, near);
-    let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
-    let x = m.constraint_correction(t, near, &gap);
-    let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
-    let own = multipliers(m, t, near, &(m.mass_matrix(t, near) * x));
-    let (forces, mut gaps) = balance(m, t, near, &x, &own);
-    let jacobian = m.constraint_jacobian(t, near);
-    for k in 0..NH {
-        gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
-    }
-    let change = each_column(|j| m.constraint_response(t, near, &-column(&forces, j), &column(&gaps, j)));
-    Correction { x, own, forces, change, done }
 }
 
 /// The correction `x` of a velocity, `M x = Jᵀ λ`, `J (v + x) + … = 0`, to first order.
@@ -120,34 +38,76 @@ pub(super) struct Stop<T, const NV: usize, const NC: usize> {
     pub(super) kept: SMatrix<T, NV, NV>,
 }
 
-/// That of the correction `x` which ends at the velocity `v`.
-pub(super) fn stop<
-    M,
-    T,
+/// The corrections that bring a step onto constraints, with their derivatives.
+pub(super) trait Corrections<
+    T: Real,
     const NQ: usize,
     const NV: usize,
     const NU: usize,
     const NH: usize,
     const NC: usize,
->(
-    m: &M,
-    t: T,
-    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
-    x: &SVector<T, NV>,
-) -> Stop<T, NV, NC>
+>: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T> + Sized
+{
+    /// Derivatives of `M x − Jᵀ λ` and `J x` by the configuration.
+    fn balance(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        x: &SVector<T, NV>,
+        lambda: &SVector<T, NC>,
+    ) -> (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>) {
+        let still = SVector::zeros();
+        let with: EquationDerivatives<T, NV, NC> = self.equation_derivatives(t, q, &still, x, lambda);
+        let without = self.equation_derivatives(t, q, &still, &still, &SVector::zeros());
+        (with.forces_by_q - without.forces_by_q, with.accelerations_by_q - without.accelerations_by_q)
+    }
+
+    /// The error of a step that begins or ends where constraints lose rank, as it counts time.
+    fn check_regular(&self, t: T, q: &SVector<T, NQ>) -> Result<(), Error> {
+        if self.is_nearly_singular(t, q, &SVector::zeros()) {
+            return Err(Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular });
+        }
+        Ok(())
+    }
+
+    /// That of a configuration at the time `t`.
+    fn correction(&self, t: T, near: &SVector<T, NQ>) -> Correction<T, NV, NC> {
+        let residuals = self.constraint_residuals(t, near);
+        let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
+        let x = self.constraint_correction(t, near, &gap);
+        let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
+        let own = multipliers(self, t, near, &(self.mass_matrix(t, near) * x));
+        let (forces, mut gaps) = self.balance(t, near, &x, &own);
+        let jacobian = self.constraint_jacobian(t, near);
+        for k in 0..NH {
+            gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
+        }
+        let change =
+            each_column(|j| self.constraint_response(t, near, &-column(&forces, j), &column(&gaps, j)));
+        Correction { x, own, forces, change, done }
+    }
+
+    /// That of the correction `x` which ends at the velocity `v`.
+    fn stop(&self, t: T, (q, v): (&SVector<T, NQ>, &SVector<T, NV>), x: &SVector<T, NV>) -> Stop<T, NV, NC> {
+        let own = multipliers(self, t, q, &(self.mass_matrix(t, q) * x));
+        let forces = self.balance(t, q, x, &own).0;
+        let (still, none) = (SVector::zeros(), SVector::zeros());
+        let rates = self.equation_derivatives(t, q, v, &still, &SVector::zeros()).rates_by_q;
+        let jacobian = self.constraint_jacobian(t, q);
+        let turned =
+            each_column(|j| self.constraint_response(t, q, &-column(&forces, j), &column(&rates, j)));
+        let kept: SMatrix<T, NV, NV> = SMatrix::identity()
+            + each_column::<T, NV, NV>(|j| self.constraint_response(t, q, &none, &column(&jacobian, j)));
+        Stop { own, forces, turned, kept }
+    }
+}
+
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
+    Corrections<T, NQ, NV, NU, NH, NC> for M
 where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let own = multipliers(m, t, q, &(m.mass_matrix(t, q) * x));
-    let forces = balance(m, t, q, x, &own).0;
-    let (still, none) = (SVector::zeros(), SVector::zeros());
-    let rates = m.equation_derivatives(t, q, v, &still, &SVector::zeros()).rates_by_q;
-    let jacobian = m.constraint_jacobian(t, q);
-    let turned = each_column(|j| m.constraint_response(t, q, &-column(&forces, j), &column(&rates, j)));
-    let kept: SMatrix<T, NV, NV> = SMatrix::identity()
-        + each_column::<T, NV, NV>(|j| m.constraint_response(t, q, &none, &column(&jacobian, j)));
-    Stop { own, forces, turned, kept }
 }
 
 /// A step brought onto the constraints at the time `t` of its end.
@@ -175,11 +135,11 @@ where
     }
     let failed = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, &free.q, &free.v).map_err(failed)?;
-    check_regular(m, t, &q)?;
+    m.check_regular(t, &q)?;
     let mut near = free.q;
     let mut moved = SMatrix::<T, NV, NV>::identity();
     for _ in 0..MOST_CORRECTIONS {
-        let Correction { x, change, done, .. } = correction(m, t, &near);
+        let Correction { x, change, done, .. } = m.correction(t, &near);
         let (by_q, by_x) = m.integrate_derivatives(&x);
         moved = product(&(by_q + product(&by_x, &change)), &moved);
         near = m.integrate(&near, &x);
@@ -187,7 +147,7 @@ where
             break;
         }
     }
-    let Stop { turned, kept, .. } = stop(m, t, (&q, &v), &(v - free.v));
+    let Stop { turned, kept, .. } = m.stop(t, (&q, &v), &(v - free.v));
     let turned = product(&turned, &moved);
     Ok(Transition {
         q,

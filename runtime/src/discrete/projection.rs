@@ -1,7 +1,7 @@
 //! Second derivatives of the projection onto constraints that ends a step.
 
 use super::curvature::{Curvature, Displacement};
-use super::projected::{Correction, MOST_CORRECTIONS, Stop, balance, check_regular, correction, stop};
+use super::projected::{Correction, Corrections, MOST_CORRECTIONS, Stop};
 use crate::Real;
 use crate::blocks::product;
 use crate::constraint::{
@@ -97,7 +97,7 @@ where
     // Those of the residuals are derivatives of the Jacobian's rows.
     let of_residual = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
     let holonomic = SVector::from_fn(|k, _| of_residual(k));
-    let residuals = balance(m, t, q, &still, &holonomic).0;
+    let residuals = m.balance(t, q, &still, &holonomic).0;
     // Along body axes they are not symmetric, but those along `q ⊕ ε dq` are.
     let residuals = with_transpose(SMatrix::zeros(), &(residuals * constant::<T>(0.5)));
     let multipliers = multiplier_changes(m, t, q, change, forces);
@@ -126,7 +126,7 @@ where
 {
     let failed = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, q_free, v_free).map_err(failed)?;
-    check_regular(m, t, &q)?;
+    m.check_regular(t, &q)?;
     // The configurations on the way, with how they move with the first; plain coordinates stay as they are where they are moved.
     let displaced = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::of(m, x));
     let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
@@ -134,7 +134,7 @@ where
     for stage in &mut way {
         *stage = (near, moved);
         count += 1;
-        let found = correction(m, t, &near);
+        let found = m.correction(t, &near);
         moved = match displaced(&found.x) {
             Some(along) => product(&(along.by_q + product(&along.by_dv, &found.change)), &moved),
             None => moved + product(&found.change, &moved),
@@ -146,7 +146,7 @@ where
     }
 
     let x = v - v_free;
-    let Stop { own, forces, turned, kept } = stop(m, t, (&q, &v), &x);
+    let Stop { own, forces, turned, kept } = m.stop(t, (&q, &v), &x);
     let (w, z) = adjoint(m, t, &q, of_v);
     let none = SVector::zeros();
     let equations = Contracted { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }.curvature(m, t, &q, &v);
@@ -163,7 +163,7 @@ where
 
     let mut gradient = of_q + turned.tr_mul(of_v);
     for (near, moved) in way.iter().take(count).rev() {
-        let found = correction(m, t, near);
+        let found = m.correction(t, near);
         let mut of_x = gradient;
         let mut own = SMatrix::zeros();
         if let Some(along) = displaced(&found.x) {
