@@ -87,9 +87,8 @@ fn check(kind: &str, usual: u64, case: impl Fn(&mut Random, &Style) -> (f64, Str
         let mut random = Random::new(seed);
         let style = &STYLES[seed as usize % 4];
         let (off, what) = case(&mut random, style);
-        // Of the lightest bodies fewer digits are left, and where another coordinate is much faster than the one that leads out.
-        let most = if style.masses > 3.0 || kind == "stack" { 1e2 } else { 1e1 };
-        assert!(off < most, "{kind}, seed {seed}: off by {off} times what is expected, {what}");
+        // One linkage in a million, of bodies over twelve powers of ten at the edge of what is near a flat position, is off by more.
+        assert!(off < 1e1, "{kind}, seed {seed}: off by {off} times what is expected, {what}");
     }
 }
 
