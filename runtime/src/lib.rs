@@ -28,7 +28,8 @@
 //!     let tau = pendulum.inverse_dynamics(&q, &rest, &rest);
 //!     assert!((tau[0] - 2.0 * 9.81 * 0.75).abs() < 1e-12);
 //!
-//!     // Released there, it swings until its velocity is zero again: on the other side, as high as before.
+//!     // Released there, it swings until its velocity is zero again: on the other side,
+//!     // as high as before.
 //!     let run = simulate(&pendulum).from(q, rest);
 //!     let end = run.until_crossing(Crossing::Rising, |_t, _q, v| v[0]).finish()?;
 //!     assert!((end.q[0] + std::f64::consts::FRAC_PI_2).abs() < 1e-6);
