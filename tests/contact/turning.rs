@@ -204,3 +204,51 @@ fn surfaces_that_yield_brake_what_turns() {
     let way = 0.5 - 0.125 * 5.0 / 7.0 * 0.001 * G / RADIUS;
     assert!((rolls.q[0] - way).abs() < 1e-4, "{rolls:?} {way}");
 }
+
+/// A ball on felt, whose output reads the moments.
+#[mechanism(gravity = -9.81 * z)]
+struct Felt {
+    #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ground.plane(z), ball.sphere(0.05), friction = 0.5, torsional = 0.002, rolling = 0.001)]
+    floor: Contact,
+    #[output(contact_moment(floor))]
+    couple: Vector,
+    #[output(power(floor))]
+    taken: Scalar,
+}
+
+/// One whose surfaces yield.
+#[mechanism(gravity = -9.81 * z)]
+struct Soft {
+    #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.05), ground.plane(z), stiffness = 1e4, torsional = 0.002, rolling = 0.001, speed = 1e-6)]
+    floor: Contact,
+    #[output(contact_moment(floor))]
+    couple: Vector,
+    #[output(power(floor))]
+    taken: Scalar,
+}
+
+/// A ball that rolls along x and spins about z is braked by `ρ m g` about y and by `a m g` about z, and loses these times its angular
+/// velocities; what the first surface is decides whose moments the output reads.
+#[test]
+fn outputs_read_moments() {
+    let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();
+    let moments = SVector::<f64, 3>::from([0.0, -0.001, 0.002]) * (MASS * G);
+    let lost = -(0.001 * 20.0 + 0.002 * 15.0) * MASS * G;
+    let q = LEVEL.laid();
+    let m = Felt {};
+    assert!((m.couple(&q, &v).unwrap() + moments).amax() < 1e-8);
+    assert!((m.taken(&q, &v).unwrap() - lost).abs() < 1e-6, "{:?} {lost}", m.taken(&q, &v));
+    let m = Soft {};
+    let mut q = q;
+    q[2] -= MASS * G / 1e4;
+    assert!((m.couple(&q, &v) - moments).amax() < 1e-6, "{}", m.couple(&q, &v));
+    assert!((m.taken(&q, &v) - lost).abs() < 1e-5);
+}

@@ -238,7 +238,7 @@ impl<'a, 'g> Scope<'a, 'g> {
             "angle" => self.angle(function, arguments, cx),
             "r" | "v" | "a" | "omega" | "alpha" => self.slash(function, arguments, cx),
             "reaction_force" | "reaction_torque" => self.reaction(function, arguments, cx),
-            "contact_force" => self.contact_force(function, arguments, cx),
+            "contact_force" | "contact_moment" => self.exerted(function, arguments, cx),
             "momentum" | "angular_momentum" | "kinetic_energy" => self.momentum(function, arguments, cx),
             "moment_of_inertia" => self.moment_of_inertia(function, arguments, cx),
             "center_of_mass" => self.center_of_mass(function, arguments, cx),

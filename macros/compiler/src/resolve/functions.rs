@@ -3,7 +3,7 @@
 use crate::expr::Function;
 
 /// Functions of the language beside the elementary ones.
-pub const FUNCTIONS: [&str; 56] = [
+pub const FUNCTIONS: [&str; 57] = [
     "atan2",
     "degrees",
     "pow",
@@ -47,6 +47,7 @@ pub const FUNCTIONS: [&str; 56] = [
     "reaction_force",
     "reaction_torque",
     "contact_force",
+    "contact_moment",
     "density",
     "pressure",
     "temperature",

@@ -153,11 +153,14 @@ fn uses(d: &Description, e: &Expr) -> Uses {
                 "rate" if arguments.iter().any(|argument| names_motion(d, argument)) => {
                     (uses.velocities, uses.accelerations) = (true, true)
                 }
+                "power" if arguments.iter().any(|argument| names_contact(d, argument)) => {
+                    (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty())
+                }
                 "v" | "omega" | "rate" | "momentum" | "angular_momentum" | "kinetic_energy" | "power" => {
                     uses.velocities = true
                 }
                 "a" | "alpha" => uses.accelerations = true,
-                "reaction_force" | "reaction_torque" | "contact_force" => {
+                "reaction_force" | "reaction_torque" | "contact_force" | "contact_moment" => {
                     (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty())
                 }
                 _ => {}
@@ -167,6 +170,11 @@ fn uses(d: &Description, e: &Expr) -> Uses {
         }
     }
     uses
+}
+
+/// Whether an expression is the name of a contact.
+fn names_contact(d: &Description, e: &Expr) -> bool {
+    d.contacts.iter().any(|contact| contact.soft.is_none() && e.name() == Some(contact.name.text.as_str()))
 }
 
 /// Whether an expression names a velocity.

@@ -186,14 +186,32 @@ pub struct Kinematics<'g> {
     pub twists: Vec<Spatial<'g>>,
     /// By joint: its number, and the axes of its frame on the parent, in which its reactions are resolved.
     pub transmissions: BTreeMap<String, (usize, Option<LinkId>, Rotation<'g>)>,
-    /// By contact: what its surfaces exert on each other, the second one on the first, by axes of links.
-    pub touches: BTreeMap<String, Vec<(Option<LinkId>, Vec3<'g>)>>,
+    /// By contact: what its surfaces exert on each other.
+    pub touches: BTreeMap<String, Exerted<'g>>,
     /// By force element that an output asks for: what it delivers.
     pub powers: BTreeMap<String, Delivered<'g>>,
     /// Accelerations of the links, once all are there.
     pub accelerations: Vec<Spatial<'g>>,
     /// Mass, centre of mass and central inertia of bodies and particles.
     pub masses: BTreeMap<String, MassProperties<'g>>,
+}
+
+/// What the second surface of a contact exerts on the first, by axes of links.
+#[derive(Debug, Default)]
+pub struct Exerted<'g> {
+    /// Forces at all points.
+    pub forces: Vec<(Option<LinkId>, Vec3<'g>)>,
+    /// Moments of friction against spin and rolling.
+    pub moments: Vec<(Option<LinkId>, Vec3<'g>)>,
+    /// What all of them deliver.
+    pub power: Option<Expr<'g>>,
+}
+
+impl<'g> Exerted<'g> {
+    /// Adds power.
+    pub fn deliver(&mut self, power: Expr<'g>) {
+        self.power = Some(self.power.map_or(power, |sum| sum + power));
+    }
 }
 
 /// What a force element delivers, or why that is not known.

@@ -1,8 +1,9 @@
-//! Forces at contacts, for the outputs that name them.
+//! Forces and moments at contacts, for the outputs that name them.
 
+use super::unilateral::Point;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::symbols_in;
+use crate::kinematics::{symbols_in, velocity_gradient};
 use crate::mechanism::Quantity;
 use crate::resolve::scope::{Allowed, Axes, Scope, Value};
 use crate::syntax::{self, Name};
@@ -16,8 +17,9 @@ pub fn stands_alone(values: &[Expr<'_>]) -> bool {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `contact_force(name)`: what the second surface exerts on the first, at all points where they touch.
-    pub fn contact_force(
+    /// `contact_force(name)` and `contact_moment(name)`: what the second surface exerts on the first, at all points where they touch; of
+    /// moments those of friction against spin and rolling.
+    pub fn exerted(
         &self,
         function: &Name,
         arguments: &[syntax::Expr],
@@ -26,8 +28,9 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = self.kinematics.borrow();
         let known = || kinematics.touches.keys().map(String::as_str);
         let [e] = arguments else {
-            cx.error(function.place.clone(), "`contact_force` takes one contact")
-                .help("write `contact_force(foot)`");
+            let word = &function.text;
+            cx.error(function.place.clone(), format!("`{word}` takes one contact"))
+                .help(format!("write `{word}(foot)`"));
             return None;
         };
         let Some(name) = e.name() else {
@@ -37,7 +40,7 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Reaction, "a force at a contact", &function.place, cx) {
             return None;
         }
-        let Some(forces) = kinematics.touches.get(name) else {
+        let Some(exerted) = kinematics.touches.get(name) else {
             if self.is_news(name, cx) {
                 let error = cx.error(e.place.clone(), format!("unknown contact `{name}`"));
                 error.suggest(name, known());
@@ -49,6 +52,13 @@ impl<'g> Scope<'_, 'g> {
             }
             return None;
         };
+        let of_moments = function.text == "contact_moment";
+        let forces = if of_moments { &exerted.moments } else { &exerted.forces };
+        if of_moments && forces.is_empty() {
+            cx.error(e.place.clone(), format!("`{name}` has no moments of friction"))
+                .help("`torsional = …` and `rolling = …`, m, are moments by the normal force");
+            return None;
+        }
         let mut terms: Vec<(Axes, Vec3<'g>)> = Vec::new();
         for (link, force) in forces {
             let axes = Axes::Link(*link);
@@ -58,5 +68,19 @@ impl<'g> Scope<'_, 'g> {
             }
         }
         Some(Value::Vector(terms))
+    }
+}
+
+/// Reports moments of friction against what does not turn.
+pub(super) fn check_turns(contact: &syntax::Contact, points: &[&Point<'_>], cx: &mut Diagnostics) {
+    let still = |axis: usize| points.iter().all(|point| velocity_gradient(point.turns[axis]).is_empty());
+    let asked = [
+        (&contact.torsional, "about the normal of this contact", still(0)),
+        (&contact.rolling, "about the tangents of this contact", still(1) && still(2)),
+    ];
+    for (e, about, _) in asked.into_iter().filter(|(.., still)| *still && !contact.of_file) {
+        let Some(e) = e else { continue };
+        cx.error(e.place.clone(), format!("nothing turns {about}"))
+            .help("`torsional` brakes spin about the normal, `rolling` what turns about the tangents");
     }
 }

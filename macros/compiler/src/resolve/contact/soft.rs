@@ -5,9 +5,9 @@ use super::unilateral::{Laws, Point};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::velocity_gradient;
-use crate::mechanism::{LinkId, Load, Rule};
+use crate::mechanism::{Load, Rule};
 use crate::resolve::builder::Builder;
-use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::scope::{Allowed, Context, Exerted};
 use crate::syntax::{self, Softness};
 
 /// The speed of slip below which friction falls off, m/s.
@@ -57,7 +57,7 @@ impl<'g> Builder<'_, 'g> {
         point: &Point<'g>,
         laws: Laws<'g>,
         soft: &Soft<'g>,
-        forces: &mut Vec<(Option<LinkId>, Vec3<'g>)>,
+        exerted: &mut Exerted<'g>,
     ) {
         let g = self.scope.graph;
         let overlap = (-point.gap).extreme(Extreme::Max, g.zero());
@@ -72,10 +72,12 @@ impl<'g> Builder<'_, 'g> {
         if !soft.dissipation.is_zero() {
             self.model.loads.push(Load { rate, force: damping, dissipative: true });
         }
-        forces.push((point.ancestor, normal * pressure));
-        let [spin, roll @ ..] = point.turns;
-        self.add_moment(&[spin], laws.torsional, pressure, soft.speed);
-        self.add_moment(&roll, laws.rolling, pressure, soft.speed);
+        exerted.forces.push((point.ancestor, normal * pressure));
+        for (about, most) in [(0..1, laws.torsional), (1..3, laws.rolling)] {
+            let turns: Vec<_> = about.map(|k| (point.rates[k].0, point.turns[k])).collect();
+            let moments = self.add_moment(&turns, most, pressure, soft.speed);
+            exerted.moments.extend(moments.into_iter().map(|moment| (point.ancestor, moment)));
+        }
         let friction = laws.friction;
         if friction.is_zero() {
             return;
@@ -87,21 +89,30 @@ impl<'g> Builder<'_, 'g> {
             }
             let force = -(friction * pressure * rate / slip);
             self.model.loads.push(Load { rate, force, dissipative: true });
-            forces.push((point.ancestor, direction * force));
+            exerted.forces.push((point.ancestor, direction * force));
         }
     }
 
-    /// Adds a moment of friction against the angular velocities `turns`: at most `most` by the normal force, and less where `most`
-    /// times the angular velocity is below the speed at which friction falls off.
-    fn add_moment(&mut self, turns: &[Expr<'g>], most: Expr<'g>, pressure: Expr<'g>, speed: Expr<'g>) {
+    /// Adds moments of friction against the angular velocities `turns` about directions: at most `most` by the normal force, and less
+    /// where `most` times the angular velocity is below the speed at which friction falls off. Returns them.
+    fn add_moment(
+        &mut self,
+        turns: &[(Vec3<'g>, Expr<'g>)],
+        most: Expr<'g>,
+        pressure: Expr<'g>,
+        speed: Expr<'g>,
+    ) -> Vec<Vec3<'g>> {
         if most.is_zero() {
-            return;
+            return Vec::new();
         }
-        let sum = |sum: Expr<'g>, turn: &Expr<'g>| sum + (most * *turn).square();
-        let size = turns.iter().fold(speed.square(), sum).sqrt();
-        for turn in turns.iter().filter(|turn| !velocity_gradient(**turn).is_empty()) {
+        let square = turns.iter().fold(speed.square(), |sum, (_, turn)| sum + (most * *turn).square());
+        let size = square.sqrt();
+        let mut moments = Vec::new();
+        for (direction, turn) in turns.iter().filter(|(_, turn)| !velocity_gradient(*turn).is_empty()) {
             let force = -(most * pressure * (most * *turn) / size);
             self.model.loads.push(Load { rate: *turn, force, dissipative: true });
+            moments.push(*direction * force);
         }
+        moments
     }
 }

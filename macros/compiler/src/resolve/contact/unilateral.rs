@@ -1,5 +1,6 @@
 //! Contacts that open and close: surfaces of bodies, and coordinates at their bounds.
 
+use super::force::check_turns;
 use super::surface::{Form, Surface};
 use super::terrain::Terrain;
 use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
@@ -9,7 +10,8 @@ use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
-use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::power::{Counts, is_asked};
+use crate::resolve::scope::{Allowed, Context, Exerted};
 use crate::syntax::contact::{EXAMPLE, collision};
 use crate::syntax::{self, ExprKind, GROUND};
 
@@ -104,16 +106,23 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         check_turns(contact, &apart, cx);
-        let (several, mut forces) = (apart.len() > 1, Vec::new());
+        let (several, mut exerted, before) = (apart.len() > 1, Exerted::default(), Counts::of(&self.model));
         for (k, point) in apart.into_iter().enumerate() {
             let name = &contact.name.text;
             let name = if several { format!("{name}.{k}") } else { name.clone() };
             match soft.as_ref().and_then(Option::as_ref) {
-                Some(soft) => self.add_soft_point(point, laws, soft, &mut forces),
-                None => self.add_point(name, point, laws, &mut forces),
+                Some(soft) => self.add_soft_point(point, laws, soft, &mut exerted),
+                None => self.add_point(name, point, laws, &mut exerted),
             }
         }
-        self.scope.kinematics.borrow_mut().touches.insert(contact.name.text.clone(), forces);
+        if is_asked(self.description, &contact.name) {
+            let power = match (&soft, exerted.power) {
+                (None, Some(power)) => Ok(power),
+                _ => self.power_since(&before, &contact.name.text),
+            };
+            self.scope.kinematics.borrow_mut().powers.insert(contact.name.text.clone(), power);
+        }
+        self.scope.kinematics.borrow_mut().touches.insert(contact.name.text.clone(), exerted);
     }
 
     /// Where two surfaces touch; `None` after a mistake.
@@ -143,33 +152,33 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Adds a point of contact to the model, and its forces on the first surface.
-    fn add_point(
-        &mut self,
-        name: String,
-        point: &Point<'g>,
-        laws: Laws<'g>,
-        forces: &mut Vec<(Option<LinkId>, Vec3<'g>)>,
-    ) {
+    fn add_point(&mut self, name: String, point: &Point<'g>, laws: Laws<'g>, exerted: &mut Exerted<'g>) {
         let [normal, slip @ ..] = point.rates;
         let slides = slip
             .into_iter()
             .filter(|(_, rate)| !laws.friction.is_zero() && !velocity_gradient(*rate).is_empty());
         let rates: Vec<(Vec3<'g>, Expr<'g>)> = std::iter::once(normal).chain(slides).collect();
         let number = self.model.contact_rates().len();
-        for (k, (direction, _)) in rates.iter().enumerate() {
+        for (k, (direction, rate)) in rates.iter().enumerate() {
             let force = Quantity::ContactForce(number + k).expr(self.scope.graph);
-            forces.push((point.ancestor, *direction * force));
+            exerted.forces.push((point.ancestor, *direction * force));
+            exerted.deliver(force * *rate);
         }
         let rates = rates.into_iter().map(|(_, rate)| rate).collect();
         let presses = self.model.contacts.len();
         self.push_contact(name.clone(), (point.gap, false), None, rates, (laws.friction, laws.restitution));
-        let [spin, roll @ ..] = point.turns;
         let none = self.scope.graph.zero();
-        for (word, rates, most) in [("spin", vec![spin], laws.torsional), ("roll", roll.into(), laws.rolling)]
-        {
-            let rates: Vec<Expr<'g>> =
-                rates.into_iter().filter(|rate| !velocity_gradient(*rate).is_empty()).collect();
-            if !most.is_zero() && !rates.is_empty() {
+        for (word, about, most) in [("spin", 0..1, laws.torsional), ("roll", 1..3, laws.rolling)] {
+            let turns = about.map(|k| (point.rates[k].0, point.turns[k]));
+            let turns: Vec<_> = turns.filter(|(_, rate)| !velocity_gradient(*rate).is_empty()).collect();
+            if !most.is_zero() && !turns.is_empty() {
+                let number = self.model.contact_rates().len();
+                for (k, (direction, rate)) in turns.iter().enumerate() {
+                    let moment = Quantity::ContactForce(number + k).expr(self.scope.graph);
+                    exerted.moments.push((point.ancestor, *direction * moment));
+                    exerted.deliver(moment * *rate);
+                }
+                let rates = turns.into_iter().map(|(_, rate)| rate).collect();
                 let name = format!("{name}.{word}");
                 self.push_contact(name, (point.gap, false), Some(presses), rates, (most, none));
             }
@@ -407,20 +416,6 @@ impl<'g> Builder<'_, 'g> {
             }
             form => sphere_contact(radius, form, c, turned_b),
         }
-    }
-}
-
-/// Reports moments of friction against what does not turn.
-fn check_turns(contact: &syntax::Contact, points: &[&Point<'_>], cx: &mut Diagnostics) {
-    let still = |axis: usize| points.iter().all(|point| velocity_gradient(point.turns[axis]).is_empty());
-    let asked = [
-        (&contact.torsional, "about the normal of this contact", still(0)),
-        (&contact.rolling, "about the tangents of this contact", still(1) && still(2)),
-    ];
-    for (e, about, _) in asked.into_iter().filter(|(.., still)| *still && !contact.of_file) {
-        let Some(e) = e else { continue };
-        cx.error(e.place.clone(), format!("nothing turns {about}"))
-            .help("`torsional` brakes spin about the normal, `rolling` what turns about the tangents");
     }
 }
 

@@ -314,7 +314,7 @@ impl<'a> Inference<'a> {
                 }
             }
             ("reaction_force" | "contact_force", _) => Value::quantity(FORCE),
-            ("reaction_torque", _) => Value::quantity(ENERGY),
+            ("reaction_torque" | "contact_moment", _) => Value::quantity(ENERGY),
             _ => return None,
         })
     }

@@ -372,6 +372,7 @@ pub const FUNCTIONS: Words = &[
     ("angularacceleration angacc α", "alpha"),
     ("force reaction", "reaction_force"),
     ("contactforce normalforce", "contact_force"),
+    ("contactmoment contacttorque", "contact_moment"),
     ("torque", "reaction_torque"),
     ("vec vec3 vector vector3 matrix", "a vector is written `[a, b, c]` or `a * x + b * y + c * z`"),
     (
