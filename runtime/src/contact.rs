@@ -27,7 +27,9 @@
 
 use crate::constraint::ConstraintError;
 use crate::derivatives::ByMotion;
-use crate::integrate::{Dynamics, Error, State, Steered, System, guided, holding, positive, settled};
+use crate::integrate::{
+    ContinuousInputs, Dynamics, Error, State, System, guided, holding, positive, settled,
+};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -315,7 +317,7 @@ where
 {
     positive("the time", h)?;
     let reported = |reason| Error::Constraint { t: to_f64(t), reason };
-    let held = Steered(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
+    let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
     let mut system = System::new(mechanism, held);
     let start = State { t, q: *q, v: *v };
     let at_start = system.acceleration(t, q, v);
