@@ -1,4 +1,4 @@
-//! Model passes change no function: every form of a model has the same equations, energies, momenta and frames as the
+//! Model passes change no function: every variant of a model has the same equations, energies, momenta and frames as the
 //! model itself, on random trees of every joint and on the robots.
 
 mod random_limbs;
@@ -14,7 +14,7 @@ use linkwork_compiler::lower::lower;
 use linkwork_compiler::mechanics::passive::passive_forces;
 use linkwork_compiler::mechanics::{self, aba, crba, energy, forces, frames, ldl, momentum, rnea};
 use linkwork_compiler::mechanism::{Model, Quantity};
-use linkwork_compiler::passes::{Form, Passes, forms, in_common_axes, sizes};
+use linkwork_compiler::passes::{Passes, Variant, in_common_axes, sizes, variants};
 use linkwork_compiler::syntax::Requests;
 use linkwork_compiler::vectorise::{Limbs, find};
 use linkwork_compiler::{compile_with, derive_with, read};
@@ -81,27 +81,27 @@ fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     all
 }
 
-/// Every form of a model has its functions, and forward dynamics inverts inverse dynamics. With common axes everything is so
+/// Every variant of a model has its functions, and forward dynamics inverts inverse dynamics. With common axes everything is so
 /// that does not name the axes of links.
 fn check_forms(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
     let joints = kinematics::joints(model);
     let old: Vec<_> = functions(model, &joints).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
-    let check = |form: &Form<'_>, count: usize| {
-        for ((name, new), (_, old)) in functions(&form.model, &form.joints).iter().zip(&old[..count]) {
+    let check = |variant: &Variant<'_>, count: usize| {
+        for ((name, new), (_, old)) in functions(&variant.model, &variant.joints).iter().zip(&old[..count]) {
             assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
         }
-        check_forward(form, seed);
+        check_forward(variant, seed);
     };
     for passes in CHOICES {
-        let forms = forms(model, passes);
-        forms.iter().for_each(|form| check(form, old.len()));
-        in_common_axes(&forms).iter().for_each(|form| check(form, old.len() - 2));
+        let variants = variants(model, passes);
+        variants.iter().for_each(|variant| check(variant, old.len()));
+        in_common_axes(&variants).iter().for_each(|variant| check(variant, old.len() - 2));
     }
 }
 
-fn check_forward(form: &Form<'_>, seed: u64) {
-    let (model, joints) = (&form.model, &form.joints);
+fn check_forward(variant: &Variant<'_>, seed: u64) {
+    let (model, joints) = (&variant.model, &variant.joints);
     let at = symbols(model, seed);
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
@@ -192,7 +192,7 @@ fn robots_move_as_without_passes() {
     }
 }
 
-/// With alike limbs as lanes every form of a model has its functions. What acts between limbs may be built differently for each
+/// With alike limbs as lanes every variant of a model has its functions. What acts between limbs may be built differently for each
 /// of them: then there are no lanes.
 fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     const TOLERANCE: f64 = 1e-11;
@@ -207,17 +207,18 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
-    let all = CHOICES.into_iter().flat_map(|passes| forms(model, passes)).collect::<Vec<_>>();
-    for form in all.iter().chain(&in_common_axes(&all)) {
-        let groups = find(&form.model, &form.joints);
+    let all = CHOICES.into_iter().flat_map(|passes| variants(model, passes)).collect::<Vec<_>>();
+    for variant in all.iter().chain(&in_common_axes(&all)) {
+        let groups = find(&variant.model, &variant.joints);
         assert!(!groups.is_empty(), "the limbs are alike");
-        let Some(limbs) = Limbs::of(&form.model, &form.joints, &groups, || passive_forces(&form.model, true))
+        let Some(limbs) =
+            Limbs::of(&variant.model, &variant.joints, &groups, || passive_forces(&variant.model, true))
         else {
             // Of numbers lanes can be made always; expressions of parameters may be built differently.
             assert!(interacts || !model.parameters.is_empty(), "limbs become lanes");
             continue;
         };
-        assert!(limbs.joints.len() < form.joints.len());
+        assert!(limbs.joints.len() < variant.joints.len());
         assert_near(
             "inverse dynamics",
             seed,
@@ -226,7 +227,7 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
             &tau,
         );
         assert_near("bias", seed, TOLERANCE, &eval(&in_lanes::inverse_dynamics(&limbs, false), &at), &bias);
-        if form.anchored {
+        if variant.for_inverse_dynamics {
             continue;
         }
         for most in [1, 4, 8] {
@@ -259,7 +260,7 @@ proptest! {
     }
 }
 
-/// Every form has the functions of its model to the last digits, and no figures that are larger than its own.
+/// Every variant has the functions of its model to the last digits, and no figures that are larger than its own.
 fn check_digits(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
     let joints = kinematics::joints(model);
@@ -272,35 +273,36 @@ fn check_digits(model: &Model<'_>, seed: u64) {
         _ => at(s),
     };
     let effort = |k: usize| Quantity::Force(k).expr(model.graph);
-    let motion = |form: &Model<'_>, joints: &[Joint<'_>]| -> f64 {
-        let h = rnea::inverse_dynamics(form, joints, &v, None);
+    let motion = |variant: &Model<'_>, joints: &[Joint<'_>]| -> f64 {
+        let h = rnea::inverse_dynamics(variant, joints, &v, None);
         let rest = h.iter().enumerate().map(|(k, h)| effort(k) - *h).collect();
-        let found = eval(&ldl::solve(crba::mass_matrix(form, joints), rest, joints), &with_tau);
+        let found = eval(&ldl::solve(crba::mass_matrix(variant, joints), rest, joints), &with_tau);
         found.iter().zip(&expected).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
     let (n, own) = (model.nv(), motion(model, &joints));
     let extent: f64 = sizes(model).iter().sum();
-    let all = CHOICES.into_iter().flat_map(|passes| forms(model, passes)).collect::<Vec<_>>();
+    let all = CHOICES.into_iter().flat_map(|passes| variants(model, passes)).collect::<Vec<_>>();
     // Common axes are those of joints that are parallel but for what files round off.
     let common = in_common_axes(&all);
-    let both = all.iter().map(|form| (form, 1e-12)).chain(common.iter().map(|form| (form, 5e-12)));
-    for (form, tolerance) in both {
-        for link in &form.model.links {
+    let both =
+        all.iter().map(|variant| (variant, 1e-12)).chain(common.iter().map(|variant| (variant, 5e-12)));
+    for (variant, tolerance) in both {
+        for link in &variant.model.links {
             let place = link.placement.translation.values().expect("they are numbers");
             assert!(place.iter().all(|c| c.abs() <= 10.0 * extent), "{place:?} of {extent} (seed {seed})");
         }
-        let found = eval(&rnea::inverse_dynamics(&form.model, &form.joints, &v, Some(&a)), &at);
+        let found = eval(&rnea::inverse_dynamics(&variant.model, &variant.joints, &v, Some(&a)), &at);
         assert_near("inverse dynamics", seed, tolerance, &found, &tau);
-        if form.anchored {
+        if variant.for_inverse_dynamics {
             continue;
         }
-        let found = eval(&crba::mass_matrix(&form.model, &form.joints).concat(), &at);
+        let found = eval(&crba::mass_matrix(&variant.model, &variant.joints).concat(), &at);
         for (k, (found, entry)) in found.iter().zip(&mass).enumerate() {
             let size = (mass[k / n * (n + 1)] * mass[k % n * (n + 1)]).sqrt();
             assert!((found - entry).abs() <= tolerance * size, "{found} and {entry} of {size} (seed {seed})");
         }
         // Light links on heavy ones take digits, with the passes as without.
-        let error = motion(&form.model, &form.joints);
+        let error = motion(&variant.model, &variant.joints);
         assert!(
             error <= 100.0 * tolerance + 1000.0 * own,
             "accelerations off by {error:e}, {own:e} without (seed {seed})"
@@ -372,9 +374,9 @@ fn parallel_joints_share_their_axes() {
     let shared = |axes| {
         let mut turning = Vec::new();
         with_model(&(String::new(), arm(axes)), |_, model| {
-            let form = in_common_axes(&forms(model, Passes::default())).into_iter().next();
-            let Some(form) = form else { return };
-            turning = form.joints.iter().map(|joint| joint.rotation.matrix().values().is_none()).collect();
+            let variant = in_common_axes(&variants(model, Passes::default())).into_iter().next();
+            let Some(variant) = variant else { return };
+            turning = variant.joints.iter().map(|joint| joint.rotation.matrix().values().is_none()).collect();
         });
         turning
     };
