@@ -76,6 +76,7 @@ fn export() -> Command {
         .arg_required_else_help(true)
         .subcommand(export_c())
         .subcommand(export_library())
+        .subcommand(export_python())
         .subcommand(
             with_input(Command::new("rust").about("What the attribute generates, for reading"))
                 .arg(out_file()),
@@ -102,6 +103,19 @@ fn export_c() -> Command {
                 .action(ArgAction::Append)
                 .requires("casadi"),
         )
+}
+
+fn export_python() -> Command {
+    with_tables(with_input(
+        Command::new("python")
+            .about("A package for Python: a module, its library and its stubs, for machines without Rust"),
+    ))
+    .arg(switch("native", "For the very processor at hand, not for all of its kind"))
+    .arg(
+        text("out", "FOLDER", "Where the package goes [default: .]")
+            .short('o')
+            .value_parser(value_parser!(PathBuf)),
+    )
 }
 
 fn export_library() -> Command {

@@ -2,9 +2,16 @@
 
 import sys
 
-from . import ToolchainError, command
+from . import Error, ToolchainError, command
+from ._package import export
 
 try:
+    if sys.argv[1:3] == ["export", "python"]:
+        sys.exit(export(sys.argv[3:]))
     sys.exit(command(sys.argv[1:]))
-except ToolchainError as error:
-    sys.exit(f"linkwork: {error}")
+except (ToolchainError, OSError) as error:
+    print(f"linkwork: {error}", file=sys.stderr)
+    sys.exit(2)
+except Error as error:
+    print(error, file=sys.stderr)
+    sys.exit(1)

@@ -63,7 +63,10 @@ class Run:
 
     def view(self, path=None) -> Page:
         """Writes a page that shows the motion, and opens offline: to `path`, or to the mechanism's name with .html."""
-        from ._build import view
+        try:
+            from ._build import view
+        except ImportError:
+            raise Error("pages are made by the package `linkwork`, which this package does not need otherwise") from None
 
         path = Path(path if path is not None else f"{self.mechanism.name}.html")
         view(self.mechanism._origin(), self, path)
@@ -333,6 +336,25 @@ class Mechanism:
             lines.append(f"    def {name}(self{position}, *, threads: int | None = None, out: Any = None) -> {result}:")
             lines.append(f"        {_quoted(getattr(cls, name).__doc__, 8)}")
         return "\n".join(lines) + "\n"
+
+    @classmethod
+    def save(cls, folder=".") -> Path:
+        """Writes the class as a package into a folder: a module with its library and its stubs, which needs NumPy alone. It can be
+        copied to machines without Linkwork and Rust that have the same system and the same kind of processor; compile with
+        `native=False` for those with an older one.
+
+        Returns:
+            The folder of the package. Its name is that of the class in small letters: `CartPole` is imported from `cart_pole`.
+
+        Raises:
+            FileExistsError: something else has this name.
+        """
+        try:
+            from ._package import save
+        except ImportError:
+            raise Error("this is such a package already: copy its folder") from None
+
+        return save(cls, folder)
 
     # Indices
 

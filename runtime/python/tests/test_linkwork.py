@@ -277,6 +277,69 @@ class OfAPendulum(unittest.TestCase):
         self.assertIn("def mass_matrix(self, q: ArrayLike, /", text)
 
 
+class AsAPackage(unittest.TestCase):
+    """A class that is saved: what another machine has of it."""
+
+    def run_apart(self, folder, code):
+        # An interpreter that knows NumPy and this folder, but not Linkwork, and no toolchain.
+        paths = os.pathsep.join([str(folder), str(Path(np.__file__).parents[1])])
+        environment = {"PATH": "/nonexistent", "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"}
+        barrier = "import sys; sys.modules['linkwork'] = None\n"
+        done = subprocess.run([sys.executable, "-c", barrier + code], capture_output=True, text=True, env=environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.strip()
+
+    def test_it_needs_neither_linkwork_nor_rust(self):
+        kind = compiled(PENDULUM)
+        with tempfile.TemporaryDirectory() as folder:
+            package = kind.save(folder)
+            self.assertEqual(package, Path(folder) / "pendulum")
+            # Again over itself, but not over anything else.
+            self.assertEqual(kind.save(folder), package)
+            (Path(folder) / "else" / "pendulum" / "own").mkdir(parents=True)
+            with self.assertRaisesRegex(FileExistsError, "no package of a mechanism"):
+                kind.save(Path(folder) / "else")
+            code = """
+import copy, pickle
+from pendulum import Error, Pendulum
+m = pickle.loads(pickle.dumps(Pendulum(mass=2.0, length=1.5)))
+run = m.simulate([2.0], duration=1.0, every=0.5)
+try:
+    run.view("page.html")
+except Error as error:
+    assert "package `linkwork`" in str(error)
+print(Pendulum.__module__, m.mass_matrix([0.0])[0, 0], run.q[-1, 0])
+"""
+            expected = kind(mass=2.0, length=1.5).simulate([2.0], duration=1.0, every=0.5).q[-1, 0]
+            name, inertia, q = self.run_apart(folder, code).split()
+            self.assertEqual((name, float(inertia), float(q)), ("pendulum", 1.5, expected))
+            stub = (package / "__init__.pyi").read_text(encoding="utf-8")
+            compile(stub, "pendulum.pyi", "exec")
+            self.assertNotIn("import linkwork", stub)
+
+    def test_the_command_writes_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "slider.rs"
+            file.write_text(SLIDER, encoding="utf-8")
+            figures = Path(folder) / "energy.csv"
+            figures.write_text("x,energy\n-2,16\n0,0\n2,16\n", encoding="utf-8")
+            arguments = [str(file), "--table", f"energy={figures},smooth", "--native", "--out", folder]
+            words = [sys.executable, "-m", "linkwork", "export", "python", *arguments]
+            done = subprocess.run(words, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("__init__.pyi", done.stdout)
+            code = "from slider import Slider; print(float(Slider(mass=2.0).potential_energy([0.5])))"
+            self.assertAlmostEqual(float(self.run_apart(folder, code)), 1.0, places=13)
+            # Mistakes of the mechanism, and what cannot be read.
+            file.write_text(SLIDER.replace("along = x", "along = w"), encoding="utf-8")
+            done = subprocess.run(words, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("slider.rs:", done.stderr)
+            file.unlink()
+            done = subprocess.run(words, capture_output=True, text=True)
+            self.assertEqual((done.returncode, "there is no file" in done.stderr), (2, True))
+
+
 class WithTables(unittest.TestCase):
     """A parabola as a smooth table: the spring of that energy."""
 

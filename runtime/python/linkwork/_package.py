@@ -1,0 +1,76 @@
+"""Compiled mechanisms as packages of their own, which need neither Linkwork nor Rust."""
+
+import argparse
+import keyword
+import re
+import shutil
+from pathlib import Path
+
+_HERE = Path(__file__).resolve().parent
+_MODULE = '''"""{name}, compiled by Linkwork: needs NumPy alone, and a machine of the kind that it was compiled on ({machine})."""
+
+from pathlib import Path
+
+from ._mechanism import Error, LinearSystem, Mechanism, Run, load
+
+{name} = load(Path(__file__).with_name("{library}"))
+{name}.__module__ = __name__
+
+__all__ = ["Error", "LinearSystem", "Mechanism", "Run", "{name}"]
+'''
+
+
+def module_name(name):
+    """The name of a package for a struct: `CartPole` in `cart_pole`."""
+    words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
+    return f"{words}_" if keyword.iskeyword(words) else words
+
+
+def save(kind, folder):
+    """Writes the package of a class into a folder."""
+    import platform
+
+    library = Path(kind._path)
+    package = Path(folder) / module_name(kind.name)
+    if package.exists() and not (package / "_mechanism.py").is_file() and any(package.iterdir()):
+        raise FileExistsError(f"{package} is there already, and is no package of a mechanism")
+    package.mkdir(parents=True, exist_ok=True)
+    own = "mechanism" + library.suffix
+    machine = f"{platform.system()} {platform.machine()}"
+    # A library that is loaded is not written into, but replaced.
+    shutil.copy(library, package / (own + ".new"))
+    (package / (own + ".new")).replace(package / own)
+    shutil.copy(_HERE / "_mechanism.py", package / "_mechanism.py")
+    text = _MODULE.format(name=kind.name, machine=machine, library=own)
+    (package / "__init__.py").write_text(text, encoding="utf-8")
+    stub = kind.stub().replace("import linkwork\n", "from ._mechanism import Error, LinearSystem, Mechanism, Run\n")
+    stub = stub.replace("(linkwork.Mechanism)", "(Mechanism)")
+    (package / "__init__.pyi").write_text(stub, encoding="utf-8")
+    (package / "py.typed").write_text("", encoding="utf-8")
+    return package
+
+
+def export(arguments):
+    """`linkwork export python`: compiles a mechanism and writes its package."""
+    from ._build import compile
+
+    parser = argparse.ArgumentParser(
+        prog="linkwork export python",
+        description="A package for Python: a module, its library and its stubs, for machines without Rust",
+    )
+    parser.add_argument("file", metavar="FILE", help="a robot file (URDF, MJCF or SDF), or a Rust file")
+    parser.add_argument("--struct", metavar="NAME", help="the struct in a Rust file that has several")
+    parser.add_argument("--with", dest="options", metavar="OPTIONS", default="", help="further arguments of the attribute")
+    parser.add_argument("--table", metavar="NAME=FILE", action="append", default=[], help="figures of a table")
+    parser.add_argument("--native", action="store_true", help="for the very processor at hand, not for all of its kind")
+    parser.add_argument("--out", "-o", metavar="FOLDER", default=".", help="where the package goes [default: .]")
+    given = parser.parse_args(arguments)
+    tables = {}
+    for table in given.table:
+        name, _, words = table.partition("=")
+        tables[name] = tuple(words.split(","))
+    kind = compile(Path(given.file), options=given.options, name=given.struct, tables=tables, native=given.native)
+    package = save(kind, given.out)
+    for file in sorted(package.iterdir()):
+        if file.is_file():
+            print(file)
