@@ -264,7 +264,7 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
             let _ = write!(
                 body,
                 "    for (int k = 0; k < count; ++k) {{
-        double columns[{}];
+        double columns[{}] = {{0.0}};
         link_columns(path[k], {own}{time}q, placements + 12 * k, placement + 9, columns);
         for (int c = first_column[path[k]]; c < first_column[path[k] + 1]; ++c) {{
             for (int i = 0; i < 6; ++i) {{

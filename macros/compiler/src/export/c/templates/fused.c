@@ -1,4 +1,7 @@
-/* Products with sums: one instruction where the processor has it. */
+/* Products with sums: one instruction where the processor has it, which not every compiler says by the standard's macro. */
+#if defined(__FMA__) && !defined(FP_FAST_FMA)
+#define FP_FAST_FMA
+#endif
 #ifdef FP_FAST_FMA
 #define mul_add(a, b, c) fma(a, b, c)
 #define mul_sub(a, b, c) fma(a, b, -(c))
