@@ -17,6 +17,8 @@ pub enum Function {
     Constrained,
     /// `v` after a hundred steps of a simulation, under constraints.
     Motion,
+    /// How the state after a step changes with that before and with `τ`.
+    Step,
 }
 
 impl Function {
@@ -39,6 +41,7 @@ impl Function {
             Function::ForwardDerivatives => "∂v̇/∂q, ∂v̇/∂v, M⁻¹",
             Function::Constrained => "accelerations",
             Function::Motion => "motion",
+            Function::Step => "step with Jacobians",
         }
     }
 
@@ -52,6 +55,7 @@ impl Function {
             Function::ForwardDerivatives => "forward_dynamics_derivatives",
             Function::Constrained => "constrained_dynamics",
             Function::Motion => "simulate",
+            Function::Step => "transition",
         }
     }
 
@@ -65,6 +69,7 @@ impl Function {
             Function::ForwardDerivatives => "forward_derivatives",
             Function::Constrained => "constrained",
             Function::Motion => "motion",
+            Function::Step => "step",
         }
     }
 
@@ -75,6 +80,7 @@ impl Function {
             Function::Mass => nv,
             Function::InverseDerivatives => 2 * nv,
             Function::ForwardDerivatives => 3 * nv,
+            Function::Step => 6 * nv,
         }
     }
 }

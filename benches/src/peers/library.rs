@@ -142,7 +142,7 @@ pub fn casadi(path: &Path, function: Function, rows: Rows<'static>) -> Option<Bo
         (call, sizes.map(|size| size.max(3) as usize))
     };
     let third = match function {
-        Function::Forward | Function::ForwardDerivatives => rows.nq + 2 * rows.nv,
+        Function::Forward | Function::ForwardDerivatives | Function::Step => rows.nq + 2 * rows.nv,
         _ => rows.nq + rows.nv,
     };
     let pointers = |row: &'static [f64]| [0, rows.nq, third].map(|start| row[start..].as_ptr());

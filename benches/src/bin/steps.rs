@@ -1,0 +1,136 @@
+//! A step of the classical Runge-Kutta method with its Jacobians next to C that CasADi generates (`benches/peers/run steps`), and
+//! second derivatives next to first ones, which need no peer.
+
+use linkwork::nalgebra::SMatrix;
+use linkwork::prelude::*;
+use linkwork::{RheonomicDerivatives, SecondDerivatives, discrete};
+use linkwork_benches::generic::{Model, Options};
+use linkwork_benches::peers::contender::{Contender, Function, Owner};
+use linkwork_benches::peers::library::{self, Rows};
+use linkwork_benches::peers::own::{Call, Flat, Own};
+use linkwork_benches::peers::turns::{TOLERANCE, agree, time};
+use linkwork_benches::states::{STATES, State, states};
+use std::path::Path;
+use std::rc::Rc;
+
+/// The period of a step, s.
+const PERIOD: f64 = 0.01;
+/// Seconds for each implementation.
+const BUDGET: f64 = 0.2;
+
+#[mechanism(urdf = "../models/urdf/ur5.urdf", passive = ignore, second_derivatives)]
+#[derive(Clone, Copy)]
+struct Ur5;
+
+#[mechanism(
+    urdf = "../models/urdf/panda.urdf",
+    lock = ["panda_finger_joint1", "panda_finger_joint2"],
+    passive = ignore,
+    second_derivatives
+)]
+#[derive(Clone, Copy)]
+struct PandaArm;
+
+/// `[A B]` of a step under forces at the joints, columns of `q`, `v` and `τ`.
+fn step<M, const N: usize>(m: &M, s: &State<N, N>) -> [[SMatrix<f64, N, N>; 2]; 3]
+where
+    M: RheonomicDerivatives<N, N, N, Scalar = f64>,
+{
+    let found = discrete::transition(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau).expect("it moves");
+    [[found.q_by_q, found.v_by_q], [found.q_by_v, found.v_by_v], [found.q_by_u, found.v_by_u]]
+}
+
+/// Blocks one upon another, as a list of columns.
+struct Stacked<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
+
+impl<const N: usize> Flat for Stacked<N> {
+    fn flat(&self) -> Vec<f64> {
+        let columns = self.0.iter().flat_map(|[q, v]| q.column_iter().zip(v.column_iter()));
+        columns.flat_map(|(q, v)| q.iter().chain(v.iter()).copied().collect::<Vec<f64>>()).collect()
+    }
+}
+
+/// A function of ours as a contender.
+fn own<M: Copy + 'static, R: Flat + 'static, const N: usize>(
+    mechanism: M,
+    states: &Rc<Vec<State<N, N>>>,
+    call: Call<M, R, N, N>,
+) -> Box<dyn Contender> {
+    let (owner, name, states) = (Owner::Linkwork, Function::Step.name(), states.clone());
+    Box::new(Own { owner, mechanism, states, name, call })
+}
+
+/// Numbers that stand for blocks whose values are not compared.
+struct Unread<R>(R);
+
+impl<R> Flat for Unread<R> {
+    fn flat(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// Nanoseconds of a call of each of some functions, in turns.
+fn nanoseconds(mut of: Vec<Box<dyn Contender>>) -> Vec<f64> {
+    time(&mut of, STATES, BUDGET).iter().map(|measured| measured.time).collect()
+}
+
+fn measure<M, const N: usize>(name: &str, m: M, model: &Model, folder: Option<&Path>) -> Result<(), String>
+where
+    M: Copy + SecondDerivatives<N, N, N, Scalar = f64> + 'static,
+{
+    let states: Rc<Vec<State<N, N>>> = Rc::new(states(model));
+    if let Some(folder) = folder {
+        let numbers: Vec<f64> = states.iter().flat_map(State::numbers).collect();
+        let rows = Rows { nq: N, nv: N, numbers: numbers.leak() };
+        let mut all = Vec::new();
+        for file in ["plain.exact", "plain.fast", "shared.exact", "shared.fast"] {
+            let path = folder.join(name).join(format!("step_{file}.so"));
+            all.extend(library::casadi(&path, Function::Step, rows));
+        }
+        all.push(own(m, &states, |m, s| Stacked(step(m, s))));
+        let wrong = agree(&mut all, name, (2 * N, STATES), TOLERANCE);
+        if !wrong.is_empty() {
+            return Err(wrong.join("\n"));
+        }
+        let measured = time(&mut all, STATES, BUDGET);
+        let least = |owner| {
+            measured.iter().filter(|m| m.owner == owner).map(|m| m.time).fold(f64::INFINITY, f64::min)
+        };
+        let (ours, theirs) = (least(Owner::Linkwork), least(Owner::Casadi));
+        println!(
+            "| {name} | step with Jacobians | {ours:.0} | CasADi C | {theirs:.0} | {:.1} × |",
+            theirs / ours
+        );
+    }
+    let found = nanoseconds(vec![
+        own(m, &states, |m, s| Unread(m.inverse_dynamics_derivatives(&s.q, &s.v, &s.a))),
+        own(m, &states, |m, s| Unread(m.inverse_dynamics_second_derivatives(&s.q, &s.v, &s.a, &s.tau))),
+        own(m, &states, |m, s| Unread(m.forward_dynamics_derivatives(&s.q, &s.v, &s.tau))),
+        own(m, &states, |m, s| Unread(m.forward_dynamics_second_derivatives(&s.q, &s.v, &s.tau, &s.a))),
+        own(m, &states, |m, s| Unread(step(m, s))),
+        own(m, &states, |m, s| {
+            let factors = (&s.a, &s.tau);
+            Unread(discrete::second_order(m, &Rk4::step(PERIOD), 0.0, &s.q, &s.v, &s.tau, factors))
+        }),
+    ]);
+    for (what, pair) in ["inverse dynamics", "forward dynamics", "step"].iter().zip(found.chunks_exact(2)) {
+        let (first, second) = (pair[0], pair[1]);
+        println!(
+            "| {name} | {what}, second derivatives | {second:.0} | first | {first:.0} | {:.1} × as long |",
+            second / first
+        );
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), String> {
+    let folder = std::env::args().nth(1);
+    let folder = folder.as_deref().map(Path::new);
+    println!("| robot | function | ns | next to | ns | ratio |");
+    println!("| --- | --- | ---: | --- | ---: | ---: |");
+    let read = |text: &str, lock| Model::from_urdf(text, &Options { free: false, lock });
+    measure("ur5", Ur5, &read(include_str!("../../../models/urdf/ur5.urdf"), &[])?, folder)?;
+    let locked = &["panda_finger_joint1", "panda_finger_joint2"];
+    let panda = read(include_str!("../../../models/urdf/panda.urdf"), locked)?;
+    measure("panda_arm", PandaArm, &panda, folder)
+}
