@@ -18,6 +18,7 @@ import numpy as np
 import pinocchio as pin
 
 NODES, PERIOD, ITERATIONS = 100, 0.01, 8
+PARTS = ["linearise", "backward", "rollout"]
 
 
 def panda(folder):
@@ -30,20 +31,16 @@ def solo(folder):
     return pin.buildModelFromUrdf(f"{folder}/solo12.urdf", pin.JointModelFreeFlyer())
 
 
-def problem(model, floating):
+def problem(model, own, gravity):
+    """A problem from the start to the goal of Linkwork's."""
     model.damping[:] = 0
     model.friction[:] = 0
     state = crocoddyl.StateMultibody(model)
-    nv, base = model.nv, 6 if floating else 0
-    if floating:
+    nv, floating = model.nv, model.nq != model.nv
+    if not gravity:
         model.gravity = pin.Motion.Zero()
     actuation = crocoddyl.ActuationModelFloatingBase(state) if floating else crocoddyl.ActuationModelFull(state)
-
-    def at(x):
-        displacement = np.concatenate([np.zeros(base), np.full(nv - base, x)])
-        return np.concatenate([pin.integrate(model, pin.neutral(model), displacement), np.zeros(nv)])
-
-    start, goal = at(0.1), at(-0.2)
+    start, goal = (np.concatenate([own[of], np.zeros(nv)]) for of in ("start", "goal"))
 
     def differential(of_q, of_v, of_u):
         costs = crocoddyl.CostModelSum(state, actuation.nu)
@@ -69,14 +66,9 @@ def least(function, repeats):
     return best / NODES
 
 
-def measure(shooting, repeats):
+def measure(shooting, own, repeats):
     shooting.nthreads = 1
-    nu = shooting.runningModels[0].nu
-    # What holds an arm still where it begins; nothing holds a flying body.
-    model = shooting.runningModels[0].state.pinocchio
-    q, nothing = shooting.x0[: model.nq], np.zeros(model.nv)
-    held = pin.rnea(model, model.createData(), q, nothing, nothing) if nu == model.nv else np.zeros(nu)
-    us = [held] * NODES
+    us = [np.array(u) for u in own["inputs"]]
     xs = shooting.rollout(us)
     solver = crocoddyl.SolverDDP(shooting)
     logger = crocoddyl.CallbackLogger()
@@ -101,15 +93,16 @@ def main():
     own = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
     print("| problem | | linearise | backward | rollout | iteration |")
     print("| --- | --- | ---: | ---: | ---: | ---: |")
-    for name, model, floating in [("panda", panda(folder), False), ("solo", solo(folder), True)]:
-        peer = measure(problem(model, floating), repeats)
+    for name, model, gravity in [("panda", panda(folder), True), ("solo", solo(folder), False)]:
         mine = own[name]
-        parts = ["linearise", "backward", "rollout"]
+        peer = measure(problem(model, mine, gravity), mine, repeats)
+        # Ours linearises and goes backwards in one pass, which keeps no matrices but those of the policies.
+        peer["iteration"] = sum(peer[part] for part in PARTS)
+        mine["iteration"] = mine["sweep"] + mine["rollout"]
         for who, times in (("Crocoddyl", peer), ("Linkwork", mine)):
-            times["iteration"] = sum(times[part] for part in parts)
-            row = " | ".join(f"{times[part]:.0f}" for part in parts + ["iteration"])
+            row = " | ".join(f"{times[part]:.0f}" for part in [*PARTS, "iteration"])
             print(f"| {name} | {who} | {row} |")
-        row = " | ".join(f"{peer[part] / mine[part]:.1f} ×" for part in parts + ["iteration"])
+        row = " | ".join(f"{peer[part] / mine[part]:.1f} ×" for part in [*PARTS, "iteration"])
         print(f"| | ratio | {row} |")
         theirs, ours = np.array(peer["costs"]), np.array(mine["costs"])
         count = min(len(theirs), len(ours))

@@ -6,6 +6,7 @@ use linkwork::optimal::{Policy, Quadratic, Value, backward};
 use linkwork::prelude::*;
 use linkwork::{RheonomicDerivatives, discrete};
 use rustix::time::{ClockId, clock_gettime};
+use std::hint::black_box;
 
 #[mechanism(
     urdf = "../models/urdf/panda.urdf",
@@ -22,6 +23,11 @@ const NODES: usize = 100;
 const PERIOD: f64 = 0.01;
 const ITERATIONS: usize = 8;
 const REPEATS: usize = 300;
+/// What costs in the last state: configuration and velocity.
+const LAST: [f64; 2] = [100.0, 1.0];
+/// What costs in the others, and of inputs, in a period.
+const RUNNING: [f64; 2] = [PERIOD, 0.1 * PERIOD];
+const EFFORT: f64 = 1e-2 * PERIOD;
 
 /// Nanoseconds of the process in one call of a function a node: the least of many.
 fn least(mut f: impl FnMut()) -> f64 {
@@ -38,7 +44,10 @@ fn least(mut f: impl FnMut()) -> f64 {
 }
 
 type State<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>);
+type Node<const NQ: usize, const NV: usize, const NU: usize> =
+    (discrete::Transition<f64, NQ, NV, NU>, Quadratic<f64, NV, NU>);
 
+/// What moves, and where it is to go.
 struct Problem<'m, M, const NQ: usize> {
     mechanism: &'m M,
     method: SemiImplicitEuler<f64>,
@@ -49,7 +58,6 @@ struct Problem<'m, M, const NQ: usize> {
 struct Trajectory<const NQ: usize, const NV: usize, const NU: usize> {
     states: Vec<State<NQ, NV>>,
     inputs: Vec<SVector<f64, NU>>,
-    nodes: Vec<(discrete::Transition<f64, NQ, NV, NU>, Quadratic<f64, NV, NU>)>,
     policies: Vec<Policy<f64, NV, NU>>,
 }
 
@@ -74,44 +82,57 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     {
         let off = self.mechanism.difference(&self.goal, q);
         let mut model = Value { v: v * of_v, vv: SMatrix::identity() * of_v, ..Value::zeros() };
-        if NQ == NV {
-            (model.q, model.qq) = (off * of_q, SMatrix::identity() * of_q);
-            return model;
+        (model.q, model.qq) = (off * of_q, SMatrix::identity() * of_q);
+        if NQ != NV {
+            // How the difference changes: as its coordinates do, but for the base.
+            let (_, changes) = self.mechanism.tangent_rate_derivatives(&off, v);
+            let base = changes.fixed_view::<6, 6>(0, 0).into_owned();
+            let gradient = base.tr_mul(&model.q.fixed_rows::<6>(0));
+            model.q.fixed_rows_mut::<6>(0).copy_from(&gradient);
+            model.qq.fixed_view_mut::<6, 6>(0, 0).copy_from(&(base.tr_mul(&base) * of_q));
         }
-        // How the difference changes: the inverse of how `goal ⊕ off` does, which is the identity but for the base.
-        let (_, by_off) = self.mechanism.integrate_derivatives(&off);
-        let mut jacobian = SMatrix::<f64, NV, NV>::identity();
-        let base = by_off.fixed_view::<6, 6>(0, 0).into_owned().try_inverse().unwrap_or_default();
-        jacobian.fixed_view_mut::<6, 6>(0, 0).copy_from(&base);
-        model.q = jacobian.tr_mul(&off) * of_q;
-        model.qq = jacobian.tr_mul(&jacobian) * of_q;
         model
     }
 
-    fn linearise<const NV: usize, const NU: usize>(&self, all: &mut Trajectory<NQ, NV, NU>) -> Value<f64, NV>
+    /// A step with its Jacobians, and the costs of its beginning.
+    fn node<const NV: usize, const NU: usize>(
+        &self,
+        state: &State<NQ, NV>,
+        u: &SVector<f64, NU>,
+    ) -> Node<NQ, NV, NU>
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
-        all.nodes.clear();
-        for (state, u) in all.states.iter().zip(&all.inputs) {
-            let step = discrete::transition(self.mechanism, &self.method, 0.0, &state.0, &state.1, u);
-            let Value { q, v, qq, vv, .. } = self.model(state, [PERIOD, 0.1 * PERIOD]);
-            let (effort, one) = (1e-2 * PERIOD, SMatrix::<f64, NU, NU>::identity());
-            let cost = Quadratic { q, v, qq, vv, u: u * effort, uu: one * effort, ..Quadratic::zeros() };
-            all.nodes.push((step.expect("it moves"), cost));
-        }
-        self.model(&all.states[NODES], [100.0, 1.0])
+        let step = discrete::transition(self.mechanism, &self.method, 0.0, &state.0, &state.1, u);
+        let Value { q, v, qq, vv, .. } = self.model(state, RUNNING);
+        let uu = SMatrix::<f64, NU, NU>::identity() * EFFORT;
+        (step.expect("it moves"), Quadratic { q, v, qq, vv, u: u * EFFORT, uu, ..Quadratic::zeros() })
     }
 
-    fn backward<const NV: usize, const NU: usize>(
+    /// All nodes from the last to the first, each handed on as soon as it is known.
+    fn each<const NV: usize, const NU: usize>(
         &self,
-        all: &mut Trajectory<NQ, NV, NU>,
-        last: &Value<f64, NV>,
-    ) {
-        let mut to_go = *last;
-        for ((step, cost), policy) in all.nodes.iter().zip(&mut all.policies).rev() {
-            (*policy, to_go) = backward(step, cost, &to_go, 0.0).expect("it is convex");
+        states: &[State<NQ, NV>],
+        inputs: &[SVector<f64, NU>],
+        mut then: impl FnMut(usize, &Node<NQ, NV, NU>),
+    ) where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    {
+        for (k, (state, u)) in states.iter().zip(inputs).enumerate().rev() {
+            then(k, &self.node(state, u));
         }
+    }
+
+    /// Linearises and goes backwards: nothing of a node is kept but its policy.
+    fn sweep<const NV: usize, const NU: usize>(&self, all: &mut Trajectory<NQ, NV, NU>)
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    {
+        let Trajectory { states, inputs, policies } = all;
+        let mut to_go = self.model(&states[NODES], LAST);
+        self.each(states, inputs, |k, (step, cost)| {
+            (policies[k], to_go) = backward(step, cost, &to_go, 0.0).expect("it is convex");
+        });
     }
 
     /// The motion with the policies, and its costs.
@@ -128,66 +149,90 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         next.1.clear();
         for ((policy, u), old) in all.policies.iter().zip(&all.inputs).zip(&all.states) {
             let off = self.mechanism.difference(&old.0, &state.0);
-            let u = u + policy.change + policy.by_q * off + policy.by_v * (state.1 - old.1);
-            costs += self.of_state(&state, [PERIOD, 0.1 * PERIOD]) + 0.5 * 1e-2 * PERIOD * u.norm_squared();
+            let u = u + policy.inputs(1.0, &off, &(state.1 - old.1));
+            costs += self.of_state(&state, RUNNING) + 0.5 * EFFORT * u.norm_squared();
             next.0.push(state);
             next.1.push(u);
             state =
                 discrete::step(self.mechanism, &self.method, 0.0, &state.0, &state.1, &u).expect("it moves");
         }
         next.0.push(state);
-        costs + self.of_state(&state, [100.0, 1.0])
+        costs + self.of_state(&state, LAST)
     }
-}
 
-fn measure<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, mechanism: &M) -> String
-where
-    M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
-{
-    // A flying body moves its legs and turns by it.
-    let base = if NQ == NV { 0 } else { 6 };
-    let at = |x: f64| {
-        let displacement = SVector::from_fn(|k, _| if k < base { 0.0 } else { x });
-        mechanism.integrate(&mechanism.neutral(), &displacement)
-    };
-    let problem = Problem { mechanism, method: SemiImplicitEuler::step(PERIOD), goal: at(-0.2) };
-    let held = mechanism.inverse_dynamics(0.0, &at(0.1), &SVector::zeros(), &SVector::zeros());
-    let none = Policy {
-        change: SVector::zeros(),
-        by_q: SMatrix::zeros(),
-        by_v: SMatrix::zeros(),
-        expected: [0.0; 2],
-    };
-    let mut all = Trajectory {
-        states: vec![(at(0.1), SVector::zeros()); NODES + 1],
-        // What holds an arm still where it begins; nothing holds a flying body.
-        inputs: vec![SVector::from_fn(|k, _| if NU == NV { held[k] } else { 0.0 }); NODES],
-        nodes: Vec::with_capacity(NODES),
-        policies: vec![none; NODES],
-    };
-    let mut next = (Vec::with_capacity(NODES + 1), Vec::with_capacity(NODES));
-    problem.rollout(&all, &mut next);
-    (all.states, all.inputs) = next.clone();
-    let mut costs = Vec::new();
-    for _ in 0..ITERATIONS {
-        let last = problem.linearise(&mut all);
-        problem.backward(&mut all, &last);
-        costs.push(problem.rollout(&all, &mut next));
+    fn measure<const NV: usize, const NU: usize>(
+        &self,
+        name: &str,
+        start: SVector<f64, NQ>,
+        inputs: Vec<SVector<f64, NU>>,
+    ) -> String
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    {
+        let none = Policy {
+            change: SVector::zeros(),
+            by_q: SMatrix::zeros(),
+            by_v: SMatrix::zeros(),
+            expected: [0.0; 2],
+        };
+        let mut all = Trajectory {
+            states: vec![(start, SVector::zeros()); NODES + 1],
+            inputs,
+            policies: vec![none; NODES],
+        };
+        let mut next = (Vec::with_capacity(NODES + 1), Vec::with_capacity(NODES));
+        let inputs: Vec<_> = all.inputs.iter().map(|u| u.as_slice().to_vec()).collect();
+        self.rollout(&all, &mut next);
         (all.states, all.inputs) = next.clone();
+        let mut costs = Vec::new();
+        for _ in 0..ITERATIONS {
+            self.sweep(&mut all);
+            costs.push(self.rollout(&all, &mut next));
+            (all.states, all.inputs) = next.clone();
+        }
+        let linearise = least(|| {
+            self.each(&all.states, &all.inputs, |_, node| {
+                black_box(node);
+            });
+        });
+        let mut kept = Vec::new();
+        self.each(&all.states, &all.inputs, |_, node| kept.push(*node));
+        let last = self.model(&all.states[NODES], LAST);
+        let backwards = least(|| {
+            let mut to_go = last;
+            for (k, (step, cost)) in (0..NODES).rev().zip(&kept) {
+                (all.policies[k], to_go) = backward(step, cost, &to_go, 0.0).expect("it is convex");
+            }
+        });
+        let sweep = least(|| self.sweep(&mut all));
+        let rollout = least(|| {
+            black_box(self.rollout(&all, &mut next));
+        });
+        format!(
+            "\"{name}\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": {rollout}, \"costs\": {costs:?}, \"start\": {:?}, \"goal\": {:?}, \"inputs\": {inputs:?}}}",
+            start.as_slice(),
+            self.goal.as_slice()
+        )
     }
-    let linearise = least(|| {
-        std::hint::black_box(problem.linearise(&mut all));
-    });
-    let last = problem.linearise(&mut all);
-    let backward = least(|| problem.backward(&mut all, &last));
-    let rollout = least(|| {
-        std::hint::black_box(problem.rollout(&all, &mut next));
-    });
-    format!(
-        "\"{name}\": {{\"linearise\": {linearise}, \"backward\": {backward}, \"rollout\": {rollout}, \"costs\": {costs:?}}}"
-    )
 }
 
 fn main() {
-    println!("{{{}, {}}}", measure("panda", &Panda), measure("solo", &Solo));
+    let method = SemiImplicitEuler::step(PERIOD);
+    let at = |x: f64| SVector::<f64, 7>::repeat(x);
+    // What holds the arm still where it begins.
+    let held = Panda.inverse_dynamics(&at(0.1), &SVector::zeros(), &SVector::zeros());
+    let panda =
+        Problem { mechanism: &Panda, method, goal: at(-0.2) }.measure("panda", at(0.1), vec![held; NODES]);
+
+    // A flying body moves its legs and turns by it.
+    let flying = |x: f64| {
+        let displacement = SVector::from_fn(|k, _| if k < 6 { 0.0 } else { x });
+        Solo.integrate(&Solo.neutral(), &displacement)
+    };
+    let solo = Problem { mechanism: &Solo, method, goal: flying(-0.2) }.measure(
+        "solo",
+        flying(0.1),
+        vec![SVector::zeros(); NODES],
+    );
+    println!("{{{panda}, {solo}}}");
 }
