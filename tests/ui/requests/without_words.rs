@@ -36,6 +36,7 @@ fn main() {
     let _ = pendulum.mass_matrix_lanes(&q);
     let _ = pendulum.assemble(&q, &[]);
     let _ = pendulum.lift_jacobian(&q, &v, &a);
+    let _ = pendulum.linear_motion(&q, &v, &[].into());
 }
 
 fn pendulum_mass() -> f64 {

@@ -11,6 +11,9 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
     let in_lanes = |name: &str| format!("{name}_lanes");
     let of_need = |(need, rows): (Need, Vec<&Row>)| {
         let mut names: Vec<String> = rows.iter().map(|row| row.name.to_string()).collect();
+        if need == Need::Derivatives && !facts.requests.derivatives {
+            names.extend(OF_TRAITS.map(ToString::to_string));
+        }
         if facts.requests.batch {
             names.extend(rows.iter().filter(|row| row.batched).map(|row| in_lanes(row.name)));
         } else if need == Need::Batch {
@@ -42,6 +45,9 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
     }
     all
 }
+
+/// Functions of the runtime's traits that come with derivatives.
+const OF_TRAITS: [&str; 2] = ["linear_motion", "output_derivatives"];
 
 /// What a prepared mechanism leaves to the one that it was prepared from.
 const OF_FRAMES: [&str; 6] = [
