@@ -302,11 +302,13 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
         let (worst, size) = largest(&self.constraint_rates(t, q, &v))?;
+        if near(size, &v) {
+            return Ok(v);
+        }
         // Beside a branch, near a singular position, the constraints have other directions than on it.
         let left = self.constraint_residuals(t, q);
-        let is_on = near(largest(&left)?.1, q);
-        let jacobian = self.constraint_jacobian(t, q);
-        if near(size, &v) || (is_on && size <= careful::turned(&left) * farthest(&jacobian) * reach(&v)) {
+        let farthest = farthest(&self.constraint_jacobian(t, q));
+        if near(largest(&left)?.1, q) && size <= careful::turned(&left) * farthest * reach(&v) {
             return Ok(v);
         }
         let constraint = Self::CONSTRAINTS.get(worst).copied().unwrap_or_default();
