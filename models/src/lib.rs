@@ -207,7 +207,7 @@
 //! | 9 | Hamilton's equations | the word `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
 //! | 9 | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
 //! | 9 | Gibbs's, Appell's and Kane's equations in print | `EQUATIONS` of mechanisms with a `Speed` | `a_rolling_disk_moves_alike_in_kanes_speeds` |
-//! | 9 | Kane's equations without multipliers, nonholonomic constraints | `equations = kane` | [`ChaplyginSleigh`]; `printed_equations_are_those_of_the_motion` in `equations` of the compiler |
+//! | 9 | Kane's equations without multipliers, nonholonomic constraints | `equations = kane` | [`ChaplyginSleigh`]; `printed_equations_are_those_of_the_motion` |
 //! | 9 | Routh's reduction over cyclic coordinates | the word `routh`, `equations = routh` | `lagranges_equations_hold_for_the_routhian`, `printed_reduction_is_that_of_the_functions` of the compiler |
 //! | 9 | speeds of one's own choice | `#[speed(expression)] wx: Speed` | `methods_keep_their_orders`, `frames_move_alike` |
 //! | 10–16 | linear equations in the user's parameters, characteristic polynomial, Routh's conditions, in print | `#[equilibrium(theta = 0)] upright: Equilibrium` | `a_pendulum`, `rows_are_derivatives` of the compiler |
