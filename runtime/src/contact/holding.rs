@@ -32,7 +32,9 @@ impl<M, T: Copy, const NK: usize, const NR: usize> Clone for Holding<'_, M, T, N
 /// word `derivatives` it has derivatives, too.
 ///
 /// Contacts, and constraints of the mechanism, are kept by accelerations alone: gaps and rates stay what they are at the start but
-/// for errors of the method; [`Holding::stabilized`] lets them decay. A velocity that fulfils the contacts is that after they
+/// for errors of the method; [`Holding::stabilized`] lets them decay. Where a held leg straightens, these errors are large unless
+/// steps are short: a quadruped that collapses on four held feet, without torques, lifts them by 0.1 mm in 0.4 s with steps of `Rk4`
+/// of 1 ms, by 0.2 m with 10 ms, and by 2 µm with 0.1 ms. A velocity that fulfils the contacts is that after they
 /// [`land`](super::land).
 ///
 /// ```
