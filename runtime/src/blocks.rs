@@ -72,7 +72,7 @@ fn all_rows<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usi
     }
 }
 
-/// So many registers of rows from one on, of all columns.
+/// Adds the product in `V` registers of rows, from a given row on, in all columns.
 #[inline(always)]
 fn strip<
     A: Arithmetic,
@@ -109,7 +109,7 @@ fn strip<
     }
 }
 
-/// So many registers of rows from one on, of some columns.
+/// Adds the product in `V` registers of rows, from a given row on, in some columns.
 #[inline(always)]
 fn tile<
     A: Arithmetic,

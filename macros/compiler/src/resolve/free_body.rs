@@ -398,7 +398,7 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// The same about another point.
+    /// The wrench about another point of the body.
     fn moved_to(&self, body: &Freed<'g>, place: Option<&Terms<'g>>, w: Wrench<'g>) -> Wrench<'g> {
         let Some(place) = place else { return w };
         let arm = self.arm_to(body, place);

@@ -32,7 +32,7 @@ pub struct Variants<'g> {
 pub struct Bias {
     pub program: Program,
     variant: usize,
-    /// The same with alike limbs as lanes.
+    /// The program with alike limbs as lanes, and its variant.
     pub simd: Option<(usize, Program)>,
 }
 
@@ -70,7 +70,7 @@ impl<'g> Variants<'g> {
         self.all.iter().filter(|variant| !variant.for_inverse_dynamics).map(|variant| &variant.model)
     }
 
-    /// The same with alike limbs as lanes.
+    /// Variants with alike limbs as lanes, but those for inverse dynamics alone.
     pub fn plain_limbs(&self) -> impl Iterator<Item = &Limbs<'g>> {
         self.limbs.iter().filter(|(_, for_inverse_dynamics)| !for_inverse_dynamics).map(|(limbs, _)| limbs)
     }
@@ -146,7 +146,7 @@ impl<'g> Variants<'g> {
         all.collect()
     }
 
-    /// The same with alike limbs as lanes.
+    /// Forward dynamics by articulated bodies, with alike limbs as lanes.
     pub fn articulated_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
         let bias = self.bias.simd.as_ref().and_then(|(k, _)| self.limbs.get(*k));
         let Some((bias, _)) = bias else { return Vec::new() };
@@ -204,14 +204,14 @@ impl<'g> Variants<'g> {
         })
     }
 
-    /// The same for forces and biases that are given.
+    /// The response of constraints to given forces and biases.
     pub fn constraint_response(&self) -> Program {
         let Some(variant) = self.all.first() else { return Program::default() };
         let (force, bias) = constraints::given(&variant.model);
         self.multipliers(Role::Answers(answers(&variant.model)), &force, &bias)
     }
 
-    /// The same with friction.
+    /// The response of constraints that slip, with friction, to given forces and biases.
     pub fn slipping_response(&self) -> Program {
         let Some(variant) = self.all.first() else { return Program::default() };
         let (force, bias) = constraints::given(&variant.model);

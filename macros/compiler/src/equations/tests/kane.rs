@@ -12,7 +12,7 @@ const SLEIGH: &str = "struct Sleigh { m: f64, a: f64, j: f64,
     #[constraint(dot(v(sled / ground / ground), sled.y) = 0)] blade: Nonholonomic,
     #[acts(on = sled, along = x)] push: Force, #[acts(on = sled, about = z)] steer: Torque }";
 
-/// The same in speeds along and across the blade.
+/// A sleigh in generalized speeds along and across its blade.
 const SLEIGH_IN_SPEEDS: &str = "struct Sleigh { m: f64, a: f64, j: f64,
     #[body(mass = m, com = a * x, inertia = diagonal(1, 1, j))] sled: Body,
     #[joint(ground -> sled, about = z)] pose: Planar,
