@@ -281,19 +281,23 @@ fn a_box_falls_on_an_edge() {
     let run = simulate(&m).from(q, [0.0; 12]).method(TimeStepping::step(h)).sample_every(h).duration(0.3);
     let swapped =
         simulate(&other).from(q, [0.0; 12]).method(TimeStepping::step(h)).sample_every(h).duration(0.3);
-    let (mut least, mut apart) = (0.0_f64, 0.0_f64);
+    let (mut least, mut early, mut apart) = (0.0_f64, 0.0_f64, 0.0_f64);
     for (sample, same) in run.zip(swapped) {
         let (sample, same) = (sample.unwrap(), same.unwrap());
         let now = energy(&sample.q, &sample.v);
         assert!(now < before + 0.01, "{} {now} {before}", sample.t);
         before = now;
         least = least.min(m.contact_gaps(&sample.q).min());
-        if sample.t < 0.25 {
-            apart = apart.max((sample.q - same.q).amax());
+        let difference = (sample.q - same.q).amax();
+        if sample.t < 0.18 {
+            early = early.max(difference);
+        } else if sample.t < 0.25 {
+            apart = apart.max(difference);
         }
     }
     assert!(least > -3e-3, "{least}");
-    // Impulses are found to a tolerance, and edges that strike edges enlarge what they differ by.
+    assert!(early < 1e-12, "{early}");
+    // At 0.19 s, where more edges strike, the two differ by 5e-7 for a step, and by 7e-9 from then on.
     assert!(apart < 1e-5, "{apart}");
 }
 
