@@ -215,7 +215,7 @@ pub struct NearlyIdentity<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> NearlyIdentity<T, N> {
-    /// Finds them.
+    /// Finds the columns of a matrix that are not those of the identity.
     pub fn of(matrix: &SMatrix<T, N, N>) -> Self {
         let (mut first, mut end) = (N, 0);
         for (j, column) in matrix.data.0.iter().enumerate() {
@@ -405,7 +405,7 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
 }
 
 impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
-    /// So many rows from one on.
+    /// Solves for one register of right-hand sides, from a given one on.
     #[inline(always)]
     fn some<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {
         let (l, inverse) = (&self.l.data.0, &self.inverse.data.0[0]);

@@ -20,7 +20,7 @@ pub use inverse::{complete, invert};
 use nalgebra::SMatrix;
 pub use tile::{Tile, Tiling};
 
-/// So many numbers fill several registers of eight.
+/// Whether a list of this many numbers fills several registers of eight.
 const fn is_long(numbers: usize) -> bool {
     registers_of_eight(numbers, true) > 1
 }

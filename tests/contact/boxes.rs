@@ -31,7 +31,7 @@ struct Two {
     floor: Contact,
 }
 
-/// The same boxes, named the other way round.
+/// A box on a box on the floor, with the lower box named first in their contact.
 #[mechanism(gravity = -gravity * z)]
 struct Swapped {
     gravity: f64,

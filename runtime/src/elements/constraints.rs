@@ -112,6 +112,8 @@ pub enum Slipping {}
 ///
 /// What two boxes, or a box and a capsule, touch with is said by the direction along which they are farthest apart. Points with
 /// other features are farther away than where they are, so that least gaps are distances where surfaces nearly touch.
+/// Gaps and normals jump where other features come to face each other: move such bodies by
+/// [`TimeStepping`](crate::integrate::TimeStepping), with steps of a millisecond or less.
 ///
 /// The height of a terrain is an expression of `u` and `w`, the place along the body's x and y, and of parameters:
 /// `ground.terrain(0.1 * sin(3 * u))`, or `ground.terrain(heights(u, w))` with a [`Table`](crate::Table). Where a sphere touches

@@ -19,10 +19,11 @@ use nalgebra::SVector;
 /// ```
 ///
 /// Between impacts the order is 4, under lasting contact 2 and through impacts 1. The impulses fulfil Coulomb's and Newton's
-/// laws to rounding ([`contact::solve`](crate::contact::solve)), so what sticks does not creep, and no contact gives energy.
+/// laws to rounding ([`contact::solve`](crate::contact::solve)), so what sticks does not creep, and no impulse gives energy.
 /// Surfaces overlap by what they approach in a step when they meet, at most; where they stay together the overlap is taken away at
 /// once, by displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing time-stepping
-/// schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013).
+/// schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013). They may lift bodies: drops of a box of 2 kg on another gain up to
+/// 1.3 mJ in a step of 1 ms, and 15 mJ in one of 2 ms.
 ///
 /// `Λ₀` are those of the step before where they have hardly changed, and found anew where they have.
 ///

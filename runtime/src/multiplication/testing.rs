@@ -6,7 +6,7 @@ pub fn numbers<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> 
     SMatrix::from_fn(|i, j| (seed + (i * 7 + 5 * j) as f64).sin())
 }
 
-/// So many rows at a time, for registers of eight numbers or for those of four.
+/// The tile of a given number of rows, in registers of eight numbers or of four.
 macro_rules! rows_of {
     ($rows:expr, $wide:literal) => {
         Tile<{ $rows }, { registers_of_eight($rows, $wide) }, { registers_of_four($rows, $wide) }>

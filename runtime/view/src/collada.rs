@@ -277,7 +277,7 @@ mod tests {
         <input semantic='NORMAL' source='#normals' offset='1'/><p>0 0 1 0 2 0 0 0 2 0 3 0</p></triangles>";
     const SHOWN: &str = "<instance_geometry url='#square'/>";
 
-    /// The same square, as each kind of list has it.
+    /// Triangles, polygons and fans of one square list the same corners; a strip cuts it along the other diagonal.
     #[test]
     fn lists_of_faces_agree() {
         let square = corners(&file("", TWO, "")).unwrap();

@@ -1,4 +1,4 @@
-//! Logs of motions as MCAP files, which Foxglove, rerun and other tools of robotics open (<https://mcap.dev/spec>).
+//! Logs of motions as files of the format MCAP, with the schemas of Foxglove (<https://mcap.dev/spec>).
 //!
 //! A file is a sequence of records: a byte that says what it is, the length of its content in eight bytes, the content. Numbers are little
 //! endian; strings have their length in four bytes before them. Messages are JSON, and stand one behind the other: without chunks and

@@ -28,7 +28,7 @@ pub struct Known<'g> {
     pub by_v: Columns<'g>,
 }
 
-/// Finds them.
+/// Finds the columns of derivatives that invariance under displacements of a free base determines.
 pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
     let mut found = Known::default();
     let is_base = |base: usize| match model.links[base] {
