@@ -298,6 +298,32 @@ fn the_order_is_four_under_constraints() {
     }
 }
 
+/// Where the clock has run for weeks and years it ticks in steps longer than those between samples in time: forces that depend on it
+/// cost no more steps, and the motion is the same but for what rounding of the time makes of the forces.
+#[test]
+fn a_clock_that_has_run_for_long_costs_no_steps() {
+    let cart = Cart {};
+    let end = |start: f64| {
+        let counted = Counted::<_, true>::new(&cart);
+        let run = simulate(&counted).from([0.01, 0.4], [0.0, 1.0]).start_at(start).duration(1.0);
+        let run = run.inputs(|t, _, _| [5.0 * (3.0 * (t - start)).sin()].into());
+        let end = run.clone().method(Rodas::new().tolerance(1e-9, 1e-9)).finish().unwrap();
+        let count = counted.count.get();
+        let fixed = run.method(Rosenbrock::step(1e-3)).finish().unwrap();
+        (count, end.q, fixed.q)
+    };
+    let (count, precise, fixed) = end(0.0);
+    for power in [10, 20, 26] {
+        let start = 2.0_f64.powi(power);
+        let (found, adaptive, equal) = end(start);
+        assert!(found * 10 <= count * 12, "{count} evaluations, {found} after {start} s");
+        let tick = start * f64::EPSILON;
+        for gap in [(adaptive - precise).amax(), (equal - fixed).amax()] {
+            assert!(gap <= 1e-9 + 15.0 * tick, "{gap:e} after {start} s");
+        }
+    }
+}
+
 #[test]
 fn derivatives_spare_two_evaluations_for_each_velocity() {
     let [known, differences] = evaluations(&Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into());

@@ -1,7 +1,7 @@
 //! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
 
 use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
-use super::rosenbrock::{Along, Slopes, slopes};
+use super::rosenbrock::{Along, Slopes, elapsed, shortly, slopes};
 use super::stages::Rates;
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
@@ -150,11 +150,16 @@ fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let Attempt { start, acceleration, h, .. } = *attempt;
     let mut slopes = slopes(system, start, acceleration, h, Along::All).or(before).unwrap_or(Slopes::zero());
     // Order 4 asks for more than a forward difference in time; inputs may jump at the start.
-    let later = h * constant(1e-3);
-    let [first, second] =
-        [T::one(), constant(2.0)].map(|n| system.acceleration(start.t + later * n, &start.q, &start.v));
-    let bend = first * constant::<T>(4.0) - second - acceleration * constant::<T>(3.0);
-    slopes.by_t = bend / (later * constant::<T>(2.0));
+    let later = shortly(system, start.t, h);
+    let [first, second] = [later, later * constant(2.0)].map(|later| {
+        let change = system.acceleration(start.t + later, &start.q, &start.v) - acceleration;
+        (elapsed(system, start.t, later), change)
+    });
+    let between = second.0 - first.0;
+    if first.0 > T::zero() && between > T::zero() {
+        let (near, far) = (first.1 / first.0, second.1 / second.0);
+        slopes.by_t = (near * second.0 - far * first.0) / between;
+    }
     let mut turn = SMatrix::<T, NV, NV>::zeros();
     let size: T = epsilon::<T>().powf(constant(1.0 / 3.0));
     for k in 0..NV {

@@ -99,6 +99,26 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     Some(out)
 }
 
+/// How long after the start of a step of `h` seconds samples in time are taken: a thousandth of it, and some roundings of the clock at
+/// least, which has run for long.
+pub(super) fn shortly<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    start: T,
+    h: T,
+) -> T {
+    let tick = system.time(start).abs() * epsilon::<T>();
+    (h * constant(1e-3)).max(tick * constant(8.0)).min(h * constant(0.5))
+}
+
+/// The time from the start of a step to a moment `later`, as the clock shows it: what accelerations are functions of.
+pub(super) fn elapsed<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    start: T,
+    later: T,
+) -> T {
+    system.time(start + later) - system.time(start)
+}
+
 /// `x` with `m x = b` by Gaussian elimination with row pivots; `None` for a singular matrix.
 fn solve<T: Real, const N: usize>(mut m: SMatrix<T, N, N>, mut b: SVector<T, N>) -> Option<SVector<T, N>> {
     for k in 0..N {
@@ -161,8 +181,11 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let before = system.acceleration(start.t, &start.q, &start.v);
         let mut slopes =
             slopes(system, start, &before, h, Along::Allowed).or(*memory).unwrap_or(Slopes::zero());
-        let later = h * constant(1e-3);
-        slopes.by_t = (system.acceleration(start.t + later, &start.q, &start.v) - before) / later;
+        let later = shortly(system, start.t, h);
+        let passed = elapsed(system, start.t, later);
+        if passed > T::zero() {
+            slopes.by_t = (system.acceleration(start.t + later, &start.q, &start.v) - before) / passed;
+        }
         let gamma = constant::<T>(1.0 + core::f64::consts::FRAC_1_SQRT_2);
         let part = gamma * h;
         // Of (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv]: kφ = a + γh kv, and one system for kv.
