@@ -81,7 +81,7 @@ use std::path::PathBuf;
 /// | `prepare` | adds `prepare()`, which computes once what depends on the parameters alone |
 /// | `batch` | adds a twin of every function of the state for several states at once |
 /// | `drawing` | adds what the mechanism looks like as data (`DRAWING`, `linkwork::drawing`), for programs that draw it |
-/// | `equations = lagrange`, `hamilton`, `routh` or `structure` | which equations `EQUATIONS` and the documentation have: Lagrange's also where they are long, the canonical ones, those without cyclic coordinates, or no terms at all. If not given, Lagrange's where they are short enough to be read |
+/// | `equations = lagrange`, `hamilton`, `kane`, `routh` or `structure` | which equations `EQUATIONS` and the documentation have: Lagrange's also where they are long, the canonical ones, those in independent speeds without multipliers, those without cyclic coordinates, or no terms at all. If not given, Lagrange's where they are short enough to be read |
 /// | `formulation = multipliers` or `speeds` | how constraints are solved: with Lagrange multipliers, or in independent speeds (Kane); multipliers if not given |
 /// | `independent = (velocity, …)` | the independent speeds, of `formulation = speeds`; chosen if not given. Speeds of your own are elements: `#[speed(…)] name: Speed` |
 /// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |

@@ -1,106 +1,12 @@
 //! A polynomial as a person groups it: by rates, then by functions, each with the parameters' factors in front. Decides
 //! the order in which terms and factors are read; makes no text.
 
-use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
-use std::cmp::Reverse;
+use super::common::{Among, gathered};
+use super::item::{Item, Order, Sum, common_number, near};
+use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
 
-/// Relative difference of coefficients that are taken to be equal.
-const ROUNDING: f64 = 1e-9;
 /// Coefficients this much smaller than others of their kind are rounding.
 const NOISE: f64 = 1e-11;
-
-/// `coefficient × factor × (sum)^power`; no sum stands for one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Item {
-    /// Numeric factor.
-    pub coefficient: f64,
-    /// Common factors.
-    pub factor: Monomial,
-    /// Two items or more, or none.
-    pub sum: Vec<Item>,
-    /// One, or two for a square.
-    pub power: u8,
-}
-
-impl Item {
-    /// One term.
-    fn single(coefficient: f64, factor: Monomial) -> Item {
-        Item { coefficient, factor, sum: Vec::new(), power: 1 }
-    }
-}
-
-/// The order of reading.
-pub struct Order {
-    /// All atoms, from left to right.
-    pub atoms: Vec<usize>,
-    rates: Monomial,
-    functions: Monomial,
-    positions: Monomial,
-    parameters: Monomial,
-}
-
-/// Where an atom stands: by rank; symbols before waves in order of their angles, before all else. An inverse of an atom
-/// stands where that atom does.
-fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
-    let rank = ring.ranks[atom];
-    match &ring.atoms[atom] {
-        Atom::Symbol(s) => (rank, 0, vec![s.0 as usize]),
-        Atom::Wave(w) => {
-            let first = w.angle.iter().position(|n| *n != 0).unwrap_or(0);
-            let rest = w.angle.iter().map(|n| usize::from(n.unsigned_abs()));
-            let angle = std::iter::once(first).chain(rest).chain([usize::from(w.cosine)]);
-            (rank, 1, angle.collect())
-        }
-        Atom::Inverse(p) => match p.terms.as_slice() {
-            [t] => t.monomial.factors().next().map_or((rank, 2, vec![atom]), |(k, _)| place(ring, k)),
-            _ => (rank, 2, vec![atom]),
-        },
-        _ => (rank, 2, vec![atom]),
-    }
-}
-
-impl Order {
-    /// The order of the atoms of a ring.
-    pub fn of(ring: &Ring) -> Order {
-        let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
-        atoms.sort_by_cached_key(|k| place(ring, *k));
-        Order {
-            atoms,
-            rates: ring.mask(|_, rank| rank >= Rank::Rate),
-            functions: ring.mask(|_, rank| rank == Rank::Function),
-            positions: ring.mask(|_, rank| rank == Rank::Position),
-            parameters: ring.mask(|_, rank| rank == Rank::Parameter),
-        }
-    }
-
-    /// The factors of a monomial from left to right.
-    pub fn factors(&self, m: Monomial) -> Vec<(usize, u8)> {
-        let powers = self.atoms.iter().map(|k| (*k, m.power(*k)));
-        powers.filter(|(_, n)| *n > 0).collect()
-    }
-
-    /// The parameters of a monomial.
-    pub fn parameters(&self, m: Monomial) -> Monomial {
-        m.only(self.parameters)
-    }
-
-    /// Terms without functions first, then in the order of their factors, high powers first.
-    fn sort(&self, terms: &mut [Term]) {
-        terms.sort_by_cached_key(|t| {
-            let powers: Vec<Reverse<u8>> = self.atoms.iter().map(|k| Reverse(t.monomial.power(*k))).collect();
-            (t.monomial.only(self.functions).degree(), powers)
-        });
-    }
-
-    /// Accelerations first, then rates, then positions; high powers first.
-    fn sort_groups(&self, ring: &Ring, groups: &mut [(Monomial, Vec<Term>)]) {
-        groups.sort_by_cached_key(|(key, _)| {
-            let rank = key.factors().map(|(k, _)| ring.ranks[k]).max();
-            let powers: Vec<Reverse<u8>> = self.atoms.iter().map(|k| Reverse(key.power(*k))).collect();
-            (Reverse(rank), Reverse(key.only(self.rates).degree()), powers)
-        });
-    }
-}
 
 /// A polynomial without terms that are only rounding: small against those with the same parameters and as many rates.
 pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
@@ -126,8 +32,8 @@ pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     Polynomial { terms: p.terms.iter().filter(keep).copied().collect() }
 }
 
-/// The items of a polynomial in the order of reading.
-pub fn items(ring: &Ring, order: &Order, p: &Polynomial) -> Vec<Item> {
+/// The items of a polynomial in the order of reading, common factors of some of them taken out.
+pub fn items(ring: &Ring, order: &Order, p: &Polynomial, among: Among) -> Vec<Item> {
     let mut items = Vec::new();
     let mut groups = grouped(&p.terms, order.rates);
     order.sort_groups(ring, &mut groups);
@@ -146,7 +52,7 @@ pub fn items(ring: &Ring, order: &Order, p: &Polynomial) -> Vec<Item> {
             }
         }
     }
-    items
+    gathered(order, items, among)
 }
 
 /// Terms by the part of them that is in a mask.
@@ -199,17 +105,20 @@ fn square(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
         sum.push(Item::single(coefficient, t.monomial.over(rest)));
     }
     let factor = rest.over(Monomial::atom(x));
-    let square = Item { coefficient: leading.coefficient, factor, sum, power: 2 };
+    let sums = vec![Sum { items: sum, power: 2 }];
+    let square = Item { coefficient: leading.coefficient, factor, sums };
     let there =
         |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && near(t.coefficient, s.coefficient));
-    (square.sum.len() > 1 && expanded(&square).iter().all(there)).then_some(square)
+    let several = square.sums.iter().all(|sum| sum.items.len() > 1);
+    (several && expanded(&square).iter().all(there)).then_some(square)
 }
 
 /// The terms of a square of single terms.
 fn expanded(square: &Item) -> Vec<Term> {
     let mut terms = Vec::new();
-    for (i, a) in square.sum.iter().enumerate() {
-        for (j, b) in square.sum.iter().enumerate().skip(i) {
+    let sum = square.sums.first().map_or(&[][..], |sum| &sum.items);
+    for (i, a) in sum.iter().enumerate() {
+        for (j, b) in sum.iter().enumerate().skip(i) {
             let twice = if i == j { 1.0 } else { 2.0 };
             let product = a.factor.times(b.factor).and_then(|m| m.times(square.factor));
             if let Some(monomial) = product {
@@ -221,10 +130,6 @@ fn expanded(square: &Item) -> Vec<Term> {
     terms
 }
 
-fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= ROUNDING * b.abs()
-}
-
 /// What all terms have in common, times what is left. What is left is grouped once more by functions.
 fn item(order: &Order, terms: &[Term]) -> Item {
     let first = terms.first().map_or(Monomial::ONE, |t| t.monomial);
@@ -234,7 +139,7 @@ fn item(order: &Order, terms: &[Term]) -> Item {
     }
     let mut terms = terms.to_vec();
     order.sort(&mut terms);
-    let coefficient = common_number(&terms);
+    let coefficient = common_number(terms.iter().map(|t| t.coefficient));
     for t in &mut terms {
         *t = Term { monomial: t.monomial.over(factor), coefficient: t.coefficient / coefficient };
     }
@@ -250,34 +155,5 @@ fn item(order: &Order, terms: &[Term]) -> Item {
     if let Some(positive) = sum.iter().position(|t| t.coefficient > 0.0) {
         sum[..=positive].rotate_right(1);
     }
-    Item { coefficient, factor, sum, power: 1 }
-}
-
-/// The number to take out of a sum: its sign if all agree, and its size where that leaves simpler numbers.
-fn common_number(terms: &[Term]) -> f64 {
-    let sign = if terms.iter().all(|t| t.coefficient < 0.0) { -1.0 } else { 1.0 };
-    let size = terms.first().map_or(1.0, |t| t.coefficient.abs());
-    if terms.iter().all(|t| near(t.coefficient.abs(), size)) {
-        return sign * size;
-    }
-    let mut common: Option<(u32, u32)> = None;
-    for t in terms {
-        let Some((p, q)) = fraction(t.coefficient.abs()) else { return sign };
-        common = Some(common.map_or((p, q), |(a, b)| (gcd(a, p), gcd(b, q))));
-    }
-    sign * common.map_or(1.0, |(p, q)| f64::from(p) / f64::from(q))
-}
-
-/// The greatest common divisor.
-pub fn gcd(a: u32, b: u32) -> u32 {
-    if b == 0 { a } else { gcd(b, a % b) }
-}
-
-/// Numerator and denominator of what looks like a fraction: of halves, thirds and their products.
-pub fn fraction(size: f64) -> Option<(u32, u32)> {
-    [1_u32, 2, 3, 4, 6, 8, 12, 16, 24, 48].into_iter().find_map(|q| {
-        let p = size * f64::from(q);
-        let whole = p.round();
-        ((1.0..1000.0).contains(&whole) && (p - whole).abs() <= 1e-11 * whole).then_some((whole as u32, q))
-    })
+    Item { coefficient, factor, sums: vec![Sum { items: sum, power: 1 }] }
 }

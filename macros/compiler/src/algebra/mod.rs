@@ -2,7 +2,9 @@
 //! sphere, common factors. What is equal for all values gets the same form as far as these rules tell, which the
 //! graph's own simplification does not attempt. Knows no mechanics.
 
+pub mod common;
 pub mod factor;
+pub mod item;
 pub mod normal;
 pub mod polynomial;
 pub mod trigonometry;

@@ -1,6 +1,8 @@
 //! Expressions and polynomials as text, plain or typeset.
 
-use crate::algebra::factor::{Item, Order, items};
+use crate::algebra::common::Among;
+use crate::algebra::factor::items;
+use crate::algebra::item::{Item, Order};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
 use crate::expr::Expr;
 use crate::expr::node::{Node, Symbol};
@@ -86,9 +88,19 @@ impl<'a, S: Style> Writer<'a, S> {
         Writer { ring, order: Order::of(ring), style }
     }
 
-    /// A polynomial, grouped.
+    /// A polynomial, grouped, common factors taken out.
     pub fn polynomial(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p))
+        self.sum(&items(self.ring, &self.order, p, Among::All))
+    }
+
+    /// An energy: what has different numbers of rates stays apart.
+    pub fn energy(&self, p: &Polynomial) -> String {
+        self.sum(&items(self.ring, &self.order, p, Among::Kinds))
+    }
+
+    /// A linear form: its coefficients stay apart.
+    pub fn linear(&self, p: &Polynomial) -> String {
+        self.sum(&items(self.ring, &self.order, p, Among::None))
     }
 
     fn sum(&self, items: &[Item]) -> String {
@@ -106,8 +118,9 @@ impl<'a, S: Style> Writer<'a, S> {
     }
 
     fn item(&self, item: &Item) -> String {
-        let sum = (!item.sum.is_empty()).then(|| self.bracketed(self.sum(&item.sum), item.power));
-        self.product(item.coefficient, item.factor, sum)
+        let sums = item.sums.iter().map(|sum| self.bracketed(self.sum(&sum.items), sum.power));
+        let constant = item.sums.iter().all(|sum| self.order.is_constant(&sum.items));
+        self.product(item.coefficient, item.factor, sums.collect(), constant)
     }
 
     /// A sum as a factor.
@@ -115,13 +128,14 @@ impl<'a, S: Style> Writer<'a, S> {
         if power == 1 { Factor::Sum(sum) } else { Factor::Single(self.style.power(&sum, power)) }
     }
 
-    /// Number, parameters, sum, all else; then what it is divided by. Without the sign.
-    fn product(&self, coefficient: f64, m: Monomial, sum: Option<Factor>) -> String {
-        let parameters = self.order.parameters(m);
+    /// Number, parameters, positions before sums of variables, sums, all else; then what it is divided by. Without the sign.
+    fn product(&self, coefficient: f64, m: Monomial, sums: Vec<Factor>, constant: bool) -> String {
+        let positions = if constant { Monomial::ONE } else { m.only(self.order.positions) };
+        let front = self.order.parameters(m).or(positions);
         let (mut factors, mut divisors) = (Vec::new(), Vec::new());
-        self.factors(parameters, &mut factors, &mut divisors);
-        factors.extend(sum);
-        self.factors(m.without(parameters), &mut factors, &mut divisors);
+        self.factors(front, &mut factors, &mut divisors);
+        factors.extend(sums);
+        self.factors(m.without(front), &mut factors, &mut divisors);
         let number = Number::of(coefficient.abs());
         let number = (number != Number::ONE || factors.is_empty()).then_some(number);
         self.style.product(number, &factors, &divisors)
@@ -172,7 +186,7 @@ impl<'a, S: Style> Writer<'a, S> {
         let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
         let parts: Vec<(f64, Monomial)> =
             angles.map(|(angle, n)| (angle.coefficient * f64::from(n), angle.monomial)).collect();
-        let text = self.joined(parts.iter().map(|(c, m)| (*c < 0.0, self.product(*c, *m, None))));
+        let text = self.joined(parts.iter().map(|(c, m)| (*c < 0.0, self.product(*c, *m, Vec::new(), true))));
         Argument { text, lone: matches!(parts.as_slice(), [(c, m)] if self.is_symbol(*c, *m)) }
     }
 

@@ -157,7 +157,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
 /// The Routhian; then the equations of motion, the velocities of cyclic coordinates, their momenta and inertias.
 fn lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
     let writer = Writer::styled(&reduced.ring, style);
-    let mut lines = vec![writer.polynomial(&reduced.routhian)];
+    let mut lines = vec![writer.energy(&reduced.routhian)];
     let sides = reduced.motion.iter().zip(&reduced.forces);
     lines.extend(sides.map(|(a, b)| format!("{} = {}", writer.polynomial(a), writer.polynomial(b))));
     let cyclic = || reduced.cyclic.iter().copied();

@@ -33,7 +33,7 @@ impl Lines {
         let sides = equations.motion.iter().zip(&equations.forces);
         Lines {
             rates: equations.rates.iter().map(|(k, p)| (*k, writer.polynomial(p))).collect(),
-            lagrangian: writer.polynomial(&equations.lagrangian),
+            lagrangian: writer.energy(&equations.lagrangian),
             motion: sides.map(|(a, b)| (writer.polynomial(a), writer.polynomial(b))).collect(),
         }
     }
@@ -111,7 +111,7 @@ pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
 /// The Hamiltonian; then equations for the rates of coordinates and of momenta.
 fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<String> {
     let writer = Writer::styled(&canonical.ring, style);
-    let mut lines = vec![writer.polynomial(&canonical.hamiltonian)];
+    let mut lines = vec![writer.energy(&canonical.hamiltonian)];
     let velocities = (0..).map(Quantity::Velocity).zip(&canonical.velocity);
     let momenta = (0..).map(Quantity::Acceleration).zip(&canonical.momentum_rate);
     let determinants = (0..).map(determinant).zip(&canonical.determinants);

@@ -103,8 +103,7 @@ impl Lines {
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
         let stability = linear.stability.as_ref();
-        let of =
-            |stability: &Stability| Writer::styled(&stability.ring, style).polynomial(&in_one(stability));
+        let of = |stability: &Stability| Writer::styled(&stability.ring, style).linear(&in_one(stability));
         let conditions = |stability: &Stability| match &stability.verdict {
             Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
                 let writer = Writer::styled(&stability.ring, style);
@@ -117,7 +116,7 @@ impl Lines {
             Some(Writer::styled(&stability.ring, style).polynomial(frequency))
         });
         Lines {
-            equations: sides.map(|(a, b)| (writer.polynomial(a), writer.polynomial(b))).collect(),
+            equations: sides.map(|(a, b)| (writer.linear(a), writer.linear(b))).collect(),
             values: values.map(|(what, p)| (style.symbol(what.symbol(), 1), writer.polynomial(p))).collect(),
             polynomial: stability.map(of),
             frequency,

@@ -1,6 +1,6 @@
 //! How the parts of a polynomial look; and plain text.
 
-use crate::algebra::factor::{fraction, gcd};
+use crate::algebra::item::{fraction, gcd};
 use crate::expr::node::Symbol;
 use std::f64::consts::PI;
 use std::fmt;

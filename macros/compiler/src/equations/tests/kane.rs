@@ -1,7 +1,6 @@
 //! Kane's equations in independent speeds, read back: against the accelerations of Lagrange's equations with multipliers.
 
 use super::super::kane::{kane, written_kane};
-use super::reading::text::value;
 use super::*;
 use crate::mechanics::speeds::InSpeeds;
 
@@ -142,33 +141,20 @@ fn check_printed(model: &Model<'_>) -> String {
                 (w, rates)
             }
         };
-        let rates = super::super::written::rates(named);
-        let by_name = |word: &str| {
-            let quantities = (0..named.parameters.len()).map(Quantity::Parameter);
-            let quantities = quantities.chain((0..named.nq()).map(Quantity::Configuration));
-            let quantities = quantities.chain((0..nv).map(Quantity::Velocity));
-            let quantities = quantities.chain((0..nv).map(Quantity::Acceleration));
-            let mut quantities =
-                quantities.chain((0..named.nu()).map(Quantity::Input)).chain([Quantity::Time]);
-            let is_it = |q: &Quantity| {
-                let (name, dots) = super::super::written::name(named, &rates, q.symbol());
-                name + &"'".repeat(usize::from(dots)) == word
-            };
-            match quantities.find(is_it).unwrap_or_else(|| panic!("the name {word} in {text}")) {
-                Quantity::Velocity(k) => v[k],
-                Quantity::Acceleration(k) => a[k],
-                other => at(other.symbol()),
-            }
+        let values = |s: Symbol| match Quantity::of(s) {
+            Quantity::Velocity(k) => v[k],
+            Quantity::Acceleration(k) => a[k],
+            _ => at(s),
         };
-        let joined = text.replace("\n    ", " ");
-        let lines: Vec<&str> = joined.lines().filter(|line| line.contains(" = ")).collect();
+        let by_name = by_name(named, &values);
+        let lines = printed(&text);
         assert!(lines.len() >= nv, "{text}");
-        for line in lines {
-            let (left, right) = line.split_once(" = ").expect("an equation");
+        for (left, right) in &lines {
             // Rates of coordinates that speeds replace are known to nobody else.
             if speeds.is_some() && left.ends_with('\'') && !left.contains(' ') {
                 continue;
             }
+            let line = format!("{left} = {right}");
             let (left, right) = (value(left, &by_name), value(right, &by_name));
             // What holds configurations is printed as it is; the states are random.
             let residuals = eval(&constraints::residuals(native), &at);
@@ -209,7 +195,7 @@ pose.x' = cos(pose.angle) along
 pose.y' = sin(pose.angle) along
 across = 0
 
-m along' - m a pose.angle'² = push
+m (along' - a pose.angle'²) = push
 (m a² + j) pose.angle'' + m a along pose.angle' = steer
 
 along and pose.angle' are the independent velocities; from them the others follow by blade.";

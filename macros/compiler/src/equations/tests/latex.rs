@@ -122,12 +122,11 @@ fn all_mechanisms_are_well_formed() {
 #[test]
 fn cart_pole() {
     let expected = r"\begin{aligned}
-& \mathcal{L} = \tfrac{1}{2}\,(\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\dot{\mathrm{rail}}^{2} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\dot{\mathrm{rail}}\,\dot{\mathrm{hinge}} + \tfrac{1}{6}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\dot{\mathrm{hinge}}^{2} \\
+& \mathcal{L} = \tfrac{1}{2}\,(\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\dot{\mathrm{rail}}^{2} + \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\bigl(\tfrac{1}{3}\,\mathrm{pole\_length}\,\dot{\mathrm{hinge}}^{2} - \cos(\mathrm{hinge})\,\dot{\mathrm{rail}}\,\dot{\mathrm{hinge}}\bigr) \\
 & \quad {} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge}) \\
-& (\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\ddot{\mathrm{rail}} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{hinge}} \\
-& \quad {} + \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge})\,\dot{\mathrm{hinge}}^{2} + \mathrm{rail\_damping}\,\dot{\mathrm{rail}} = \mathrm{push} \\
-& {-}\tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} + \tfrac{1}{3}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}^{2}\,\ddot{\mathrm{hinge}} \\
-& \quad {} - 4.905\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,\sin(\mathrm{hinge}) = 0
+& (\mathrm{cart\_mass} + \mathrm{pole\_mass})\,\ddot{\mathrm{rail}} \\
+& \quad {} - \tfrac{1}{2}\,\mathrm{pole\_mass}\,\mathrm{pole\_length}\,(\cos(\mathrm{hinge})\,\ddot{\mathrm{hinge}} - \sin(\mathrm{hinge})\,\dot{\mathrm{hinge}}^{2}) + \mathrm{rail\_damping}\,\dot{\mathrm{rail}} = \mathrm{push} \\
+& \mathrm{pole\_mass}\,\mathrm{pole\_length}\,\bigl(\tfrac{1}{3}\,\mathrm{pole\_length}\,\ddot{\mathrm{hinge}} - \tfrac{1}{2}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} - 4.905\,\sin(\mathrm{hinge})\bigr) = 0
 \end{aligned}
 ";
     assert_eq!(latex_of("-9.81 * y", CART_POLE), expected);
@@ -138,11 +137,11 @@ fn cart_pole() {
 fn double_pendulum() {
     let item = DOUBLE_PENDULUM.replace("shoulder", "theta1").replace("elbow", "theta2");
     let expected = r"\begin{aligned}
-& \mathcal{L} = \tfrac{1}{2}\,\bigl(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,l_{1}^{2} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2} + m_{2}\,l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}^{2} + m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}\,\dot{\theta}_{2} + \tfrac{1}{6}\,m_{2}\,l_{2}^{2}\,\dot{\theta}_{2}^{2} \\
+& \mathcal{L} = \tfrac{1}{2}\,\left(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,\bigl(l_{1}^{2} + \tfrac{1}{3}\,l_{2}^{2} + l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\right)\,\dot{\theta}_{1}^{2} + m_{2}\,l_{2}\,\left(\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\dot{\theta}_{1}\,\dot{\theta}_{2} + \tfrac{1}{6}\,l_{2}\,\dot{\theta}_{2}^{2}\right) \\
 & \quad {} + g\,l_{1}\,\bigl(\tfrac{1}{2}\,m_{1} + m_{2}\bigr)\,\cos\theta_{1} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\cos(\theta_{1} + \theta_{2}) \\
-& \bigl(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,l_{1}^{2} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2} + m_{2}\,l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{2} - m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{1}\,\dot{\theta}_{2} - \tfrac{1}{2}\,m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{2}^{2} \\
-& \quad {} + g\,l_{1}\,\bigl(\tfrac{1}{2}\,m_{1} + m_{2}\bigr)\,\sin\theta_{1} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\sin(\theta_{1} + \theta_{2}) = 0 \\
-& m_{2}\,l_{2}\,\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + \tfrac{1}{3}\,m_{2}\,l_{2}^{2}\,\ddot{\theta}_{2} + \tfrac{1}{2}\,m_{2}\,l_{1}\,l_{2}\,\sin\theta_{2}\,\dot{\theta}_{1}^{2} + \tfrac{1}{2}\,g\,m_{2}\,l_{2}\,\sin(\theta_{1} + \theta_{2}) = \mathrm{motor}
+& \left(\tfrac{1}{3}\,m_{1}\,l_{1}^{2} + m_{2}\,\bigl(l_{1}^{2} + \tfrac{1}{3}\,l_{2}^{2} + l_{1}\,l_{2}\,\cos\theta_{2}\bigr)\right)\,\ddot{\theta}_{1} \\
+& \quad {} + m_{2}\,l_{2}\,\left(\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{2} - l_{1}\,\bigl(\dot{\theta}_{1} + \tfrac{1}{2}\,\dot{\theta}_{2}\bigr)\,\sin\theta_{2}\,\dot{\theta}_{2} + \tfrac{1}{2}\,g\,\sin(\theta_{1} + \theta_{2})\right) + g\,l_{1}\,\bigl(\tfrac{1}{2}\,m_{1} + m_{2}\bigr)\,\sin\theta_{1} = 0 \\
+& m_{2}\,l_{2}\,\left(\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + \tfrac{1}{3}\,l_{2}\,\ddot{\theta}_{2} + \tfrac{1}{2}\,l_{1}\,\sin\theta_{2}\,\dot{\theta}_{1}^{2} + \tfrac{1}{2}\,g\,\sin(\theta_{1} + \theta_{2})\right) = \mathrm{motor}
 \end{aligned}
 ";
     assert_eq!(latex_of("-g * y", &item), expected);
@@ -152,7 +151,7 @@ fn double_pendulum() {
 #[test]
 fn top() {
     let expected = r"\begin{aligned}
-& \mathcal{L} = \tfrac{1}{2}\,(m\,l^{2} + a)\,\omega_{\mathrm{tip},x}^{2} + \tfrac{1}{2}\,(m\,l^{2} + a)\,\omega_{\mathrm{tip},y}^{2} + \tfrac{1}{2}\,c\,\omega_{\mathrm{tip},z}^{2} + g\,m\,l\,(2\,q_{\mathrm{tip},x}^{2} + 2\,q_{\mathrm{tip},y}^{2} - 1) \\
+& \mathcal{L} = \tfrac{1}{2}\,(m\,l^{2} + a)\,(\omega_{\mathrm{tip},x}^{2} + \omega_{\mathrm{tip},y}^{2}) + \tfrac{1}{2}\,c\,\omega_{\mathrm{tip},z}^{2} + g\,m\,l\,(2\,q_{\mathrm{tip},x}^{2} + 2\,q_{\mathrm{tip},y}^{2} - 1) \\
 & (m\,l^{2} + a)\,\dot{\omega}_{\mathrm{tip},x} + (c - m\,l^{2} - a)\,\omega_{\mathrm{tip},y}\,\omega_{\mathrm{tip},z} - 2\,g\,m\,l\,(q_{\mathrm{tip},x}\,q_{\mathrm{tip},w} + q_{\mathrm{tip},y}\,q_{\mathrm{tip},z}) = 0 \\
 & (m\,l^{2} + a)\,\dot{\omega}_{\mathrm{tip},y} + (m\,l^{2} + a - c)\,\omega_{\mathrm{tip},x}\,\omega_{\mathrm{tip},z} + 2\,g\,m\,l\,(q_{\mathrm{tip},x}\,q_{\mathrm{tip},z} - q_{\mathrm{tip},y}\,q_{\mathrm{tip},w}) = 0 \\
 & c\,\dot{\omega}_{\mathrm{tip},z} = 0

@@ -108,7 +108,7 @@ impl Text {
                         && !last.ends_with("where")
                         && !last.ends_with("of")
                         && !last.ends_with(':')
-                        && !last.ends_with(')')
+                        && !last.ends_with("positive)")
                         && !(ends && last.ends_with(" 0") && last.starts_with(' ')) =>
                 {
                     *last += &format!(" {}", more.trim_start());

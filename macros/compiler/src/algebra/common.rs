@@ -1,0 +1,260 @@
+//! Factors that items of a sum have in common, taken out as long as that leaves fewer symbols to read.
+
+use super::item::{Item, Order, Sum, common_number, near};
+use super::polynomial::Monomial;
+
+/// Most items among which common factors are looked for: what is longer is not read.
+const MOST: usize = 200;
+
+/// Most items of which every beginning is tried.
+const FEW: usize = 10;
+/// Most parentheses within each other.
+const NESTED: usize = 3;
+
+/// From which items of a sum common factors are taken out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Among {
+    /// All of them: an equation.
+    All,
+    /// Those with the same number of rates, if they have any; neither rates nor positions are taken out: an energy.
+    Kinds,
+    /// None: a linear form, of which the coefficients alone are shortened.
+    None,
+}
+
+/// The same sum with common factors taken out.
+pub fn gathered(order: &Order, mut items: Vec<Item>, among: Among) -> Vec<Item> {
+    let kept = if among == Among::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
+    let rules = Rules { order, kept, room: NESTED };
+    within(&rules, &mut items);
+    let kind = |item: &Item| item.factor.only(order.rates).degree();
+    let mut kinds: Vec<u32> = match among {
+        Among::All => return gather(&rules, items),
+        Among::Kinds => items.iter().map(kind).collect(),
+        Among::None => return items,
+    };
+    kinds.dedup();
+    let mut out = Vec::new();
+    for n in kinds {
+        let (alike, rest) = items.into_iter().partition(|item| kind(item) == n);
+        items = rest;
+        out.extend(if n == 0 { alike } else { gather(&rules, alike) });
+    }
+    out
+}
+
+/// What holds for a sum.
+struct Rules<'a> {
+    order: &'a Order,
+    /// Atoms that are not taken out.
+    kept: Monomial,
+    /// Most parentheses within each other.
+    room: usize,
+}
+
+impl Rules<'_> {
+    /// Those within parentheses.
+    fn inner(&self) -> Self {
+        Rules { room: self.room.saturating_sub(1), ..*self }
+    }
+}
+
+/// Takes common factors out of the sums in items.
+fn within(rules: &Rules<'_>, items: &mut [Item]) {
+    let inner = rules.inner();
+    for item in items {
+        for sum in item.sums.iter_mut().filter(|sum| sum.power == 1) {
+            let mut items = std::mem::take(&mut sum.items);
+            within(&inner, &mut items);
+            sum.items = gather(&inner, items);
+        }
+        unwrap(item);
+    }
+}
+
+/// Makes sums of one item factors of their own.
+fn unwrap(item: &mut Item) {
+    for sum in std::mem::take(&mut item.sums) {
+        match sum.items.as_slice() {
+            [only]
+                if sum.power == 1
+                    && let Some(factor) = item.factor.times(only.factor) =>
+            {
+                item.coefficient *= only.coefficient;
+                item.factor = factor;
+                item.sums.extend(only.sums.iter().cloned());
+            }
+            _ => item.sums.push(sum),
+        }
+    }
+}
+
+/// Takes common factors out of a sum, but those to be kept: in a short one, those first that leave least in the end.
+fn gather(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
+    let mut best = greedily(rules, items.clone());
+    if items.len() > FEW {
+        return best;
+    }
+    for group in groups(rules, &items) {
+        let found = greedily(rules, with(rules, items.clone(), group));
+        if rules.order.size(&found) < rules.order.size(&best) {
+            best = found;
+        }
+    }
+    best
+}
+
+/// Takes those factors out first that save most.
+fn greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
+    while items.len() <= MOST {
+        let mut best: Option<Group> = None;
+        for group in groups(rules, &items) {
+            if best.as_ref().is_none_or(|best| group.saved > best.saved) {
+                best = Some(group);
+            }
+        }
+        let Some(group) = best else { break };
+        items = with(rules, items, group);
+    }
+    items
+}
+
+/// Items of a sum with something in common.
+struct Group {
+    members: Vec<usize>,
+    /// What they are together.
+    whole: Item,
+    /// How many symbols that saves.
+    saved: usize,
+}
+
+/// A sum with a group in the place of its members.
+fn with(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<Item> {
+    let Group { members, mut whole, .. } = group;
+    if let Some(last) = whole.sums.last_mut() {
+        last.items = greedily(&rules.inner(), std::mem::take(&mut last.items));
+    }
+    unwrap(&mut whole);
+    let (mut k, first) = (0, members.first().copied());
+    items.retain(|_| {
+        k += 1;
+        Some(k - 1) == first || !members.contains(&(k - 1))
+    });
+    if let Some(place) = first.and_then(|k| items.get_mut(k)) {
+        *place = whole;
+    }
+    items
+}
+
+/// The groups of a sum that are shorter than their members.
+fn groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
+    let size = |items: &[Item]| rules.order.size(items);
+    let group = |members: Vec<usize>| {
+        let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
+        let whole = together(rules, &before, members.len() == items.len())?;
+        let saved = size(&before).checked_sub(size(std::slice::from_ref(&whole)))?;
+        (saved > 0 && nested(&whole) <= rules.room).then_some(Group { members, whole, saved })
+    };
+    candidates(rules, items).into_iter().filter_map(group).collect()
+}
+
+/// Items that share an atom or a sum: two or more.
+fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
+    let mut found: Vec<Vec<usize>> = Vec::new();
+    let mut add = |has: &dyn Fn(&Item) -> bool| {
+        let members: Vec<usize> = (0..items.len()).filter(|k| has(&items[*k])).collect();
+        if members.len() > 1 && !found.contains(&members) {
+            found.push(members);
+        }
+    };
+    for atom in rules.order.atoms.iter().filter(|k| !Monomial::atom(**k).meets(rules.kept)) {
+        add(&|item| item.factor.power(*atom) > 0);
+    }
+    for sum in items.iter().flat_map(|item| &item.sums) {
+        add(&|item| item.sums.iter().any(|other| ratio(sum, other).is_some()));
+    }
+    found
+}
+
+/// Items as one: their common factors times the sum of what is left of them. It begins with something positive, by the sign
+/// before it where an acceleration leads and other items remain.
+fn together(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
+    let first = items.first()?;
+    let factor = items.iter().fold(first.factor, |m, item| m.common(item.factor)).without(rules.kept);
+    let mut sums: Vec<Sum> = Vec::new();
+    let mut left: Vec<Item> = items
+        .iter()
+        .map(|item| Item {
+            coefficient: item.coefficient,
+            factor: item.factor.over(factor),
+            sums: item.sums.clone(),
+        })
+        .collect();
+    for sum in &first.sums {
+        let places: Option<Vec<(usize, f64)>> = left
+            .iter()
+            .map(|item| item.sums.iter().enumerate().find_map(|(k, other)| Some((k, ratio(sum, other)?))))
+            .collect();
+        let Some(places) = places else { continue };
+        for (item, (k, sign)) in left.iter_mut().zip(places) {
+            item.sums.remove(k);
+            item.coefficient *= sign;
+        }
+        sums.push(sum.clone());
+    }
+    let mut inner: Vec<Item> = left.into_iter().flat_map(opened).collect();
+    let mut number = common_number(inner.iter().map(|item| item.coefficient));
+    let leads = |item: &Item| item.coefficient < 0.0 && item.factor.meets(rules.order.accelerations);
+    if !whole && inner.first().is_some_and(leads) {
+        number = -number.abs();
+    }
+    inner.iter_mut().for_each(|item| item.coefficient /= number);
+    let mut inner: Vec<Item> = inner.into_iter().flat_map(opened).collect();
+    if let Some(positive) = inner.iter().position(|item| item.coefficient > 0.0) {
+        inner[..=positive].rotate_right(1);
+    }
+    sums.push(Sum { items: inner, power: 1 });
+    Some(Item { coefficient: number, factor, sums })
+}
+
+/// The items of a sum that nothing but a sign stands before; any other as it is.
+fn opened(item: Item) -> Vec<Item> {
+    match item.sums.as_slice() {
+        [sum] if sum.power == 1 && item.factor == Monomial::ONE && near(item.coefficient.abs(), 1.0) => {
+            let signed =
+                |inner: &Item| Item { coefficient: inner.coefficient * item.coefficient, ..inner.clone() };
+            sum.items.iter().map(signed).collect()
+        }
+        _ => vec![item],
+    }
+}
+
+/// How many parentheses an item has within each other.
+fn nested(item: &Item) -> usize {
+    let inner = item.sums.iter().flat_map(|sum| &sum.items).map(nested).max();
+    inner.map_or(0, |n| n + 1)
+}
+
+/// One where two sums are equal, less one where they are opposite; their items may stand in any order.
+fn ratio(a: &Sum, b: &Sum) -> Option<f64> {
+    if a.power != b.power || a.items.len() != b.items.len() {
+        return None;
+    }
+    let is = |sign: f64| a.items.iter().all(|x| b.items.iter().any(|y| equal(x, y, sign)));
+    match (is(1.0), is(-1.0)) {
+        (true, _) => Some(1.0),
+        (_, true) => Some(if a.power.is_multiple_of(2) { 1.0 } else { -1.0 }),
+        _ => None,
+    }
+}
+
+/// True if the second item is the first times a sign.
+fn equal(a: &Item, b: &Item, sign: f64) -> bool {
+    a.factor == b.factor
+        && a.sums.len() == b.sums.len()
+        && near(a.coefficient * sign, b.coefficient)
+        && a.sums.iter().zip(&b.sums).all(|(x, y)| ratio(x, y) == Some(1.0))
+}
+
+#[cfg(test)]
+mod tests;
