@@ -40,6 +40,16 @@ impl Jet {
         (Jet([s, k * b, k * c - s * half]), Jet([k, -s * b, -s * c - k * half]))
     }
 
+    /// The angle of the point `(cosine, sine)`, which may be of any length, between −π and π.
+    pub fn atan2(sine: Jet, cosine: Jet) -> Jet {
+        let ([s, ds, dds], [c, dc, ddc]) = (sine.0, cosine.0);
+        let square = s * s + c * c;
+        // Of an imaginary step whose square is nothing.
+        let angle = C::new(s.re.atan2(c.re), (c.re * s.im - s.re * c.im) / square.re);
+        let first = (c * ds - s * dc) / square;
+        Jet([angle, first, (c * dds - s * ddc - first * (c * dc + s * ds)) / square])
+    }
+
     /// First derivative by time.
     pub fn rate(self) -> C {
         self.0[1]
@@ -145,7 +155,7 @@ pub fn rotation(axis: [f64; 3], angle: Jet) -> Matrix {
     })
 }
 
-/// `a × b` of complex vectors.
-pub fn cross(a: [C; 3], b: [C; 3]) -> [C; 3] {
+/// `a × b`
+pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }

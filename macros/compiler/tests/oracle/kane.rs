@@ -4,12 +4,13 @@
 //! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 4 and 5). Nothing here is the compiler's.
 
 use crate::jet::{
-    C, Jet, Matrix, Vector, difference, dot, identity, product, real, rotation, scaled, still, sum, turned,
+    C, Jet, Matrix, Vector, cross, difference, dot, identity, product, real, rotation, scaled, still, sum,
+    turned,
 };
 use crate::motion::{
     Piece, Pose, complex_dot, compose, drifting, inverse, of_quaternion, spin, turning, velocity,
 };
-use crate::spec::{Body, Element, End, Kind, Law, Place, Spec};
+use crate::spec::{Body, Element, End, Kind, Law, Path, Place, Spec};
 use std::array::from_fn;
 
 /// A state with accelerations. Complex, so that an imaginary step gives derivatives.
@@ -143,8 +144,71 @@ fn distance(world: &World, a: &End, b: &End) -> Jet {
     dot(d, d).sqrt()
 }
 
+fn length(world: &World, path: &Path) -> Jet {
+    match path {
+        Path::Rope([a, b, c]) => distance(world, a, b) + distance(world, b, c),
+        Path::Cable { ends, around, radius, axis } => cable(world, ends, around, *radius, *axis),
+    }
+}
+
+/// Ends of a cable from the middle of what it may run around: across the axis, and how far one is behind the other along it.
+fn across(
+    world: &World,
+    ends: &[End; 2],
+    around: &End,
+    axis: Option<[f64; 3]>,
+) -> ([Vector; 2], Jet, Option<Vector>) {
+    let middle = point(world, around);
+    let from = ends.each_ref().map(|end| difference(point(world, end), middle));
+    let Some(axis) = axis else { return (from, Jet::constant(0.0), None) };
+    let n = around.body.map_or(still(axis), |k| turned(&world.poses[k].r, still(axis)));
+    let heights = from.map(|p| dot(p, n));
+    let level = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
+    ([level(0), level(1)], heights[1] - heights[0], Some(n))
+}
+
+/// A taut cable in the plane across the axis, or in that of its ends and the middle of a ball: on the unrolled surface it is straight.
+fn cable(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option<[f64; 3]>) -> Jet {
+    let ([a, b], rise, n) = across(world, ends, around, axis);
+    let normal = cross(a, b);
+    let angle = match n {
+        None => Jet::atan2(dot(normal, normal).sqrt(), dot(a, b)),
+        Some(n) => Jet::atan2(dot(normal, n), dot(a, b)),
+    };
+    let turn = if angle.0[0].re < 0.0 { 2.0 * std::f64::consts::PI } else { 0.0 };
+    let r = Jet::constant(radius);
+    let tangents = [a, b].map(|p| (dot(p, p) - r * r).sqrt());
+    let arc = angle + Jet::constant(turn) - Jet::atan2(tangents[0], r) - Jet::atan2(tangents[1], r);
+    let level = if arc.0[0].re > 0.0 {
+        tangents[0] + tangents[1] + r * arc
+    } else {
+        let d = difference(a, b);
+        dot(d, d).sqrt()
+    };
+    if n.is_none() { level } else { (level * level + rise * rise).sqrt() }
+}
+
+/// Whether all cables have their ends outside of what they run around.
+pub fn cables_are_outside(spec: &Spec, q: &[f64]) -> bool {
+    let (_, nv) = sizes(spec);
+    let world = world(spec, &State::new(q, &vec![0.0; nv], &vec![0.0; nv]));
+    spec.elements.iter().all(|element| match element {
+        Element::Along(_, Path::Cable { ends, around, radius, axis }) => {
+            let (ends, ..) = across(&world, ends, around, *axis);
+            ends.iter().all(|p| dot(*p, *p).0[0].re > 1.1 * radius * radius)
+        }
+        _ => true,
+    })
+}
+
 fn tension(law: Law, length: Jet) -> C {
     match law {
+        Law::Attraction(k) => (length.0[0] * length.0[0]).inv() * k,
+        Law::Friction(f) => {
+            let v = length.rate();
+            let peak = (-(v * v) / (f.stribeck_speed * f.stribeck_speed)).exp() * (f.stiction - f.coulomb);
+            (peak + f.coulomb) * (v / f.speed).tanh() + v * f.viscous
+        }
         Law::Spring(k, free) => (length.0[0] - free) * k,
         Law::Dashpot(c) => length.rate() * c,
         Law::Inerter(b) => length.second_rate() * b,
@@ -182,6 +246,7 @@ fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
             Element::Between(law, a, b) => {
                 tension(*law, distance(now, a, b)) * distance(partial, a, b).rate()
             }
+            Element::Along(law, path) => tension(*law, length(now, path)) * length(partial, path).rate(),
             Element::On(law, body, k) => {
                 tension(*law, now.coordinates[*body][*k]) * partial.coordinates[*body][*k].rate()
             }
@@ -205,7 +270,10 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let bias = inverse_dynamics(spec, &state(v, zero.clone()));
     // Of inertia alone, at rest: what forces add would only be taken away again, and leave its rounding behind.
     let inertial = |element: &&Element| {
-        matches!(element, Element::Between(Law::Inerter(_), ..) | Element::On(Law::Inerter(_), ..))
+        let (Element::Between(law, ..) | Element::On(law, ..) | Element::Along(law, _)) = element else {
+            return false;
+        };
+        matches!(law, Law::Inerter(_))
     };
     let elements = spec.elements.iter().filter(inertial).cloned().collect();
     let unloaded = Spec { gravity: [0.0; 3], elements, ..spec.clone() };

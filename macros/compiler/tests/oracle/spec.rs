@@ -101,7 +101,7 @@ pub struct End {
     pub at: [f64; 3],
 }
 
-/// The laws of elements between two points, or on a coordinate.
+/// The laws of elements between two points, on a coordinate, or on the length of a path.
 #[derive(Clone, Copy, Debug)]
 pub enum Law {
     /// Stiffness and free length.
@@ -110,6 +110,30 @@ pub enum Law {
     Dashpot(f64),
     /// Inertance.
     Inerter(f64),
+    /// Strength, of a pull that falls with the square of the distance; between two points alone.
+    Attraction(f64),
+    /// Dry friction; on coordinates alone.
+    Friction(Friction),
+}
+
+/// The figures of dry friction.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction {
+    pub coulomb: f64,
+    pub stiction: f64,
+    pub stribeck_speed: f64,
+    pub viscous: f64,
+    /// Of the regularisation.
+    pub speed: f64,
+}
+
+/// A way between points that has a length.
+#[derive(Clone, Debug)]
+pub enum Path {
+    /// Straight from point to point.
+    Rope([End; 3]),
+    /// A cable between two points around a ball, or around a cylinder with an axis in the frame of its body.
+    Cable { ends: [End; 2], around: End, radius: f64, axis: Option<[f64; 3]> },
 }
 
 /// What acts.
@@ -117,6 +141,8 @@ pub enum Law {
 pub enum Element {
     /// Along the line between two points.
     Between(Law, End, End),
+    /// Along a path.
+    Along(Law, Path),
     /// On a coordinate of a body's joint.
     On(Law, usize, usize),
     /// A force in ground axes at a point of a body.
@@ -239,13 +265,57 @@ impl Source {
         }
     }
 
+    fn law_between(&mut self) -> Law {
+        if self.chance(4) { Law::Attraction(self.0.uniform(2.0)) } else { self.law() }
+    }
+
+    fn friction(&mut self) -> Law {
+        let mut size = || 1.0 + self.0.uniform(0.7);
+        let (coulomb, stribeck_speed) = (size(), 0.4 * size());
+        Law::Friction(Friction {
+            coulomb,
+            stiction: coulomb * (1.0 + 0.5 * size()),
+            stribeck_speed,
+            viscous: 0.3 * size(),
+            speed: 0.3 * size(),
+        })
+    }
+
+    /// A rope over a peg, or a cable around a round part of any body.
+    fn path(&mut self, bodies: &[Body], one: usize) -> Option<Path> {
+        let other = self.any(bodies);
+        if self.chance(2) {
+            return Some(Path::Rope([self.end(None), self.end(Some(one)), self.end(other)]));
+        }
+        // Bodies that are welded together have a distance that stays.
+        if other.and_then(|other| rigid(bodies, other)) == rigid(bodies, one) {
+            return None;
+        }
+        let around = self.any(bodies);
+        Some(Path::Cable {
+            ends: [self.end(other), self.end(Some(one))],
+            around: self.end(around),
+            radius: 0.2 + self.0.uniform(0.15),
+            axis: self.chance(2).then(|| {
+                let mut axis = self.vector(1.0);
+                axis[self.below(3)] += 1.5;
+                unit(axis)
+            }),
+        })
+    }
+
+    /// A body or the ground.
+    fn any(&mut self, bodies: &[Body]) -> Option<usize> {
+        self.below(bodies.len() + 1).checked_sub(1)
+    }
+
     fn element(&mut self, bodies: &[Body]) -> Option<Element> {
         let one = self.below(bodies.len());
         // What is welded to the ground cannot be moved by what acts on it.
         if is_fixed(bodies, one) {
             return None;
         }
-        Some(match self.below(7) {
+        Some(match self.below(9) {
             0 => Element::Push(self.end(Some(one)), self.vector(3.0)),
             1 => Element::Follow(self.end(Some(one)), self.vector(3.0)),
             2 => {
@@ -253,18 +323,19 @@ impl Source {
                 if coordinates.is_empty() {
                     return None;
                 }
-                let law = self.law();
+                let law = if self.chance(3) { self.friction() } else { self.law() };
                 Element::On(law, one, self.below(coordinates.len()))
             }
-            3 => Element::Between(self.law(), self.end(None), self.end(Some(one))),
-            4 if turns(bodies, one) => Element::Twist(one, self.vector(3.0)),
+            3 => Element::Between(self.law_between(), self.end(None), self.end(Some(one))),
+            4 => Element::Along(self.law(), self.path(bodies, one)?),
+            5 if turns(bodies, one) => Element::Twist(one, self.vector(3.0)),
             _ => {
                 let other = self.below(bodies.len());
                 // Bodies that are welded together have a distance that stays.
                 if rigid(bodies, other) == rigid(bodies, one) {
                     return None;
                 }
-                Element::Between(self.law(), self.end(Some(other)), self.end(Some(one)))
+                Element::Between(self.law_between(), self.end(Some(other)), self.end(Some(one)))
             }
         })
     }
@@ -296,7 +367,7 @@ fn unit(v: [f64; 3]) -> [f64; 3] {
 }
 
 /// Joints that limbs are made of, common ones more often.
-const LIMB_KINDS: [Kind; 11] = [
+const LIMB_KINDS: [Kind; 12] = [
     Kind::Pin,
     Kind::Pin,
     Kind::Pin,
@@ -308,6 +379,7 @@ const LIMB_KINDS: [Kind; 11] = [
     Kind::Slot,
     Kind::Planar,
     Kind::Stage,
+    Kind::Free,
 ];
 
 /// The mechanism of a seed.

@@ -1,6 +1,6 @@
 //! A random mechanism in the words of the language.
 
-use crate::spec::{Body, Element, End, Kind, Law, Place, Spec};
+use crate::spec::{Body, Element, End, Friction, Kind, Law, Path, Place, Spec};
 use std::fmt::Write;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -98,6 +98,10 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
             let (words, kind) = law_words(*law, "free_length");
             writeln!(out, "#[acts(between = ({}, {}), {words})] element{k}: {kind},", point(a), point(b))
         }
+        Element::Along(law, path) => {
+            let (words, kind) = law_words(*law, "free_length");
+            writeln!(out, "#[acts(on = {}, {words})] element{k}: {kind},", length(path))
+        }
         Element::On(law, body, coordinate) => {
             let kind = bodies[*body].kind;
             let which = kind.coordinates()[*coordinate];
@@ -127,10 +131,32 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
     };
 }
 
+fn length(path: &Path) -> String {
+    match path {
+        Path::Rope([a, b, c]) => {
+            format!("norm(r({0} / {1})) + norm(r({1} / {2}))", point(a), point(b), point(c))
+        }
+        Path::Cable { ends: [a, b], around, radius, axis } => {
+            let surface = match axis {
+                None => format!("sphere({radius:?})"),
+                Some(axis) => format!("cylinder({radius:?}, unit({axis:?}))"),
+            };
+            format!("cable({} / {}, {}.{surface})", point(a), point(b), point(around))
+        }
+    }
+}
+
 fn law_words(law: Law, free: &str) -> (String, &'static str) {
     match law {
         Law::Spring(k, free_value) => (format!("stiffness = {k:?}, {free} = {free_value:?}"), "Spring"),
         Law::Dashpot(c) => (format!("damping = {c:?}"), "Dashpot"),
         Law::Inerter(b) => (format!("inertance = {b:?}"), "Inerter"),
+        Law::Attraction(k) => (format!("strength = {k:?}"), "Attraction"),
+        Law::Friction(Friction { coulomb, stiction, stribeck_speed, viscous, speed }) => (
+            format!(
+                "coulomb = {coulomb:?}, stiction = {stiction:?}, stribeck_speed = {stribeck_speed:?}, viscous = {viscous:?}, speed = {speed:?}"
+            ),
+            "Friction",
+        ),
     }
 }
