@@ -5,7 +5,7 @@ mod random_limbs;
 mod random_robot;
 mod random_tree;
 
-use linkwork_compiler::derive::{Output, Prepared, in_lanes};
+use linkwork_compiler::derive::{Output, Prepared, limb_lanes};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
@@ -223,21 +223,21 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
             "inverse dynamics",
             seed,
             TOLERANCE,
-            &eval(&in_lanes::inverse_dynamics(&limbs, true), &at),
+            &eval(&limb_lanes::inverse_dynamics(&limbs, true), &at),
             &tau,
         );
-        assert_near("bias", seed, TOLERANCE, &eval(&in_lanes::inverse_dynamics(&limbs, false), &at), &bias);
+        assert_near("bias", seed, TOLERANCE, &eval(&limb_lanes::inverse_dynamics(&limbs, false), &at), &bias);
         if variant.for_inverse_dynamics {
             continue;
         }
         for most in [1, 4, 8] {
-            let found = eval(&in_lanes::mass_matrix(&limbs, most), &at);
+            let found = eval(&limb_lanes::mass_matrix(&limbs, most), &at);
             assert_near("mass matrix", seed, TOLERANCE, &found, &mass);
         }
-        let found = in_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
+        let found = limb_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
         assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &with_tau), &expected);
         // The same after lowering.
-        let program = lower(&in_lanes::inverse_dynamics(&limbs, true));
+        let program = lower(&limb_lanes::inverse_dynamics(&limbs, true));
         assert_near("program", seed, TOLERANCE, &program.run(&at), &tau);
     }
 }

@@ -20,7 +20,7 @@ mod constraints;
 mod derivation;
 mod derivatives;
 mod dynamics;
-pub mod in_lanes;
+pub mod limb_lanes;
 mod output;
 mod outputs;
 mod passive;

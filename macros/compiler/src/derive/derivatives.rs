@@ -1,6 +1,6 @@
 //! The functions of the word `derivatives`.
 
-use super::in_lanes;
+use super::limb_lanes;
 use super::output::Function;
 use super::second;
 use super::specialisation::Specialisation;
@@ -236,7 +236,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let a = lanes.limbs.symbols(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
-                let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
+                let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
                 lower(&force_columns(&forces))
             })
         });
@@ -271,10 +271,10 @@ impl<'a, 'g> Parts<'a, 'g> {
         let program = self.specialisation.program(&outputs(forces, [inverse.columns(), inverse.factors()]));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
-            let a = in_lanes::accelerations(&lanes.limbs, &inverse);
-            let parts = in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
+            let a = limb_lanes::accelerations(&lanes.limbs, &inverse);
+            let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
             Some([1].iter().chain(self.wide).map(move |most| {
-                let forces = in_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
+                let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
                 lower(&outputs(forces, parts.clone()))
             }))
         });
@@ -297,9 +297,9 @@ impl<'a, 'g> Parts<'a, 'g> {
         let program = self.specialisation.program(&outputs(a, [inverse.columns(), inverse.factors()]));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
-            let a =
-                accelerated.then(|| lanes.limbs.scattered(&in_lanes::accelerations(&lanes.limbs, &inverse)));
-            let parts = in_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
+            let a = accelerated
+                .then(|| lanes.limbs.scattered(&limb_lanes::accelerations(&lanes.limbs, &inverse)));
+            let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
             Some(lower(&outputs(a, parts)))
         }))
     }
@@ -313,8 +313,8 @@ impl<'a, 'g> Parts<'a, 'g> {
         let program = self.specialisation.program(&outputs(r, divided(&self.mass, &self.trunk_or_all())));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let parts = divided(&lanes.mass, lanes.trunk.as_ref()?);
-            let r = accelerated.then(|| lanes.limbs.scattered(&in_lanes::unbalanced(&lanes.limbs)));
-            Some(lower(&outputs(r, in_lanes::inverse(&lanes.limbs, &parts))))
+            let r = accelerated.then(|| lanes.limbs.scattered(&limb_lanes::unbalanced(&lanes.limbs)));
+            Some(lower(&outputs(r, limb_lanes::inverse(&lanes.limbs, &parts))))
         }))
     }
 
@@ -396,7 +396,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let wide = self.wide.iter().map(|most| program(*most));
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let most = [1].iter().chain(self.wide);
-            most.map(|most| lower(&columns(&in_lanes::coriolis_matrix(&lanes.limbs, *most))))
+            most.map(|most| lower(&columns(&limb_lanes::coriolis_matrix(&lanes.limbs, *most))))
         });
         program(1).or_in_lanes(wide.chain(in_lanes))
     }

@@ -1,7 +1,7 @@
 //! Programs of the functions of dynamics. They are derived from several variants of one model, with equal functions, and
 //! the cheapest program is kept.
 
-use super::in_lanes;
+use super::limb_lanes;
 use super::specialisation::{Candidate, Specialisation};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
@@ -206,7 +206,7 @@ fn mass_matrices_in_lanes<'g>(
 ) -> Vec<Program> {
     let limbs = |most| {
         let of = move |variants: &Variants<'g>| {
-            variants.plain_limbs().map(|limbs| in_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
+            variants.plain_limbs().map(|limbs| limb_lanes::mass_matrix(limbs, most)).collect::<Vec<_>>()
         };
         in_lanes_of(specialisation, choices.iter().flat_map(of))
     };

@@ -63,7 +63,7 @@ pub fn inverse_dynamics<'g>(
         && is_analytic(model)
     {
         let mut found = analytic::inverse_dynamics(model, joints, &v, a, most);
-        symbolic::add_resistance(model, &mut found);
+        symbolic::add_passive_forces(model, &mut found);
         return found;
     }
     let symbols = accelerations(model);

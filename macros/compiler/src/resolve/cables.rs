@@ -35,18 +35,18 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Placement, "`cable(…)`", &function.place, cx) {
             return None;
         }
-        let (home, radius, axis) = self.round(surface, cx)?;
+        let (frame, radius, axis) = self.round(surface, cx)?;
         let (a, b) = (self.place_now(a, cx), self.place_now(b, cx));
         let (a, b) = (a?, b?);
         let kinematics = self.kinematics.borrow();
         let from = |p: &Placed<'g>| {
-            kinematics.resolve(&kinematics.between(p, &home), home.link, Vec3::zero(self.graph))
+            kinematics.resolve(&kinematics.between(p, &frame), frame.link, Vec3::zero(self.graph))
         };
         let (a, b) = (from(&a), from(&b));
         let (across, rise) = match axis {
             None => ([a, b], self.graph.zero()),
             Some(n) => {
-                let n = home.pose.rotation.to_parent(n);
+                let n = frame.pose.rotation.to_parent(n);
                 let across = [a, b].map(|p| p + -(n * p.dot(n)));
                 (across, a.dot(n) - b.dot(n))
             }
@@ -54,7 +54,7 @@ impl<'g> Scope<'_, 'g> {
         let [a, b] = across;
         let (sine, cosine) = match axis {
             None => (a.cross(b).length(), a.dot(b)),
-            Some(n) => (home.pose.rotation.to_parent(n).dot(a.cross(b)), a.dot(b)),
+            Some(n) => (frame.pose.rotation.to_parent(n).dot(a.cross(b)), a.dot(b)),
         };
         // Around a cylinder from zero to a full turn.
         let angle = match axis {
@@ -104,7 +104,7 @@ impl<'g> Scope<'_, 'g> {
                 return None;
             }
         };
-        let home = self.place(base, cx);
+        let frame = self.place(base, cx);
         let constant = || Context::new(Allowed::Constant, None);
         let value = self.in_context(constant(), |s| s.scalar(radius, cx))?;
         if let Some(n) = value.value().filter(|n| *n <= 0.0) {
@@ -117,6 +117,6 @@ impl<'g> Scope<'_, 'g> {
             Some(axis) => Some(self.in_context(constant(), |s| s.unit_vector(axis, false, cx))?),
             None => None,
         };
-        Some((home?, value, axis))
+        Some((frame?, value, axis))
     }
 }

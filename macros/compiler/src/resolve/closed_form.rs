@@ -90,12 +90,12 @@ impl<'g> Builder<'_, 'g> {
         // The first side is a Pin; its joint's axes are those of all that follows.
         let pin = usize::from(self.description.joints[sides[0]].kind != JointKind::Pin);
         let (first, second) = (sides[pin], sides[1 - pin]);
-        let (home, axis) = self.joint_frame(first, cx)?;
+        let (frame, axis) = self.joint_frame(first, cx)?;
         let ends = [&joint.parent, &joint.child];
-        let a = self.side(first, ends[pin], &home, cx)?;
-        let b = self.side(second, ends[1 - pin], &home, cx)?;
+        let a = self.side(first, ends[pin], &frame, cx)?;
+        let b = self.side(second, ends[1 - pin], &frame, cx)?;
         let (away, other) = self.joint_frame(second, cx)?;
-        let normal = self.seen_from(&home, away.link, away.pose.rotation.to_parent(other));
+        let normal = self.seen_from(&frame, away.link, away.pose.rotation.to_parent(other));
         let still = |e: Expr<'g>| always(e, 0.0);
         let in_plane = match b.slide {
             None => normal.cross(axis).0.iter().all(|e| still(*e)),
@@ -142,25 +142,25 @@ impl<'g> Builder<'_, 'g> {
         Some((Placed { link, pose, kind: PlacedKind::Body }, axis))
     }
 
-    fn side(&self, j: usize, end: &Endpoint, home: &Placed<'g>, cx: &mut Diagnostics) -> Option<Side<'g>> {
+    fn side(&self, j: usize, end: &Endpoint, frame: &Placed<'g>, cx: &mut Diagnostics) -> Option<Side<'g>> {
         let joint = &self.description.joints[j];
         let (own, axis) = self.joint_frame(j, cx)?;
         let on_child = self.endpoint(&joint.child, cx)?;
         let closing = self.endpoint(end, cx)?.translation;
         let point = on_child.inverse().point(closing);
-        let out = |v| self.seen_from(home, own.link, own.pose.rotation.to_parent(v));
-        let terms = self.scope.kinematics.borrow().between(&own, home);
+        let out = |v| self.seen_from(frame, own.link, own.pose.rotation.to_parent(v));
+        let terms = self.scope.kinematics.borrow().between(&own, frame);
         let zero = Vec3::zero(self.scope.graph);
-        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.seen_from(home, *link, *v));
+        let base = terms.iter().fold(zero, |sum, (link, v)| sum + self.seen_from(frame, *link, *v));
         let slide = (joint.kind == JointKind::Sleeve).then(|| out(axis));
         Some(Side { base, point: out(point), slide })
     }
 
     /// A vector in the axes of a link, in those of a frame. Joints that are released count as closed: the solution is that of
     /// the mechanism itself.
-    fn seen_from(&self, home: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
-        let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, home.link);
-        let v = home.pose.rotation.to_child(v);
+    fn seen_from(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
+        let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, frame.link);
+        let v = frame.pose.rotation.to_child(v);
         let Some((joints, _)) = self.releasing else { return v };
         let own = self.model.nq() - RELEASED * joints.len();
         let open = |s| matches!(Quantity::of(s), Quantity::Configuration(k) if k >= own);

@@ -33,9 +33,9 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
-        let home = Some((None, Pose::identity(self.scope.graph)));
+        let frame = Some((None, Pose::identity(self.scope.graph)));
         let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
-        let context = Context::new(allowed, home);
+        let context = Context::new(allowed, frame);
         if output.rank == Rank::Scalar {
             return match self.scope.in_context(context, |scope| scope.value(&output.value, cx))? {
                 Value::Scalar(s) => Some(vec![s]),

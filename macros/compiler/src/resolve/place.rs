@@ -201,13 +201,13 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             Item::Point(k) => {
                 let p = &d.points[k];
-                let home = match &p.on {
+                let frame = match &p.on {
                     Some(on) => self.scope.place(on, cx),
                     None => Some(self.ground()),
                 };
-                let place = home.and_then(|home| match &p.at {
-                    Some(at) => self.offset(home, at, false, cx),
-                    None => Some((home.link, home.pose)),
+                let place = frame.and_then(|frame| match &p.at {
+                    Some(at) => self.offset(frame, at, false, cx),
+                    None => Some((frame.link, frame.pose)),
                 });
                 let (link, pose) = place.unwrap_or_else(|| (None, self.somewhere(true)));
                 let (link, pose) = self.link_if_moving(link, pose);
@@ -335,8 +335,8 @@ impl<'a, 'g> Builder<'a, 'g> {
                 Some((place.link, place.pose))
             }
             ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {
-                let home = self.scope.place(base, cx)?;
-                self.offset(home, &arguments[0], free, cx)
+                let frame = self.scope.place(base, cx)?;
+                self.offset(frame, &arguments[0], free, cx)
             }
             ExprKind::Method(_, method, _) => {
                 cx.error(method.place.clone(), format!("unknown method `.{}(…)` of a place", method.text))
@@ -350,26 +350,26 @@ impl<'a, 'g> Builder<'a, 'g> {
     /// A place at a vector from another one, with its axes. If they do not matter (`free`) it may get others.
     fn offset(
         &self,
-        home: Placed<'g>,
+        frame: Placed<'g>,
         at: &Expr,
         free: bool,
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
-        let context = Context::new(Allowed::Placement, Some((home.link, home.pose.clone())));
+        let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
         let terms = self.scope.in_context(context, |scope| scope.terms(at, cx))?;
         let kinematics = self.scope.kinematics.borrow();
         let zero = Vec3::zero(self.scope.graph);
         // A vector in the axes of one frame that turns about the place itself is best placed in that frame.
         if let [(axes, v)] = terms.as_slice()
             && free
-            && home.pose.translation.is_zero()
-            && *axes != home.link
-            && self.is_concentric(*axes, home.link)
+            && frame.pose.translation.is_zero()
+            && *axes != frame.link
+            && self.is_concentric(*axes, frame.link)
         {
             return Some((*axes, Pose { rotation: Rotation::identity(self.scope.graph), translation: *v }));
         }
-        let translation = home.pose.translation + kinematics.resolve(&terms, home.link, zero);
-        Some((home.link, Pose { rotation: home.pose.rotation, translation }))
+        let translation = frame.pose.translation + kinematics.resolve(&terms, frame.link, zero);
+        Some((frame.link, Pose { rotation: frame.pose.rotation, translation }))
     }
 
     /// True if a link's origin stays at the origin of one of its ancestors.

@@ -1,6 +1,6 @@
 //! The algorithms of dynamics on variants of a model that have the same frames.
 
-use crate::derive::in_lanes;
+use crate::derive::limb_lanes;
 use crate::derive::specialisation::{Candidate, Specialisation};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
@@ -128,7 +128,7 @@ impl<'g> Variants<'g> {
     }
 
     pub fn recursions_in_lanes(&self, accelerations: bool) -> impl Iterator<Item = Vec<Expr<'g>>> {
-        self.limbs.iter().map(move |(limbs, _)| in_lanes::inverse_dynamics(limbs, accelerations))
+        self.limbs.iter().map(move |(limbs, _)| limb_lanes::inverse_dynamics(limbs, accelerations))
     }
 
     /// Forward dynamics by articulated bodies.
@@ -150,7 +150,7 @@ impl<'g> Variants<'g> {
     pub fn articulated_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
         let bias = self.bias.simd.as_ref().and_then(|(k, _)| self.limbs.get(*k));
         let Some((bias, _)) = bias else { return Vec::new() };
-        self.plain_limbs().filter_map(|limbs| in_lanes::forward_dynamics(limbs, bias)).collect()
+        self.plain_limbs().filter_map(|limbs| limb_lanes::forward_dynamics(limbs, bias)).collect()
     }
 
     /// Forward dynamics by factorisation of the mass matrix.

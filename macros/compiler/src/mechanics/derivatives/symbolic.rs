@@ -14,13 +14,13 @@ pub fn derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g
 }
 
 /// Derivatives of springs, dashpots, friction, potentials and loads.
-pub fn of_resistance<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
+pub fn of_passive_forces<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
     derivatives(model, &passive_forces(model, true))
 }
 
-/// Adds the same.
-pub fn add_resistance<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>) {
-    let found = of_resistance(model);
+/// Adds the derivatives of springs, dashpots, friction, potentials and loads.
+pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>) {
+    let found = of_passive_forces(model);
     for (to, from) in [(&mut out.by_q, found.by_q), (&mut out.by_v, found.by_v)] {
         for (entry, change) in to.iter_mut().flatten().zip(from.into_iter().flatten()) {
             *entry += change;

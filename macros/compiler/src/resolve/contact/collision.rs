@@ -24,7 +24,7 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Vec<Surface<'g>>> {
         let known = &self.description.collisions;
-        let home = match link {
+        let frame = match link {
             Some(link) => Some(self.scope.place(link, cx)?),
             None => None,
         };
@@ -52,7 +52,7 @@ impl<'g> Builder<'_, 'g> {
             );
             return None;
         }
-        let surfaces = parts.into_iter().map(|part| self.collision(part, home.as_ref(), &e.place, cx));
+        let surfaces = parts.into_iter().map(|part| self.collision(part, frame.as_ref(), &e.place, cx));
         surfaces.collect()
     }
 
@@ -60,19 +60,19 @@ impl<'g> Builder<'_, 'g> {
     fn collision(
         &self,
         part: &Collision,
-        home: Option<&Placed<'g>>,
+        frame: Option<&Placed<'g>>,
         place: &Place,
         cx: &mut Diagnostics,
     ) -> Option<Surface<'g>> {
         let g = self.scope.graph;
-        let home = match home {
-            Some(home) => home.clone(),
+        let frame = match frame {
+            Some(frame) => frame.clone(),
             None => {
                 let link = ExprKind::Name(part.on.body.text.clone());
                 self.scope.place(&syntax::Expr { kind: link, place: place.clone() }, cx)?
             }
         };
-        let pose = home.pose.then(&self.endpoint(&part.on, cx)?);
+        let pose = frame.pose.then(&self.endpoint(&part.on, cx)?);
         let (z, length) = (Vec3::axis(g, 2), |x: f64| g.num(x));
         let form = match part.shape {
             Shape::Sphere(radius) => Form::Sphere(length(radius)),
@@ -82,6 +82,6 @@ impl<'g> Builder<'_, 'g> {
             Shape::Ellipsoid(radii) => Form::Ellipsoid(radii.map(length)),
             Shape::Mesh => return None,
         };
-        Some(Surface { home: Placed { pose, ..home }, form })
+        Some(Surface { frame: Placed { pose, ..frame }, form })
     }
 }

@@ -17,17 +17,17 @@ impl<'g> Builder<'_, 'g> {
     /// The points of a surface, in the axes of its body, with the two coordinates that name them.
     pub(super) fn sheet(
         &self,
-        home: &Placed<'g>,
+        frame: &Placed<'g>,
         [u, w, point]: [&syntax::Expr; 3],
         cx: &mut Diagnostics,
     ) -> Option<Sheet<'g>> {
         let (first, second) = (self.parameter(u, cx), self.parameter(w, cx));
-        let context = Context::new(Allowed::Placement, Some((home.link, home.pose.clone())));
+        let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
         let terms = self.scope.in_context(context, |scope| scope.terms(point, cx));
         let (first, second, terms) = (first?, second?, terms?);
         let zero = Vec3::zero(self.scope.graph);
-        let in_link = self.scope.kinematics.borrow().resolve(&terms, home.link, zero);
-        let at = home.pose.rotation.to_child(in_link);
+        let in_link = self.scope.kinematics.borrow().resolve(&terms, frame.link, zero);
+        let at = frame.pose.rotation.to_child(in_link);
         let own = |q: Quantity| match q {
             Quantity::Configuration(k) => k == first.q || k == second.q,
             q => matches!(q, Quantity::Parameter(_)),

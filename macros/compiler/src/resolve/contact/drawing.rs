@@ -40,8 +40,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn surface_piece(&self, name: &str, Surface { home, form }: &Surface<'g>) -> Option<Piece<'g>> {
-        let (frame, pose) = self.anchor(home.link, &home.pose)?;
+    fn surface_piece(&self, name: &str, Surface { frame, form }: &Surface<'g>) -> Option<Piece<'g>> {
+        let (index, pose) = self.anchor(frame.link, &frame.pose)?;
         let at = entries(&[pose.translation]);
         let round = |axis, numbers: &[Expr<'g>]| {
             [entries(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()].concat()
@@ -64,6 +64,6 @@ impl<'g> Builder<'_, 'g> {
             // They have no end.
             Form::Sheet(_) | Form::Terrain(_) => return None,
         };
-        Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [frame, None], numbers })
+        Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
     }
 }

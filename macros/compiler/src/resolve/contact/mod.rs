@@ -105,8 +105,8 @@ impl<'g> Builder<'_, 'g> {
 
     /// Remembers where a pair touches, for free-body diagrams.
     fn know_contact(&mut self, name: &str, pair: &Pair<'g>, contact: &Contact<'g>) {
-        let home = &pair.a.home;
-        let mut place = self.scope.kinematics.borrow().position(home.link, home.pose.translation);
+        let frame = &pair.a.frame;
+        let mut place = self.scope.kinematics.borrow().position(frame.link, frame.pose.translation);
         place.push((pair.on_a.ancestor, contact.point));
         self.touching.insert(name.to_string(), place);
     }
@@ -150,7 +150,7 @@ impl<'g> Builder<'_, 'g> {
         second: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Pair<'g>> {
-        if a.home.link == b.home.link {
+        if a.frame.link == b.frame.link {
             cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
                 .help("surfaces touch that belong to bodies which move relative to each other");
             return None;
@@ -158,20 +158,21 @@ impl<'g> Builder<'_, 'g> {
         if !is_known(&a.form, &b.form) {
             std::mem::swap(&mut a, &mut b);
         }
-        let (on_a, on_b) = (self.relative(a.home.link, b.home.link), self.relative(b.home.link, a.home.link));
-        let center = self.point(&on_a, a.home.pose.translation);
-        let base = self.point(&on_b, b.home.pose.translation);
+        let (on_a, on_b) =
+            (self.relative(a.frame.link, b.frame.link), self.relative(b.frame.link, a.frame.link));
+        let center = self.point(&on_a, a.frame.pose.translation);
+        let base = self.point(&on_b, b.frame.pose.translation);
         Some(Pair { a, b, on_a, on_b, center, base })
     }
 
     /// A direction of the first body.
     fn of_first(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
-        self.direction(&pair.on_a, pair.a.home.pose.rotation.to_parent(v))
+        self.direction(&pair.on_a, pair.a.frame.pose.rotation.to_parent(v))
     }
 
     /// A direction of the second body.
     fn of_second(&self, pair: &Pair<'g>, v: Vec3<'g>) -> Moving<'g> {
-        self.direction(&pair.on_b, pair.b.home.pose.rotation.to_parent(v))
+        self.direction(&pair.on_b, pair.b.frame.pose.rotation.to_parent(v))
     }
 
     /// Velocity of the first body relative to the second one, at a point from the first one's centre.

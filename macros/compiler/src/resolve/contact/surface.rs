@@ -59,7 +59,7 @@ pub struct Sheet<'g> {
 #[derive(Clone)]
 pub struct Surface<'g> {
     /// Its centre, apex or a point of it.
-    pub home: Placed<'g>,
+    pub frame: Placed<'g>,
     /// Its form.
     pub form: Form<'g>,
 }
@@ -113,7 +113,7 @@ impl<'g> Builder<'_, 'g> {
             }
             return None;
         };
-        let home = self.scope.place(base, cx);
+        let frame = self.scope.place(base, cx);
         if arguments.len() != names.len() {
             let usage = format!("this surface is written `{}({})`", word.text, names.join(", "));
             cx.error(word.place.clone(), usage)
@@ -121,13 +121,13 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         if let ("surface", [u, w, point]) = (word.text.as_str(), arguments.as_slice()) {
-            let home = home?;
-            let form = Form::Sheet(self.sheet(&home, [u, w, point], cx)?);
-            return Some(Surface { home, form });
+            let frame = frame?;
+            let form = Form::Sheet(self.sheet(&frame, [u, w, point], cx)?);
+            return Some(Surface { frame, form });
         }
         if let ("terrain", [height]) = (word.text.as_str(), arguments.as_slice()) {
             let terrain = self.terrain(height, cx);
-            return Some(Surface { home: home?, form: Form::Terrain(Box::new(terrain?)) });
+            return Some(Surface { frame: frame?, form: Form::Terrain(Box::new(terrain?)) });
         }
         let (mut numbers, mut axis) = (Vec::new(), None);
         for (argument, name) in arguments.iter().zip(names) {
@@ -164,7 +164,7 @@ impl<'g> Builder<'_, 'g> {
             ("capsule", [r, length], Some(n)) => Form::Capsule(*r, *length, n),
             _ => return None,
         };
-        Some(Surface { home: home?, form })
+        Some(Surface { frame: frame?, form })
     }
 }
 

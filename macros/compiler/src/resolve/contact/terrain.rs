@@ -73,11 +73,11 @@ impl<'g> Terrain<'g> {
         turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
     ) -> Contact<'g> {
         let below = self.at([c[0], c[1]]);
-        let foot = self.foot(radius, c, &below);
-        let normal = turned(foot.normal);
+        let nearest = self.nearest(radius, c, &below);
+        let normal = turned(nearest.normal);
         let (first, second) = tangents_of(normal);
         Contact {
-            gap: foot.distance - radius,
+            gap: nearest.distance - radius,
             point: -(normal * radius),
             axes: [("normal", normal), ("first", first), ("second", second)],
             conditions: Vec::new(),
@@ -86,10 +86,10 @@ impl<'g> Terrain<'g> {
 
     /// The nearest place of the terrain. From straight below Newton's method leads there; spheres far above, for which other
     /// places might be nearer, are taken to be near, and what that leaves out of the distance is added to it.
-    fn foot(&self, radius: Expr<'g>, c: Vec3<'g>, below: &Local<'g>) -> Foot<'g> {
+    fn nearest(&self, radius: Expr<'g>, c: Vec3<'g>, below: &Local<'g>) -> Nearest<'g> {
         let above = c[2] - below.height;
         if radius.is_zero() {
-            return Foot { normal: below.normal(), distance: above / below.size() };
+            return Nearest { normal: below.normal(), distance: above / below.size() };
         }
         let near = above.extreme(Extreme::Min, radius * below.size() * NEAR);
         let z = below.height + near;
@@ -106,12 +106,12 @@ impl<'g> Terrain<'g> {
         let found = self.at(place);
         let normal = found.normal();
         let apart = Vec3([c[0] - place[0], c[1] - place[1], z - found.height]);
-        Foot { normal, distance: normal.dot(apart) + (above - near) / below.size() }
+        Nearest { normal, distance: normal.dot(apart) + (above - near) / below.size() }
     }
 }
 
 /// The nearest place of a terrain: its normal, and the distance from there.
-struct Foot<'g> {
+struct Nearest<'g> {
     normal: Vec3<'g>,
     distance: Expr<'g>,
 }

@@ -86,7 +86,7 @@ impl<'g> Builder<'_, 'g> {
         for first in &firsts {
             for second in &seconds {
                 // Of a whole file, what moves.
-                if whole && first.home.link == second.home.link {
+                if whole && first.frame.link == second.frame.link {
                     continue;
                 }
                 let Some(found) = self.points_of(first, second, (&contact.second, &place), cx) else {
@@ -133,14 +133,14 @@ impl<'g> Builder<'_, 'g> {
         (second_place, place): (&syntax::Expr, &Place),
         cx: &mut Diagnostics,
     ) -> Option<Vec<Point<'g>>> {
-        let first_home = first.home.link;
+        let first_link = first.frame.link;
         let pair = self.two(first.clone(), second.clone(), Form::touches, second_place, cx)?;
         let touches = self.touches(&pair);
         if touches.is_empty() {
             cx.error(place.clone(), "where these surfaces touch is not known").help(PAIRS);
             return None;
         }
-        let side = self.scope.graph.num(if pair.a.home.link == first_home { 1.0 } else { -1.0 });
+        let side = self.scope.graph.num(if pair.a.frame.link == first_link { 1.0 } else { -1.0 });
         let [w_a, w_b] = self.spins(&pair);
         let points = touches.into_iter().map(|touch| {
             let slip = self.slip(&pair, touch.point);
@@ -303,7 +303,7 @@ impl<'g> Builder<'_, 'g> {
             _ => false,
         };
         if is_place {
-            return Some(vec![Surface { home: self.scope.place(e, cx)?, form: Form::Point }]);
+            return Some(vec![Surface { frame: self.scope.place(e, cx)?, form: Form::Point }]);
         }
         Some(vec![self.surface(e, &format!("write `{EXAMPLE}`"), cx)?])
     }

@@ -332,7 +332,7 @@ impl<'a> Places<'a> {
             self.points.extend(link);
             return;
         }
-        let ExprKind::Method(home, word, arguments) = &surface.kind else {
+        let ExprKind::Method(frame, word, arguments) = &surface.kind else {
             self.points.push(surface);
             return;
         };
@@ -340,7 +340,7 @@ impl<'a> Places<'a> {
             self.points.push(surface);
             return;
         };
-        self.points.push(home);
+        self.points.push(frame);
         for (argument, name) in arguments.iter().zip(names) {
             match *name {
                 "axis" | "normal" => self.add(argument, &PLAIN, "1"),

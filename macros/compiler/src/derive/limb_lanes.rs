@@ -44,7 +44,7 @@ pub fn inverse_dynamics_derivatives<'g>(
     let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, a, most);
     let [by_q, by_v] = [found.by_q, found.by_v].map(|m| scattered_rows(limbs, &m));
     let mut scattered = ForceDerivatives { by_q, by_v };
-    symbolic::add_resistance(whole, &mut scattered);
+    symbolic::add_passive_forces(whole, &mut scattered);
     scattered
 }
 
