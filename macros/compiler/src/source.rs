@@ -1,0 +1,273 @@
+//! A mechanism as it was read, with its file, and what the outside sees of it.
+
+use crate::catalogue::{self, ConstraintFacts, Facts};
+use crate::diag::Diagnostics;
+use crate::emit::{self, Constraints, Emitted, Interface, emit_failed};
+use crate::syntax::{self, Mechanism};
+use crate::{derive, import, mechanism, resolve};
+use proc_macro2::TokenStream;
+use std::path::{Path, PathBuf};
+
+/// A mechanism as read, with its file.
+pub struct Source {
+    /// What the struct and the file say.
+    pub mechanism: Mechanism,
+    /// Where the files are that were read.
+    files: Vec<PathBuf>,
+    /// The file, if one is named, could be read.
+    pub(crate) imported: bool,
+}
+
+/// Syntax and import: what the user wrote, from tokens and file. `None` if there is nothing to go on.
+pub fn read(
+    arguments: TokenStream,
+    item: TokenStream,
+    folder: &Path,
+    cx: &mut Diagnostics,
+) -> Option<Source> {
+    let mut mechanism = syntax::parse_mechanism(arguments, item, cx)?;
+    let (mut files, before) = (Vec::new(), cx.len());
+    mechanism.description.drawing = mechanism.requests.drawing;
+    if let Some(options) = &mut mechanism.file {
+        options.collisions =
+            options.contacts || mechanism.description.contacts.iter().any(syntax::Contact::names_collisions);
+        options.visuals = mechanism.requests.drawing;
+        let path = folder.join(&options.path.text);
+        let text = import::read_file(&path, options, cx);
+        files.extend(text.is_some().then_some(path));
+        if let Some(imported) = text.and_then(|text| import::import(&text, folder, options, cx)) {
+            files.extend(imported.files.iter().cloned());
+            merge(&mut mechanism, imported, cx);
+        }
+    }
+    Some(Source { mechanism, files, imported: cx.len() == before })
+}
+
+/// Puts the contents of a file before those of the struct.
+fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
+    let Mechanism { description, shell, .. } = mechanism;
+    for field in &imported.fields {
+        if let Some(own) = description.parameters.iter().find(|own| own.text == field.ident) {
+            cx.error(own.place.clone(), format!("the name `{}` is used twice", own.text)).help(format!(
+                "the field that holds figures of `{}` has this name: choose another",
+                field.of
+            ));
+        }
+    }
+    for field in &imported.fields {
+        let place = description.name.place.clone();
+        let name = |text| syntax::Name { text, place: place.clone() };
+        description.parameters.extend(field.members().into_iter().map(name));
+        description.file_units.extend(&field.units);
+    }
+    shell.file_fields = imported.fields;
+    let own_bodies = std::mem::replace(&mut description.bodies, imported.bodies);
+    let own_joints = std::mem::replace(&mut description.joints, imported.joints);
+    for own in &own_bodies {
+        if description.bodies.iter().any(|b| b.name.text == own.name.text) {
+            cx.error(own.name.place.clone(), format!("the file has a link `{}` already", own.name.text))
+                .help("choose another name, or use the link by its name without declaring it");
+        }
+    }
+    for own in &own_joints {
+        if description.joints.iter().any(|b| b.name.text == own.name.text) {
+            cx.error(own.name.place.clone(), format!("the file has a joint `{}` already", own.name.text))
+                .help("choose another name, or use the joint by its name without declaring it");
+        }
+    }
+    description.bodies.extend(own_bodies);
+    description.joints.extend(own_joints);
+    // Those of the file come first.
+    description.limits.splice(0..0, imported.limits);
+    description.collisions = imported.collisions;
+    description.contacts.splice(0..0, imported.contacts);
+    description.visuals = imported.visuals;
+    description.drives = imported.drives;
+    description.dissipations.splice(0..0, imported.dissipations);
+    description.constraints.splice(0..0, imported.constraints);
+    description.snapped = imported.snapped;
+    description.left_out = imported.left_out;
+    description.ground_frame = imported.is_ground;
+    if description.gravity.is_none() {
+        let place = description.name.place.clone();
+        let usual = || syntax::Expr::vector([0.0, 0.0, -9.81], &place);
+        description.gravity = Some(imported.gravity.unwrap_or_else(usual));
+    }
+}
+
+impl Source {
+    /// The fields that are tables, with the numbers of their variables.
+    pub fn tables(&self) -> Vec<(String, usize)> {
+        let tables = &self.mechanism.description.tables;
+        tables.iter().map(|table| (table.name.text.clone(), table.variables)).collect()
+    }
+
+    /// What every joint joins, in a line each.
+    pub fn structure(&self) -> Vec<String> {
+        self.mechanism.description.joints.iter().map(structure_line).collect()
+    }
+
+    /// What the outside sees of the mechanism.
+    pub(crate) fn interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
+        let bare = self.bare_interface();
+        let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
+        let base = base.map_or(0, |constant| constant.list.len());
+        let facts = Facts { base, ..Facts::of(m, self.mechanism.requests) };
+        Interface {
+            configuration: m.configuration.clone(),
+            velocities: m.velocities.iter().map(|(name, _)| name.clone()).collect(),
+            inputs: m.inputs.iter().map(|(name, _)| name.clone()).collect(),
+            frames: m.frames.iter().map(|f| f.name.clone()).collect(),
+            diagrams: m
+                .outputs
+                .iter()
+                .filter_map(|output| Some((output.name.clone(), output.diagram.clone()?)))
+                .collect(),
+            units: m.units.clone(),
+            constraints: Constraints::of(m),
+            contacts: emit::Touching::of(m),
+            limits: emit::Limited::of(m),
+            figures: emit::Figure::of(m),
+            absent: emit::absent(&facts, &output.functions, &bare.outputs),
+            facts,
+            ..bare
+        }
+    }
+
+    /// The part of the interface that needs no model.
+    fn bare_interface(&self) -> Interface<'_> {
+        let d = &self.mechanism.description;
+        Interface {
+            shell: &self.mechanism.shell,
+            scalar: d.scalar.clone(),
+            configuration: Vec::new(),
+            velocities: Vec::new(),
+            inputs: Vec::new(),
+            frames: Vec::new(),
+            structure: self.structure(),
+            constraints: Constraints::default(),
+            contacts: Vec::new(),
+            limits: Vec::new(),
+            figures: Vec::new(),
+            states: d.states.iter().map(|(name, k)| (name.text.clone(), *k)).collect(),
+            outputs: d.outputs.iter().map(|output| output.name.text.clone()).collect(),
+            diagrams: Vec::new(),
+            units: mechanism::Units::default(),
+            facts: Facts::default(),
+            detect: !self.mechanism.requests.target_only,
+            snapped: &d.snapped,
+            left_out: &d.left_out,
+            absent: Vec::new(),
+            files: self.files.iter().map(|f| f.to_string_lossy().into_owned()).collect(),
+        }
+    }
+
+    /// The interface of a mechanism that failed to compile, as far as it can be guessed.
+    pub(crate) fn emit_failed(&self) -> Emitted {
+        let outline = resolve::outline(&self.mechanism.description);
+        let facts = self.guess(&outline);
+        let mut functions = catalogue::before_outputs(&facts);
+        for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
+            for f in catalogue::output(&output.name, output.size, output.uses, &facts) {
+                // An output may have the wrong name.
+                if !catalogue::has(&f.name, &facts) && functions.iter().all(|known| known.name != f.name) {
+                    functions.push(f);
+                }
+            }
+        }
+        functions.extend(catalogue::after_outputs(&facts));
+        let functions: Vec<derive::Function> = functions.into_iter().map(derive::Function::stub).collect();
+        let mut constants = Vec::new();
+        if facts.requests.regressor {
+            constants.extend(derive::Constant::regressor(&outline.bodies, &vec![String::new(); facts.base]));
+        }
+        if facts.requests.sensitivities {
+            let parameters: Vec<String> =
+                self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
+            constants.push(derive::Constant::parameters(&parameters));
+        }
+        if facts.requests.conserved {
+            constants.push(derive::Constant::conserved(&vec![String::new(); facts.conserved]));
+        }
+        if facts.requests.routh {
+            constants.push(derive::Constant::cyclic(&[]));
+        }
+        let equilibria = self.mechanism.description.equilibria.iter();
+        let unknown: Vec<_> = equilibria.map(|e| (e.name.text.clone(), Default::default())).collect();
+        constants.extend(derive::Constant::linear_equations(&unknown));
+        if facts.requests.drawing {
+            constants.push(derive::Constant::drawing(&[]));
+        }
+        if facts.requests.packed {
+            constants.push(derive::Constant::entries(&facts.entries));
+        }
+        let bare = self.bare_interface();
+        let interface = Interface {
+            absent: emit::absent(&facts, &functions, &bare.outputs),
+            configuration: outline.configuration,
+            velocities: outline.velocities,
+            inputs: outline.inputs,
+            frames: outline.frames,
+            diagrams: outline.diagrams.into_iter().filter(|(name, _)| can_be_a_function(name)).collect(),
+            constraints: if outline.constrained {
+                Constraints::unknown(outline.slipping)
+            } else {
+                Constraints::default()
+            },
+            contacts: if facts.contacts[0] > 0 { vec![emit::Touching::unknown()] } else { Vec::new() },
+            facts,
+            ..bare
+        };
+        emit_failed(&interface, &functions, &constants)
+    }
+
+    /// What signatures of a mechanism that failed to compile depend on, as far as it can be guessed.
+    fn guess(&self, outline: &resolve::Outline) -> Facts {
+        let (description, requests) = (&self.mechanism.description, self.mechanism.requests);
+        let kinematic = description.inertias == syntax::Inertias::None;
+        let nv = outline.velocities.len();
+        let constraints = outline.constrained.then(|| ConstraintFacts {
+            all: 1,
+            holonomic: 1,
+            slipping: usize::from(outline.slipping),
+            ..ConstraintFacts::default()
+        });
+        Facts {
+            nq: outline.configuration.len(),
+            nv,
+            nu: outline.inputs.len(),
+            time: outline.time,
+            velocity_inputs: outline.velocity_inputs,
+            kinematic,
+            speeds: !description.speeds.is_empty(),
+            requests: match kinematic {
+                true => {
+                    let (batch, drawing) = (requests.batch, requests.drawing);
+                    syntax::Requests { batch, drawing, ..syntax::Requests::default() }
+                }
+                false => requests,
+            },
+            constraints,
+            contacts: if description.contacts.iter().all(|c| c.soft.is_some()) { [0; 2] } else { [1; 2] },
+            bodies: outline.bodies.len(),
+            // How many base parameters there are, only the equations could tell.
+            base: 7 * nv,
+            parameters: description.parameters.len(),
+            equilibria: description.equilibria.len(),
+            entries: vec![(0, 0); nv * (nv + 1) / 2],
+            ..Facts::default()
+        }
+    }
+}
+
+/// True for names that neither Rust nor what is generated needs.
+pub(crate) fn can_be_a_function(name: &str) -> bool {
+    syn::parse_str::<syn::Ident>(name).is_ok() && !catalogue::is_constant(name) && !name.starts_with("__")
+}
+
+/// What a joint joins, in a line of the documentation.
+fn structure_line(joint: &syntax::Joint) -> String {
+    let kind = syntax::joint_kind::kind_word(joint.kind);
+    let (parent, child) = (&joint.parent.body.text, &joint.child.body.text);
+    format!("`{}`: {kind}, `{parent}` → `{child}`", joint.name.text)
+}
