@@ -1,18 +1,19 @@
 //! Associated constants.
 
 use super::facts::{Facts, Need};
+use crate::syntax::Word;
 
 /// Constants of mechanisms, with what each needs.
 const CONSTANTS: [(&str, &[Need]); 28] = [
-    ("BASE_PARAMETERS", &[Need::Inertia, Need::Regressor]),
-    ("BODIES", &[Need::Inertia, Need::Regressor]),
+    ("BASE_PARAMETERS", &[Need::Inertia, Need::Asks(Word::Regressor)]),
+    ("BODIES", &[Need::Inertia, Need::Asks(Word::Regressor)]),
     ("CONFIGURATION", &[]),
-    ("CONSERVED", &[Need::Inertia, Need::Conserved]),
+    ("CONSERVED", &[Need::Inertia, Need::Asks(Word::Conserved)]),
     ("CONSTRAINTS", &[Need::Constraints]),
     ("CONTACTS", &[Need::Contacts]),
     ("CONTACT_ROWS", &[Need::Contacts]),
-    ("CYCLIC", &[Need::Inertia, Need::Routh, Need::NoConstraints]),
-    ("DRAWING", &[Need::Drawing]),
+    ("CYCLIC", &[Need::Inertia, Need::Asks(Word::Routh), Need::NoConstraints]),
+    ("DRAWING", &[Need::Asks(Word::Drawing)]),
     ("EQUATIONS", &[]),
     ("EQUATIONS_LATEX", &[]),
     ("EQUILIBRIA", &[Need::Inertia, Need::Equilibria]),
@@ -22,7 +23,7 @@ const CONSTANTS: [(&str, &[Need]); 28] = [
     ("LINEAR_EQUATIONS", &[Need::Inertia, Need::Equilibria]),
     ("LINEAR_EQUATIONS_LATEX", &[Need::Inertia, Need::Equilibria]),
     ("LINKS", &[Need::FileInertials]),
-    ("MASS_MATRIX_ENTRIES", &[Need::Inertia, Need::Packed]),
+    ("MASS_MATRIX_ENTRIES", &[Need::Inertia, Need::Asks(Word::Packed)]),
     ("NC", &[Need::Constraints]),
     ("NH", &[Need::Constraints]),
     ("NP", &[Need::Constraints]),
@@ -30,7 +31,7 @@ const CONSTANTS: [(&str, &[Need]); 28] = [
     ("NS", &[Need::Constraints]),
     ("NU", &[]),
     ("NV", &[]),
-    ("PARAMETERS", &[Need::Inertia, Need::Sensitivities]),
+    ("PARAMETERS", &[Need::Inertia, Need::Asks(Word::Sensitivities)]),
     ("VELOCITIES", &[]),
 ];
 

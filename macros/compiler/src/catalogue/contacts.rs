@@ -4,6 +4,7 @@ use super::facts::Need;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{self, A, Q, V};
 use super::shape::{CONTACT_FORCES, Record, Shape};
+use crate::syntax::Word;
 
 const TOUCHING: &[Need] = &[Need::Contacts];
 
@@ -61,7 +62,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(
         Id::ContactDerivatives,
         "__contact_derivatives",
-        &[Need::Contacts, Need::Inertia, Need::Derivatives],
+        &[Need::Contacts, Need::Inertia, Need::Asks(Word::Derivatives)],
         |f| Declaration {
             arguments: vec![Q, V, A, Argument::Given(CONTACT_FORCES, 0, f.contacts[1])],
             shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts[1])),

@@ -4,20 +4,21 @@ use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
 use super::shape::{Argument, Called, Record, Shape};
+use crate::syntax::Word;
 
 const TANGENT: &str = "Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`); for ball and free joints this is a motion in body axes.";
 const KEPT: &str = "Entries that are always zero keep what they are: the matrices begin as zeros and are given again each time. Nothing large is moved.";
 
-const ASKED: &[Need] = &[Need::Inertia, Need::Derivatives];
-const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Derivatives, Need::NoConstraints];
-const CONSTRAINED: &[Need] = &[Need::Inertia, Need::Derivatives, Need::Constraints];
+const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
+const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints];
+const CONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints];
 
 /// Derivatives of the dynamics.
 pub const ROWS: &[Row] = &[
     Row::derived(
         Id::MassMatrixInverse,
         "mass_matrix_inverse",
-        &[Need::Inertia, Need::Derivatives, Need::RegularMass],
+        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::RegularMass],
         |f| Declaration {
             arguments: vec![Q],
             shape: Shape::Inverse(f.nv),
@@ -73,7 +74,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(
         Id::AccelerationsAndInverse,
         "__accelerations_and_inverse",
-        &[Need::Inertia, Need::Derivatives, Need::NoConstraints, Need::Calls],
+        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints, Need::Calls],
         |f| Declaration {
             arguments: vec![Q, V, Tau, Argument::Into("inverse", f.nv)],
             shape: Shape::Accelerated(f.nv),
@@ -94,7 +95,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(
         Id::ForwardDynamicsDerivativesInto,
         "forward_dynamics_derivatives_into",
-        &[Need::Inertia, Need::NoConstraints, Need::Derivatives],
+        &[Need::Inertia, Need::NoConstraints, Need::Asks(Word::Derivatives)],
         |f| Declaration {
             arguments: [
                 vec![Q, V, Tau],
@@ -121,7 +122,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(
         Id::PassiveDerivatives,
         Called::PassiveDerivatives.function(),
-        &[Need::Inertia, Need::Derivatives, Need::PassiveCalls],
+        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::PassiveCalls],
         |f| Declaration {
             arguments: vec![Q, V],
             shape: Shape::Vector(f.passive.unwrap_or(0)),
@@ -136,7 +137,7 @@ pub const ROWS: &[Row] = &[
     .alone(),
 ];
 
-const MOMENTA: &[Need] = &[Need::Inertia, Need::MomentumDerivatives];
+const MOMENTA: &[Need] = &[Need::Inertia, Need::Asks(Word::MomentumDerivatives)];
 
 /// Derivatives of momenta.
 pub const MOMENTUM_ROWS: &[Row] = &[
@@ -163,7 +164,7 @@ pub const MOMENTUM_ROWS: &[Row] = &[
     }),
 ];
 
-const SECOND: &[Need] = &[Need::Inertia, Need::SecondDerivatives];
+const SECOND: &[Need] = &[Need::Inertia, Need::Asks(Word::SecondDerivatives)];
 const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
 
 /// Second derivatives of the dynamics.
@@ -197,7 +198,7 @@ pub const SECOND_ROWS: &[Row] = &[
     Row::derived(
         Id::ConstraintCurvature,
         "__constraint_curvature",
-        &[Need::Inertia, Need::SecondDerivatives, Need::Constraints, Need::NoSlipping],
+        &[Need::Inertia, Need::Asks(Word::SecondDerivatives), Need::Constraints, Need::NoSlipping],
         |f| {
             let nc = constraints(f);
             Declaration {

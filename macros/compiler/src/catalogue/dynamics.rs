@@ -4,6 +4,7 @@ use super::facts::Need;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
 use super::shape::{Called, Shape};
+use crate::syntax::Word;
 
 const INERTIA: &[Need] = &[Need::Inertia];
 
@@ -22,7 +23,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .alone(),
-    Row::derived(Id::Drawing, "drawing_numbers", &[Need::Drawing], |f| Declaration {
+    Row::derived(Id::Drawing, "drawing_numbers", &[Need::Asks(Word::Drawing)], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.drawing),
         docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the parameters as they are."],

@@ -1,7 +1,7 @@
 //! What signatures depend on.
 
 use crate::mechanism::Model;
-use crate::syntax::Requests;
+use crate::syntax::{Requests, Word};
 
 /// What a function needs of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,32 +12,8 @@ pub enum Need {
     Constraints,
     /// None of those.
     NoConstraints,
-    /// The word `derivatives`.
-    Derivatives,
-    /// The word `second_derivatives`.
-    SecondDerivatives,
-    /// The word `momentum_derivatives`.
-    MomentumDerivatives,
-    /// The word `centroidal`.
-    Centroidal,
-    /// The word `hamilton`.
-    Hamilton,
-    /// The word `routh`.
-    Routh,
-    /// The word `conserved`.
-    Conserved,
-    /// The word `regressor`.
-    Regressor,
-    /// The word `sensitivities`.
-    Sensitivities,
-    /// The word `packed`.
-    Packed,
-    /// The word `prepare`.
-    Prepare,
-    /// The word `batch`.
-    Batch,
-    /// The word `drawing`.
-    Drawing,
+    /// A word of the attribute.
+    Asks(Word),
     /// A mass matrix that can be inverted: constraints determine no coordinates without inertia.
     RegularMass,
     /// Contacts that slip.
@@ -70,38 +46,27 @@ pub enum Need {
 
 impl Need {
     /// All of them, those first that come before others as a reason.
-    pub const ALL: [Need; 30] = [
-        Need::Inertia,
-        Need::Derivatives,
-        Need::SecondDerivatives,
-        Need::MomentumDerivatives,
-        Need::Centroidal,
-        Need::Hamilton,
-        Need::Routh,
-        Need::Conserved,
-        Need::Regressor,
-        Need::Sensitivities,
-        Need::Packed,
-        Need::Prepare,
-        Need::Batch,
-        Need::Drawing,
-        Need::NoConstraints,
-        Need::RegularMass,
-        Need::Speeds,
-        Need::NoSpeeds,
-        Need::Constraints,
-        Need::Slipping,
-        Need::NoSlipping,
-        Need::Contacts,
-        Need::Parameters,
-        Need::FileParameters,
-        Need::FileInertials,
-        Need::Equilibria,
-        Need::Limits,
-        Need::Calls,
-        Need::PassiveCalls,
-        Need::FewContacts,
-    ];
+    pub fn all() -> impl Iterator<Item = Need> {
+        let rest = [
+            Need::NoConstraints,
+            Need::RegularMass,
+            Need::Speeds,
+            Need::NoSpeeds,
+            Need::Constraints,
+            Need::Slipping,
+            Need::NoSlipping,
+            Need::Contacts,
+            Need::Parameters,
+            Need::FileParameters,
+            Need::FileInertials,
+            Need::Equilibria,
+            Need::Limits,
+            Need::Calls,
+            Need::PassiveCalls,
+            Need::FewContacts,
+        ];
+        [Need::Inertia].into_iter().chain(Word::ALL.map(Need::Asks)).chain(rest)
+    }
 
     /// The trait of the runtime that says so. None for what only others call.
     pub fn reason(self) -> Option<&'static str> {
@@ -109,19 +74,7 @@ impl Need {
             Need::Inertia => "HasInertia",
             Need::Constraints => "HasConstraints",
             Need::NoConstraints => "HasNoConstraints",
-            Need::Derivatives => "AsksForDerivatives",
-            Need::SecondDerivatives => "AsksForSecondDerivatives",
-            Need::MomentumDerivatives => "AsksForMomentumDerivatives",
-            Need::Centroidal => "AsksForCentroidal",
-            Need::Hamilton => "AsksForHamilton",
-            Need::Routh => "AsksForRouth",
-            Need::Conserved => "AsksForConserved",
-            Need::Regressor => "AsksForRegressor",
-            Need::Sensitivities => "AsksForSensitivities",
-            Need::Packed => "AsksForPacked",
-            Need::Prepare => "AsksForPrepare",
-            Need::Batch => "AsksForBatch",
-            Need::Drawing => "AsksForDrawing",
+            Need::Asks(word) => word.reason(),
             Need::RegularMass => "HasRegularMass",
             Need::Speeds => "HasSpeeds",
             Need::NoSpeeds => "HasNoSpeeds",
@@ -245,19 +198,7 @@ impl Facts {
             Need::Inertia => !self.kinematic,
             Need::Constraints => self.constraints.is_some(),
             Need::NoConstraints => self.constraints.is_none(),
-            Need::Derivatives => self.requests.derivatives,
-            Need::SecondDerivatives => self.requests.second_derivatives,
-            Need::MomentumDerivatives => self.requests.momentum_derivatives,
-            Need::Centroidal => self.requests.centroidal,
-            Need::Hamilton => self.requests.hamilton,
-            Need::Routh => self.requests.routh,
-            Need::Conserved => self.requests.conserved,
-            Need::Regressor => self.requests.regressor,
-            Need::Sensitivities => self.requests.sensitivities,
-            Need::Packed => self.requests.packed,
-            Need::Prepare => self.requests.prepare,
-            Need::Batch => self.requests.batch,
-            Need::Drawing => self.requests.drawing,
+            Need::Asks(word) => self.requests.has(word),
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
             Need::NoSlipping => self.constraints.is_none_or(|c| c.slipping == 0),

@@ -85,7 +85,7 @@ pub fn absent(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
         }
         (need, found)
     };
-    Need::ALL.into_iter().map(of).collect()
+    Need::all().map(of).collect()
 }
 
 /// The functions that are written for several states, too.

@@ -4,16 +4,17 @@ use super::facts::Need;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, V};
 use super::shape::{Argument, Shape};
+use crate::syntax::Word;
 
 /// How many numbers the mass properties of a body are.
 const STANDARD: usize = 10;
 
-const CENTROIDAL_ASKED: &[Need] = &[Need::Inertia, Need::Centroidal];
-const HAMILTON: &[Need] = &[Need::Inertia, Need::Hamilton, Need::RegularMass];
-const ROUTH: &[Need] = &[Need::Inertia, Need::Routh, Need::NoConstraints];
-const CONSERVED: &[Need] = &[Need::Inertia, Need::Conserved];
-const REGRESSOR: &[Need] = &[Need::Inertia, Need::Regressor];
-const PACKED: &[Need] = &[Need::Inertia, Need::Packed];
+const CENTROIDAL_ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Centroidal)];
+const HAMILTON: &[Need] = &[Need::Inertia, Need::Asks(Word::Hamilton), Need::RegularMass];
+const ROUTH: &[Need] = &[Need::Inertia, Need::Asks(Word::Routh), Need::NoConstraints];
+const CONSERVED: &[Need] = &[Need::Inertia, Need::Asks(Word::Conserved)];
+const REGRESSOR: &[Need] = &[Need::Inertia, Need::Asks(Word::Regressor)];
+const PACKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Packed)];
 
 /// The functions of the word `centroidal`.
 pub const CENTROIDAL: &[Row] = &[
@@ -144,7 +145,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(
         Id::InverseDynamicsByParameters,
         "inverse_dynamics_by_parameters",
-        &[Need::Inertia, Need::Sensitivities],
+        &[Need::Inertia, Need::Asks(Word::Sensitivities)],
         |f| Declaration {
             arguments: vec![Q, V, A],
             shape: Shape::Matrix(f.nv, f.parameters),
@@ -157,7 +158,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(
         Id::ForwardDynamicsByParameters,
         "forward_dynamics_by_parameters",
-        &[Need::Inertia, Need::Sensitivities, Need::NoConstraints],
+        &[Need::Inertia, Need::Asks(Word::Sensitivities), Need::NoConstraints],
         |f| Declaration {
             arguments: vec![Q, V, Tau],
             shape: Shape::Matrix(f.nv, f.parameters),
@@ -171,7 +172,7 @@ pub const ROWS: &[Row] = &[
     Row::derived(
         Id::GeneralizedForcesByParameters,
         "generalized_forces_by_parameters",
-        &[Need::Inertia, Need::Sensitivities],
+        &[Need::Inertia, Need::Asks(Word::Sensitivities)],
         |f| Declaration {
             arguments: vec![Q, V, Argument::U],
             shape: Shape::Matrix(f.nv, f.parameters),

@@ -4,6 +4,7 @@ use super::facts::Need;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, V};
 use super::shape::Shape;
+use crate::syntax::Word;
 
 const SPEEDS: &[Need] = &[Need::Speeds];
 
@@ -57,13 +58,15 @@ pub const ROWS: &[Row] = &[
 ];
 
 /// Those of the word `derivatives`.
-pub const DERIVATIVES: &[Row] =
-    &[Row::derived(Id::Turning, "__turning", &[Need::Inertia, Need::Derivatives, Need::Speeds], |f| {
-        Declaration {
-            arguments: vec![Q, V],
-            timeless: true,
-            shape: Shape::Square(f.nv),
-            ..Declaration::default()
-        }
-    })
-    .alone()];
+pub const DERIVATIVES: &[Row] = &[Row::derived(
+    Id::Turning,
+    "__turning",
+    &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Speeds],
+    |f| Declaration {
+        arguments: vec![Q, V],
+        timeless: true,
+        shape: Shape::Square(f.nv),
+        ..Declaration::default()
+    },
+)
+.alone()];

@@ -2,19 +2,23 @@
 
 use super::facts::Need;
 use super::row::Row;
+use crate::syntax::Word;
 
-const ASKED: &[Need] = &[Need::Inertia, Need::Derivatives];
-const ASKED_WITHOUT_SPEEDS: &[Need] = &[Need::Inertia, Need::Derivatives, Need::NoSpeeds];
+const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
+const ASKED_WITHOUT_SPEEDS: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoSpeeds];
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
 /// Constrained dynamics, assembly and projection.
 pub const CONSTRAINED: &[Row] = &[
     Row::written("forward_dynamics", &[Need::Inertia, Need::Constraints]).and_batched(),
-    Row::written("forward_dynamics_derivatives", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
-    Row::written("linearize", &[Need::Inertia, Need::Derivatives, Need::Constraints]),
+    Row::written(
+        "forward_dynamics_derivatives",
+        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints],
+    ),
+    Row::written("linearize", &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints]),
     Row::written(
         "multiplier_derivatives",
-        &[Need::Inertia, Need::Derivatives, Need::Constraints, Need::NoSlipping],
+        &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints, Need::NoSlipping],
     ),
     Row::written("assemble", &[Need::Constraints]),
     Row::written("complete_velocity", SOLVED),
@@ -35,7 +39,7 @@ pub const ROWS: &[Row] = &[
     Row::written("generalized_forces_derivatives", ASKED),
     Row::written(
         "forward_dynamics_second_derivatives",
-        &[Need::Inertia, Need::SecondDerivatives, Need::NoSlipping],
+        &[Need::Inertia, Need::Asks(Word::SecondDerivatives), Need::NoSlipping],
     ),
     Row::written("integrate_derivatives", ASKED_WITHOUT_SPEEDS),
     Row::written("tangent_rate_derivatives", ASKED_WITHOUT_SPEEDS),
@@ -49,6 +53,6 @@ pub const ROWS: &[Row] = &[
     Row::written("from_file", &[Need::FileParameters]),
     Row::written("inertials", &[Need::FileInertials]),
     Row::written("set_inertials", &[Need::FileInertials]),
-    Row::written("set_base_parameters", &[Need::Inertia, Need::Regressor, Need::FileInertials]),
-    Row::written("prepare", &[Need::Inertia, Need::Prepare]),
+    Row::written("set_base_parameters", &[Need::Inertia, Need::Asks(Word::Regressor), Need::FileInertials]),
+    Row::written("prepare", &[Need::Inertia, Need::Asks(Word::Prepare)]),
 ];

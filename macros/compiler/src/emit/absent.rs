@@ -4,6 +4,7 @@ use super::interface::{ALLOW, Absent, Head, Interface};
 use super::signature::Signature;
 use crate::catalogue::{self, BY_PARAMETERS, DERIVATIVES, Facts, JACOBIAN, Need, Row};
 use crate::derive::Function;
+use crate::syntax::Word;
 use std::fmt::Write;
 
 /// All that a mechanism with these functions and outputs lacks.
@@ -11,12 +12,12 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
     let in_lanes = |name: &str| format!("{name}_lanes");
     let of_need = |(need, rows): (Need, Vec<&Row>)| {
         let mut names: Vec<String> = rows.iter().map(|row| row.name.to_string()).collect();
-        if need == Need::Derivatives && !facts.requests.derivatives {
+        if need == Need::Asks(Word::Derivatives) && !facts.requests.derivatives {
             names.extend(OF_TRAITS.map(ToString::to_string));
         }
         if facts.requests.batch {
             names.extend(rows.iter().filter(|row| row.batched).map(|row| in_lanes(row.name)));
-        } else if need == Need::Batch {
+        } else if need == Need::Asks(Word::Batch) {
             let of_state = functions.iter().filter(|f| !f.is_hidden() && !f.arguments.is_empty());
             names.extend(of_state.map(|f| in_lanes(&f.name)));
             names.extend(catalogue::written_in_lanes(facts).map(in_lanes));

@@ -4,6 +4,7 @@ use super::interface::{ALLOW, Head, Interface};
 use super::item::runtime;
 use super::scalar::ScalarSpelling;
 use crate::catalogue::Need;
+use crate::syntax::Word;
 use crate::syntax::figures::{FileField, FileFieldKind};
 use proc_macro2::{Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -91,7 +92,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
         get.join(", "),
         set.join("\n")
     );
-    if i.facts.meet(Need::Regressor) && i.facts.meet(Need::Inertia) {
+    if i.facts.meet(Need::Asks(Word::Regressor)) && i.facts.meet(Need::Inertia) {
         let _ = writeln!(
             out,
             "/// Puts identified base parameters back: gives all of `LINKS` the mass properties with these base parameters that
@@ -114,7 +115,10 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
 
 /// What puts base parameters back.
 pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarSpelling) {
-    if ![Need::FileInertials, Need::Regressor, Need::Inertia].iter().all(|need| i.facts.meet(*need)) {
+    if ![Need::FileInertials, Need::Asks(Word::Regressor), Need::Inertia]
+        .iter()
+        .all(|need| i.facts.meet(*need))
+    {
         return;
     }
     let Head { generics, arguments, bounds } = head;

@@ -2,6 +2,7 @@
 //! links moves them.
 
 use super::builder::Builder;
+use super::joint::drawn;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
@@ -9,8 +10,7 @@ use crate::kinematics::symbols_in;
 use crate::mechanism::drawing::{entries, rows};
 use crate::mechanism::{Input, LinkId, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
-    self, Action, ActionKind, BinaryOp, DriveLaw, Endpoint, ExprKind, GROUND, JointKind, Shape, Target,
-    Visual,
+    self, Action, ActionKind, BinaryOp, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
 };
 use std::collections::BTreeSet;
 
@@ -261,19 +261,11 @@ impl<'g> Builder<'_, 'g> {
 
     /// How a joint is drawn, with its axis on the parent.
     fn joint_kind(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
+        let (kind, axes) = drawn(joint)?;
         let axis = |axes: &[syntax::Expr]| {
             self.scope.unit_vector(axes.first()?, joint.normalise_axis, &mut Diagnostics::unread())
         };
-        Some(match joint.kind {
-            JointKind::Pin | JointKind::Screw | JointKind::Collar | JointKind::Planar => {
-                (PieceKind::Hinge, Some(axis(&joint.about)?))
-            }
-            JointKind::Sleeve | JointKind::Slot | JointKind::Stage => {
-                (PieceKind::Slide, Some(axis(&joint.along)?))
-            }
-            JointKind::Universal | JointKind::Ball => (PieceKind::Ball, None),
-            JointKind::Free | JointKind::Weld => return None,
-        })
+        Some((kind, axes.map_or(Some(None), |axes| axis(axes).map(Some))?))
     }
 
     /// Springs, dashpots and inputs.

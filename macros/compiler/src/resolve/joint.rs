@@ -8,7 +8,7 @@ use crate::expr::eval::eval_one;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::in_plane;
-use crate::mechanism::{Chart, Coordinate};
+use crate::mechanism::{Chart, Coordinate, PieceKind};
 use crate::syntax::{self, Joint, JointKind};
 
 /// Names of the entries of `q` and `v` of a joint; empty for the joint's own name.
@@ -57,6 +57,18 @@ pub fn is_angle(kind: JointKind, coordinate: &str) -> bool {
         // Their coordinates are no plain ones.
         JointKind::Ball | JointKind::Free | JointKind::Weld => false,
     }
+}
+
+/// How a joint is drawn, if it is, and the axes of which it shows the first.
+pub fn drawn(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
+    Some(match joint.kind {
+        JointKind::Pin | JointKind::Screw | JointKind::Collar | JointKind::Planar => {
+            (PieceKind::Hinge, Some(&joint.about))
+        }
+        JointKind::Sleeve | JointKind::Slot | JointKind::Stage => (PieceKind::Slide, Some(&joint.along)),
+        JointKind::Universal | JointKind::Ball => (PieceKind::Ball, None),
+        JointKind::Free | JointKind::Weld => return None,
+    })
 }
 
 /// The full name of a coordinate.

@@ -3,9 +3,10 @@
 use super::expression::name;
 use super::field::{check_duplicates, is_known, read_field};
 use super::lists::Lists;
-use super::mechanism::{Mechanism, Requests, Shell};
+use super::mechanism::{Mechanism, Shell};
 use super::options::read_options;
 use super::parameter::type_name;
+use super::request::Requests;
 use super::separate::separate;
 use super::sound::Reading;
 use super::state::give_type;

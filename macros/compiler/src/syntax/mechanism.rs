@@ -1,6 +1,7 @@
 //! What a use of `#[mechanism]` says as a whole: its description, its options, and what remains of the struct.
 
 use super::figures::{FileField, FileFigures};
+use super::request::Requests;
 use super::sound::Reading;
 use super::{Base, Description, Inertias, Name};
 use syn::{Attribute, Field, Ident, Visibility};
@@ -17,89 +18,6 @@ pub struct Mechanism {
     pub requests: Requests,
     /// What could be read.
     pub reading: Reading,
-}
-
-/// What is generated beside the functions of every mechanism, by words among the attribute's arguments.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Requests {
-    /// First derivatives of the dynamics.
-    pub derivatives: bool,
-    /// Second derivatives, too.
-    pub second_derivatives: bool,
-    /// Derivatives of momenta and of their rates, too.
-    pub momentum_derivatives: bool,
-    /// The matrix of the momentum, and its bias.
-    pub centroidal: bool,
-    /// Energy and canonical equations as functions of configuration and momentum.
-    pub hamilton: bool,
-    /// Motion without cyclic coordinates, by their momenta.
-    pub routh: bool,
-    /// Quantities that keep their values.
-    pub conserved: bool,
-    /// The dynamics as linear functions of the mass properties.
-    pub regressor: bool,
-    /// Derivatives of the dynamics by the parameters.
-    pub sensitivities: bool,
-    /// The mass matrix without its zeros.
-    pub packed: bool,
-    /// A second struct that holds what depends on the parameters alone.
-    pub prepare: bool,
-    /// Functions of several states at once, in lanes.
-    pub batch: bool,
-    /// What it looks like.
-    pub drawing: bool,
-    /// Figures of a file are parameters.
-    pub file_parameters: bool,
-    /// Mass properties of links are among them.
-    pub file_inertials: bool,
-    /// No instructions beside those of the compilation's target.
-    pub target_only: bool,
-    /// Passes over the model that are left out.
-    pub skipped: Skipped,
-    /// Which equations are printed.
-    pub equations: Printed,
-}
-
-/// Which equations are printed: `equations = word`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Printed {
-    /// Lagrange's, if they are short enough to be read.
-    #[default]
-    Readable,
-    /// Lagrange's, also where they are long.
-    Lagrange,
-    /// Hamilton's.
-    Hamilton,
-    /// Kane's, in independent speeds.
-    Kane,
-    /// Routh's.
-    Routh,
-    /// Their structure alone.
-    Structure,
-}
-
-impl Printed {
-    /// The words that ask for others than the readable ones.
-    pub const WORDS: [(&str, Printed); 5] = [
-        ("lagrange", Printed::Lagrange),
-        ("hamilton", Printed::Hamilton),
-        ("kane", Printed::Kane),
-        ("routh", Printed::Routh),
-        ("structure", Printed::Structure),
-    ];
-}
-
-/// The passes that are left out: `skip_passes = [word, …]`. No function depends on them, only what it costs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Skipped {
-    /// Link frames stay where they are described.
-    pub frames: bool,
-    /// Mass properties stay with their links.
-    pub regroup: bool,
-    /// Links that turn about parallel axes are described in their own axes.
-    pub parallel: bool,
-    /// Neither alike limbs nor joints of one path are lanes.
-    pub limbs: bool,
 }
 
 /// The struct without its elements.
@@ -258,20 +176,3 @@ pub struct FileOptions {
     /// Visual geometry is drawn.
     pub visuals: bool,
 }
-
-/// The words of [`Requests`].
-pub(super) const REQUESTS: [&str; 13] = [
-    "derivatives",
-    "second_derivatives",
-    "momentum_derivatives",
-    "centroidal",
-    "hamilton",
-    "routh",
-    "conserved",
-    "regressor",
-    "sensitivities",
-    "packed",
-    "prepare",
-    "batch",
-    "drawing",
-];

@@ -21,6 +21,7 @@ mod lists;
 pub mod mechanism;
 mod options;
 mod parameter;
+mod request;
 mod separate;
 pub mod skipped;
 pub mod sound;
@@ -38,9 +39,9 @@ pub use description::{
 pub use expression::IF;
 pub use joint_kind::JointKind;
 pub use mechanism::{
-    FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, Printed, ROOT_JOINT, Requests,
-    Shell, Skipped,
+    FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, ROOT_JOINT, Shell,
 };
+pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::separate;
 
 /// What stands after a state's name in that of the function for its rate.

@@ -2,10 +2,9 @@
 
 use super::arguments::Arguments;
 use super::figures::{self, FileFigures};
-use super::mechanism::{
-    FileFormat, FileOptions, InputOption, LimitOption, Printed, REQUESTS, Requests, Skipped,
-};
+use super::mechanism::{FileFormat, FileOptions, InputOption, LimitOption};
 use super::parameter::unify_scalar;
+use super::request::{Printed, REQUESTS, Requests};
 use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, skipped, words};
 use crate::diag::{Diagnostics, Place, nearest, one_of};
 use proc_macro2::{Span, TokenStream};
@@ -244,27 +243,8 @@ fn read_requests(
     description: &Description,
     cx: &mut Diagnostics,
 ) -> Requests {
-    let is_asked = |word| asked.iter().any(|(known, _)| *known == word);
-    let requests = Requests {
-        derivatives: ["derivatives", "second_derivatives", "momentum_derivatives"].into_iter().any(is_asked),
-        second_derivatives: is_asked("second_derivatives"),
-        momentum_derivatives: is_asked("momentum_derivatives"),
-        centroidal: is_asked("centroidal"),
-        hamilton: is_asked("hamilton"),
-        routh: is_asked("routh"),
-        conserved: is_asked("conserved"),
-        regressor: is_asked("regressor"),
-        sensitivities: is_asked("sensitivities"),
-        packed: is_asked("packed"),
-        prepare: is_asked("prepare"),
-        batch: is_asked("batch"),
-        drawing: is_asked("drawing"),
-        file_parameters: false,
-        file_inertials: false,
-        target_only: false,
-        skipped: Skipped::default(),
-        equations: Printed::default(),
-    };
+    let is_asked = |word: &str| asked.iter().any(|(known, _)| *known == word);
+    let requests = Requests::of_words(is_asked);
     for (word, place) in asked {
         let without = ["sensitivities", "prepare"].contains(word) && !mistaken.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {

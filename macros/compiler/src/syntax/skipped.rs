@@ -2,7 +2,7 @@
 
 use super::ExprKind;
 use super::arguments::Arguments;
-use super::mechanism::Skipped;
+use super::request::Skipped;
 use crate::diag::Diagnostics;
 
 /// The argument.

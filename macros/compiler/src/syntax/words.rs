@@ -85,7 +85,7 @@ pub fn meant(words: Words, word: &str, known: &[&str]) -> Option<&'static str> {
 
 /// True for the words of `#[mechanism]` that stand alone.
 pub fn is_request(word: &str) -> bool {
-    super::mechanism::REQUESTS.contains(&word)
+    super::request::REQUESTS.contains(&word)
 }
 
 /// Adds what is meant by a word, if it is known.
