@@ -4,7 +4,8 @@ use linkwork::contact::{self, Touch};
 use linkwork::integrate::{DormandPrince8, Method, Rodas, Rosenbrock};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
-use linkwork::{ByMotion, ConstraintError, Rheonomic, at, constraint::stabilized};
+use linkwork::{ByMotion, ConstrainedDerivatives, ConstraintError, Rheonomic, at, constraint::stabilized};
+use linkwork_models::{CarAxle, RollingDisk};
 use std::cell::Cell;
 
 /// A mechanism whose forward dynamics are counted, and whose derivatives are hidden unless `KNOWN`.
@@ -96,7 +97,7 @@ where
 }
 
 /// A pendulum on a cart on a stiff spring and dashpot.
-#[mechanism(gravity = -9.81 * y, derivatives)]
+#[mechanism(gravity = -9.81 * y, derivatives, batch)]
 struct Cart {
     #[body(mass = 1)]
     cart: Body,
@@ -271,6 +272,7 @@ fn the_motion_is_that_by_differences() {
     let hopper = Hopper {};
     let stance = contact::hold(&hopper, [Touch::Sticks]).stabilized(20.0);
     agree(&stance, ([0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into()));
+    agree(&stabilized(&bar, 20.0), closed(&bar));
 }
 
 #[test]
@@ -335,6 +337,8 @@ fn derivatives_spare_two_evaluations_for_each_velocity() {
     let (q, v) = closed(&bar);
     let [known, differences] = evaluations(&bar, q, v);
     assert_eq!((known, differences - known), (8, 6));
+    let [known, differences] = evaluations(&stabilized(&bar, 20.0), q, v);
+    assert_eq!((known, differences - known), (8, 6));
     let hopper = Hopper {};
     let stance = contact::hold(&hopper, [Touch::Sticks]);
     let [known, differences] = evaluations(&stance, [0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into());
@@ -350,8 +354,110 @@ fn wrappers_pass_derivatives_on_that_they_do_not_change() {
     assert_eq!(known, Mechanism::acceleration_derivatives(&at(&cart, 0.0), &q, &v, &u));
     let linear = cart.linear_motion(&q, &v, &u);
     assert_eq!(known, Some((linear.by_q, linear.by_v, linear.by_u)));
-    // Feedback is no part of them.
+}
+
+/// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` by central differences of fourth order.
+fn differences<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    t: f64,
+    (q, v): (&SVector<f64, NQ>, &SVector<f64, NV>),
+    u: &SVector<f64, NU>,
+) -> ByMotion<f64, NV, NU>
+where
+    M: Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    let accelerated = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
+        m.forward_dynamics(t, q, v, &m.generalized_forces(t, q, v, u))
+    };
+    fn slopes<const N: usize, const K: usize>(
+        f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
+    ) -> SMatrix<f64, N, K> {
+        let columns: Vec<SVector<f64, N>> = (0..K)
+            .map(|k| {
+                let at = |h: f64| f(SVector::from_fn(|i, _| if i == k { h } else { 0.0 }));
+                let slope = |h: f64| (at(h) - at(-h)) / (2.0 * h);
+                (slope(5e-4) * 4.0 - slope(1e-3)) / 3.0
+            })
+            .collect();
+        SMatrix::from_fn(|i, k| columns[k][i])
+    }
+    (
+        slopes(|dq| accelerated(&m.integrate(q, &dq), v, u)),
+        slopes(|dv| accelerated(q, &(v + dv), u)),
+        slopes(|du| accelerated(q, v, &(u + du))),
+    )
+}
+
+/// The derivatives of a mechanism whose violations decay are those by differences, in states that are off its constraints too.
+#[track_caller]
+fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    t: f64,
+    state: (SVector<f64, NQ>, SVector<f64, NV>),
+) where
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
+{
+    let u = SVector::repeat(0.7);
+    let off = |k: usize| 0.01 * (1.0 + k as f64).sin();
+    let beside = (
+        m.integrate(&state.0, &SVector::from_fn(|k, _| off(k))),
+        state.1 + SVector::from_fn(|k, _| off(k + NV)),
+    );
+    for (q, v) in [state, beside] {
+        let steady = stabilized(m, 12.0);
+        let expected = differences(&steady, t, (&q, &v), &u);
+        let found = steady.acceleration_derivatives(t, &q, &v, &u).unwrap();
+        let whole = at(&steady, t).linear_motion(&q, &v, &u);
+        let by_hand = (whole.by_q, whole.by_v, whole.by_u);
+        assert_eq!(found, by_hand);
+        let tau = steady.generalized_forces(t, &q, &v, &u);
+        assert!((whole.acceleration - steady.forward_dynamics(t, &q, &v, &tau)).amax() < 1e-9);
+        let size = expected.0.amax().max(expected.1.amax());
+        for gap in [found.0 - expected.0, found.1 - expected.1] {
+            assert!(gap.amax() < 1e-8 * size, "{gap:e} of {size:e}");
+        }
+        // Linear in the inputs: rounding of accelerations alone.
+        assert!((found.2 - expected.2).iter().all(|gap| gap.abs() < 1e-9 + 1e-12 * size));
+        // Both ways to see the same constraints.
+        assert_eq!(Some(found), at(m, t).stabilized_derivatives(0.0, (&q, &v), &u, 12.0));
+    }
+}
+
+/// Loops, a rod, a wheel that rolls, and a road that moves.
+#[test]
+fn decaying_violations_have_derivatives() {
+    decays(&OnCircle {}, 0.0, ([0.6, -0.8].into(), [0.8, 0.6].into()));
     let bar = FourBar {};
-    let (q, v) = closed(&bar);
-    assert_eq!(None, stabilized(&bar, 10.0).acceleration_derivatives(0.0, &q, &v, &u));
+    decays(&bar, 0.0, closed(&bar));
+    let disk = RollingDisk { g: 9.81, m: 0.5, radius: 0.2 };
+    let q = [0.1, 0.2, 0.19, 0.4, 0.3, 0.2].into();
+    decays(&disk, 0.0, (q, disk.project_velocity(&q, &[0.3, 0.2, 0.0, 0.5, 0.1, -2.0].into()).unwrap()));
+    decays(&CarAxle {}, 0.3, ([0.0, 0.5, 1.0, 0.5].into(), [-0.5, 0.0, -0.5, 0.0].into()));
+}
+
+/// In lanes, each has the derivatives of its state, and the implicit method moves each as it moves it alone.
+#[test]
+fn lanes_have_derivatives() {
+    let cart = Cart {};
+    let lanes = cart.lanes::<4>();
+    let splat = Lanes::<f64, 4>::splat;
+    let of = |k: usize| (SVector::from([0.01 * k as f64, 0.4]), SVector::from([0.0, 1.0 - 0.3 * k as f64]));
+    let [q, v] = [0, 1].map(|part| {
+        SVector::<Lanes<f64, 4>, 2>::from_fn(|i, _| {
+            Lanes(std::array::from_fn(|k| if part == 0 { of(k).0[i] } else { of(k).1[i] }))
+        })
+    });
+    let u = SVector::from([splat(0.3)]);
+    let (by_q, by_v, by_u) = lanes.acceleration_derivatives(splat(0.0), &q, &v, &u).unwrap();
+    let end = simulate(&lanes).from(q, v).method(Rosenbrock::step(splat(1e-3))).duration(splat(0.1));
+    let end = end.finish().unwrap();
+    for k in 0..4 {
+        let (q, v) = of(k);
+        let alone = Mechanism::acceleration_derivatives(&cart, &q, &v, &[0.3].into()).unwrap();
+        assert_eq!(alone.0, by_q.map(|x| x.0[k]));
+        assert_eq!(alone.1, by_v.map(|x| x.0[k]));
+        assert_eq!(alone.2, by_u.map(|x| x.0[k]));
+        let own = simulate(&cart).from(q, v).method(Rosenbrock::step(1e-3)).duration(0.1).finish().unwrap();
+        assert!((own.q - end.q.map(|x| x.0[k])).amax() < 1e-12, "{own:?}");
+    }
 }

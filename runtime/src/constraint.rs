@@ -6,7 +6,7 @@
 //! violations decay where a mechanism is [`stabilized`].
 
 use crate::private::{constant, epsilon, to_f64};
-use crate::{Real, Rheonomic};
+use crate::{ByMotion, Real, Rheonomic};
 use core::fmt;
 use nalgebra::{SMatrix, SVector};
 
@@ -40,6 +40,8 @@ pub use second::{constrained_second_derivatives, with_curvature};
 pub use slipping::{pressing_solution, slipping_response, slipping_solution};
 #[doc(hidden)]
 pub use solve::{independent_solution, least_solution, regular_solution};
+#[doc(hidden)]
+pub use stabilized::stabilized_derivatives;
 pub use stabilized::{Stabilized, stabilized};
 
 /// A share of the velocity by which a projection changes it where it leads to another branch.
@@ -197,6 +199,18 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         p: &SVector<Self::Scalar, NV>,
         gap: &SVector<Self::Scalar, NC>,
     ) -> SVector<Self::Scalar, NV>;
+
+    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the mechanism [`stabilized`], with violations
+    /// that decay at `rate`, 1/s; `None` without [`ConstrainedDerivatives`].
+    fn stabilized_derivatives(
+        &self,
+        _t: Self::Scalar,
+        _state: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
+        _u: &SVector<Self::Scalar, NU>,
+        _rate: Self::Scalar,
+    ) -> Option<ByMotion<Self::Scalar, NV, NU>> {
+        None
+    }
 
     /// [`Mechanism::impulse`](crate::Mechanism::impulse) of a mechanism with constraints. Those on configurations are looked
     /// at where `v` leads in `h` seconds, those on velocities half-way there (a discrete constraint that reads the same

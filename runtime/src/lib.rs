@@ -178,7 +178,8 @@ pub mod __private {
         ConstraintCurvature, Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses,
         Structure, assemble, careful_dynamics, careful_response, constrained_derivatives,
         constrained_second_derivatives, independent_solution, least_solution, nearly_singular,
-        pressing_solution, regular_solution, slipping_response, slipping_solution, with_curvature,
+        pressing_solution, regular_solution, slipping_response, slipping_solution, stabilized_derivatives,
+        with_curvature,
     };
     pub use crate::contact::Columns as ContactDerivatives;
     pub use crate::contact::held_derivatives;

@@ -129,6 +129,11 @@ pub enum Error {
         /// Its rate: m/s², rad/s² or rad/s.
         rate: f64,
     },
+    /// Motions have no second-order form: forces depend on a coordinate without an independent speed of its own.
+    NoSecondOrderForm {
+        /// The coordinate.
+        coordinate: String,
+    },
     /// Stability by energy is not to be had.
     NoPotential {
         /// Why.
@@ -188,6 +193,10 @@ impl fmt::Display for Error {
             Self::NotSteady { what, rate } => {
                 write!(f, "not steady: `{what}` changes at the rate {rate:.3e}")
             }
+            Self::NoSecondOrderForm { coordinate } => write!(
+                f,
+                "no second-order form: forces depend on `{coordinate}`, which has no independent speed of its own"
+            ),
             Self::NoPotential { why } => write!(f, "no stability by energy: {why}; modes decide"),
             Self::Picture(error) => write!(f, "no picture: {error}"),
         }

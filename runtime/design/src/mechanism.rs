@@ -64,7 +64,7 @@ fn displaced(speed: Signal) -> Signal {
 }
 
 /// The displacements that go with some of a mechanism's velocities.
-fn displacements<M, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn displacements<M, const NQ: usize, const NV: usize, const NU: usize>(
     which: impl IntoIterator<Item = usize>,
 ) -> Vec<Signal>
 where
@@ -308,7 +308,8 @@ where
 /// The second-order form of the motion about a state: `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
 ///
 /// `M` is what multiplies the accelerations: the mass matrix, less what forces that depend on accelerations take from it. Then it need
-/// not be symmetric.
+/// not be symmetric. Under constraints, about a steady state:
+/// [`Trim::second_order_form`](crate::steady::Trim::second_order_form).
 ///
 /// # Errors
 ///
@@ -322,6 +323,7 @@ pub fn second_order_form<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Derivatives<NQ, NV, NU> + Mechanism<NQ, NV, NU, Scalar = f64>,
 {
+    const { assert!(!M::CONSTRAINED, "a mechanism with constraints: call `second_order_form` of its trim") };
     if M::FIRST_ORDER > 0 {
         let what = "states of first order";
         return Err(Error::Count { what, expected: 0, found: M::FIRST_ORDER });

@@ -1,5 +1,6 @@
 //! Flight, lags, rotors and satellites from mechanisms to modes, against closed forms.
 
+use linkwork::constraint::stabilized;
 use linkwork::prelude::*;
 use linkwork_design::mechanism::{constrained_system, linear_system, measured_system, second_order_form};
 use linkwork_design::steady::{constrained_equilibrium, equilibrium};
@@ -253,6 +254,27 @@ struct Carriage {
     push: Force,
     #[output(norm(v(carriage / ground / ground)))]
     speed: Scalar,
+}
+
+/// A rod as a constraint that decays at `α`: beside the pendulum's own exponents there is `−α` twice.
+#[test]
+fn decaying_constraints_have_their_exponents() {
+    let (carriage, rate) = (Carriage { mass: 2.0 }, 7.0);
+    let decaying = stabilized(&carriage, rate);
+    let zero = SVector::zeros();
+    let system = linear_system(&at(&decaying, 0.0), &zero, &zero, &[0.0].into()).unwrap();
+    // At the lowest point of y = x²: ẍ = F / m − 2 g x.
+    let own = (2.0_f64 * 9.81).sqrt();
+    contains(&system, 0.0, own);
+    contains(&system, 0.0, -own);
+    let characteristic = system.channel("place.x", "push").unwrap();
+    assert_eq!(system.poles().unwrap().len(), 4);
+    let near = |pole: &Complex<f64>| (pole + rate).norm() < 1e-6 * rate;
+    assert_eq!(system.poles().unwrap().iter().filter(|pole| near(pole)).count(), 2);
+    // What decays is not moved by the push.
+    let (s, answer) = (Complex::new(0.3, 2.0), characteristic.at(Complex::new(0.3, 2.0)).unwrap());
+    let expected = (s * s + 2.0 * 9.81).inv() / 2.0;
+    assert!((answer[0] - expected).norm() < 1e-12, "{answer} {expected}");
 }
 
 fn written(signals: &[Signal]) -> Vec<String> {

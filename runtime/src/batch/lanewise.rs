@@ -1,9 +1,10 @@
 //! A mechanism whose scalars are lanes.
 
 use super::Batch;
+use crate::blocks::zeros;
 use crate::contact::Touched;
-use crate::lanes::{lane, lane_by_lane};
-use crate::{ConstraintError, Lanes, Rheonomic};
+use crate::lanes::{lane, lane_by_lane, set_lane};
+use crate::{ByMotion, ConstraintError, Lanes, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
@@ -94,15 +95,23 @@ where
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
     }
 
-    /// None: methods take differences.
+    /// Lane by lane.
     fn acceleration_derivatives(
         &self,
-        _t: Self::Scalar,
-        _q: &SVector<Self::Scalar, NQ>,
-        _v: &SVector<Self::Scalar, NV>,
-        _u: &SVector<Self::Scalar, NU>,
-    ) -> Option<crate::ByMotion<Self::Scalar, NV, NU>> {
-        None
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        u: &SVector<Self::Scalar, NU>,
+    ) -> Option<ByMotion<Self::Scalar, NV, NU>> {
+        let mut all: ByMotion<Self::Scalar, NV, NU> = (zeros(), zeros(), zeros());
+        for k in 0..L {
+            let (by_q, by_v, by_u) =
+                self.mechanism.acceleration_derivatives(t.0[k], &lane(q, k), &lane(v, k), &lane(u, k))?;
+            set_lane(&mut all.0, k, &by_q);
+            set_lane(&mut all.1, k, &by_v);
+            set_lane(&mut all.2, k, &by_u);
+        }
+        Some(all)
     }
 
     /// Lane by lane.

@@ -3,7 +3,7 @@
 use super::layout::MotionDerivatives;
 use super::{Constrained, Solution};
 use crate::blocks::zeros;
-use crate::{At, Real, RheonomicDerivatives};
+use crate::{At, ByMotion, Real, RheonomicDerivatives};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)`: a row for each of the `NC` constraints.
@@ -240,6 +240,16 @@ where
         gap: &SVector<T, NC>,
     ) -> SVector<T, NV> {
         self.mechanism.constraint_response(self.t, q, p, gap)
+    }
+
+    fn stabilized_derivatives(
+        &self,
+        _t: T,
+        state: (&SVector<T, NQ>, &SVector<T, NV>),
+        u: &SVector<T, NU>,
+        rate: T,
+    ) -> Option<ByMotion<T, NV, NU>> {
+        self.mechanism.stabilized_derivatives(self.t, state, u, rate)
     }
 }
 

@@ -1,7 +1,9 @@
 //! Constraints kept by feedback instead of projection.
 
-use super::{Constrained, ConstraintError, Projected};
+use super::differentiable::{column, each_column, multipliers};
+use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
 use crate::contact::Touched;
+use crate::derivatives::{ByMotion, RheonomicDerivatives, under_inputs};
 use crate::forward::each_function;
 use crate::private::constant;
 use crate::{Real, Rheonomic};
@@ -11,7 +13,9 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// Baumgarte's stabilization: `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of
 /// constraints and integrals of motion in dynamical systems*, Comp. Meth. Appl. Mech. Eng. 1, 1972). Integrators then
-/// leave the state as it is, whether it fulfils the constraints or not; the violation is small, not zero.
+/// leave the state as it is, whether it fulfils the constraints or not; the violation is small, not zero. The word `derivatives` gives
+/// derivatives of this motion, too: its linear system has the exponent `−α` twice for each constraint on configurations, and `−2 α` once
+/// for each of the others.
 ///
 /// ```
 /// # use linkwork::prelude::*;
@@ -60,11 +64,77 @@ impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> 
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let residuals = self.mechanism.constraint_residuals(t, q) * (self.rate * self.rate);
-        let rates = self.mechanism.constraint_rates(t, q, v) * (self.rate * constant(2.0));
-        let gap = SVector::from_fn(|k, _| residuals.get(k).map_or(rates[k], |r| rates[k] + *r));
-        self.mechanism.constraint_correction(t, q, &gap)
+        self.mechanism.constraint_correction(t, q, &gap(self.mechanism, self.rate, t, q, v))
     }
+}
+
+/// `2 α φ̇ + α² φ`, the latter of constraints on configurations.
+fn gap<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    rate: M::Scalar,
+    t: M::Scalar,
+    q: &SVector<M::Scalar, NQ>,
+    v: &SVector<M::Scalar, NV>,
+) -> SVector<M::Scalar, NC>
+where
+    M: Constrained<NQ, NV, NU, NH, NC>,
+{
+    let residuals = m.constraint_residuals(t, q) * (rate * rate);
+    let mut gap = m.constraint_rates(t, q, v) * (rate * constant(2.0));
+    gap.iter_mut().zip(residuals.iter()).for_each(|(gap, residual)| *gap += *residual);
+    gap
+}
+
+/// The accelerations under the forces `tau` where violations decay at `rate`, and their derivatives: with these accelerations and
+/// multipliers `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)` and `J δv̇ = −∂(J a + b + 2 α φ̇ + α² φ)`.
+fn to_first_order<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    rate: M::Scalar,
+    t: M::Scalar,
+    (q, v): (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
+    tau: &SVector<M::Scalar, NV>,
+) -> (SVector<M::Scalar, NV>, ByMotion<M::Scalar, NV, NV>)
+where
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
+{
+    let correction = m.constraint_correction(t, q, &gap(m, rate, t, q, v));
+    let (a, lambda) = m.constrained_dynamics(t, q, v, tau);
+    let (a, lambda) = (a + correction, lambda + multipliers(m, t, q, &(m.mass_matrix(t, q) * correction)));
+    let parts = m.equation_derivatives(t, q, v, &a, &lambda);
+    let gap_by_v = m.constraint_jacobian(t, q) * (rate * constant(2.0));
+    let mut gap_by_q = parts.rates_by_q * (rate * constant(2.0));
+    for (mut row, of_rate) in gap_by_q.row_iter_mut().zip(gap_by_v.row_iter()).take(NH) {
+        row += of_rate * (rate * constant(0.5));
+    }
+    let of = |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
+        each_column(|j| m.constraint_response(t, q, &-column(forces, j), &column(gaps, j)))
+    };
+    let by_q = of(&parts.forces_by_q, &(parts.accelerations_by_q + gap_by_q));
+    let by_v = of(&parts.forces_by_v, &(parts.accelerations_by_v + gap_by_v));
+    (a, (by_q, by_v, of(&-SMatrix::identity(), &SMatrix::zeros())))
+}
+
+/// [`Constrained::stabilized_derivatives`] of mechanisms with derivatives.
+pub fn stabilized_derivatives<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    m: &M,
+    t: M::Scalar,
+    (q, v): (&SVector<M::Scalar, NQ>, &SVector<M::Scalar, NV>),
+    u: &SVector<M::Scalar, NU>,
+    rate: M::Scalar,
+) -> Option<ByMotion<M::Scalar, NV, NU>>
+where
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
+{
+    let tau = m.generalized_forces(t, q, v, u);
+    let (_, by_force) = to_first_order(m, rate, t, (q, v), &tau);
+    Some(under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
@@ -139,15 +209,14 @@ where
         self.mechanism.is_nearly_singular(t, q, dv)
     }
 
-    /// None: methods take differences.
     fn acceleration_derivatives(
         &self,
-        _t: M::Scalar,
-        _q: &SVector<M::Scalar, NQ>,
-        _v: &SVector<M::Scalar, NV>,
-        _u: &SVector<M::Scalar, NU>,
-    ) -> Option<crate::ByMotion<M::Scalar, NV, NU>> {
-        None
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+        u: &SVector<M::Scalar, NU>,
+    ) -> Option<ByMotion<M::Scalar, NV, NU>> {
+        self.mechanism.stabilized_derivatives(t, (q, v), u, self.rate)
     }
 
     fn carry(
@@ -173,6 +242,46 @@ where
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: crate::contact::Visitor<M::Scalar, NQ, NV, NU>,
+    {
+        None
+    }
+}
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
+    RheonomicDerivatives<NQ, NV, NU> for Stabilized<'_, M, M::Scalar, NH, NC>
+where
+    M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
+{
+    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+
+    each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
+    each_function!(given_derivatives, pass RheonomicDerivatives, self => self.mechanism);
+
+    fn forward_dynamics_derivatives(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+        tau: &SVector<M::Scalar, NV>,
+    ) -> ByMotion<M::Scalar, NV, NV> {
+        to_first_order(self.mechanism, self.rate, t, (q, v), tau).1
+    }
+
+    fn forward_dynamics_to_first_order(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+        tau: &SVector<M::Scalar, NV>,
+    ) -> (SVector<M::Scalar, NV>, ByMotion<M::Scalar, NV, NV>) {
+        to_first_order(self.mechanism, self.rate, t, (q, v), tau)
+    }
+
+    /// Constraints are in the accelerations.
+    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: super::Visitor<M::Scalar, NQ, NV, NU>,
     {
         None
     }

@@ -405,6 +405,19 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     );
 }
 
+/// Derivatives of the motion on which violations decay, for methods of integration that come by the trait of constraints.
+pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
+    let (scalar, q, v, u) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.vector(s.nu));
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn stabilized_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, rate: {scalar}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+            ::linkwork::__private::stabilized_derivatives(self, t, state, u, rate)
+        }}",
+        square = s.shape(Shape::Square(s.nv)),
+        inputs = s.shape(Shape::Matrix(s.nv, s.nu)),
+    );
+}
+
 /// Whether derivatives of the equations determine those of accelerations and multipliers: forces of friction that follow from
 /// multipliers are not among them.
 pub fn are_differentiable(c: &Constraints) -> bool {

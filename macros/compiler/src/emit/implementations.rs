@@ -92,8 +92,12 @@ fn write_constraints(head: &Head, out: &mut String, name: &str, i: &Interface<'_
     let counts = [i.constraints.holonomic, i.constraints.names.len()];
     begin_with(head, out, name, "Constrained", s, counts);
     constraints::write_trait(out, &i.constraints, s);
+    let is_differentiable = constraints::are_differentiable(&i.constraints) && i.facts.requests.derivatives;
+    if is_differentiable {
+        constraints::write_stabilized(out, s);
+    }
     out.push_str("}\n");
-    if constraints::are_differentiable(&i.constraints) && i.facts.requests.derivatives {
+    if is_differentiable {
         begin_with(head, out, name, "ConstrainedDerivatives", s, counts);
         constraints::write_derivatives_trait(out, &i.constraints, s);
         out.push_str("}\n");

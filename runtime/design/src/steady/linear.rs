@@ -2,8 +2,8 @@
 
 use super::problem::{Place, Problem, dynamic};
 use super::{SteadyState, Trim};
-use crate::mechanism::{effective_mass, input_names, named, state_names};
-use crate::{Error, StateSpace};
+use crate::mechanism::{displacements, effective_mass, input_names, named, state_names};
+use crate::{Error, SecondOrderForm, StateSpace};
 use linkwork::{OutputDerivatives, Rheonomic, RheonomicDerivatives};
 use nalgebra::{DMatrix, SVector};
 
@@ -251,5 +251,76 @@ where
         let system = StateSpace::new(linear.a, linear.b, c, d)?.with_states(names.states().to_vec())?;
         let outputs = named(&M::OUTPUTS, &M::OUTPUT_UNITS);
         system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(outputs)
+    }
+
+    /// The second-order form of the motion about a steady state, `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`, in independent coordinates:
+    /// `M = Γᵀ M₀ Γ`, with the mass matrix `M₀` of all coordinates and all velocities `Γ q̇` that go with the independent ones. What
+    /// constraints bear in the steady state is in `K`.
+    ///
+    /// Constraints on velocities alone leave coordinates without speeds of their own. They are left out of the form, and no force may
+    /// depend on them: on the place and heading of a wheel on a level road.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    /// use linkwork_design::steady::constrained_equilibrium;
+    ///
+    /// /// A particle on a rod of 0.5 m, whose hinge is in oil.
+    /// #[mechanism(gravity = -9.81 * y, derivatives)]
+    /// struct Pendulum {
+    ///     #[particle(mass = 2)]
+    ///     bob: Particle,
+    ///     #[joint(ground -> bob, along = (x, y))]
+    ///     place: Stage,
+    ///     #[constraint(norm(r(bob / ground)) == 0.5)]
+    ///     rod: Holonomic,
+    ///     #[acts(on = place.x, damping = 3)]
+    ///     oil: Dashpot,
+    /// }
+    /// let problem = constrained_equilibrium(&Pendulum {}).from([0.0, -0.5].into());
+    /// let form = problem.second_order_form(&problem.find()?)?;
+    /// assert!((form.mass[0] - 2.0).abs() < 1e-12 && (form.damping[0] - 3.0).abs() < 1e-12);
+    /// assert!((form.stiffness[0] - 2.0 * 9.81 / 0.5).abs() < 1e-9);
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// Those of [`linear_system`](Self::linear_system); [`Error::NoSecondOrderForm`] where forces depend on a coordinate without a speed
+    /// of its own; [`Error::Count`] of a mechanism with states of first order, which have no such form.
+    pub fn second_order_form(&self, found: &SteadyState<NQ, NV, NU>) -> Result<SecondOrderForm, Error> {
+        if M::FIRST_ORDER > 0 {
+            let what = "states of first order";
+            return Err(Error::Count { what, expected: 0, found: M::FIRST_ORDER });
+        }
+        let Linear { coordinates, speeds, a, b, mass, motion, .. } = linear(self, found)?;
+        let (np, ns) = (coordinates.len(), speeds.len());
+        let named = |k: usize| M::VELOCITIES.get(k).copied().unwrap_or_default().to_owned();
+        // The coordinates whose rates are independent speeds, and those that have none.
+        let own: Vec<Option<usize>> =
+            speeds.iter().map(|speed| coordinates.iter().position(|k| k == speed)).collect();
+        let alone = (0..np).find(|i| {
+            let row = a.rows(np, ns).column(*i).clone_owned();
+            let size = ROUNDING * a.rows(np, ns).amax().max(1.0);
+            !own.contains(&Some(*i)) && row.amax() > size
+        });
+        if let Some(i) = alone {
+            return Err(Error::NoSecondOrderForm { coordinate: named(coordinates[i]) });
+        }
+        let lost = speeds.iter().zip(&own).find(|(_, place)| place.is_none());
+        if let Some((speed, _)) = lost {
+            return Err(Error::NoSecondOrderForm { coordinate: named(*speed) });
+        }
+        let own: Vec<usize> = own.into_iter().flatten().collect();
+        let gamma = &motion.velocities[1];
+        let mass = gamma.transpose() * mass * gamma;
+        // With ẋ = D x + s and ṡ = P x + S s + B u: ẍ = (D + S) ẋ + (P − S D) x + B u.
+        let drift = a.view((0, 0), (np, np)).select_rows(&own).select_columns(&own);
+        let (by_position, by_speed) =
+            (a.view((np, 0), (ns, np)).select_columns(&own), a.view((np, np), (ns, ns)).clone_owned());
+        let velocity = -(&mass * (&drift + &by_speed));
+        let position = -(&mass * (by_position - by_speed * drift));
+        let input = &mass * b.rows(np, ns);
+        let form = SecondOrderForm::new(mass, velocity, position, input)?;
+        form.with_names(displacements::<M, NQ, NV, NU>(speeds), input_names::<M, NQ, NV, NU>())
     }
 }

@@ -1,0 +1,206 @@
+//! Second-order forms under constraints: mass, damping, gyroscopic, stiffness and circulatory matrices in independent coordinates,
+//! against closed forms.
+
+use linkwork::prelude::*;
+use linkwork_design::steady::constrained_equilibrium;
+use linkwork_design::{Error, SecondOrderForm};
+use linkwork_models::Bicycle;
+use nalgebra::{DMatrix, dmatrix};
+
+#[track_caller]
+fn close(found: f64, expected: f64, relative: f64) {
+    assert!((found - expected).abs() <= relative * expected.abs(), "expected {expected}, found {found}");
+}
+
+#[track_caller]
+fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
+    assert!((found - expected).amax() <= tolerance * expected.amax().max(1.0), "expected {expected}, found {found}");
+}
+
+/// A particle on a rod, in wind.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Blown {
+    mass: f64,
+    length: f64,
+    oil: f64,
+    #[particle(mass = mass)]
+    bob: Particle,
+    #[joint(ground -> bob, along = (x, y))]
+    place: Stage,
+    #[constraint(norm(r(bob / ground)) == length)]
+    rod: Holonomic,
+    #[acts(on = place.x, damping = oil)]
+    dashpot: Dashpot,
+    #[acts(on = place.x)]
+    wind: Force,
+}
+
+/// With the angle `θ` from below: `m L² θ̈ + c L² cos² θ θ̇ + L √((m g)² + F²) θ = 0` about `tan θ = F / (m g)`. By `x = L sin θ`
+/// the matrices are these over `(L cos θ)²`.
+#[test]
+fn a_particle_on_a_rod_in_wind() {
+    let (mass, length, oil, wind) = (2.0, 0.7, 1.3, 8.0);
+    let blown = Blown { mass, length, oil };
+    let problem = constrained_equilibrium(&blown).from([0.2, -0.6].into()).with_inputs([wind].into());
+    let form = problem.second_order_form(&problem.find().unwrap()).unwrap();
+    let weight = mass * 9.81;
+    let angle = wind.atan2(weight);
+    let of_x = (length * angle.cos()).powi(2);
+    close(form.mass[0], mass * length * length / of_x, 1e-12);
+    close(form.damping[0], oil, 1e-12);
+    close(form.stiffness[0], length * weight.hypot(wind) / of_x, 1e-12);
+    close(form.input[0], 1.0, 1e-12);
+    let system = form.state_space().unwrap();
+    assert_eq!(system.states()[0].to_string(), "place.x, m");
+    // As the linear system of the same equilibrium has them.
+    let direct = problem.linear_system(&problem.find().unwrap()).unwrap();
+    assert!((system.a() - direct.a()).amax() < 1e-11 && (system.b() - direct.b()).amax() < 1e-12);
+}
+
+/// A crank with a piston between springs.
+#[mechanism(derivatives)]
+struct SliderCrank {
+    r: f64,
+    l: f64,
+    inertia: f64,
+    piston: f64,
+    winding: f64,
+    stiffness: f64,
+    oil: f64,
+    #[body(mass = 1, inertia = diagonal(0, 0, inertia))]
+    crank: Body,
+    #[body]
+    rod: Body,
+    #[body(mass = piston)]
+    slider: Body,
+    #[joint(ground -> crank, about = z)]
+    main: Pin,
+    #[joint(crank.at(r * x) -> rod, about = z)]
+    elbow: Pin,
+    #[joint(rod.at(l * x) -> slider, about = z)]
+    wrist: Pin,
+    #[joint(ground -> slider, along = x)]
+    guide: Sleeve,
+    #[acts(on = main, stiffness = winding)]
+    coil: Spring,
+    #[acts(on = guide, stiffness = stiffness)]
+    spring: Spring,
+    #[acts(on = guide, damping = oil)]
+    dashpot: Dashpot,
+}
+
+/// With `x(θ) = r cos θ + √(l² − r² sin² θ)`: `M = J + m x'²`, `D = c x'²`, `K = k_θ + k (x'² + x x'')`.
+#[test]
+fn a_slider_crank_on_springs() {
+    let (r, l) = (0.1, 0.25);
+    let machine =
+        SliderCrank { r, l, inertia: 0.02, piston: 3.0, winding: 40.0, stiffness: 700.0, oil: 25.0 };
+    let problem = constrained_equilibrium(&machine).from([0.9, -1.2, 0.3, 0.3].into());
+    let found = problem.find().unwrap();
+    let form = problem.second_order_form(&found).unwrap();
+    let (s, c) = found.q[0].sin_cos();
+    let root = (l * l - r * r * s * s).sqrt();
+    let x = r * c + root;
+    let first = -r * s - r * r * s * c / root;
+    let second = -r * c - r * r * (c * c - s * s) / root - (r * r * s * c).powi(2) / root.powi(3);
+    assert!((40.0 * found.q[0] + 700.0 * x * first).abs() < 1e-9 && s.abs() > 0.1, "{found:?}");
+    // Of the crank's angle, whichever coordinate the form is in.
+    let per = match form.state_space().unwrap().states()[0].name.as_str() {
+        "main" => 1.0,
+        "guide" => first,
+        "elbow" => -1.0 - r * c / root,
+        "wrist" => r * c / root,
+        other => panic!("{other}"),
+    };
+    close(form.mass[0] * per * per, 0.02 + 3.0 * first * first, 1e-10);
+    close(form.damping[0] * per * per, 25.0 * first * first, 1e-10);
+    close(form.stiffness[0] * per * per, 40.0 + 700.0 * (first * first + x * second), 1e-10);
+}
+
+/// A particle in a bowl that turns, with damping in the air, which does not turn.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Bowl {
+    mass: f64,
+    radius: f64,
+    spin: f64,
+    air: f64,
+    #[frame(ground, z(spin * t))]
+    turning: Frame,
+    #[body(frame = turning)]
+    bowl: Body,
+    #[particle(mass = mass)]
+    ball: Particle,
+    #[joint(bowl -> ball, along = (x, y, z))]
+    place: Stage,
+    #[constraint(place.z == (place.x * place.x + place.y * place.y) / (2 * radius))]
+    surface: Holonomic,
+    #[acts(on = ball, value = -air * v(ball / ground / ground))]
+    drag: Force,
+}
+
+/// `M = m`, `D = c`, `G = 2 m Ω [[0, −1], [1, 0]]`, `K = m (g / a − Ω²)`, `N = c Ω [[0, −1], [1, 0]]`.
+#[test]
+fn a_ball_in_a_turning_bowl() {
+    let (mass, radius, spin, air) = (0.4, 0.3, 5.0, 0.7);
+    let bowl = Bowl { mass, radius, spin, air };
+    let problem = constrained_equilibrium(&bowl).at_time(0.37);
+    let form = problem.second_order_form(&problem.find().unwrap()).unwrap();
+    let (one, turn) = (DMatrix::<f64>::identity(2, 2), dmatrix![0.0, -1.0; 1.0, 0.0]);
+    same(&form.mass, &(&one * mass), 1e-12);
+    same(&form.damping, &(&one * air), 1e-12);
+    same(&form.gyroscopic, &(&turn * (2.0 * mass * spin)), 1e-12);
+    same(&form.stiffness, &(&one * (mass * (9.81 / radius - spin * spin))), 1e-11);
+    same(&form.circulatory, &(&turn * (air * spin)), 1e-12);
+}
+
+/// Meijaard, Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a bicycle*, Proc. R. Soc. A
+/// 463 (2007), § 4: `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in lean and steer, from the bodies and wheels of the bicycle.
+#[test]
+fn a_bicycle_has_the_published_matrices() {
+    let bicycle = Bicycle::BENCHMARK;
+    let mass = dmatrix![80.817_22, 2.319_413_322_087_09; 2.319_413_322_087_09, 0.297_841_881_996_86];
+    let c1 = dmatrix![0.0, 33.866_413_914_924_94; -0.850_356_414_569_78, 1.685_403_973_975_60];
+    let k0 = dmatrix![-80.95, -2.599_516_852_498_72; -2.599_516_852_498_72, -0.803_294_884_586_18];
+    let k2 = dmatrix![0.0, 76.597_345_895_732_22; 0.0, 2.654_315_237_946_04];
+    for speed in [0.5, 4.6, 9.0] {
+        let mut v = SVector::<f64, 9>::zeros();
+        (v[0], v[6], v[8]) = (speed, -speed / bicycle.rear_radius, -speed / bicycle.front_radius);
+        let problem =
+            constrained_equilibrium(&bicycle).moving(v).coordinates(["pose.vz", "pose.wx", "pose.wy"]);
+        let form = problem.second_order_form(&problem.find().unwrap()).unwrap();
+        let system = form.state_space().unwrap();
+        let names: Vec<&str> = system.states().iter().map(|state| state.name.as_str()).collect();
+        let lateral = ["pose.wx", "steer"].map(|name| names.iter().position(|n| *n == name).expect(name));
+        let part = |m: &DMatrix<f64>| m.select_rows(&lateral).select_columns(&lateral);
+        same(&part(&form.mass), &mass, 1e-12);
+        same(&part(&(&form.damping + &form.gyroscopic)), &(&c1 * speed), 1e-11);
+        same(&part(&(&form.stiffness + &form.circulatory)), &(&k0 * 9.81 + &k2 * (speed * speed)), 1e-11);
+    }
+}
+
+/// A knife edge on a slope that pulls sideways: where it heads decides on the force, and has a speed; where it lies across has none.
+#[mechanism(derivatives)]
+struct Skate {
+    pull: f64,
+    #[body(mass = 1, inertia = diagonal(0.1, 0.1, 0.1))]
+    skate: Body,
+    #[joint(ground -> skate, along = (x, y), about = z)]
+    pose: Planar,
+    #[constraint(dot(v(skate / ground / ground), skate.y) = 0)]
+    edge: Nonholonomic,
+    #[acts(on = skate, value = -pull * r(skate / ground))]
+    rope: Force,
+}
+
+#[test]
+fn forces_on_coordinates_without_speeds_have_no_form() {
+    let form = |pull: f64| -> Result<SecondOrderForm, Error> {
+        let skate = Skate { pull };
+        let problem = constrained_equilibrium(&skate).fix(Skate::VELOCITIES);
+        problem.second_order_form(&problem.find()?)
+    };
+    let free = form(0.0).unwrap();
+    assert_eq!(free.mass.nrows(), 2);
+    let error = form(3.0).unwrap_err();
+    assert!(error.to_string().contains("no second-order form"), "{error}");
+}
