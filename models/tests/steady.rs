@@ -1,5 +1,6 @@
 //! Steady motions of mechanisms of the gallery against published figures.
 
+use linkwork::nalgebra::DMatrix;
 use linkwork::prelude::*;
 use linkwork_design::steady::constrained_equilibrium;
 use linkwork_models::{Bicycle, RollingDisk};
@@ -118,5 +119,42 @@ fn a_bicycle_weaves_and_capsizes() {
                 poles.iter().map(|pole| (pole.re - re).hypot(pole.im - im)).fold(f64::MAX, f64::min);
             assert!(nearest < 1e-8 * re.hypot(im), "{speed} m/s: {re} {im:+}i is {nearest:e} off {poles:?}");
         }
+    }
+}
+
+fn matrix(rows: [[f64; 2]; 2]) -> DMatrix<f64> {
+    DMatrix::from_fn(2, 2, |i, j| rows[i][j])
+}
+
+#[track_caller]
+fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
+    assert!(
+        (found - expected).amax() <= tolerance * expected.amax().max(1.0),
+        "expected {expected}, found {found}"
+    );
+}
+
+/// Meijaard, Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a bicycle*, Proc. R. Soc. A
+/// 463 (2007), § 4: `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in lean and steer, from the bodies and wheels of the bicycle.
+#[test]
+fn a_bicycle_has_the_published_matrices() {
+    let bicycle = Bicycle::BENCHMARK;
+    let mass = matrix([[80.817_22, 2.319_413_322_087_09], [2.319_413_322_087_09, 0.297_841_881_996_86]]);
+    let c1 = matrix([[0.0, 33.866_413_914_924_94], [-0.850_356_414_569_78, 1.685_403_973_975_60]]);
+    let k0 = matrix([[-80.95, -2.599_516_852_498_72], [-2.599_516_852_498_72, -0.803_294_884_586_18]]);
+    let k2 = matrix([[0.0, 76.597_345_895_732_22], [0.0, 2.654_315_237_946_04]]);
+    for speed in [0.5, 4.6, 9.0] {
+        let mut v = SVector::<f64, 9>::zeros();
+        (v[0], v[6], v[8]) = (speed, -speed / bicycle.rear_radius, -speed / bicycle.front_radius);
+        let problem =
+            constrained_equilibrium(&bicycle).moving(v).coordinates(["pose.vz", "pose.wx", "pose.wy"]);
+        let form = problem.second_order_form(&problem.find().unwrap()).unwrap();
+        let system = form.state_space().unwrap();
+        let names: Vec<&str> = system.states().iter().map(|state| state.name.as_str()).collect();
+        let lateral = ["pose.wx", "steer"].map(|name| names.iter().position(|n| *n == name).expect(name));
+        let part = |m: &DMatrix<f64>| m.select_rows(&lateral).select_columns(&lateral);
+        same(&part(&form.mass), &mass, 1e-12);
+        same(&part(&(&form.damping + &form.gyroscopic)), &(&c1 * speed), 1e-11);
+        same(&part(&(&form.stiffness + &form.circulatory)), &(&k0 * 9.81 + &k2 * (speed * speed)), 1e-11);
     }
 }

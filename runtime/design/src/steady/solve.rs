@@ -212,6 +212,10 @@ where
     /// Parts of a direction that count.
     const PART: f64 = 0.1;
     let (rows, columns) = scaled.shape();
+    // Where nothing is unknown, nothing is open.
+    if columns == 0 {
+        return Vec::new();
+    }
     // With as many rows as columns, so that no direction is missing.
     let square = scaled.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = square.svd(false, true);
