@@ -30,6 +30,13 @@ pub enum Error {
         /// The names that there are.
         known: Vec<String>,
     },
+    /// A signal of this name is asked for twice.
+    Repeated {
+        /// State, input or output.
+        kind: &'static str,
+        /// Its name.
+        name: String,
+    },
     /// A number of signals or values that does not fit.
     Count {
         /// What is counted.
@@ -46,7 +53,7 @@ pub enum Error {
     },
     /// Systems of different periods, or a discrete one where a continuous one is expected, or the reverse.
     Time {
-        /// Periods that differ, s; none of a continuous system.
+        /// Periods that differ, s; none of a continuous system, zero for any period.
         periods: [Option<f64>; 2],
     },
     /// More zeros than poles: no state space, no response.
@@ -91,6 +98,11 @@ pub enum Error {
     /// An iteration did not settle.
     NotConverged {
         /// The iteration.
+        what: &'static str,
+    },
+    /// A result that is infinite.
+    Infinite {
+        /// The result.
         what: &'static str,
     },
     /// A value lies outside what has a meaning.
@@ -157,6 +169,7 @@ impl fmt::Display for Error {
                 }
                 write!(f, "; there are {}", known.join(", "))
             }
+            Self::Repeated { kind, name } => write!(f, "the {kind} `{name}` is asked for twice"),
             Self::Count { what, expected, found } => write!(f, "expected {expected} {what}, found {found}"),
             Self::Period { period } => write!(f, "expected a positive period, found {period} s"),
             Self::Time { periods: [one, other] } => {
@@ -177,6 +190,7 @@ impl fmt::Display for Error {
                 write!(f, "the direct ways through both systems form a loop without a solution")
             }
             Self::NotConverged { what } => write!(f, "{what} did not converge"),
+            Self::Infinite { what } => write!(f, "{what} is infinite"),
             Self::Range { what, value } => write!(f, "{what} of {value} has no meaning"),
             Self::Constraint(error) => error.fmt(f),
             Self::NoSteadyState { condition, residual, conditions, unknowns, place } => write!(
@@ -252,6 +266,7 @@ struct TimeName(Option<f64>);
 impl fmt::Display for TimeName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
+            Some(0.0) => write!(f, "discrete time"),
             Some(period) => write!(f, "a period of {period} s"),
             None => write!(f, "continuous time"),
         }

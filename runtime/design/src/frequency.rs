@@ -20,8 +20,11 @@ impl FrequencyMap {
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] at a pole.
+    /// [`Error::Singular`] at a pole, [`Error::Range`] where `s` is not finite.
     pub fn at(&self, s: C) -> Result<CMatrix, Error> {
+        if let Some(value) = [s.re, s.im].into_iter().find(|part| !part.is_finite()) {
+            return Err(Error::Range { what: "a frequency", value });
+        }
         let n = self.h.nrows();
         let mut m = CMatrix::from_fn(n, n, |i, j| {
             let entry = C::new(-self.h[(i, j)], 0.0);
@@ -35,7 +38,7 @@ impl FrequencyMap {
             }
             let pivot = m[(k, k)];
             if pivot.norm() == 0.0 {
-                return Err(Error::Singular { what: "s I − A" });
+                return Err(Error::Singular { what: "s I − A, at a pole," });
             }
             let factor = m[(k + 1, k)] / pivot;
             for j in k..n {
@@ -49,7 +52,7 @@ impl FrequencyMap {
         }
         for i in (0..n).rev() {
             if m[(i, i)].norm() == 0.0 {
-                return Err(Error::Singular { what: "s I − A" });
+                return Err(Error::Singular { what: "s I − A, at a pole," });
             }
             for j in 0..x.ncols() {
                 let sum: C = (i + 1..n).map(|k| m[(i, k)] * x[(k, j)]).sum();
@@ -68,8 +71,11 @@ impl FrequencyMap {
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] at a pole.
+    /// [`Error::Singular`] at a pole, [`Error::Range`] for a frequency that is not finite.
     pub fn response(&self, frequency: f64) -> Result<CMatrix, Error> {
+        if !frequency.is_finite() {
+            return Err(Error::Range { what: "a frequency", value: frequency });
+        }
         self.at(boundary(self.period, frequency))
     }
 }
@@ -191,13 +197,8 @@ impl StateSpace {
     ) -> Result<FrequencyResponse, Error> {
         let channel = self.channel(output, input)?;
         let map = channel.frequency_map()?;
-        let value = |w: &f64| {
-            if !w.is_finite() {
-                return Err(Error::Range { what: "a frequency", value: *w });
-            }
-            Ok(map.response(*w)?[(0, 0)])
-        };
-        let values = frequencies.iter().map(value).collect::<Result<Vec<_>, _>>()?;
+        let value = |w: &f64| Ok(map.response(*w)?[(0, 0)]);
+        let values = frequencies.iter().map(value).collect::<Result<Vec<_>, Error>>()?;
         let (input, output) = (channel.inputs[0].clone(), channel.outputs[0].clone());
         Ok(FrequencyResponse { frequencies: frequencies.to_vec(), values, input, output })
     }

@@ -49,7 +49,8 @@ pub struct StabilityMargin {
 /// All crossings of a loop under negative feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
-    /// At every frequency where the phase is 180°, from low to high; at rest too.
+    /// At every frequency where the phase becomes 180°, from low to high; at rest too. A response that is real at all frequencies, as
+    /// that of `1 / s²`, has none but at rest.
     pub gain: Vec<GainMargin>,
     /// At every frequency where the magnitude is one, from low to high.
     pub phase: Vec<PhaseMargin>,
@@ -190,7 +191,11 @@ impl StateSpace {
         };
         let at_rest = open.at(0.0);
         take(0.0, at_rest);
-        for w in open.crossings(&grid, &response, |x| x.im) {
+        // Where the response is real at all frequencies, as that of 1 / s², none of them is a crossing.
+        let is_real =
+            response.iter().filter(|x| x.norm().is_finite()).all(|x| x.im.abs() <= 1e-12 * x.norm());
+        let crossings = if is_real { Vec::new() } else { open.crossings(&grid, &response, |x| x.im) };
+        for w in crossings {
             let value = open.at(w);
             // A pole on the border changes the sign, too.
             if value.im.abs() <= 1e-6 * value.norm() {

@@ -19,12 +19,12 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole; [`Error::Improper`] of a continuous system with a direct way, whose norm is infinite.
+    /// [`Error::Unstable`] names a pole; [`Error::Infinite`] of a continuous system with a direct way.
     pub fn h2_norm(&self) -> Result<f64, Error> {
         let w = self.controllability_gramian()?;
         let direct = self.d.norm_squared();
         if self.period.is_none() && direct > 0.0 {
-            return Err(Error::Improper { numerator: self.order(), denominator: self.order() });
+            return Err(Error::Infinite { what: "the H₂ norm, with a direct way from inputs to outputs," });
         }
         let square = (&self.c * w * self.c.transpose()).trace();
         Ok((square.max(0.0) + if self.period.is_some() { direct } else { 0.0 }).sqrt())

@@ -91,8 +91,12 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// Those of [`riccati`], of the dual system: [`Error::Undetectable`] names a mode that no output shows.
+    /// Those of [`riccati`], of the dual system: [`Error::Undetectable`] names a mode that no output shows, [`Error::Shape`] the noise
+    /// that does not fit.
     pub fn kalman(&self, noise: &Noise) -> Result<Kalman, Error> {
+        let (n, p) = (self.order(), self.outputs.len());
+        crate::matrices::check("the states' noise", &noise.states, n, n)?;
+        crate::matrices::check("the outputs' noise", &noise.outputs, p, p)?;
         let cost = Cost::new(noise.states.clone(), noise.outputs.clone());
         let dual = self.dual().lqr(&cost).map_err(|error| match error {
             Error::Unstabilizable { mode } => Error::Undetectable { mode },

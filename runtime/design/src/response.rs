@@ -229,7 +229,7 @@ fn check_times(times: &[f64], period: Option<f64>) -> Result<f64, Error> {
     for (k, t) in times.iter().enumerate() {
         let off = (t - step * k as f64).abs();
         if off.is_nan() || off > 1e-9 * last {
-            return Err(Error::Range { what: "an instant that is not equally spaced", value: *t });
+            return Err(Error::Range { what: "an unequally spaced instant", value: *t });
         }
     }
     match period {

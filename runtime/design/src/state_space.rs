@@ -251,10 +251,14 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are.
+    /// [`Error::Unknown`] lists the names that there are; [`Error::Repeated`] where a state is named twice.
     pub fn of_states(&self, names: &[&str]) -> Result<Self, Error> {
         let kept = names.iter().map(|name| place("state", &self.states, Port::Named(name)));
         let kept = kept.collect::<Result<Vec<usize>, Error>>()?;
+        let again = kept.iter().enumerate().find(|(i, k)| kept[..*i].contains(*k));
+        if let Some((i, _)) = again {
+            return Err(Error::Repeated { kind: "state", name: names[i].to_owned() });
+        }
         let (a, b) = (self.a.select_rows(&kept).select_columns(&kept), self.b.select_rows(&kept));
         let n = kept.len();
         let d = DMatrix::zeros(n, b.ncols());
@@ -275,7 +279,7 @@ impl StateSpace {
             Some(_) => DMatrix::identity(n, n) - &self.a,
             None => -&self.a,
         };
-        let what = "A at rest";
+        let what = "A, with a pole at rest,";
         let x = crate::matrices::solve(what, &left, &self.b)?;
         if crate::matrices::rank(&left, 0.0)? < n {
             return Err(Error::Singular { what });

@@ -164,6 +164,9 @@ impl StateSpace {
     /// [`Error::Unstable`] names a pole.
     pub fn hankel_values(&self) -> Result<Vec<f64>, Error> {
         let (w, o) = (self.controllability_gramian()?, self.observability_gramian()?);
+        if w.is_empty() {
+            return Ok(Vec::new());
+        }
         // Square roots by symmetric eigenvectors: of W = L Lᵀ the values are those of Lᵀ O L.
         let eigen = w.symmetric_eigen();
         let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|x| x.max(0.0).sqrt()));

@@ -44,7 +44,7 @@ impl TransferFunction {
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] if the denominator is zero, [`Error::NotFinite`].
+    /// [`Error::Range`] if the denominator is zero, [`Error::NotFinite`].
     pub fn new(
         numerator: impl IntoIterator<Item = f64>,
         denominator: impl IntoIterator<Item = f64>,
@@ -56,10 +56,10 @@ impl TransferFunction {
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] if the denominator is zero, [`Error::NotFinite`].
+    /// [`Error::Range`] if the denominator is zero, [`Error::NotFinite`].
     pub fn quotient(numerator: &Polynomial, denominator: &Polynomial) -> Result<Self, Error> {
         if denominator.is_zero() {
-            return Err(Error::Singular { what: "the denominator" });
+            return Err(Error::Range { what: "a denominator", value: 0.0 });
         }
         for (what, p) in [("the numerator", numerator), ("the denominator", denominator)] {
             if !p.coefficients().iter().all(|c| c.is_finite()) {

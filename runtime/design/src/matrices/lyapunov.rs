@@ -104,7 +104,7 @@ pub fn discrete_sylvester(
     Ok(&x + sides.solve(&residual)?)
 }
 
-/// `X` of `A X + X Aᵀ + Q = 0` with `Q` symmetric: the covariance of a stable system under white noise.
+/// `X` of `A X + X Aᵀ + Q = 0`, symmetric where `Q` is: the covariance of a stable system under white noise.
 ///
 /// # Errors
 ///
@@ -112,10 +112,10 @@ pub fn discrete_sylvester(
 pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
     check("Q", q, n, n)?;
-    Ok(symmetric(&sylvester(a, &a.transpose(), &-q)?))
+    Ok(like(q, sylvester(a, &a.transpose(), &-q)?))
 }
 
-/// `X` of `A X Aᵀ − X + Q = 0` with `Q` symmetric.
+/// `X` of `A X Aᵀ − X + Q = 0`, symmetric where `Q` is.
 ///
 /// # Errors
 ///
@@ -124,5 +124,10 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Erro
 pub fn discrete_lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
     check("Q", q, n, n)?;
-    Ok(symmetric(&discrete_sylvester(a, &a.transpose(), q)?))
+    Ok(like(q, discrete_sylvester(a, &a.transpose(), q)?))
+}
+
+/// A solution without its rounding off symmetry, where the equation is symmetric.
+fn like(q: &DMatrix<f64>, x: DMatrix<f64>) -> DMatrix<f64> {
+    if *q == q.transpose() { symmetric(&x) } else { x }
 }

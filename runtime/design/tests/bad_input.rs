@@ -1,0 +1,286 @@
+//! What does not exist is an error that names what is to blame: each of these mistakes with the words that come of it.
+
+use linkwork_design::flight::FlightModes;
+use linkwork_design::matrices::{self, Cost};
+use linkwork_design::{
+    Error, Hold, Noise, Polynomial, StateSpace, StepLimits, TransferFunction, logarithmic, picture,
+};
+use nalgebra::{Complex, DMatrix, dmatrix};
+
+const BAD_NUMBERS: [f64; 4] = [0.0, -1.0, f64::NAN, f64::INFINITY];
+
+#[track_caller]
+fn says<T: std::fmt::Debug>(text: &str, result: Result<T, Error>) {
+    assert_eq!(result.map_err(|error| error.to_string()).unwrap_err(), text);
+}
+
+fn system(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>) -> StateSpace {
+    let d = DMatrix::zeros(c.nrows(), b.ncols());
+    StateSpace::new(a, b, c, d).unwrap()
+}
+
+/// Grows at 2/s, and the input reaches both states.
+fn unstable() -> StateSpace {
+    system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 1.0], dmatrix![1.0, 1.0])
+}
+
+fn stable() -> StateSpace {
+    system(dmatrix![-1.0, 1.0; 0.0, -2.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0])
+}
+
+fn double_integrator() -> StateSpace {
+    system(dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0])
+}
+
+fn integrator() -> StateSpace {
+    system(dmatrix![0.0], dmatrix![1.0], dmatrix![1.0])
+}
+
+fn two_inputs() -> StateSpace {
+    system(dmatrix![-1.0], dmatrix![1.0, 2.0], dmatrix![1.0])
+}
+
+fn gain(k: f64) -> StateSpace {
+    StateSpace::gain(dmatrix![k]).unwrap()
+}
+
+fn real(x: f64) -> Complex<f64> {
+    Complex::new(x, 0.0)
+}
+
+#[test]
+fn matrices_name_themselves() {
+    let one = || dmatrix![1.0];
+    says("A has an entry that is not finite", StateSpace::new(dmatrix![f64::NAN], one(), one(), one()));
+    says(
+        "expected 1 × 1 entries of A, found 1 × 2",
+        StateSpace::new(dmatrix![1.0, 2.0], one(), one(), one()),
+    );
+    says(
+        "expected 1 × 1 entries of B, found 2 × 1",
+        StateSpace::new(one(), dmatrix![1.0; 2.0], one(), one()),
+    );
+    says("A has an entry that is not finite", matrices::lyapunov(&dmatrix![f64::NAN], &one()));
+    says("expected 1 × 1 entries of Q, found 2 × 2", matrices::lyapunov(&one(), &DMatrix::identity(2, 2)));
+    let inputs = dmatrix![1.0, 2.0];
+    let forced = stable().forced_response(&inputs, &[0.0, 0.0], &[0.0], Hold::Zero);
+    says("expected 1 × 1 entries of the inputs, found 1 × 2", forced);
+    let response = stable().initial_response(&[f64::NAN, 0.0], &[0.0, 1.0]);
+    says("the initial state has an entry that is not finite", response);
+    let noise = Noise { states: dmatrix![1.0], outputs: dmatrix![1.0] };
+    says("expected 2 × 2 entries of the states' noise, found 1 × 1", unstable().kalman(&noise));
+    let noise = Noise { states: DMatrix::identity(2, 2), outputs: DMatrix::identity(3, 3) };
+    says("expected 1 × 1 entries of the outputs' noise, found 3 × 3", unstable().kalman(&noise));
+}
+
+#[test]
+fn periods_and_instants_are_positive() {
+    let (stable, lag) = (stable(), TransferFunction::new([1.0], [1.0, 1.0]).unwrap());
+    for bad in BAD_NUMBERS {
+        let text = format!("expected a positive period, found {bad} s");
+        for hold in [Hold::Zero, Hold::First, Hold::Tustin, Hold::Prewarped(1.0)] {
+            says(&text, stable.discretize(bad, hold));
+        }
+        says(&text, stable.clone().with_period(bad));
+        says(&text, stable.lqr_held(&Cost::diagonal(&[1.0, 1.0], &[1.0]), bad));
+        says(&text, lag.clone().with_period(bad));
+        says(&text, lag.factored().unwrap().matched(bad));
+        says(&format!("an end of {bad} has no meaning"), stable.times(bad, 10));
+        says(
+            &format!("a distance of instants of {bad} has no meaning"),
+            stable.step_response(0, &[0.0, bad]),
+        );
+        says(&format!("a frequency of {bad} has no meaning"), logarithmic(bad, 10.0, 5));
+        says(
+            &format!("a frequency for prewarping of {bad} has no meaning"),
+            stable.discretize(0.1, Hold::Prewarped(bad)),
+        );
+    }
+    says("an unequally spaced instant of 2 has no meaning", stable.step_response(0, &[0.0, 2.0, 1.0]));
+    for bad in [f64::NAN, f64::INFINITY] {
+        let text = format!("a frequency of {bad} has no meaning");
+        says(&text, stable.frequency_response(0, 0, &[1.0, bad]));
+        says(&text, stable.frequency_map().unwrap().response(bad));
+        says(&text, stable.at(Complex::new(0.0, bad)));
+    }
+    let held = stable.discretize(0.1, Hold::Zero).unwrap();
+    says("a period of 0.1 s and continuous time do not go together", held.discretize(0.1, Hold::Zero));
+    says("continuous time and discrete time do not go together", stable.undiscretize(Hold::Zero));
+    says("continuous time and a period of 0.1 s do not go together", stable.series(&held));
+    let dead = system(dmatrix![0.0], dmatrix![1.0], dmatrix![1.0]).with_period(0.1).unwrap();
+    says("the logarithm of an eigenvalue of 0 has no meaning", dead.undiscretize(Hold::Zero));
+    let fast = system(dmatrix![20.0], dmatrix![1.0], dmatrix![1.0]);
+    says("I − A / s of Tustin's rule is singular", fast.discretize(0.1, Hold::Tustin));
+}
+
+#[test]
+fn what_needs_stability_names_the_pole() {
+    let (grows, rests) = ("not stable: the pole 2+0i", "not stable: the pole 0+0i");
+    for (system, text) in [(unstable(), grows), (integrator(), rests), (double_integrator(), rests)] {
+        says(text, system.controllability_gramian());
+        says(text, system.observability_gramian());
+        says(text, system.hankel_values());
+        says(text, system.h2_norm());
+        says(text, system.peak_gain());
+        says(text, system.step_figures());
+    }
+    says("A, with a pole at rest, is singular", integrator().gain_at_rest());
+    says("s I − A, at a pole, is singular", integrator().frequency_response(0, 0, &[1.0, 0.0]));
+    says("s I − A, at a pole, is singular", stable().at(real(-1.0)));
+    let direct = stable().parallel(&gain(1.0)).unwrap();
+    says("the H₂ norm, with a direct way from inputs to outputs, is infinite", direct.h2_norm());
+    let cancel = "the equation, whose eigenvalues cancel, is singular";
+    says(cancel, matrices::lyapunov(&dmatrix![1.0, 0.0; 0.0, -1.0], &DMatrix::identity(2, 2)));
+    says(cancel, matrices::lyapunov(&dmatrix![0.0], &dmatrix![1.0]));
+    says(cancel, matrices::discrete_lyapunov(&dmatrix![1.0], &dmatrix![1.0]));
+    says("expected 1 input, found 2", two_inputs().step_figures());
+    says("expected 1 input, found 2", two_inputs().margins());
+    let limits = StepLimits { settling: -0.02, ..StepLimits::default() };
+    says("a band of -0.02 has no meaning", stable().step_figures_within(limits));
+}
+
+/// The equation is linear in `Q`, symmetric or not.
+#[test]
+fn lyapunov_takes_any_right_side() {
+    let (a, q) = (dmatrix![-1.0, 2.0; -3.0, -2.0], dmatrix![1.0, 5.0; -2.0, 0.5]);
+    let x = matrices::lyapunov(&a, &q).unwrap();
+    assert!((&a * &x + &x * a.transpose() + &q).amax() < 1e-14);
+    let a = &a * 0.2;
+    let x = matrices::discrete_lyapunov(&a, &q).unwrap();
+    assert!((&a * &x * a.transpose() - &x + &q).amax() < 1e-14);
+}
+
+/// An unstable loop has margins all the same; one that is real at all frequencies crosses the axis nowhere.
+#[test]
+fn margins_that_do_not_exist_are_none() {
+    let margins = double_integrator().margins().unwrap();
+    assert!(margins.gain.is_empty(), "{margins:?}");
+    let [phase] = margins.phase[..] else { panic!("{margins:?}") };
+    assert!(phase.degrees.abs() < 1e-6 && (phase.frequency - 1.0).abs() < 1e-9);
+    assert!(margins.stability.distance < 1e-9);
+    for k in [0.0, 2.0] {
+        let margins = gain(k).margins().unwrap();
+        assert!(margins.gain.is_empty() && margins.phase.is_empty(), "{margins:?}");
+        assert!((margins.stability.distance - (1.0 + k)).abs() < 1e-12);
+    }
+    let margins = gain(-0.5).margins().unwrap();
+    assert!(margins.gain.iter().all(|m| (m.factor - 2.0).abs() < 1e-12 && m.frequency == 0.0), "{margins:?}");
+    // 1 / (s − 1) with a gain of 3: the least gain that holds it is a third.
+    let held = system(dmatrix![1.0], dmatrix![3.0], dmatrix![1.0]).margins().unwrap();
+    assert!((held.gain_reduction().unwrap().factor - 1.0 / 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn regulators_that_do_not_exist_name_the_mode() {
+    let cost = |q: &[f64], r: f64| Cost::diagonal(q, &[r]);
+    let stuck = system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 0.0], dmatrix![1.0, 1.0]);
+    says("no input moves the mode 2+0i", stuck.lqr(&cost(&[1.0, 1.0], 1.0)));
+    says("no input moves the mode 2+0i", stuck.place(&[real(-1.0), real(-3.0)]));
+    let error = stuck.lqr_held(&cost(&[1.0, 1.0], 1.0), 0.1).unwrap_err();
+    let Error::Unstabilizable { mode } = error else { panic!("{error}") };
+    assert!((mode.re - 0.2_f64.exp()).abs() < 1e-12);
+    let double = double_integrator();
+    says("no output shows the mode 0+0i", double.lqr(&cost(&[0.0, 0.0], 1.0)));
+    says("R is singular", double.lqr(&cost(&[1.0, 1.0], 0.0)));
+    says("R is not symmetric and positive", double.lqr(&cost(&[1.0, 1.0], -1.0)));
+    says(
+        "Riccati's equation, with eigenvalues on the imaginary axis, did not converge",
+        double.lqr(&cost(&[-1.0, 1.0], 1.0)),
+    );
+    says("expected 2 × 2 entries of Q, found 1 × 1", double.lqr(&cost(&[1.0], 1.0)));
+    says("Q has an entry that is not finite", double.lqr(&cost(&[f64::NAN, 1.0], 1.0)));
+    let mute = system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 1.0], dmatrix![1.0, 0.0]);
+    let noise = |v: f64| Noise { states: DMatrix::identity(2, 2), outputs: dmatrix![v] };
+    says("no output shows the mode 2+0i", mute.kalman(&noise(1.0)));
+    says("the outputs' noise is singular", unstable().kalman(&noise(0.0)));
+    says("the outputs' noise is not symmetric and positive", unstable().kalman(&noise(-1.0)));
+    says("expected 2 poles, found 1", double.place(&[real(-1.0)]));
+    let unpaired = "the pole -1+1i is not finite, or comes without its conjugate";
+    says(unpaired, double.place(&[Complex::new(-1.0, 1.0), Complex::new(-1.0, 1.0)]));
+    let infinite = "the pole NaN+0i is not finite, or comes without its conjugate";
+    says(infinite, double.place(&[real(f64::NAN), real(-1.0)]));
+}
+
+#[test]
+fn improper_and_impossible_transfer_functions() {
+    let of = |n: &[f64], d: &[f64]| TransferFunction::new(n.to_vec(), d.to_vec());
+    let improper = of(&[1.0, 0.0, 1.0], &[1.0, 1.0]).unwrap();
+    let text = "improper: degree 2 over degree 1";
+    says(text, improper.state_space());
+    says(text, improper.step_figures());
+    says(text, improper.margins());
+    says(text, improper.factored().unwrap().matched(0.1));
+    says("improper: degree 1 over degree 0", TransferFunction::s().state_space());
+    says("a denominator of 0 has no meaning", of(&[1.0], &[0.0]));
+    says("a denominator of 0 has no meaning", of(&[1.0], &[]));
+    says("a denominator of 0 has no meaning", of(&[1.0], &[1.0]).unwrap().over(&of(&[0.0], &[1.0]).unwrap()));
+    says("the numerator has an entry that is not finite", of(&[f64::NAN], &[1.0]));
+    says("the denominator has an entry that is not finite", of(&[1.0], &[1.0, f64::INFINITY]));
+    let [one, minus] = [1.0, -1.0].map(TransferFunction::constant);
+    let text = "the direct ways through both systems form a loop without a solution";
+    says(text, one.feedback(&minus));
+    says(text, gain(1.0).feedback_gain(&dmatrix![-1.0]));
+    says("a table of the polynomial of 0 has no meaning", Polynomial::new([0.0]).routh());
+    says("the polynomial has an entry that is not finite", Polynomial::new([1.0, f64::NAN]).routh());
+    says("the polynomial has an entry that is not finite", Polynomial::new([1.0, f64::NAN]).roots());
+}
+
+/// `1 / (s + 1)³`: its step response is `1 − (1 + t + t²/2) e^{−t}`, and its mode is said to be defective.
+#[test]
+fn repeated_poles_have_their_results() {
+    let triple = TransferFunction::new([1.0], [1.0, 3.0, 3.0, 1.0]).unwrap().state_space().unwrap();
+    let times = triple.times(8.0, 30).unwrap();
+    let response = triple.step_response(0, &times).unwrap().output(0).unwrap();
+    for (t, y) in times.iter().zip(response) {
+        assert!((y - (1.0 - (1.0 + t + 0.5 * t * t) * (-t).exp())).abs() < 1e-12, "{y} at {t}");
+    }
+    let modes = triple.modes().unwrap();
+    assert!(modes.iter().any(linkwork_design::Mode::is_defective), "{modes:?}");
+    assert!(modes.iter().all(|mode| (mode.exponent + 1.0).norm() < 1e-4), "{modes:?}");
+    let double = double_integrator();
+    let gain = double.place(&[real(-1.0), real(-1.0)]).unwrap();
+    assert!((gain - dmatrix![1.0, 2.0]).amax() < 1e-12);
+}
+
+#[test]
+fn wrong_names_have_a_nearest() {
+    let named = stable().with_states([("alpha", "rad"), ("q", "rad/s")]).unwrap();
+    says("no state `alhpa`, perhaps `alpha`; there are alpha, q", named.of_states(&["alhpa"]));
+    says("the state `q` is asked for twice", named.of_states(&["q", "alpha", "q"]));
+    says("no output `y2`, perhaps `y1`; there are y1", named.channel("y2", "u1"));
+    says("no input `elevator`; there are u1", named.step_response("elevator", &[0.0]));
+    says("no input `3`; there are u1", named.step_response(3, &[0.0]));
+    says("expected 2 states, found 3", named.clone().with_states([("a", ""), ("b", ""), ("c", "")]));
+    // Nothing of an aircraft: no mode has a name.
+    assert!(FlightModes::of(&named).unwrap().named().is_empty());
+}
+
+/// Neither states, nor inputs, nor outputs: results that are empty, zero or a sentence, never a panic.
+#[test]
+fn systems_without_states_inputs_or_outputs() {
+    let still = gain(2.0);
+    assert!(still.modes().unwrap().is_empty() && still.poles().unwrap().is_empty());
+    assert!(still.zeros().unwrap().is_empty() && still.hankel_values().unwrap().is_empty());
+    assert_eq!(still.transfer_function(0, 0).unwrap().to_string(), "2");
+    assert_eq!(still.step_response(0, &[0.0, 1.0]).unwrap().output(0).unwrap(), [2.0, 2.0]);
+    assert_eq!(still.discretize(0.1, Hold::Zero).unwrap().d()[(0, 0)], 2.0);
+    assert_eq!(still.peak_gain().unwrap().gain, 2.0);
+    let alone = system(dmatrix![-1.0], DMatrix::zeros(1, 0), dmatrix![1.0]);
+    assert!(!alone.is_controllable().unwrap() && alone.zeros().unwrap().is_empty());
+    assert_eq!((alone.h2_norm().unwrap(), alone.peak_gain().unwrap().gain), (0.0, 0.0));
+    let unseen = system(dmatrix![-1.0], dmatrix![1.0], DMatrix::zeros(0, 1));
+    assert!(!unseen.is_observable().unwrap());
+    assert_eq!(unseen.minimal(0.0).unwrap().order(), 0);
+}
+
+#[test]
+fn pictures_of_nothing() {
+    let text = "no picture: nothing to draw that is finite";
+    let nothing = stable().frequency_response(0, 0, &[]).unwrap();
+    says(text, picture::bode(&nothing));
+    says(text, picture::nyquist(&nothing));
+    says(text, picture::history(&stable().step_response(0, &[]).unwrap(), "nothing"));
+    says(text, picture::Chart::over_time("nothing", "y").curve("a", [(0.0, f64::NAN)]).svg());
+    says("no picture: there are no modes", picture::modes(&[]));
+    says("the gain has an entry that is not finite", stable().root_locus(&[f64::NAN]));
+}
