@@ -240,6 +240,36 @@ fn angles_of_flight_are_those_that_the_attitude_was_made_of() {
     assert!((Attitude.sound(&q) - 295.154).abs() < 1e-3);
 }
 
+/// A fan whose torque is looked up at a speed that is fixed, in one way by a number and in the other by a parameter.
+#[mechanism(derivatives, prepare, batch, sensitivities)]
+struct Fan {
+    torque: Table<1>,
+    gear: f64,
+    #[body(mass = 2, inertia = disk(2, 0.1, z))]
+    wheel: Body,
+    #[joint(ground -> wheel, about = z)]
+    shaft: Pin,
+    #[acts(on = shaft, value = gear * torque(3) - torque(0))]
+    drive: Torque,
+    #[output(torque(2))]
+    seen: Scalar,
+}
+
+#[test]
+fn tables_are_looked_up_at_numbers() {
+    static SPEED: [f64; 3] = [0.0, 2.0, 4.0];
+    static TORQUE: [f64; 3] = [1.0, 5.0, 6.0];
+    let fan = Fan { torque: Table::new([&SPEED], &TORQUE).unwrap(), gear: 3.0 };
+    let (q, v) = ([0.2].into(), [0.0].into());
+    // The moment of inertia is 2 · 0.1² / 2 kg m².
+    let expected = (3.0 * 5.5 - 1.0) / 0.01;
+    let tau = SVector::zeros();
+    let found = [fan.forward_dynamics(&q, &v, &tau)[0], fan.prepare().forward_dynamics(&q, &v, &tau)[0]];
+    assert!(found.iter().all(|a| (a - expected).abs() < 1e-11), "{found:?} are not {expected}");
+    assert!((fan.seen(&q) - 5.0).abs() < 1e-15);
+    assert!((fan.forward_dynamics_by_parameters(&q, &v, &tau)[0] - 550.0).abs() < 1e-10);
+}
+
 /// A cam: a follower that a table holds at a height over the angle.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Cam {

@@ -167,6 +167,14 @@ fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Outp
             .help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;
     }
+    if let Some(what) = output.undefined() {
+        cx.error(
+            model.place.clone(),
+            format!("the equations of this mechanism contain `{what}`, which is no number"),
+        )
+        .help("something is divided by zero, or is the root of a negative number, wherever the mechanism is");
+        return None;
+    }
     if let Some(name) = output.misfit() {
         cx.error(
             model.place.clone(),

@@ -102,6 +102,12 @@ impl Output {
         self.functions.iter().chain(self.prepared.iter().flat_map(|prepared| &prepared.functions))
     }
 
+    /// A part of a program that is no number wherever the mechanism is, as it is written.
+    pub fn undefined(&self) -> Option<String> {
+        let numbers = self.prepared.iter().map(|prepared| &prepared.numbers);
+        self.all_functions().map(|f| &f.program).chain(numbers).find_map(Program::undefined)
+    }
+
     /// The name of a function whose program does not fit its arguments or its result: a mistake of the compiler's, which would make wrong code.
     pub fn misfit(&self) -> Option<&str> {
         let function = self.all_functions().find(|f| !f.is_whole()).map(|f| f.name.as_str());

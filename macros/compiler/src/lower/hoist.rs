@@ -57,7 +57,8 @@ pub(super) fn negated(o: Operand) -> Operand {
     }
 }
 
-/// Which of these nodes, operands first, depend on known symbols alone. Plain numbers are none of them.
+/// Which of these nodes, operands first, depend on known symbols alone. Plain numbers are none of them, nor is what is made of
+/// plain numbers: a table's value there, or a function's that is no number.
 pub(super) fn known_before(
     nodes: &[Node],
     place: impl Fn(Id) -> usize,
@@ -69,9 +70,12 @@ pub(super) fn known_before(
             Node::Const(_) | Node::Tuple(_) | Node::Gather(_) | Node::Join(..) => false,
             Node::Symbol(s) => known(*s),
             _ => {
-                let mut all = true;
-                node.operands(|a| all &= before[place(a)] || matches!(nodes[place(a)], Node::Const(_)));
-                all
+                let (mut all, mut any) = (true, false);
+                node.operands(|a| {
+                    any |= before[place(a)];
+                    all &= before[place(a)] || matches!(nodes[place(a)], Node::Const(_));
+                });
+                all && any
             }
         });
     }

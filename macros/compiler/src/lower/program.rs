@@ -248,6 +248,20 @@ impl Program {
         finite && self.tuples.iter().flatten().all(|c| c.is_finite())
     }
 
+    /// A function of plain numbers alone that is no number itself, since it would have been calculated: as it is written.
+    pub fn undefined(&self) -> Option<String> {
+        let constant = |o: Operand| match o {
+            Operand::Const(c) => Some(c),
+            _ => None,
+        };
+        self.instructions.iter().find_map(|op| match *op {
+            Op::Call(f, a) => Some(format!("{}({})", f.name(), constant(a)?)),
+            Op::Pow(a, b) => Some(format!("pow({}, {})", constant(a)?, constant(b)?)),
+            Op::Div(a, b) => Some(format!("{} / {}", constant(a)?, constant(b)?)),
+            _ => None,
+        })
+    }
+
     /// The values of the outputs.
     pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         self.run_with(symbol, &Lookup::apply)

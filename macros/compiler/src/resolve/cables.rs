@@ -51,6 +51,9 @@ impl<'g> Scope<'_, 'g> {
                 (across, a.dot(n) - b.dot(n))
             }
         };
+        for (end, p) in parts.iter().zip(across) {
+            check_outside(end, p, radius, axis.is_some(), cx)?;
+        }
         let [a, b] = across;
         let (sine, cosine) = match axis {
             None => (a.cross(b).length(), a.dot(b)),
@@ -119,4 +122,22 @@ impl<'g> Scope<'_, 'g> {
         };
         Some((frame?, value, axis))
     }
+}
+
+/// Reports an end of a cable that lies inside of what the cable runs around wherever the mechanism is.
+fn check_outside(
+    end: &syntax::Expr,
+    across: Vec3<'_>,
+    radius: Expr<'_>,
+    round: bool,
+    cx: &mut Diagnostics,
+) -> Option<()> {
+    let (Some(square), Some(radius)) = (across.dot(across).value(), radius.value()) else { return Some(()) };
+    if square >= radius * radius {
+        return Some(());
+    }
+    let (surface, middle) = if round { ("cylinder", "axis") } else { ("sphere", "centre") };
+    cx.error(end.place.clone(), format!("this end of the cable lies inside of the {surface}"))
+        .help(format!("it is {:.4} m from the {middle}, and the radius is {radius} m", square.sqrt()));
+    None
 }

@@ -230,7 +230,10 @@ impl<'a, 'g> Scope<'a, 'g> {
                 _ => wrong_count(function, 1, cx),
             },
             "atan2" => two_scalars(cx).map(|(y, x)| Value::Scalar(y.atan2(x))),
-            "pow" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.pow(b))),
+            "pow" => {
+                let (base, exponent) = two_scalars(cx)?;
+                check_power(function, base, exponent, cx).then(|| Value::Scalar(base.pow(exponent)))
+            }
             "min" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.extreme(Extreme::Min, b))),
             "max" => two_scalars(cx).map(|(a, b)| Value::Scalar(a.extreme(Extreme::Max, b))),
             "dot" | "cross" | "project" => self.vector_product(function, arguments, cx),
@@ -384,6 +387,21 @@ impl<'g> Scope<'_, 'g> {
         let x = std::array::from_fn(|k| values.get(k).copied().unwrap_or(self.graph.zero()));
         Some(Value::Scalar(self.graph.lookup(Lookup::new(k, expected), x)))
     }
+}
+
+/// Reports powers that are no numbers whatever the state is.
+fn check_power(function: &Name, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
+    let Some(x) = base.value() else { return true };
+    let what = match exponent.value() {
+        Some(n) if x.powf(n).is_finite() => return true,
+        Some(n) if x.powf(n).is_nan() => format!("`pow` is not defined at {x} and {n}"),
+        Some(n) => format!("`pow` is infinite at {x} and {n}"),
+        None if x >= 0.0 => return true,
+        None => format!("powers of {x} are defined for whole exponents alone"),
+    };
+    let help = "the first argument of `pow` is the base, the second the exponent: a base that may be negative takes a whole number";
+    cx.error(function.place.clone(), what).help(help);
+    false
 }
 
 /// A sum of vectors by their axes.

@@ -185,6 +185,9 @@ const SCALARS: &[Row] = &[
     ("inner(arm.x, arm.y)", "unknown function `inner`", "did you mean `dot`?"),
     ("hinge / 0", "division by zero", "the divisor"),
     ("sqrt(-1)", "`sqrt` is not defined at -1", "its argument is a number here"),
+    ("pow(-2, 0.5)", "`pow` is not defined at -2 and 0.5", "takes a whole number"),
+    ("pow(0, -1 / 2)", "`pow` is infinite at 0 and -0.5", "takes a whole number"),
+    ("pow(-2, hinge)", "powers of -2 are defined for whole exponents alone", "takes a whole number"),
 ];
 
 #[test]

@@ -94,6 +94,16 @@ const SCALARS: &[Row] = &[
         "this length must be positive, but it is -1",
         "the direction of the axis",
     ),
+    (
+        "cable(bead / arm.at(0.1 * x), arm.sphere(0.2))",
+        "this end of the cable lies inside of the sphere",
+        "it is 0.1000 m from the centre, and the radius is 0.2 m",
+    ),
+    (
+        "cable(arm.at(x) / bead, arm.cylinder(2, z))",
+        "this end of the cable lies inside of the cylinder",
+        "it is 1.0000 m from the axis",
+    ),
     ("cable(arm / bead, arm.cylinder(1, 2 * z))", "this axis is not of unit length", "unit"),
     ("cable(arm / bed, arm.sphere(1))", "unknown point `bed`", "did you mean `bead`?"),
     ("screw_pitch(arm)", "`screw_pitch` takes a body and a frame", "`screw_pitch(body / frame)`"),
