@@ -108,5 +108,5 @@ fn structure(i: &Interface<'_>) -> Written {
         _ => "\nThe terms are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]`\nwrites them all the same.\n",
     });
     latex.push_str("\n\\end{aligned}\n");
-    Written { plain, latex }
+    Written { plain, latex, mathml: String::new() }
 }

@@ -4,14 +4,26 @@ use super::interface::Interface;
 use super::{contacts, limits};
 use crate::catalogue::Id;
 use crate::derive::{Function, Output};
+use crate::equations::Written;
 use crate::expr::Symbol;
 use crate::lower::Program;
 use crate::mechanism::Quantity;
 use crate::syntax::Printed;
 use std::fmt::Write;
 
+/// A part of the documentation, and where it is read.
+pub enum Part {
+    /// On pages and in editors.
+    Everywhere(String),
+    /// On pages of rustdoc: HTML.
+    Pages(String),
+    /// In editors, which show what a person reads in the source.
+    Editors(String),
+}
+
 /// Paragraphs for the struct's rustdoc.
-pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
+pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
+    let mut parts = Vec::new();
     let mut text = String::from("\n\n");
     declaration(&mut text, interface);
     text.push_str("# Mechanism\n\n");
@@ -75,11 +87,11 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
         }
     }
     if !output.equations.plain.is_empty() {
-        let _ =
-            writeln!(text, "\n# Equations of motion\n\n```text\n{}\n```", output.equations.plain.trim_end());
+        equations(&mut parts, &mut text, "Equations of motion", &output.equations, "<details>");
     }
     for linear in &output.linear_equations {
-        let _ = writeln!(text, "\n# Linear equations\n\n```text\n{}\n```", linear.plain.trim_end());
+        // The text says more than equations.
+        equations(&mut parts, &mut text, "Linear equations", linear, "<details open>");
     }
     if let Some(kept) = output.constants.iter().find(|c| c.name == "CONSERVED") {
         text.push_str("\n# Conserved\n\n");
@@ -90,7 +102,22 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> String {
     }
     text.push_str(&operations(&output.functions));
     lanes(&mut text, interface, output);
-    text
+    parts.push(Part::Everywhere(text));
+    parts
+}
+
+/// A section with equations: typeset on pages, above the text that editors show alone.
+fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &Written, details: &str) {
+    let _ = writeln!(text, "\n# {title}");
+    parts.push(Part::Everywhere(std::mem::take(text)));
+    let plain = format!("\n```text\n{}\n```\n", equations.plain.trim_end());
+    let page = &equations.mathml;
+    parts.push(Part::Pages(format!(
+        "\n{page}\n\n{details}<summary>As text</summary>\n{plain}\n</details>\n\n"
+    )));
+    parts.push(Part::Editors(plain));
+    // HTML ends at an empty line, of which rustdoc drops one.
+    text.push('\n');
 }
 
 /// A table of what the functions cost, and of what a worst case is reckoned from.

@@ -4,7 +4,7 @@ use super::absent::write_absent;
 use super::constants::{write_constants, write_frame_index};
 use super::differentiable;
 use super::dispatch::Bodies;
-use super::docs::struct_docs;
+use super::docs::{Part, struct_docs};
 use super::frames::{
     write_all_placements, write_frame_impl, write_steps, write_trait as write_frames_by_number,
 };
@@ -159,7 +159,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         pub fn frame_jacobian<F>(&self, frame: F, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{ loop {{}} }}",
         interface.frames.len()
     );
-    let mut emitted = assemble(interface, &s, &methods, &[], "");
+    let mut emitted = assemble(interface, &s, &methods, &[], &[]);
     write_absent(&mut emitted.text, interface, &s);
     measurements::write_impls(
         &mut emitted.text,
@@ -251,7 +251,13 @@ fn with_runtime(text: String, shell: &Shell) -> String {
 }
 
 /// Puts struct and implementations together.
-fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[String], docs: &str) -> Emitted {
+fn assemble(
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+    methods: &str,
+    frames: &[String],
+    docs: &[Part],
+) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, tables, elements, runtime: path, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
@@ -264,7 +270,11 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
         let all = own.map(ToTokens::to_token_stream).chain(of_file);
         quote!(#struct_where { #(#all),* })
     };
-    let docs = if docs.is_empty() { quote!() } else { quote!(#[doc = #docs]) };
+    let docs = docs.iter().map(|part| match part {
+        Part::Everywhere(text) => quote!(#[doc = #text]),
+        Part::Pages(text) => quote!(#[cfg_attr(doc, doc = #text)]),
+        Part::Editors(text) => quote!(#[cfg_attr(not(doc), doc = #text)]),
+    });
     // The types of the elements, so that an editor explains them.
     let words = elements.iter().map(|(_, kind)| kind);
     // Under a name of its own, since the path may be one that can be written in the user's source alone.
@@ -285,7 +295,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: &[Strin
     });
     let tokens = quote! {
         #(#attributes)*
-        #docs
+        #(#docs)*
         #visibility struct #ident #struct_generics #fields
         #(#files)*
         #known

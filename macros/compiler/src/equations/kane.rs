@@ -13,7 +13,8 @@ use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
-use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::mathml::page;
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::eval::Tape;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
@@ -267,10 +268,17 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     plain = plain + "\n" + &filled(&legend(model, kane, &marked)) + "\n";
     let left = |k: usize| {
         let (name, dots) = rate_name(model, k);
-        Latex { name: &|_| (names.get(&name), dots) }.symbol(Quantity::Velocity(k).symbol(), 1)
+        (names.get(&name), dots)
     };
-    let lines = Lines::of(kane, Latex { name: &dotted }, &left);
-    Written { plain, latex: aligned(&[lines.velocities, lines.motion].concat()) }
+    let latex = |k: usize| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let latex = Lines::of(kane, Latex { name: &dotted }, &latex);
+    let mathml = |k: usize| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1);
+    let mathml = Lines::of(kane, MathMl { name: &dotted }, &mathml);
+    Written {
+        plain,
+        latex: aligned(&[latex.velocities, latex.motion].concat()),
+        mathml: page(&[mathml.velocities, mathml.motion].concat()),
+    }
 }
 
 /// What is written, an equation each.

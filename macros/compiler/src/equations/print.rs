@@ -11,10 +11,12 @@ use std::fmt;
 
 pub mod aligned;
 pub mod latex;
+pub mod mathml;
 pub mod names;
 pub mod style;
 
 pub use latex::Latex;
+pub use mathml::MathMl;
 pub use names::Name;
 pub use style::{Plain, Style, Written};
 

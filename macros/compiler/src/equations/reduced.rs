@@ -8,7 +8,8 @@ use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
-use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::mathml::page;
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
@@ -151,7 +152,10 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     plain = plain + "\n" + &filled(&about) + "\n";
     let mut lines = self::lines(reduced, Latex { name: &dotted });
     lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);
-    Written { plain, latex: aligned(&lines) }
+    let latex = aligned(&lines);
+    lines = self::lines(reduced, MathMl { name: &dotted });
+    lines[0] = format!("<mi>R</mi> = {}", lines[0]);
+    Written { plain, latex, mathml: page(&lines) }
 }
 
 /// The Routhian; then the equations of motion, the velocities of cyclic coordinates, their momenta and inertias.

@@ -13,6 +13,7 @@ use std::path::Path;
 mod kane;
 mod latex;
 mod linear;
+mod mathml;
 mod mechanisms;
 mod reading;
 mod routh;

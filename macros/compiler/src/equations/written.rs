@@ -3,8 +3,9 @@
 use super::{Canonical, Equations, determinant};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
+use crate::equations::print::mathml::page;
 use crate::equations::print::names::Names;
-use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Model, Quantity};
 
@@ -16,7 +17,8 @@ const PAGE: usize = 92;
 /// Equations in all ways of writing.
 pub fn written(model: &Model<'_>, equations: &Equations) -> Written {
     let rates = rates(model);
-    Written { plain: plain(model, equations, &rates), latex: latex(model, equations, &rates) }
+    let (latex, mathml) = typeset(model, equations, &rates);
+    Written { plain: plain(model, equations, &rates), latex, mathml }
 }
 
 /// The Lagrangian, and both sides of the equation of every velocity.
@@ -36,6 +38,14 @@ impl Lines {
             lagrangian: writer.energy(&equations.lagrangian),
             motion: sides.map(|(a, b)| (writer.polynomial(a), writer.polynomial(b))).collect(),
         }
+    }
+
+    /// A line for each, with the sign of the Lagrangian and those of velocities that follow from speeds.
+    fn equations(&self, lagrangian: &str, left: &dyn Fn(usize) -> String) -> Vec<String> {
+        let mut all = vec![format!("{lagrangian} = {}", self.lagrangian)];
+        all.extend(self.rates.iter().map(|(k, rate)| format!("{} = {rate}", left(*k))));
+        all.extend(self.motion.iter().map(|(motion, force)| format!("{motion} = {force}")));
+        all
     }
 }
 
@@ -96,7 +106,10 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     plain = plain + "\n" + &filled(&about) + "\n";
     let mut lines = canonical_lines(canonical, Latex { name: &dotted });
     lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
-    Written { plain, latex: aligned(&lines) }
+    let latex = aligned(&lines);
+    lines = canonical_lines(canonical, MathMl { name: &dotted });
+    lines[0] = format!("<mi>H</mi> = {}", lines[0]);
+    Written { plain, latex, mathml: page(&lines) }
 }
 
 /// Names of determinants that nothing else has.
@@ -139,22 +152,24 @@ pub(super) fn filled(text: &str) -> String {
     out
 }
 
-/// The Lagrangian and an equation for every velocity.
-fn latex(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
+/// The Lagrangian and an equation for every velocity, as LaTeX and as HTML.
+fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String, String) {
     let names = names(model);
     let name = |symbol| {
         let (name, dots) = name(model, rates, symbol);
         (names.get(&name), dots)
     };
-    let lines = Lines::of(equations, Latex { name: &name });
-    let mut all = vec![format!("\\mathcal{{L}} = {}", lines.lagrangian)];
-    for (k, rate) in &lines.rates {
-        let (name, dots) = rate_name(model, *k);
-        let left = Latex { name: &|_| (names.get(&name), dots) }.symbol(Quantity::Velocity(*k).symbol(), 1);
-        all.push(format!("{left} = {rate}"));
-    }
-    all.extend(lines.motion.iter().map(|(motion, force)| format!("{motion} = {force}")));
-    aligned(&all)
+    let left = |k: usize| {
+        let (name, dots) = rate_name(model, k);
+        (names.get(&name), dots)
+    };
+    let latex = Lines::of(equations, Latex { name: &name }).equations("\\mathcal{L}", &|k| {
+        Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+    });
+    let mathml = Lines::of(equations, MathMl { name: &name }).equations("<mi>L</mi>", &|k| {
+        MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
+    });
+    (aligned(&latex), page(&mathml))
 }
 
 /// All names, so that no two look alike.

@@ -7,7 +7,8 @@ use super::stability::{Stability, Verdict};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Term};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
-use crate::equations::print::{Latex, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::mathml::page;
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
 
@@ -156,7 +157,10 @@ pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) 
     };
     let lines = Lines::of(linear, Latex { name: &dotted });
     let spelled = |word: &str| crate::equations::print::latex::spelled(&names.get(word), 0);
-    Written { plain, latex: latex(&lines, &spelled(&words.frequency)) }
+    let latex = aligned(&equations(&lines, &spelled(&words.frequency)));
+    let frequency = crate::equations::print::mathml::spelled(&names.get(&words.frequency), 0, 1);
+    let mathml = page(&equations(&Lines::of(linear, MathMl { name: &dotted }), &frequency));
+    Written { plain, latex, mathml }
 }
 
 fn plain(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
@@ -268,11 +272,12 @@ fn legend(words: &Words<'_, '_>) -> String {
     filled(&sentences.join(" "))
 }
 
-fn latex(lines: &Lines, frequency: &str) -> String {
+/// What is written, a line each.
+fn equations(lines: &Lines, frequency: &str) -> Vec<String> {
     let mut all: Vec<String> =
         lines.equations.iter().map(|(motion, force)| format!("{motion} = {force}")).collect();
     all.extend(lines.polynomial.iter().map(|p| format!("{p} = 0")));
     all.extend(lines.frequency.iter().map(|value| format!("{frequency} = {value}")));
     all.extend(lines.conditions.iter().map(|condition| format!("{condition} > 0")));
-    aligned(&all)
+    all
 }

@@ -12,6 +12,8 @@ pub struct Written {
     pub plain: String,
     /// LaTeX.
     pub latex: String,
+    /// HTML with MathML, in one line.
+    pub mathml: String,
 }
 
 /// A way of writing.

@@ -1,0 +1,243 @@
+//! Presentation MathML, which browsers set without scripts. Browsers do not break formulas: every term of a sum is one of its
+//! own, so that lines are broken between them.
+
+use super::names::{Glyph, Name};
+use super::style::{Argument, Factor, Number, Style};
+use crate::expr::node::Symbol;
+
+/// MathML, with names for symbols and how many dots stand above them.
+#[derive(Clone, Copy)]
+pub struct MathMl<'a> {
+    /// Name of a symbol, and its dots.
+    pub name: &'a dyn Fn(Symbol) -> (Name, u8),
+}
+
+/// Places before signs where a line may be broken: in no parentheses, in one pair of them, in two.
+const BREAKS: [char; 3] = ['\u{1}', '\u{2}', '\u{3}'];
+/// What is wider than so many characters is broken within parentheses as well.
+const WIDE: usize = 36;
+/// The product of two factors.
+const TIMES: &str = "<mo rspace=\".17em\">\u{2062}</mo>";
+/// A function of an argument without parentheses.
+const OF: &str = "<mo rspace=\".17em\">\u{2061}</mo>";
+
+/// Equations as HTML in one line, each a paragraph whose further lines are indented. Sides stand around ` = ` or ` > `.
+pub fn page(lines: &[String]) -> String {
+    let mut out = String::from("<div>");
+    for line in lines {
+        let line = line
+            .replace(" = ", "\u{1}<mo form=\"infix\">=</mo>")
+            .replace(" > ", "\u{1}<mo form=\"infix\">&gt;</mo>");
+        out += "<div style=\"margin:.5em 0;padding-left:2em;text-indent:-2em;overflow:auto hidden\">";
+        let parts: Vec<String> = pieces(&line, &BREAKS).iter().map(|p| format!("<math>{p}</math>")).collect();
+        out += &parts.join(" ");
+        out += "</div>";
+    }
+    out + "</div>"
+}
+
+/// Pieces between which lines may be broken: at outer signs, at inner ones where a piece is wide all the same.
+fn pieces(line: &str, breaks: &[char]) -> Vec<String> {
+    let Some((outer, inner)) = breaks.split_first() else { return vec![whole(line)] };
+    if width(line) <= WIDE {
+        return line.split(BREAKS[0]).map(whole).collect();
+    }
+    line.split(*outer).flat_map(|piece| pieces(piece, inner)).collect()
+}
+
+/// Without places to break at.
+fn whole(text: &str) -> String {
+    text.replace(BREAKS, "")
+}
+
+/// The characters that are seen, about.
+fn width(text: &str) -> usize {
+    let (mut inside, mut count) = (false, 0);
+    for c in text.chars() {
+        match c {
+            '<' => inside = true,
+            '>' => inside = false,
+            '\u{1}'..='\u{3}' | '\u{2061}' | '\u{2062}' => {}
+            _ => count += usize::from(!inside),
+        }
+    }
+    count
+}
+
+/// One element, whatever it is made of.
+fn row(text: &str) -> String {
+    format!("<mrow>{}</mrow>", whole(text))
+}
+
+fn to_power(base: &str, power: u8) -> String {
+    if power == 1 { base.to_string() } else { format!("<msup>{base}<mn>{power}</mn></msup>") }
+}
+
+/// In parentheses: as high as what is in them where that is short, else with places to break at.
+fn fenced(text: &str) -> String {
+    if width(text) <= WIDE {
+        return format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", whole(text));
+    }
+    let mut inner: String = text.replace(BREAKS[2], "");
+    inner = inner.replace(BREAKS[1], "\u{3}").replace(BREAKS[0], "\u{2}");
+    format!("<mo stretchy=\"false\">(</mo>{inner}<mo stretchy=\"false\">)</mo>")
+}
+
+fn fraction(above: &str, below: &str) -> String {
+    format!("<mfrac>{}{}</mfrac>", row(above), row(below))
+}
+
+impl Style for MathMl<'_> {
+    fn symbol(&self, symbol: Symbol, power: u8) -> String {
+        let (name, dots) = (self.name)(symbol);
+        spelled(&name, dots, power)
+    }
+
+    fn number(&self, number: &Number) -> String {
+        let digits = |n: &dyn std::fmt::Display| format!("<mn>{n}</mn>");
+        let times = |k: &u32, of: String| if *k == 1 { of } else { format!("<mrow><mn>{k}</mn>{of}</mrow>") };
+        let over = |above: String, q: &u32| match q {
+            1 => above,
+            q => format!("<mfrac>{above}<mn>{q}</mn></mfrac>"),
+        };
+        match number {
+            Number::Fraction(p, q) => over(digits(p), q),
+            Number::Pi(p, q, power) => {
+                let pi = to_power("<mi>π</mi>", power.unsigned_abs());
+                match *power > 0 {
+                    true => over(times(p, pi), q),
+                    false => format!("<mfrac><mn>{p}</mn>{}</mfrac>", times(q, pi)),
+                }
+            }
+            Number::Root(p, q, root) => over(times(p, format!("<msqrt><mn>{root}</mn></msqrt>")), q),
+            Number::Decimal(text) => digits(text),
+            Number::Scientific(text, power) => {
+                let sign = if power.starts_with('-') { "<mo>−</mo>" } else { "" };
+                let power = power.trim_start_matches('-');
+                format!(
+                    "<mn>{text}</mn><mo>×</mo><msup><mn>10</mn><mrow>{sign}<mn>{power}</mn></mrow></msup>"
+                )
+            }
+        }
+    }
+
+    fn sign(&self, first: bool, negative: bool) -> &'static str {
+        match (first, negative) {
+            (true, false) => "",
+            (true, true) => "<mo form=\"prefix\">−</mo>",
+            (false, false) => "\u{1}<mo form=\"infix\">+</mo>",
+            (false, true) => "\u{1}<mo form=\"infix\">−</mo>",
+        }
+    }
+
+    fn power(&self, sum: &str, power: u8) -> String {
+        to_power(&row(&fenced(sum)), power)
+    }
+
+    fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
+        let head = match (function, arguments) {
+            ("sqrt", [x]) => return to_power(&format!("<msqrt>{}</msqrt>", row(&x.text)), power),
+            ("abs", [x]) => {
+                return to_power(&format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", whole(&x.text)), power);
+            }
+            ("pow", [base, exponent]) => {
+                let base = if base.lone { base.text.clone() } else { fenced(&base.text) };
+                let text = format!("<msup>{}{}</msup>", row(&base), row(&exponent.text));
+                return if power == 1 { text } else { self.power(&text, power) };
+            }
+            ("asin" | "acos" | "atan", _) => format!("arc{}", &function[1..]),
+            ("signum", _) => "sgn".to_string(),
+            _ => function.to_string(),
+        };
+        let head = to_power(&format!("<mi>{}</mi>", escaped(&head)), power);
+        if let [Argument { text, lone: true }] = arguments {
+            return format!("{head}{OF}{}", whole(text));
+        }
+        let arguments: Vec<String> = arguments.iter().map(|a| whole(&a.text)).collect();
+        format!("{head}<mo>\u{2061}</mo><mrow><mo>(</mo>{}<mo>)</mo></mrow>", arguments.join("<mo>,</mo>"))
+    }
+
+    fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
+        let small = matches!(&number, Some(Number::Fraction(_, q) | Number::Root(_, q, _)) if *q != 1)
+            || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
+        let number = number.map(|n| self.number(&n));
+        if divisors.is_empty() {
+            return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(TIMES);
+        }
+        // A fraction is not put on another one.
+        let (before, above) = if small { (number, None) } else { (None, number) };
+        let fraction = fraction(&side(above.into_iter(), factors), &side(std::iter::empty(), divisors));
+        before.map_or(fraction.clone(), |number| format!("{number}{TIMES}{fraction}"))
+    }
+}
+
+/// One side of a fraction.
+fn side(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
+    let first: Vec<String> = first.collect();
+    match (first.as_slice(), factors) {
+        ([], []) => "<mn>1</mn>".to_string(),
+        ([], [Factor::Sum(text)]) => text.clone(),
+        _ => first.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(TIMES),
+    }
+}
+
+fn factor(factor: &Factor) -> String {
+    match factor {
+        Factor::Single(text) => text.clone(),
+        Factor::Sum(text) => fenced(text),
+    }
+}
+
+/// A name with dots above it, to a power.
+pub fn spelled(name: &Name, dots: u8, power: u8) -> String {
+    let base = glyph(&name.base);
+    let base = match dots {
+        0 => base,
+        1 => format!("<mover accent=\"true\">{base}<mo>˙</mo></mover>"),
+        _ => format!("<mover accent=\"true\">{base}<mo>¨</mo></mover>"),
+    };
+    let indices: Vec<String> = name.indices.iter().map(glyph).collect();
+    let indices = match indices.as_slice() {
+        [] => return to_power(&base, power),
+        [one] => one.clone(),
+        all => format!("<mrow>{}</mrow>", all.join("<mo>,</mo>")),
+    };
+    match power {
+        1 => format!("<msub>{base}{indices}</msub>"),
+        power => format!("<msubsup>{base}{indices}<mn>{power}</mn></msubsup>"),
+    }
+}
+
+fn glyph(glyph: &Glyph) -> String {
+    match glyph {
+        Glyph::Letter(letter) | Glyph::Greek(_, letter) => format!("<mi>{letter}</mi>"),
+        Glyph::Digits(digits) => format!("<mn>{digits}</mn>"),
+        Glyph::Word(word) => format!("<mi>{}</mi>", escaped(word)),
+    }
+}
+
+/// Text within elements.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_sums_are_broken_between_terms() {
+        let term = "<mi>alpha</mi><mi>beta</mi>";
+        let style = MathMl { name: &|_| (Name::of("x"), 0) };
+        let sum = [term; 8].join(style.sign(false, false));
+        let parts = |text: &str| pieces(text, &BREAKS);
+        assert_eq!(parts(&sum).len(), 8);
+        let product = format!("<mi>m</mi>{}", fenced(&sum));
+        assert_eq!(parts(&product).len(), 8);
+        assert!(parts(&product)[0].starts_with("<mi>m</mi><mo stretchy=\"false\">(</mo>"));
+        // Short parentheses stay in one piece, and so do fractions.
+        let short = [term; 2].join(style.sign(false, true));
+        assert_eq!(parts(&format!("{}{}", fenced(&short), fraction(&sum, &sum))).len(), 1);
+        assert!(!page(&[sum]).contains(BREAKS));
+    }
+}

@@ -1,0 +1,142 @@
+//! The MathML of the documentation, read back: the same numbers as the plain text.
+
+use super::super::print::mathml::spelled;
+use super::*;
+use roxmltree::{Document, Node};
+
+/// An element as the plain text has it, with names of its own for symbols.
+fn text(node: Node<'_, '_>) -> String {
+    let children: Vec<Node<'_, '_>> = node.children().filter(Node::is_element).collect();
+    let own = || node.text().unwrap_or("").to_string();
+    let at = |k: usize| text(children[k]);
+    let sub = |index: String| index.replace(',', ".");
+    match node.tag_name().name() {
+        "math" | "mrow" => row(&children),
+        "mn" | "mi" => own(),
+        "mo" => match own().as_str() {
+            "+" => " + ".to_string(),
+            "−" => if node.attribute("form") == Some("prefix") { "-" } else { " - " }.to_string(),
+            "\u{2062}" => " ".to_string(),
+            "\u{2061}" => String::new(),
+            "˙" => "'".to_string(),
+            "¨" => "''".to_string(),
+            "=" => " = ".to_string(),
+            other => other.to_string(),
+        },
+        "mover" => at(0) + &at(1),
+        "msub" => format!("{}_{}", at(0), sub(at(1))),
+        "msubsup" => format!("{}_{}{}", at(0), sub(at(1)), power(&at(2))),
+        "msup" => at(0) + &power(&at(1)),
+        "mfrac" => format!("({})/({})", at(0), at(1)),
+        "msqrt" => format!("sqrt({})", at(0)),
+        other => panic!("<{other}>"),
+    }
+}
+
+/// Elements side by side; an argument without parentheses gets them.
+fn row(children: &[Node<'_, '_>]) -> String {
+    let (mut out, mut of) = (String::new(), false);
+    for child in children {
+        let one = text(*child);
+        out += &if of && !one.starts_with('(') { format!("({one})") } else { one };
+        of = child.text() == Some("\u{2061}");
+    }
+    out
+}
+
+fn power(digit: &str) -> String {
+    ["", "", "²", "³", "⁴", "⁵", "⁶", "⁷"][digit.parse::<usize>().expect("a power")].to_string()
+}
+
+/// The equations of a page.
+fn lines(page: &str) -> Vec<(String, String)> {
+    let document = Document::parse(page).unwrap_or_else(|e| panic!("{e}: {page}"));
+    let paragraphs = document.root_element().children();
+    paragraphs
+        .map(|paragraph| {
+            let parts: Vec<Node<'_, '_>> = paragraph.children().filter(Node::is_element).collect();
+            // Terms are formulas of their own.
+            let line = parts.iter().map(|part| text(*part)).collect::<String>();
+            let (left, right) = line.split_once(" = ").unwrap_or_else(|| panic!("{line}"));
+            (left.to_string(), right.to_string())
+        })
+        .collect()
+}
+
+/// Both texts of a mechanism give the same numbers.
+fn check_page(model: &Model<'_>) {
+    let joints = crate::kinematics::joints(model);
+    let mass = crba::mass_matrix(model, &joints);
+    let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
+    let written = written(model, &e);
+    let (plain, page) = (printed(&written.plain), lines(&written.mathml));
+    assert_eq!(plain.len(), page.len(), "{}", written.mathml);
+    let rates = written::rates(model);
+    let names = written::names_with(model, &[]);
+    let symbols = (0..model.parameters.len())
+        .map(Quantity::Parameter)
+        .chain((0..model.nq()).map(Quantity::Configuration))
+        .chain((0..model.nv()).flat_map(|k| [Quantity::Velocity(k), Quantity::Acceleration(k)]))
+        .chain((0..model.nu()).map(Quantity::Input))
+        .chain((0..model.constraints.len()).map(Quantity::Given))
+        .chain([Quantity::Time]);
+    let spelled: Vec<(String, Symbol)> = symbols
+        .map(|q| {
+            let (name, dots) = written::name(model, &rates, q.symbol());
+            let spelled = spelled(&names.get(&name), dots, 1);
+            (text(Document::parse(&spelled).unwrap().root_element()), q.symbol())
+        })
+        .collect();
+    for seed in 1..4 {
+        let symbol = state(model, seed);
+        let by_glyphs = |word: &str| match spelled.iter().find(|(name, _)| name == word) {
+            Some((_, s)) => symbol(*s),
+            None => panic!("{word}: {spelled:?}"),
+        };
+        let names = by_name(model, &symbol);
+        for (k, (plain, page)) in plain.iter().zip(&page).enumerate() {
+            if k > 0 {
+                assert_near(&[value(&page.0, &by_glyphs)], &[value(&plain.0, &names)], &page.0);
+            }
+            assert_near(&[value(&page.1, &by_glyphs)], &[value(&plain.1, &names)], &page.1);
+        }
+    }
+}
+
+#[test]
+fn pages_say_what_the_text_says() {
+    for item in [CART_POLE, NUMBERS] {
+        with_model("-9.81 * z", item, |model| check_page(&model));
+    }
+    for item in [DOUBLE_PENDULUM, GYROSCOPE, SHAFT, SPHERICAL, CHAIN, BALL, ARM, WAGON, SPHERE, DISK, FREE] {
+        with_model("-g * z", item, |model| check_page(&model));
+        with_model("-g * y", item, |model| check_page(&model));
+    }
+}
+
+/// All other forms are well-formed as well.
+#[test]
+fn all_forms_have_pages() {
+    for (words, item) in [("hamilton", CART_POLE), ("hamilton", ARM), ("routh", GYROSCOPE), ("kane", SPHERE)]
+    {
+        let g = if item.contains(" g: f64") { "g" } else { "9.81" };
+        let arguments = format!("gravity = -{g} * z, equations = {words}").parse().unwrap();
+        let emitted = crate::expand(arguments, item.parse().unwrap(), Path::new(""));
+        let tokens = emitted.tokens.to_string();
+        let file = syn::parse_file(&tokens).expect("a file");
+        let page = file.items.iter().find_map(|item| match item {
+            syn::Item::Struct(item) => item.attrs.iter().find_map(|attribute| {
+                let list =
+                    attribute.meta.require_list().ok().filter(|list| list.path.is_ident("cfg_attr"))?;
+                let (head, text) =
+                    list.tokens.to_string().split_once('=').map(|(a, b)| (a.to_string(), b.to_string()))?;
+                head.starts_with("doc")
+                    .then(|| syn::parse_str::<syn::LitStr>(text.trim()).expect("a text").value())
+            }),
+            _ => None,
+        });
+        let page = page.unwrap_or_else(|| panic!("{tokens}"));
+        let html = page.trim_start().lines().next().expect("a line");
+        assert!(lines(html).len() >= 2, "{words}: {html}");
+    }
+}
