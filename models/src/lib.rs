@@ -221,10 +221,20 @@
 //! | 10–16 | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
 //! | 10–16 | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
 //! | 10–16 | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
+//! | 10–16 | modes of printed derivatives and matrices: an airliner, an attack aircraft, a fighter | `linkwork_design::flight::FlightModes` | `an_airliner_has_the_modes_of_cook`, `modes_of_printed_matrices_are_named`, `the_centre_of_mass_decides_on_the_modes_of_a_fighter` |
+//! | 10–16 | satellites: nutation, wheels that hold a spin about the middle axis | a `Pin` for each wheel, `linear_system` | [`WheeledSatellite`]; `a_wheel_holds_a_satellite_that_turns_about_its_middle_axis` |
 //! | 10–16 | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `transport_channels` and `step_responses` in `anchors` of design |
 //! | 10–16 | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutates`, `rotor_with_internal_damping`, `gravity_holds_a_satellite` in `flight` of design |
+//! | 10–16 | mass, damping, gyroscopic, stiffness and circulatory matrices under constraints | `Trim::second_order_form` | [`Bicycle`]: `a_bicycle_has_the_published_matrices`; `constrained_forms` of design |
+//! | 10–16 | motions with stabilised constraints to first order | `constraint::stabilized`, `linear_system` | `decaying_constraints_have_their_exponents` in `flight` of design |
 //! | 10–16 | eigenvalues of a bicycle | `Trim::linear_system` | `a_bicycle_weaves_and_capsizes` in `tests/steady.rs` here |
-//! | 10–16 | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh` in `anchors` of design |
+//! | 10–16 | responses over time by the matrix exponential, repeated eigenvalues | `step_response`, `forced_response`, `matrices::exponential` | `straight_inputs_are_exact`, `repeated_poles_have_their_results` |
+//! | 10–16 | invariant zeros, minimal realisations, controllability, observability | `zeros`, `minimal`, `kalman_ranks` | `zeros_lose_rank`, `realisations_are_minimal` |
+//! | 10–16 | Lyapunov's and Riccati's equations, regulators, estimators, placed poles | `matrices::lyapunov`, `lqr`, `kalman`, `place` | `linear_matrix_equations`, `regulators_are_optimal`, `riccati_benchmarks`, `poles_are_put_where_they_should_be` |
+//! | 10–16 | digital control: systems from sample to sample | `discretize`, `lqr_held` | `discretised_and_back`, `discrete_riccati_benchmarks` |
+//! | 10–16 | block diagrams | `series`, `parallel`, `feedback` | `connections` in `properties` of design |
+//! | 10–16 | what does not exist: unstable, uncontrollable, improper | `linkwork_design::Error` | `bad_input` of design |
+//! | 10–16 | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh`, `routh_of_ogata` in `anchors` of design; `routh_counts_roots`, `margins_miss_no_crossing` |
 //! | 10–16 | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `transport_frequency_response` in `anchors`, `pictures` of design |
 
 mod aircraft;

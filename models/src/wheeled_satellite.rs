@@ -10,6 +10,8 @@ use linkwork::mechanism;
 ///   wheel, with its moment of inertia `C` and that of all the rest, `I`.
 /// - With the angular momentum `h` in the wheel about y, the hull near rest nutates at `h / √(I₁ I₃)`, where the moments of inertia
 ///   about x and z leave out the wheels that turn freely about these axes.
+/// - Turning at `ν` about x, with the momentum `h` in the wheel there, it nutates at
+///   `√((h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) / (I₂ I₃))`, and tumbles where the product is negative.
 #[mechanism(derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheeledSatellite {

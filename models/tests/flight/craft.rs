@@ -217,6 +217,34 @@ fn a_satellite_with_a_spinning_wheel_nutates() {
     is_at(found.first(), 0.0, nutation, 1e-10);
 }
 
+/// Turning about the axis of its middle moment of inertia at `ν` a satellite tumbles; a wheel with the momentum `h` along that axis holds
+/// it if `(h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) > 0`, which over `I₂ I₃` is the square of its nutation (Hughes, § 6.3).
+#[test]
+fn a_wheel_holds_a_satellite_that_turns_about_its_middle_axis() {
+    let (q, _) = at_rest();
+    let wheel = SATELLITE.wheel;
+    let [i2, i3] = [SATELLITE.iyy, SATELLITE.izz].map(|hull| hull + wheel);
+    let (i1, rate) = (SATELLITE.ixx + 2.0 * wheel, 0.2);
+    let mut verdicts = [0, 0];
+    for spin in [0.0, -60.0, -10.0, 10.0, 40.0, 300.0] {
+        let v = [rate, 0.0, 0.0, spin, 0.0, 0.0].into();
+        let momentum = wheel * spin;
+        let square = (momentum + (i1 - i2) * rate) * (momentum + (i1 - i3) * rate) / (i2 * i3);
+        let system = linear_system(&SATELLITE, &q, &v, &SVector::zeros()).unwrap();
+        let expected = Complex::new(square, 0.0).sqrt();
+        let poles = system.poles().unwrap();
+        for root in [expected * Complex::i(), -expected * Complex::i()] {
+            let nearest = poles.iter().map(|pole| (pole - root).norm()).fold(f64::MAX, f64::min);
+            assert!(nearest < 1e-9, "{spin}: {root} among {poles:?}");
+        }
+        let grows = system.of_states(&["attitude.wy'", "attitude.wz'"]).unwrap();
+        let growing = grows.poles().unwrap().iter().any(|pole| pole.re > 1e-9);
+        assert_eq!(growing, square < 0.0, "{spin}");
+        verdicts[usize::from(growing)] += 1;
+    }
+    assert!(verdicts.iter().all(|count| *count > 1), "{verdicts:?}");
+}
+
 const CRAFT: HypersonicGlider = HypersonicGlider {
     mu: 3.986_004_418e14,
     turning: 7.292_115e-5,

@@ -1,6 +1,7 @@
 //! The transport and the light aircraft by their derivatives.
 
 use crate::{close, is_at};
+use linkwork::nalgebra::DMatrix;
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;
 use linkwork_design::flight::{self, Derivatives, FlightModes, LATERAL, Reference};
@@ -176,6 +177,58 @@ fn a_light_aircraft_has_the_modes_of_nelson() {
     is_at(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
     is_at(modes.roll.as_ref(), -8.435, 0.0, 1e-2);
     is_at(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
+}
+
+/// Teper, *Aircraft Stability and Control Data* (1969), as Cook, *Flight Dynamics Principles* (2007), ch. 7, has it: the DC-8 at
+/// 468.2 ft/s in 15 000 ft. Its lateral derivatives, per ft/s and rad/s, and the characteristic polynomial
+/// `(s + 0.0065) (s + 1.329) (s² + 0.254 s + 1.433)`. Which mass, moments of inertia, area and span make them dimensionless cancels.
+#[test]
+fn an_airliner_has_the_modes_of_cook() {
+    let (feet, speed) = (0.3048, 468.2 * 0.3048);
+    let base = CruisingAircraft { g: 32.2 * feet, cruise: speed, product: 0.0, ..TRANSPORT };
+    let CruisingAircraft { mass, ixx, izz, density, area, span, .. } = base;
+    let load = 0.5 * density * speed * speed * area;
+    let by_slip = |derivative: f64, inertia: f64| derivative / feet * speed * inertia / (load * span);
+    let by_rate = |derivative: f64, inertia: f64| derivative * 2.0 * speed * inertia / (load * span * span);
+    let craft = CruisingAircraft {
+        cy_beta: -0.1008 * mass * speed / load,
+        cl_beta: by_slip(-0.00579, ixx),
+        cl_p: by_rate(-1.232, ixx),
+        cl_r: by_rate(0.397, ixx),
+        cn_beta: by_slip(0.00278, izz),
+        cn_p: by_rate(-0.0346, izz),
+        cn_r: by_rate(-0.257, izz),
+        ..base
+    };
+    let modes = FlightModes::of(&system(&craft)).unwrap();
+    let dutch_roll = modes.dutch_roll.unwrap();
+    close(2.0 * dutch_roll.damping_ratio() * dutch_roll.frequency(), 0.254, 2e-3);
+    close(dutch_roll.frequency().powi(2), 1.433, 1e-3);
+    is_at(modes.roll.as_ref(), -1.329, 0.0, 1e-3);
+    is_at(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
+}
+
+/// The same source, ch. 5: the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the wind, from the state
+/// matrix as printed: `(s² + 0.033 s + 0.020) (s² + 0.902 s + 2.666)`.
+#[test]
+fn modes_of_printed_matrices_are_named() {
+    let a = DMatrix::from_row_slice(
+        4,
+        4,
+        &[
+            0.00501, 0.00464, -72.9, -31.34, -0.0857, -0.545, 309.0, -7.4, 0.00185, -0.00767, -0.395,
+            0.00132, 0.0, 0.0, 1.0, 0.0,
+        ],
+    );
+    let system = StateSpace::new(a, DMatrix::zeros(4, 0), DMatrix::identity(4, 4), DMatrix::zeros(4, 0));
+    let states = [("u", "ft/s"), ("w", "ft/s"), ("q", "rad/s"), ("theta", "rad")];
+    let modes = FlightModes::of(&system.unwrap().with_states(states).unwrap()).unwrap();
+    for (mode, damping, stiffness, digits) in
+        [(modes.phugoid.unwrap(), 0.033, 0.020, 0.02), (modes.short_period.unwrap(), 0.902, 2.666, 1e-3)]
+    {
+        close(2.0 * mode.damping_ratio() * mode.frequency(), damping, digits);
+        close(mode.frequency().powi(2), stiffness, digits);
+    }
 }
 
 #[test]
