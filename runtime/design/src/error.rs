@@ -136,9 +136,9 @@ pub enum Error {
     },
     /// A linear motion was asked for about a state that is not steady.
     NotSteady {
-        /// The velocity or angle that changes.
+        /// What should be zero, an acceleration with two primes, a rate with one; or the condition of a trim that does not hold.
         what: String,
-        /// Its rate: m/s², rad/s² or rad/s.
+        /// Its rate, m/s², rad/s² or rad/s; what is left of the condition.
         rate: f64,
     },
     /// Motions have no second-order form: forces depend on a coordinate without an independent speed of its own.
@@ -205,7 +205,7 @@ impl fmt::Display for Error {
                 Listed(place)
             ),
             Self::NotSteady { what, rate } => {
-                write!(f, "not steady: `{what}` changes at the rate {rate:.3e}")
+                write!(f, "not steady: `{what}` is off by {rate:.3e}")
             }
             Self::NoSecondOrderForm { coordinate } => write!(
                 f,

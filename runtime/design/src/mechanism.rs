@@ -92,6 +92,15 @@ where
     displacements::<M, NQ, NV, NU>(coordinates).into_iter().chain(changes).collect()
 }
 
+/// Accelerations by the names of displacements with two primes, rates of states of first order with one.
+pub(crate) fn acceleration_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<String>
+where
+    M: Rheonomic<NQ, NV, NU>,
+{
+    let primes = |k: usize| if k + M::FIRST_ORDER >= NV { "'" } else { "''" };
+    M::VELOCITIES.iter().enumerate().map(|(k, name)| format!("{name}{}", primes(k))).collect()
+}
+
 /// The inputs of a mechanism.
 pub(crate) fn input_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<Signal>
 where

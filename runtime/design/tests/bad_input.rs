@@ -1,7 +1,9 @@
 //! What does not exist is an error that names what is to blame: each of these mistakes with the words that come of it.
 
+use linkwork::prelude::{FirstOrder, mechanism};
 use linkwork_design::flight::FlightModes;
 use linkwork_design::matrices::{self, Cost};
+use linkwork_design::steady::equilibrium;
 use linkwork_design::{
     Error, Hold, Noise, Polynomial, StateSpace, StepLimits, TransferFunction, logarithmic, picture,
 };
@@ -283,4 +285,43 @@ fn pictures_of_nothing() {
     says(text, picture::Chart::over_time("nothing", "y").curve("a", [(0.0, f64::NAN)]).svg());
     says("no picture: there are no modes", picture::modes(&[]));
     says("the gain has an entry that is not finite", stable().root_locus(&[f64::NAN]));
+}
+
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Pendulum {
+    lag: f64,
+    command: Input,
+    #[state(rate = (command - torque) / lag)]
+    torque: State,
+    #[body(mass = 2, com = -0.5 * y)]
+    bob: Body,
+    #[joint(ground -> bob, about = z)]
+    hinge: Pin,
+    #[acts(on = hinge, value = torque)]
+    motor: Torque,
+    #[output(hinge)]
+    angle: Scalar,
+}
+
+/// About a state that a trim has not found, and one that another trim has found.
+#[test]
+fn linear_motions_off_a_steady_state_say_by_how_much() {
+    let whole = Pendulum { lag: 0.2, torque: 0.0 };
+    let whole = whole.extended();
+    let rest = equilibrium(&whole);
+    let hanging = rest.find().unwrap();
+    assert!(rest.linear_system(&hanging).is_ok());
+    // g / l sin 0.1 = 1.9587 rad/s².
+    let mut beside = hanging.clone();
+    beside.q[0] = 0.1;
+    let text = "not steady: `hinge''` is off by -1.959e0";
+    says(text, rest.linear_system(&beside));
+    says(text, rest.measured_system(&beside));
+    says("expected 0 states of first order, found 1", rest.second_order_form(&hanging));
+    let mut late = hanging.clone();
+    (late.q[0], late.v[1], late.u[0]) = (0.0, 0.0, 0.3);
+    says("not steady: `torque'` is off by 1.500e0", rest.linear_system(&late));
+    let tilted = equilibrium(&whole).inputs(["command"]).output("angle", 0.2);
+    assert!(tilted.linear_system(&tilted.find().unwrap()).is_ok());
+    says("not steady: `angle` is off by -2.000e-1", tilted.linear_system(&hanging));
 }

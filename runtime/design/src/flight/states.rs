@@ -77,7 +77,7 @@ impl Attitude {
 ///
 /// # Errors
 ///
-/// [`Error::NotSteady`] says what accelerates or turns up, and by how much; [`Error::Unknown`] where the first joint is not free;
+/// [`Error::NotSteady`] says what accelerates or turns up most, and by how much; [`Error::Unknown`] where the first joint is not free;
 /// [`Error::Singular`] of a nose straight up or down; [`Error::Range`] where forces depend on place or heading.
 pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
@@ -93,10 +93,12 @@ where
     let forces = Mechanism::generalized_forces(m, q, v, u);
     let acceleration = Mechanism::forward_dynamics(m, q, v, &forces);
     let turning = attitude.rates * v.fixed_rows::<3>(3);
-    let angles = [("bank", turning[0]), ("pitch angle", turning[1])];
-    let rates = M::VELOCITIES.into_iter().zip(acceleration.iter().copied()).chain(angles);
-    if let Some((what, rate)) = rates.into_iter().find(|(_, rate)| !rate.is_finite() || rate.abs() > STEADY) {
-        return Err(Error::NotSteady { what: what.to_owned(), rate });
+    let angles = [("bank'".to_owned(), turning[0]), ("pitch angle'".to_owned(), turning[1])];
+    let names = mechanism::acceleration_names::<M, NQ, NV, NU>();
+    let rates = names.into_iter().zip(acceleration.iter().copied()).chain(angles);
+    let worst = rates.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    if let Some((what, rate)) = worst.filter(|(_, rate)| !rate.is_finite() || rate.abs() > STEADY) {
+        return Err(Error::NotSteady { what, rate });
     }
     let system = mechanism::linear_system(m, q, v, u)?;
     in_flight(&system, &attitude, NV - M::FIRST_ORDER)

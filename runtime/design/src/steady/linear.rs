@@ -1,6 +1,7 @@
 //! The motion about a steady state, in independent coordinates and speeds.
 
 use super::problem::{Place, Problem, dynamic};
+use super::solve::check_steady;
 use super::{SteadyState, Trim};
 use crate::mechanism::{displacements, effective_mass, input_names, named, state_names};
 use crate::{Error, SecondOrderForm, StateSpace};
@@ -107,6 +108,7 @@ where
     let mut place = Place { q: found.q, v: found.v, u: found.u, ..problem.start() };
     place.parameters.clone_from(&found.parameters);
     problem.held.iter().zip(&found.holding).for_each(|(k, (_, force))| place.holding[*k] = *force);
+    check_steady(&problem, &place)?;
     let motion = problem.motion(&place)?;
     let (mass, turning) = trim.with(&place.parameters, |m| {
         let turning = RheonomicDerivatives::turning(m, &place.q, &place.v);
@@ -181,7 +183,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] where the mass matrix is singular.
+    /// [`Error::NotFinite`] where the mass matrix is singular; [`Error::NotSteady`] about a state that this trim's conditions do not hold
+    /// in, with the one that is violated most and by how much.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
         let system = Self::system(&linear(self, found)?)?;
         Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())

@@ -2,6 +2,7 @@
 
 use super::Trim;
 use crate::Error;
+use crate::mechanism::acceleration_names;
 use linkwork::{Constrained, OutputDerivatives, Rheonomic, RheonomicDerivatives};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
@@ -248,8 +249,9 @@ where
 
     /// Names of the conditions, in the order of [`equations`](Self::equations).
     pub fn conditions(&self, place: &Place<NQ, NV, NU>) -> Vec<String> {
-        let wanted = (0..NV).filter(|k| self.targets[*k].is_some());
-        let mut names: Vec<String> = wanted.map(|k| format!("{}''", M::VELOCITIES[k])).collect();
+        let all = acceleration_names::<M, NQ, NV, NU>();
+        let wanted = all.into_iter().zip(&self.targets).filter(|(_, target)| target.is_some());
+        let mut names: Vec<String> = wanted.map(|(name, _)| name).collect();
         if let Some(bounds) = self.bounds(place) {
             names.extend(bounds.names.iter().take(bounds.residuals.len()).map(ToString::to_string));
             names.extend(bounds.names.iter().map(|name| format!("{name}'")));

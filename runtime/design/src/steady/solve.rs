@@ -12,6 +12,9 @@ const ENOUGH: f64 = 1e-14;
 /// What may be left of conditions, by what they change with unknowns of size one.
 const LEFT: f64 = 1e-9;
 
+/// The same of a state that a linear motion is taken about; at a double root conditions are less sensitive than on the way to it.
+const STEADY: f64 = 1e-5;
+
 /// Singular values below this, of a matrix whose rows and columns have the norm one, count as zero. At a double root the place
 /// is known to half of the digits.
 const SINGULAR: f64 = 1e-7;
@@ -199,6 +202,30 @@ where
     let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size(&place, *u)).collect();
     scales.update(&equations, &sizes);
     Ok(Ended { place, scales, equations, iterations })
+}
+
+/// Refuses a place where conditions do not hold, with the one that is violated most.
+pub fn check_steady<M, const NQ: usize, const NV: usize, const NU: usize>(
+    problem: &Problem<'_, '_, M, NQ, NV, NU>,
+    place: &Place<NQ, NV, NU>,
+) -> Result<(), Error>
+where
+    M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
+{
+    let equations = problem.equations(place)?;
+    let (rows, columns) = equations.jacobian.shape();
+    let mut scales = Scales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
+    let sizes: Vec<f64> = problem.unknowns.iter().map(|unknown| problem.size(place, *unknown)).collect();
+    scales.update(&equations, &sizes);
+    let left = scales.weighted(&equations.residuals);
+    let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    match worst.filter(|(_, left)| left.abs() > STEADY || left.is_nan()) {
+        None => Ok(()),
+        Some((row, _)) => Err(Error::NotSteady {
+            what: problem.conditions(place).swap_remove(row),
+            rate: equations.residuals[row],
+        }),
+    }
 }
 
 /// Names of the unknowns that can change together while all conditions hold.
