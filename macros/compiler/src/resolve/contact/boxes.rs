@@ -21,6 +21,8 @@ use crate::resolve::builder::Builder;
 const SAME: f64 = 1e-9;
 /// Square of the sine of an angle between edges that are parallel: faces say where such boxes touch.
 const PARALLEL: f64 = 1e-10;
+/// A direction in which two boxes of one size differ, wherever they are placed on purpose.
+const LEANING: [f64; 3] = [0.2113, 0.3779, 0.9014];
 /// Slope of an edge against a side that is none.
 const LEVEL: f64 = 1e-12;
 
@@ -159,37 +161,47 @@ impl<'g> Boxes<'g> {
         self.a.center - self.b.center
     }
 
-    /// The face along whose normal they are farthest apart, and whether it is one of the second box.
+    /// The face along whose normal they are farthest apart, and whether it is one of the second box. Of faces that say the same it is
+    /// that of the larger box, and of boxes of one size that of the lower one along some direction: which one was named first
+    /// decides nothing.
     fn face(&self) -> (Apart<'g>, Expr<'g>) {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
+        let [first, second] = [false, true].map(|is_second| self.face_of(is_second));
+        let sum = |block: &Block<'g>| block.half.into_iter().fold(zero, |sum, half| sum + half);
+        let larger = sum(&self.a) - sum(&self.b);
+        let same = one - is_positive(absolute(larger) - self.size * SAME);
         let c = self.away();
-        let reach = |cosines: [Expr<'g>; 3], half: [Expr<'g>; 3]| {
-            (0..3).fold(zero, |sum, k| sum + half[k] * absolute(cosines[k]))
+        let lower = -(c[0] * LEANING[0] + c[1] * LEANING[1] + c[2] * LEANING[2]);
+        let leads = (either(same, lower, larger)).call(Function::Signum);
+        let is_first = is_positive(first.distance - second.distance + leads * self.size * SAME);
+        let which = std::array::from_fn(|k| either(is_first, first.first[k], second.first[k]));
+        let distance = either(is_first, first.distance, second.distance);
+        (Apart { distance, first: which, second: which }, one - is_first)
+    }
+
+    /// The face of one of them along whose normal the other is farthest from it.
+    fn face_of(&self, is_second: bool) -> Apart<'g> {
+        let (zero, one) = (self.size.zero(), self.size.num(1.0));
+        let c = self.away();
+        let (own, other) = if is_second { (&self.b, &self.a) } else { (&self.a, &self.b) };
+        let distance = |k: usize| {
+            let along: [Expr<'g>; 3] = std::array::from_fn(|i| match is_second {
+                true => self.cosines[i][k],
+                false => self.cosines[k][i],
+            });
+            let reach = (0..3).fold(zero, |sum, k| sum + other.half[k] * absolute(along[k]));
+            absolute(own.axes[k].dot(c)) - own.half[k] - reach
         };
         let unit = |k: usize| std::array::from_fn(|i| if i == k { one } else { zero });
-        let mut best: Option<(Apart<'g>, Expr<'g>)> = None;
-        for is_second in [true, false] {
-            let (own, other) = if is_second { (&self.b, &self.a) } else { (&self.a, &self.b) };
-            for k in 0..3 {
-                let along: [Expr<'g>; 3] = std::array::from_fn(|i| match is_second {
-                    true => self.cosines[i][k],
-                    false => self.cosines[k][i],
-                });
-                let distance = absolute(own.axes[k].dot(c)) - own.half[k] - reach(along, other.half);
-                let side = if is_second { one } else { zero };
-                best = Some(match best {
-                    None => (Apart { distance, first: unit(k), second: unit(k) }, side),
-                    Some((known, second)) => {
-                        let better = is_positive(distance - known.distance - self.size * SAME);
-                        let first = std::array::from_fn(|i| either(better, unit(k)[i], known.first[i]));
-                        let distance = either(better, distance, known.distance);
-                        (Apart { distance, first, second: first }, either(better, side, second))
-                    }
-                });
-            }
+        let mut best = Apart { distance: distance(0), first: unit(0), second: unit(0) };
+        for k in [1, 2] {
+            let found = distance(k);
+            let better = is_positive(found - best.distance - self.size * SAME);
+            let which = std::array::from_fn(|i| either(better, unit(k)[i], best.first[i]));
+            let distance = either(better, found, best.distance);
+            best = Apart { distance, first: which, second: which };
         }
-        let none = Apart { distance: zero, first: unit(0), second: unit(0) };
-        best.unwrap_or((none, one))
+        best
     }
 
     /// The pair of edges along whose common normal they are farthest apart.
