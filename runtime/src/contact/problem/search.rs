@@ -1,8 +1,10 @@
 //! How impulses are found that fulfil the laws of all contacts.
 
+use super::super::total::Total;
 use super::{List, Problem};
 use crate::Real;
 use crate::private::{constant, epsilon};
+use core::ops::Range;
 
 /// Rounds of sweeps, each followed by Newton's method.
 const ROUNDS: usize = 12;
@@ -42,10 +44,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if self.is_solved(&impulses) {
             return Ok(impulses);
         }
-        for round in 0..ROUNDS {
-            for _ in 0..SWEEPS + round {
-                self.sweep(&mut impulses);
+        if self.is_smooth() {
+            impulses = self.press_in_turn();
+            if self.is_solved(&impulses) {
+                return Ok(impulses);
             }
+        }
+        for round in 0..ROUNDS {
+            self.relax(&mut impulses, SWEEPS + round);
             if self.is_solved(&impulses) {
                 return Ok(impulses);
             }
@@ -67,7 +73,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         // Where friction is strong, which contacts stay closed is all there is to find.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
-            let guess = self.newton(self.together(|k| k >= GUESSED || kept >> k & 1 == 1));
+            let guess = self.newton_twice(self.together(|k| k >= GUESSED || kept >> k & 1 == 1));
             if self.is_solved(&guess) {
                 return Ok(guess);
             }
@@ -77,10 +83,62 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if left <= size { Ok(impulses) } else { Err(worst) }
     }
 
+    /// Whether no contact has friction.
+    fn is_smooth(&self) -> bool {
+        self.friction.iter().take(self.count).all(|friction| *friction == T::zero())
+    }
+
+    /// The impulses without friction, by an active set (Lawson and Hanson, *Solving Least Squares Problems*, 1974, ch. 23): the contact
+    /// whose surfaces approach each other most is taken in, and those that would pull are let go on the way.
+    fn press_in_turn(&self) -> List<T, NR> {
+        let mut impulses = List::repeat(T::zero());
+        let mut is_in = Total::<bool, NK>::repeat(false);
+        for _ in 0..3 * self.count {
+            let rates = self.rates(&impulses);
+            let mut entering = (-self.rounding(&impulses), None);
+            for k in (0..self.count).filter(|k| self.is_gap(*k) && self.step[*k] > T::zero() && !is_in[*k]) {
+                let short = rates[self.of(k).0] - self.least[k];
+                if short < entering.0 {
+                    entering = (short, Some(k));
+                }
+            }
+            let Some(entering) = entering.1 else { break };
+            is_in[entering] = true;
+            for _ in 0..self.count {
+                let wanted = self.together(|k| is_in[k]);
+                // How far the way there leads until the first would pull.
+                let mut part = T::one();
+                for k in (0..self.count).filter(|k| is_in[*k]) {
+                    let (now, then) = (impulses[self.of(k).0], wanted[self.of(k).0]);
+                    if then <= T::zero() {
+                        part = part.min(if now > T::zero() { now / (now - then) } else { T::zero() });
+                    }
+                }
+                let mut is_done = true;
+                for k in 0..self.count {
+                    let n = self.of(k).0;
+                    if !is_in[k] {
+                        continue;
+                    }
+                    let (now, then) = (impulses[n], wanted[n]);
+                    let reached = now + (then - now) * part;
+                    let pulls = then <= T::zero() && reached <= (then.abs() + now) * epsilon();
+                    is_done &= then > T::zero();
+                    is_in[k] = !pulls;
+                    impulses[n] = if pulls { T::zero() } else { reached };
+                }
+                if is_done {
+                    break;
+                }
+            }
+        }
+        impulses
+    }
+
     /// Newton's method with steps of the map by this factor.
     fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> List<T, NR> {
         self.scale = constant(scale);
-        let found = self.newton(impulses);
+        let found = self.newton_twice(impulses);
         self.scale = T::one();
         found
     }
@@ -96,9 +154,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             } else {
                 friction
             };
-            for _ in 0..SWEEPS {
-                self.sweep(&mut impulses);
-            }
+            self.relax(&mut impulses, SWEEPS);
             for scale in SCALES {
                 let found = self.newton_scaled(impulses, scale);
                 if self.residual(&found).0 < self.residual(&impulses).0 {
@@ -112,35 +168,70 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.is_solved(&impulses).then_some(impulses)
     }
 
-    /// One sweep of projected Gauss–Seidel: contact after contact is brought onto its law, the others as they are.
-    fn sweep(&self, impulses: &mut List<T, NR>) {
-        let rate = |impulses: &List<T, NR>, i: usize| {
-            let terms = self.weights[i].iter().zip(impulses.iter()).take(self.size);
-            terms.fold(self.free[i], |sum, (weight, impulse)| sum + *weight * *impulse)
-        };
+    /// Steps for the impulses that are short enough for all to be taken at once, whatever the directions of the tangents: the inverse of
+    /// what the sizes of the parts of `W` between contacts add up to.
+    fn short_steps(&self) -> List<T, NR> {
+        let mut steps = List::<T, NR>::repeat(T::zero());
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, tangents) = self.of(k);
-            let weight = self.weights[n][n];
+            let size = |rows: Range<usize>| {
+                (0..self.count).fold(T::zero(), |sum, other| {
+                    let part = |columns: Range<usize>| {
+                        let square = rows.clone().fold(T::zero(), |sum, i| {
+                            columns.clone().fold(sum, |sum, j| sum + self.weights[i][j] * self.weights[i][j])
+                        });
+                        square.sqrt()
+                    };
+                    let (normal, along) = self.of(other);
+                    let pressed = if self.is_gap(other) { part(normal..normal + 1) } else { T::zero() };
+                    sum + pressed + part(along)
+                })
+            };
+            let inverse = |sum: T| if sum > T::zero() { T::one() / sum } else { T::zero() };
             if self.is_gap(k) {
-                let normal = impulses[n] - (rate(impulses, n) - self.least[k]) / weight;
-                // A gap that its impulse does not move stays as it is.
-                impulses[n] = if weight > T::zero() { normal.max(T::zero()) } else { T::zero() };
+                steps[n] = inverse(size(n..n + 1));
             }
-            let most = self.friction[k] * impulses[n];
-            let trace = tangents.clone().fold(T::zero(), |sum, i| sum + self.weights[i][i]);
-            if trace <= T::zero() {
-                continue;
+            let along = inverse(size(tangents.clone()));
+            tangents.for_each(|i| steps[i] = along);
+        }
+        steps
+    }
+
+    /// Sweeps of projected gradient steps with momentum (Nesterov): all contacts at once are brought towards their laws, so that the
+    /// order in which they stand decides nothing.
+    fn relax(&self, impulses: &mut List<T, NR>, sweeps: usize) {
+        let steps = self.short_steps();
+        let (mut ahead, mut pace) = (*impulses, T::one());
+        for _ in 0..sweeps {
+            let rates = self.rates(&ahead);
+            let mut next = List::repeat(T::zero());
+            for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
+                let (n, _) = self.of(k);
+                if self.is_gap(k) {
+                    next[n] = (ahead[n] - steps[n] * (rates[n] - self.least[k])).max(T::zero());
+                }
             }
-            let mut wanted = [T::zero(); 2];
-            for (w, i) in wanted.iter_mut().zip(tangents.clone()) {
-                *w = impulses[i] - rate(impulses, i) / trace;
+            for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
+                let (n, tangents) = self.of(k);
+                let most = self.friction[k] * next[n];
+                let mut wanted = [T::zero(); 2];
+                for (w, i) in wanted.iter_mut().zip(tangents.clone()) {
+                    *w = ahead[i] - steps[i] * rates[i];
+                }
+                let [x, y] = wanted;
+                let size = (x * x + y * y).sqrt();
+                let part = if size > most { most / size } else { T::one() };
+                for (w, i) in wanted.iter().zip(tangents) {
+                    next[i] = *w * part;
+                }
             }
-            let [x, y] = wanted;
-            let size = (x * x + y * y).sqrt();
-            let part = if size > most { most / size } else { T::one() };
-            for (w, i) in wanted.iter().zip(tangents) {
-                impulses[i] = *w * part;
+            let faster = (T::one() + (T::one() + pace * pace * constant(4.0)).sqrt()) * constant(0.5);
+            let carry = (pace - T::one()) / faster;
+            pace = faster;
+            for i in 0..self.size {
+                ahead[i] = next[i] + (next[i] - impulses[i]) * carry;
             }
+            *impulses = next;
         }
     }
 }
