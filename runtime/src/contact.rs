@@ -19,11 +19,13 @@
 //!
 //! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato, *Numerical Methods for
 //! Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding, by Newton's method for their natural map (Alart and
-//! Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991) between sweeps of projected Gauss–Seidel (Jean, *The non-smooth contact
-//! dynamics method*, 1999), at most 600 of these. Impulses that are shared by more contacts than the motion can tell apart (a table
-//! on four legs) are those of least norm where all of them hold. Newton's law of restitution together with friction can give more
-//! energy than there was (Kane's paradox), or have no solution; where it would, all coefficients of restitution are lowered together
-//! until it does not.
+//! Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991) between projected gradient steps with momentum (Nesterov; Mazhar et al.,
+//! *Using Nesterov's method to accelerate multibody dynamics with friction and contact*, ACM Trans. Graph. 34, 2015): at most 600 of
+//! these, and 5000 of Newton's. All contacts take each step at once, so that the order in which they are declared decides nothing.
+//! Without friction an active set that takes in contact after contact comes first. Impulses that are shared by more contacts than the
+//! motion can tell apart (a table on four legs) are those of least norm where all of them hold. Newton's law of restitution together
+//! with friction can give more energy than there was (Kane's paradox), or have no solution; where it would, all coefficients of
+//! restitution are lowered together until it does not.
 
 use crate::constraint::ConstraintError;
 use crate::derivatives::ByMotion;
@@ -43,6 +45,7 @@ mod layout;
 mod phase;
 mod problem;
 mod response;
+mod stepping;
 mod total;
 
 pub use apart::{Apart, apart};
@@ -57,6 +60,9 @@ pub use landing::{LandedDerivatives, land, land_derivatives};
 use layout::Layout;
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;
+#[doc(hidden)]
+pub use stepping::step;
+use stepping::{Came, closed, rates_at_end};
 use total::Total;
 
 /// Which of the rates of all contacts are those of one: that of its gap first, then those of slip. Those of a moment of friction
@@ -324,7 +330,7 @@ where
     let rate = holding(&mut system, &start, &at_start, h).map_err(reported)?;
     let (free, given) = guided(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = settled(&system, free, t)?;
-    let before = mechanism.contact_rates(t, q, v);
+    let before = rates_at_end(mechanism, t + h, (q, v), &free.q);
     let came = Came { q: &start.q, rates: &before, h, held: given * (h * constant(0.5)) };
     let v = free.v - given;
     let Some(closed) = closed(mechanism, t + h, &free.q, &v, Some(&came)).map_err(reported)? else {
@@ -406,56 +412,6 @@ impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK
     }
 }
 
-/// Where a step has come from.
-struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
-    /// The configuration.
-    q: &'a SVector<T, NQ>,
-    /// The rates of the contacts there.
-    rates: &'a SVector<T, NR>,
-    /// How long it has taken.
-    h: T,
-    /// By how much contacts have been taken to move it.
-    held: SVector<T, NV>,
-}
-
-/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity `free`: those whose gap is
-/// none there, with or without what contacts have been taken to do, and those that were closed before and did not part. Of these the
-/// other contacts may press any, whichever way it would go without them all.
-fn closed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
-    mechanism: &M,
-    t: T,
-    q: &SVector<T, NQ>,
-    free: &SVector<T, NV>,
-    came: Option<&Came<'_, T, NQ, NV, NR>>,
-) -> Result<Option<[bool; NK]>, ConstraintError>
-where
-    T: Real,
-    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
-{
-    let gaps = mechanism.contact_gaps(t, q);
-    if gaps.iter().any(|gap| !gap.is_finite()) || free.iter().any(|x| !x.is_finite()) {
-        return Err(ConstraintError::NotFinite);
-    }
-    let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
-    let open = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
-    if let Some(Came { q: start, rates, h, held }) = came.filter(|came| came.h > T::zero() && open(&closed)) {
-        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
-        let still = SVector::<T, NV>::zeros();
-        let apart = match *held == still {
-            true => SVector::zeros(),
-            // What is driven moves by itself.
-            false => mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still),
-        };
-        let starts = mechanism.contact_gaps(t - *h, start);
-        for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
-            let of = |vector: &SVector<T, NR>| problem::entry(vector, layout.pressing(k).1);
-            let parts = (of(rates) * *h).max(T::zero());
-            *closed |= *gap - of(&apart) <= near() || *start + parts <= near();
-        }
-    }
-    Ok(closed.contains(&true).then_some(closed))
-}
-
 /// [`solve`] for the contacts that are `closed`, and what `acted`, if anything has.
 fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
@@ -524,51 +480,4 @@ fn tempered<T: Real, const NK: usize, const NR: usize>(
     }
     problem.aim(laws, before, least);
     problem.solve()
-}
-
-/// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts, a velocity; on the way
-/// they have been taken to add `given` to the velocity. As methods of integration call it; with `h = 0` nothing moves.
-///
-/// # Errors
-///
-/// Those of [`impact`].
-#[doc(hidden)]
-pub fn step<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
-    mechanism: &M,
-    t: T,
-    (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
-    (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
-    given: &SVector<T, NV>,
-    h: T,
-) -> Result<Touched<T, NQ, NV>, ConstraintError>
-where
-    T: Real,
-    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
-{
-    let half = h * constant(0.5);
-    // Where nothing is closed its matrices are not made.
-    let mut acted = None;
-    let mut after = *free;
-    // `act` needs them anyway where something is closed.
-    let before = mechanism.contact_rates(t, start, v);
-    let came = Came { q: start, rates: &before, h, held: given * half };
-    if let Some(closed) = closed(mechanism, t, q, free, Some(&came))? {
-        let acted = acted.insert(Acted::nothing());
-        after = act(mechanism, t, (q, free), &closed, &before, acted)?.v;
-    }
-    let v = after;
-    if h == T::zero() {
-        return Ok(Touched { q: *q, v });
-    }
-    // What impulses do to the velocity they do in the mean of the step.
-    let moved = (v - free - given) * half;
-    let (q, v) = (mechanism.integrate(q, &moved), mechanism.carry(t, &moved, &v));
-    let Some(acted) = acted.filter(|acted| acted.is_any) else { return Ok(Touched { q, v }) };
-    let gaps = mechanism.contact_gaps(t, &q);
-    let speed = before.iter().fold(acted.problem.speed(), |most, rate| most.max(rate.abs()));
-    let Some(pushes) = acted.problem.close(&acted.impulses, &gaps, (near(), near::<T>() + speed * h)) else {
-        return Ok(Touched { q, v });
-    };
-    let push = acted.responses * pushes;
-    Ok(Touched { q: mechanism.integrate(&q, &push), v: mechanism.carry(t, &push, &v) })
 }

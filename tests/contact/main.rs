@@ -11,6 +11,7 @@ mod fuzz;
 mod gallery;
 mod laws;
 mod mechanisms;
+mod orders;
 mod piles;
 mod robots;
 mod soft;

@@ -17,6 +17,8 @@ type List<T, const NR: usize> = Total<T, NR>;
 /// A row of numbers for each rate.
 type Square<T, const NR: usize> = Total<Total<T, NR>, NR>;
 
+/// How much farther than surfaces are apart or overlap what brings them together may move them.
+const FARTHEST: f64 = 8.0;
 /// Roundings of the rates that are left of the equations.
 const ROUNDINGS: f64 = 64.0;
 
@@ -332,9 +334,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.residual(impulses).0 <= self.rounding(impulses).min(most)
     }
 
-    /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together: those that overlap
-    /// are pushed apart, and where none do those that are apart by no more than `reach` are brought together. `None` if
-    /// distances are no more than a quarter of what is `near`.
+    /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together and are apart by no more
+    /// than `reach`; where they cannot all be at once those that overlap then are pushed apart. `None` if
+    /// distances are no more than a little of what is `near`.
     pub(super) fn close(
         &self,
         impulses: &List<T, NR>,
@@ -342,17 +344,17 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
         let rates = self.rates(impulses);
-        let rest = self.rounding(impulses);
+        // Which of several that share an impulse bear it decides nothing, and what is left of the rates neither.
+        let rest = self.rounding(impulses).max(self.residual(impulses).0) * constant(ROUNDINGS);
         let mut kept = Self::none();
         let (mut overlap, mut distance) = (T::zero(), T::zero());
-        let enough = near * constant(0.25);
+        let enough = (near * constant(1e-4)).max(epsilon::<T>() * constant(16.0));
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let n = self.rows[k].first;
             let (contact, Rows { first, .. }) = self.contacts[k];
             let gap = entry(gaps, contact);
-            // What is farther away has come to touch elsewhere; of surfaces that overlap others may bear the impulse.
-            let stays = if impulses[n] > T::zero() { gap <= reach } else { gap < -enough };
-            if stays && rates[n] <= rest {
+            // What is farther away has come to touch elsewhere.
+            if gap <= reach && rates[n] <= rest {
                 let c = kept.count;
                 (overlap, distance) = (overlap.max(-gap), distance.max(gap));
                 kept.contacts[c] = (contact, Rows { first, count: 1 });
@@ -372,11 +374,46 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 kept.weights[c][d] = self.weights[kept.rows[c].first][kept.rows[d].first];
             }
         }
+        let mut normals = Total::<_, NK>::repeat(0);
         for c in 0..kept.count {
+            normals[c] = kept.rows[c].first;
             kept.rows[c].first = c;
         }
-        let pushes = if overlap > enough { kept.solve().ok()? } else { kept.together(|_| true) };
+        // The farthest that something at a contact moves.
+        let farthest = |pushes: &List<T, NR>| {
+            let along = |row: &List<T, NR>| {
+                normals
+                    .iter()
+                    .zip(pushes.iter())
+                    .take(kept.count)
+                    .fold(T::zero(), |sum, (n, push)| sum + row[*n] * *push)
+            };
+            let rows = self.weights.iter().take(self.size);
+            rows.fold(T::zero(), |most, row| most.max(along(row).abs()))
+        };
+        let most = overlap.max(distance) * constant(FARTHEST);
+        let mut pushes = kept.together(|_| true);
+        // Points that contradict each other are not worth a long way.
+        let is_long = farthest(&pushes) > most;
+        if is_long {
+            pushes = List::repeat(T::zero());
+        }
+        let left = kept.rates(&pushes);
+        if left.iter().take(kept.size).any(|gap| *gap < -enough) {
+            let mut rest = kept.with(left);
+            let more = rest.solve().ok()?;
+            pushes.iter_mut().zip(more.iter()).for_each(|(push, more)| *push += *more);
+            let way = farthest(&pushes);
+            if way > most {
+                pushes.iter_mut().for_each(|push| *push *= most / way);
+            }
+        }
         Some(kept.spread(&pushes))
+    }
+
+    /// The same with other rates without impulses.
+    fn with(&self, free: List<T, NR>) -> Self {
+        Self { free, ..*self }
     }
 }
 

@@ -1,0 +1,245 @@
+//! What contacts make of a step: impulses, and displacements that take overlaps away.
+
+use super::layout::Layout;
+use super::problem::{Problem, entry};
+use super::total::Total;
+use super::{Acted, Contacts, Rows, Touched, act, near};
+use crate::Real;
+use crate::constraint::ConstraintError;
+use crate::private::{constant, epsilon};
+use nalgebra::SVector;
+
+/// How often the part of a displacement that the energy allows is found anew.
+const PARTS: usize = 4;
+/// How often the part of restitution that the energy allows is halved.
+const PARTS_OF_RESTITUTION: usize = 12;
+
+/// Where a step has come from.
+pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
+    /// The configuration.
+    pub(super) q: &'a SVector<T, NQ>,
+    /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]).
+    pub(super) rates: &'a SVector<T, NR>,
+    /// How long it has taken.
+    pub(super) h: T,
+    /// By how much contacts have been taken to move it.
+    pub(super) held: SVector<T, NV>,
+}
+
+/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity `free`: those whose gap is
+/// none there, with or without what contacts have been taken to do, and those that were closed before and did not part. Of these the
+/// other contacts may press any, whichever way it would go without them all.
+pub(super) fn closed<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    free: &SVector<T, NV>,
+    came: Option<&Came<'_, T, NQ, NV, NR>>,
+) -> Result<Option<[bool; NK]>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let gaps = mechanism.contact_gaps(t, q);
+    if gaps.iter().any(|gap| !gap.is_finite()) || free.iter().any(|x| !x.is_finite()) {
+        return Err(ConstraintError::NotFinite);
+    }
+    let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
+    let open = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
+    if let Some(Came { q: start, rates, h, held }) = came.filter(|came| came.h > T::zero() && open(&closed)) {
+        let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+        let still = SVector::<T, NV>::zeros();
+        let apart = match *held == still {
+            true => SVector::zeros(),
+            // What is driven moves by itself.
+            false => mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still),
+        };
+        let starts = mechanism.contact_gaps(t - *h, start);
+        let after = mechanism.contact_rates(t, q, free);
+        for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
+            let (by, place) = layout.pressing(k);
+            let of = |vector: &SVector<T, NR>| entry(vector, place);
+            let parts = (of(rates) * *h).max(T::zero());
+            // Where faces and edges take turns a contact may be at another place than before.
+            let Rows { first, count } = layout.rows(by);
+            let ways = (first..first + count)
+                .fold(of(&apart).abs(), |sum, i| sum + (entry(rates, i).abs() + entry(&after, i).abs()) * *h);
+            let stays = *start + parts <= near() && *gap <= near::<T>() + ways;
+            *closed |= *gap - of(&apart) <= near() || stays;
+        }
+    }
+    Ok(closed.contains(&true).then_some(closed))
+}
+
+/// The rates at contacts that the velocity `v` at the configuration `start` would have where a step has led to the configuration `q`:
+/// there impulses act, and restitution and their work are about the same directions as they are.
+pub(super) fn rates_at_end<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    q: &SVector<T, NQ>,
+) -> SVector<T, NR>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    mechanism.contact_rates(t, q, &mechanism.carry(t, &mechanism.difference(start, q), v))
+}
+
+/// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts, a velocity; on the way
+/// they have been taken to add `given` to the velocity. As methods of integration call it; with `h = 0` nothing moves.
+///
+/// # Errors
+///
+/// Those of [`impact`].
+#[doc(hidden)]
+pub fn step<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
+    given: &SVector<T, NV>,
+    h: T,
+) -> Result<Touched<T, NQ, NV>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let half = h * constant(0.5);
+    // Where nothing is closed its matrices are not made.
+    let mut acted = None;
+    let mut after = *free;
+    // `act` needs them anyway where something is closed.
+    let before = rates_at_end(mechanism, t, (start, v), q);
+    let came = Came { q: start, rates: &before, h, held: given * half };
+    if let Some(closed) = closed(mechanism, t, q, free, Some(&came))? {
+        let acted = acted.insert(Acted::nothing());
+        after = act(mechanism, t, (q, free), &closed, &before, acted)?.v;
+    }
+    if h == T::zero() {
+        return Ok(Touched { q: *q, v: after });
+    }
+    // What impulses do to the velocity they do in the mean of the step.
+    let led = |after: &SVector<T, NV>| {
+        let moved = (after - free - given) * half;
+        Touched { q: mechanism.integrate(q, &moved), v: mechanism.carry(t, &moved, after) }
+    };
+    let mut touched = led(&after);
+    let Some(mut acted) = acted.filter(|acted| acted.is_any) else { return Ok(touched) };
+    // The energy without what contacts have done: they have worked along the mean of the velocities.
+    let most = || {
+        let carried = mechanism.carry(t, &mechanism.difference(start, q), v);
+        let mean = (carried + free + given) * constant::<T>(0.5);
+        let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
+        energy(mechanism, t, &Touched { q: *q, v: free + given }) - work
+    };
+    if acted.problem.rebounds() {
+        let led = |impulses: &SVector<T, NR>| led(&(free + acted.responses * impulses));
+        if let Some(less) = tempered(mechanism, t, &mut acted.problem, &before, &led, (&touched, most())) {
+            (touched, acted.impulses) = less;
+        }
+    }
+    let gaps = mechanism.contact_gaps(t, &touched.q);
+    let speed = before.iter().fold(acted.problem.speed(), |most, rate| most.max(rate.abs()));
+    match acted.problem.close(&acted.impulses, &gaps, (near(), near::<T>() + speed * h)) {
+        Some(pushes) => Ok(pushed(mechanism, t, &touched, &(acted.responses * pushes), most())),
+        None => Ok(touched),
+    }
+}
+
+/// A state with the largest part of all restitutions after which the energy is no more than `most`, and the impulses that lead there;
+/// `None` where it is no more with all of them.
+fn tempered<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    problem: &mut Problem<T, NK, NR>,
+    before: &SVector<T, NR>,
+    led: &impl Fn(&SVector<T, NR>) -> Touched<T, NQ, NV>,
+    (all, most): (&Touched<T, NQ, NV>, T),
+) -> Option<(Touched<T, NQ, NV>, Total<T, NR>)>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let most = most + rounding(most);
+    if energy(mechanism, t, all) <= most {
+        return None;
+    }
+    let laws = mechanism.contact_laws();
+    let (mut found, mut least, mut step) = (None, T::zero(), T::one());
+    for round in 0..=PARTS_OF_RESTITUTION {
+        // None of it, then a bit of the part each.
+        let part = if round == 0 { T::zero() } else { least + step };
+        problem.aim(&laws, before, part);
+        if let Ok(impulses) = problem.solve() {
+            let touched = led(&problem.spread(&impulses));
+            if round == 0 || energy(mechanism, t, &touched) <= most {
+                (found, least) = (Some((touched, impulses)), part);
+            }
+        }
+        step *= constant(0.5);
+    }
+    problem.aim(&laws, before, least);
+    found
+}
+
+/// What rounding leaves of an energy.
+fn rounding<T: Real>(energy: T) -> T {
+    energy.abs() * epsilon() * constant(8.0)
+}
+
+fn energy<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    Touched { q, v }: &Touched<T, NQ, NV>,
+) -> T
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    mechanism.kinetic_energy(t, q, v) + mechanism.potential_energy(t, q)
+}
+
+/// The state after a displacement, or the part of it after which the energy is no more than `most`, or than before.
+fn pushed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    from: &Touched<T, NQ, NV>,
+    push: &SVector<T, NV>,
+    most: T,
+) -> Touched<T, NQ, NV>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let before = energy(mechanism, t, from);
+    let most = most.max(before);
+    let mut part = T::one();
+    for _ in 0..PARTS {
+        let push = push * part;
+        let to = Touched { q: mechanism.integrate(&from.q, &push), v: mechanism.carry(t, &push, &from.v) };
+        let after = energy(mechanism, t, &to);
+        if after <= most + rounding(before) {
+            return to;
+        }
+        // The energy is about linear.
+        part *= (most - before) / (after - before) * constant(0.98);
+    }
+    *from
+}
