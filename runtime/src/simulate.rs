@@ -55,7 +55,7 @@ where
         events: NoEvents,
         start,
         duration: None,
-        every: None,
+        samples: Samples::Steps,
         progress: None,
         over: false,
     }
@@ -81,10 +81,21 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub event: Option<usize>,
 }
 
+/// When samples are due.
+#[derive(Clone, Copy, Debug)]
+enum Samples<'m, T> {
+    /// At the end of every step.
+    Steps,
+    /// At equal intervals, s.
+    Every(T),
+    /// At these times, s.
+    At(&'m [T]),
+}
+
 /// A simulation: first what is to be simulated and how, then the iterator over its samples.
 ///
 /// Made by [`simulate`]. The samples are the initial state, then one every [`sample_every`](Self::sample_every)
-/// seconds (or one per step of the integrator), one per event, and the last exactly at the end of the
+/// seconds (or one per step of the integrator, or those [`asked for`](Self::sample_at)), one per event, and the last exactly at the end of the
 /// [`duration`](Self::duration). After an error the iterator ends. Changing a setting
 /// starts over. Nothing is allocated.
 #[must_use = "a simulation does nothing until its samples are asked for"]
@@ -98,7 +109,7 @@ where
     events: E,
     start: State<T, NQ, NV>,
     duration: Option<T>,
-    every: Option<T>,
+    samples: Samples<'m, T>,
     progress: Option<Progress<T, S::Memory<NV>, NQ, NV>>,
     over: bool,
 }
@@ -132,7 +143,35 @@ where
     /// Samples every `interval` seconds: the `k`-th exactly at start + k · interval. Fixed-step methods divide the
     /// interval into equal steps; adaptive ones interpolate. Without it every step of the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
-        Self { every: Some(interval), ..self.afresh() }
+        Self { samples: Samples::Every(interval), ..self.afresh() }
+    }
+
+    /// Samples at these times, s, as the run counts them: increasing, none before the start, which is a sample if it is one of them. The
+    /// last one ends the run, or else the [`duration`](Self::duration), whose end is a sample, too. Fixed-step methods end steps
+    /// there; adaptive ones interpolate.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    ///
+    /// #[mechanism]
+    /// struct Cart {
+    ///     #[body(mass = 1)]
+    ///     cart: Body,
+    ///     #[joint(ground -> cart, along = x)]
+    ///     rail: Sleeve,
+    /// }
+    ///
+    /// // Where was it when somebody looked?
+    /// let looked = [0.013, 0.4, 0.41, 7.25];
+    /// let run = simulate(&Cart).from([0.0], [2.0]).sample_at(&looked);
+    /// for (sample, t) in run.zip(looked) {
+    ///     let sample = sample?;
+    ///     assert!(sample.t == t && (sample.q[0] - 2.0 * t).abs() < 1e-12);
+    /// }
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn sample_at(self, times: &'m [T]) -> Self {
+        Self { samples: Samples::At(times), ..self.afresh() }
     }
 
     /// Inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For functions with jumps,
@@ -161,8 +200,8 @@ where
     /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), [`Rosenbrock`](crate::integrate::Rosenbrock),
     /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler).
     pub fn method<R: Method<T>>(self, method: R) -> Simulation<'m, M, T, I, R, E, NQ, NV, NU> {
-        let Self { system, events, start, duration, every, .. } = self;
-        Simulation { system, method, events, start, duration, every, progress: None, over: false }
+        let Self { system, events, start, duration, samples, .. } = self;
+        Simulation { system, method, events, start, duration, samples, progress: None, over: false }
     }
 
     /// Ends when `function(t, q, v)` crosses zero in either direction; the last sample is the state there.
@@ -231,7 +270,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
         E: Events<T, NQ, NV>,
     {
-        if self.duration.is_none() && !E::STOPS {
+        if self.duration.is_none() && !E::STOPS && !matches!(self.samples, Samples::At(_)) {
             return Err(Error::Endless);
         }
         let mut run = self.begin()?;
@@ -249,18 +288,18 @@ where
     }
 
     fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
-        let Self { system, method, events, start, duration, every, .. } = self;
+        let Self { system, method, events, start, duration, samples, .. } = self;
         let system = System::new(system.mechanism, inputs);
-        Simulation { system, method, events, start, duration, every, progress: None, over: false }
+        Simulation { system, method, events, start, duration, samples, progress: None, over: false }
     }
 
     fn with_event<G, A>(
         self,
         event: Event<T, G, A>,
     ) -> Simulation<'m, M, T, I, S, With<E, T, G, A>, NQ, NV, NU> {
-        let Self { system, method, events, start, duration, every, .. } = self;
+        let Self { system, method, events, start, duration, samples, .. } = self;
         let events = (events, event);
-        Simulation { system, method, events, start, duration, every, progress: None, over: false }
+        Simulation { system, method, events, start, duration, samples, progress: None, over: false }
     }
 }
 
@@ -279,7 +318,7 @@ where
             events: self.events.clone(),
             start: self.start,
             duration: self.duration,
-            every: self.every,
+            samples: self.samples,
             progress: self.progress.clone(),
             over: self.over,
         }
@@ -297,7 +336,7 @@ where
             .field("start", &self.start)
             .field("method", &self.method)
             .field("duration", &self.duration)
-            .field("sample_every", &self.every)
+            .field("samples", &self.samples)
             .finish_non_exhaustive()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::clock::{Clock, after};
 use super::event::together;
-use super::{Events, Flow, Hit, Sample, Simulation, Undefined, not_negative, positive};
+use super::{Events, Flow, Hit, Sample, Samples, Simulation, Undefined, not_negative, positive};
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
@@ -89,7 +89,7 @@ where
         }
         self.method.check()?;
         self.duration.map_or(Ok(()), |duration| not_negative("the duration", duration))?;
-        self.every.map_or(Ok(()), |interval| positive("the sampling interval", interval))?;
+        self.check_samples()?;
         self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
         let start = self.start.finite()?;
         let far = |a: T, b: T| {
@@ -114,7 +114,7 @@ where
         }
         self.events.begin(&node).map_err(|reason| failure(reason, t))?;
         Ok(Progress {
-            clock: Clock::new(self.duration, self.every, self.system.inputs.period()),
+            clock: self.clock(),
             node,
             elapsed: 0.0,
             ahead: (0.0, node.t),
@@ -154,15 +154,58 @@ where
         run.stopped || run.clock.end().is_some_and(|end| run.elapsed >= end)
     }
 
+    fn check_samples(&self) -> Result<(), Error> {
+        match self.samples {
+            Samples::Steps => Ok(()),
+            Samples::Every(interval) => positive("the sampling interval", interval),
+            Samples::At(times) => {
+                let Some(first) = times.first() else {
+                    return self.duration.map_or(Err(Error::Endless), |_| Ok(()));
+                };
+                not_negative("the time from the start to the first sample", *first - self.start.t)?;
+                let mut pairs = times.iter().zip(times.iter().skip(1));
+                pairs.try_for_each(|(a, b)| positive("the time between samples", *b - *a))
+            }
+        }
+    }
+
+    fn clock(&self) -> Clock {
+        let (every, last) = match self.samples {
+            Samples::Steps => (None, None),
+            Samples::Every(interval) => (Some(interval), None),
+            Samples::At(times) => (None, times.last().map(|last| *last - self.start.t)),
+        };
+        Clock::new(self.duration.or(last), every, self.system.inputs.period())
+    }
+
+    /// Seconds from the start to a time that was asked for.
+    fn since_start(&self, t: &T) -> f64 {
+        to_f64(*t) - to_f64(self.start.t)
+    }
+
+    /// When the next sample is due; `None` if every step is one. Behind the last one that was asked for, at the end.
+    fn next_due(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+        let Samples::At(times) = self.samples else { return run.clock.sample(run.sample) };
+        let end = run.clock.end().unwrap_or(f64::INFINITY);
+        let due = usize::try_from(run.sample).ok().and_then(|k| times.get(k));
+        Some(due.map_or(end, |t| self.since_start(t).min(end)))
+    }
+
     /// The time at an instant of the run.
     fn time(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
+        if let Samples::At(times) = self.samples
+            && let Some(asked) = usize::try_from(run.sample).ok().and_then(|k| times.get(k))
+            && self.since_start(asked) == elapsed
+        {
+            return *asked;
+        }
         let end = self.duration.filter(|_| run.clock.end() == Some(elapsed));
         end.map_or_else(|| after(self.start.t, elapsed), |duration| self.start.t + duration)
     }
 
     /// Where the next step must end at the latest.
     fn next_stop(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
-        let sample = run.clock.sample(run.sample).filter(|_| S::FIXED);
+        let sample = self.next_due(run).filter(|_| S::FIXED);
         let stops = [run.clock.end(), run.clock.control(run.control), sample];
         stops.into_iter().flatten().reduce(f64::min)
     }
@@ -170,7 +213,7 @@ where
     /// Between two steps: renews the inputs, emits the node if it is a sample, otherwise takes a step.
     fn at_node(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) -> Due<T, NQ, NV, NU> {
         self.renew(run);
-        let due = run.clock.sample(run.sample).map_or(!run.shown, |sample| run.elapsed >= sample);
+        let due = self.next_due(run).map_or(!run.shown, |sample| run.elapsed >= sample);
         if due {
             run.sample += 1;
             run.shown = true;
@@ -181,7 +224,7 @@ where
         let stop = self.next_stop(run);
         let until = stop.map(|stop| constant(stop - run.elapsed));
         // Samples that no step ends on are interpolated.
-        let sample = run.clock.sample(run.sample).filter(|_| !S::FIXED);
+        let sample = self.next_due(run).filter(|_| !S::FIXED);
         let within = sample.is_some_and(|sample| stop.is_none_or(|stop| sample < stop));
         let dense = E::COUNT > 0;
         let (origin, start) = (run.node.t, run.node.timed(T::zero()));
@@ -190,7 +233,7 @@ where
         let arrived = stop.filter(|_| until == Some(step.end.t));
         let elapsed = arrived.unwrap_or_else(|| run.elapsed + to_f64(step.end.t));
         run.ahead = (elapsed, self.time(run, elapsed));
-        if dense || run.clock.sample(run.sample).is_some_and(|sample| sample < elapsed) {
+        if dense || self.next_due(run).is_some_and(|sample| sample < elapsed) {
             (run.step, run.cursor, run.hit) = (Some(step), T::zero(), None);
         } else {
             self.go_ahead(run, &step);
@@ -222,13 +265,14 @@ where
         let length = run.ahead.0 - run.elapsed;
         let event = run.hit.map(|hit| (hit, run.elapsed + to_f64(hit.theta * step.end.t)));
         let limit = event.map_or(run.ahead.0, |(_, elapsed)| elapsed);
-        if let Some(due) = run.clock.sample(run.sample).filter(|due| *due < limit) {
+        if let Some(due) = self.next_due(run).filter(|due| *due < limit) {
+            let t = self.time(run, due);
             run.sample += 1;
             if run.quiet {
                 return Ok(None);
             }
             let theta = constant((due - run.elapsed) / length);
-            let state = self.state(run.node.t, step, theta).timed(self.time(run, due));
+            let state = self.state(run.node.t, step, theta).timed(t);
             let state = self.on_constraints(state)?;
             return Ok(Some(self.sample(state, None)));
         }

@@ -423,3 +423,44 @@ fn single_precision_keeps_time() {
         assert!((end - 100.0).abs() < 0.1, "{end}");
     }
 }
+
+/// An oscillator looked at when one likes, by an adaptive method, which interpolates, and by one with equal steps.
+fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
+    let (start, looked) = (2.0, [2.0, 2.013, 2.5, 2.500_000_1, 5.75]);
+    let mass = oscillator::<f64>();
+    let run = simulate(&mass).from([1.0], [0.0]).start_at(start).method(method);
+    let exact = |sample: &Sample<f64, 1, 1, 1>| (sample.q[0] - (sample.t - start).cos()).abs();
+    let samples: Vec<_> = run.clone().sample_at(&looked).map(Result::unwrap).collect();
+    assert_eq!(samples.iter().map(|sample| sample.t).collect::<Vec<_>>(), looked);
+    assert!(samples.iter().all(|sample| exact(sample) < tolerance), "{samples:?}");
+    let end = run.clone().sample_at(&looked).finish().unwrap();
+    assert!(end.t == 5.75 && exact(&end) < tolerance);
+    // With a duration its end is a sample, too, and what lies beyond is none; the start is one if it is asked for.
+    for (duration, expected) in [(4.0, &[2.013, 5.75, 6.0][..]), (3.0, &[2.013, 5.0][..])] {
+        let run = run.clone().sample_at(&[2.013, 5.75]).duration(duration);
+        assert_eq!(run.map(|sample| sample.unwrap().t).collect::<Vec<_>>(), expected);
+    }
+    // In the order of time with events.
+    let run = run.sample_at(&[2.5, 4.0]).event(Crossing::Either, |_, q, _| q[0]);
+    let times: Vec<f64> = run.map(|sample| sample.unwrap().t).collect();
+    assert!(times.len() == 3 && (times[1] - start - core::f64::consts::FRAC_PI_2).abs() < 1e-4, "{times:?}");
+}
+
+#[test]
+fn samples_come_when_they_are_asked_for() {
+    looked_at(DormandPrince::new(), 1e-7);
+    looked_at(Rk4::step(1e-2), 1e-8);
+}
+
+#[test]
+fn times_of_samples_increase() {
+    let mass = oscillator::<f64>();
+    let fails = |times: &[f64]| simulate(&mass).start_at(1.0).sample_at(times).finish().unwrap_err();
+    let said = |times: &[f64]| std::string::ToString::to_string(&fails(times));
+    let first = "the time from the start to the first sample must be finite and positive, found -0.5";
+    assert_eq!(said(&[0.5, 2.0]), first);
+    assert_eq!(said(&[1.0, 3.0, 2.0]), "the time between samples must be finite and positive, found -1");
+    assert_eq!(said(&[1.0, 1.0]), "the time between samples must be finite and positive, found 0");
+    assert!(said(&[1.0, f64::NAN]).ends_with("found NaN") && said(&[f64::INFINITY]).ends_with("found inf"));
+    assert_eq!(fails(&[]), Error::Endless);
+}
