@@ -1,6 +1,7 @@
 //! Bindings in their order.
 
 use super::pieces::{Piece, Statement};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Most bindings of a block.
@@ -16,19 +17,16 @@ pub fn write_statements(out: &mut String, statements: &[Statement], outputs: &[P
     }
     // The last block that needs each value decides whether it leaves its own.
     let blocks: Vec<&[Statement]> = statements.chunks(BLOCK).collect();
-    let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
-    let mut last_need = vec![0; size];
-    for (b, block) in blocks.iter().enumerate() {
-        for need in block.iter().flat_map(|s| &s.needs) {
-            last_need[*need] = b;
-        }
-    }
-    for need in outputs.iter().flat_map(|p| &p.needs) {
-        last_need[*need] = blocks.len();
-    }
+    let given = outputs.iter().flat_map(|p| &p.needs).map(|need| (*need, blocks.len()));
+    let within = blocks
+        .iter()
+        .enumerate()
+        .flat_map(|(b, block)| block.iter().flat_map(|s| &s.needs).map(move |need| (*need, b)));
+    // Sines and cosines stand before the blocks: they are needed, but bound by none.
+    let last_need: BTreeMap<usize, usize> = within.chain(given).collect();
     // What leaves a block is declared before it: as the value of the block it would be bound twice, and passed in a tuple.
     for (b, block) in blocks.iter().enumerate() {
-        let leaves = |s: &&Statement| s.names.iter().any(|k| last_need[*k] > b);
+        let leaves = |s: &&Statement| s.names.iter().any(|k| last_need.get(k).is_some_and(|last| *last > b));
         let names: Vec<String> =
             block.iter().filter(leaves).flat_map(|s| &s.names).map(|k| format!("t{k}")).collect();
         match names.as_slice() {

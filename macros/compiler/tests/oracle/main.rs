@@ -1,11 +1,12 @@
 //! An oracle that shares nothing with the compiler: Kane's equations of random mechanisms in numbers, by Taylor series in
 //! time and imaginary steps, against what the generated programs compute. Trees of every joint, with every base, with
 //! springs, dashpots, inerters, attraction and dry friction between bodies and the ground, on coordinates, along ropes and
-//! cables; alike limbs; masses over many powers of ten; angles that
-//! miss those of a plain machine by rounding. Random URDF files with joints of every type, by the same motions.
+//! cables; alike limbs; masses over many powers of ten; angles that miss those of a plain machine by rounding. Random URDF files
+//! with joints of every type, by the same motions. Random mechanisms of everything that the language has, which compile.
 
 mod combinations;
 mod combined;
+mod features;
 mod files;
 mod jet;
 mod kane;

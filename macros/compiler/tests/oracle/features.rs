@@ -1,0 +1,82 @@
+//! Random mechanisms of everything that the language has at once. Each compiles, or is answered as a mistake of its author's: never
+//! as one of the compiler's own, and every value that generated code names is there.
+
+mod source;
+
+use crate::seeds;
+use linkwork_compiler::expand;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// What a function's text binds and what it names, of the values `t0`, `t1`, ….
+fn values(text: &str) -> BTreeSet<&str> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.split(|c| !is_word(c))
+        .filter(|word| {
+            word.strip_prefix('t').is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+        })
+        .collect()
+}
+
+/// The values that functions name and do not bind: a binding stands between `let` and `=` or `;`, or before ` = ` at the start of a line.
+fn unbound(text: &str) -> Vec<String> {
+    let mut missing = Vec::new();
+    for function in text.split("fn ").skip(1) {
+        let mut bound = BTreeSet::new();
+        for line in function.lines().map(str::trim_start) {
+            let statement = line.strip_prefix("let ").unwrap_or(line);
+            let is_binding = line.starts_with("let ") || line.starts_with('t') || line.starts_with('(');
+            if let Some(left) = statement.split([';', '=']).next().filter(|_| is_binding) {
+                bound.extend(values(left));
+            }
+        }
+        missing.extend(
+            values(function)
+                .difference(&bound)
+                .map(|name| format!("{name} in {}", function.lines().next().unwrap_or(""))),
+        );
+    }
+    missing
+}
+
+/// The text of the generated code, or of the messages.
+fn expanded(arguments: &str, item: &str) -> String {
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let emitted = expand(tokens(arguments), tokens(item), Path::new(""));
+    format!("{}{}", emitted.tokens, emitted.text)
+}
+
+#[test]
+fn combinations_compile_or_are_answered() {
+    let mut compiled = 0;
+    let all = seeds(60);
+    for seed in all.clone() {
+        let (arguments, item) = source::source(seed);
+        let text = expanded(&arguments, &item);
+        assert!(!text.contains("Linkwork made a mistake"), "seed {seed}\n#[mechanism({arguments})]\n{item}");
+        let missing = unbound(&text);
+        assert!(missing.is_empty(), "seed {seed}: {missing:?}\n#[mechanism({arguments})]\n{item}");
+        compiled += u64::from(!text.contains("compile_error"));
+    }
+    assert!(4 * compiled > all.end - all.start, "only {compiled} compile");
+}
+
+/// Long bodies are written in blocks, before which sines and cosines stand: some are results as they are.
+#[test]
+fn sines_of_long_bodies_may_be_results() {
+    let text = expanded(
+        "gravity = -9.81 * y, derivatives",
+        "pub struct Any {
+            mass: f64,
+            #[body(mass = 0.791, com = [1.53, -1.02, 0.536], inertia = cylinder(0.791, 0.1, 0.3, y))] bolt: Body,
+            #[joint(ground -> bolt, about = z, pitch = 0.1)] thread: Screw,
+            #[body(mass = 1.05, inertia = rod(1.05, 1, x))] bob: Body,
+            #[joint(ground -> bob)] ball: Ball,
+            #[body(mass = mass, com = [1.08, -0.428, 0.674], inertia = rod(mass, 1, x))] arm: Body,
+            #[joint(bob.at([0.469, -0.852, 0.326]) -> arm, about = unit([1, 2, 3]))] hinge: Pin,
+        }",
+    );
+    assert!(!text.contains("compile_error"), "{text}");
+    assert!(values(&text).len() > 200, "bodies are not long");
+    assert_eq!(unbound(&text), Vec::<String>::new());
+}
