@@ -390,7 +390,7 @@ fn printed<'g>(
             let named = speeds.map_or(model, |speeds| &speeds.model);
             equations.map(|e| equations::written(named, &e)).or_else(|| {
                 refuse(
-                    "the equations of this mechanism have thousands of terms",
+                    "the equations of this mechanism have thousands of terms, or more symbols and functions than are multiplied out",
                     "`equations = structure` says how they are made up; the generated functions do not multiply them out",
                 )
             })
@@ -447,7 +447,8 @@ fn written<'g>(
     let limits = if speeds.is_some() { Limits::READABLE_IN_SPEEDS } else { Limits::READABLE };
     let equations = equations::derive(model, joints, mass, speeds, &limits);
     let named = speeds.map_or(model, |speeds| &speeds.model);
-    equations.map_or_else(Written::default, |e| equations::written(named, &e))
+    let inertia = || equations::derive_inertia(model, joints, mass, &limits).filter(|_| speeds.is_none());
+    equations.or_else(inertia).map_or_else(Written::default, |e| equations::written(named, &e))
 }
 
 /// A step from link to link.

@@ -54,7 +54,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
                     "The structure of the equations of motion as text, and how to ask for all of their terms."
                 }
                 false => {
-                    "The equations of motion as text, in the names of the mechanism, with the Lagrangian, the Hamiltonian or the Routhian before them."
+                    "The equations of motion as text, in the names of the mechanism, with the Lagrangian, the kinetic energy, the Hamiltonian or the Routhian before them."
                 }
             },
         ),
@@ -105,7 +105,7 @@ fn structure(i: &Interface<'_>) -> Written {
     }
     plain.push_str(match i.facts.requests.equations {
         Printed::Structure => "\nThe argument `equations = structure` leaves the terms out.\n",
-        _ => "\nThe terms are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]`\nwrites them all the same.\n",
+        _ => "\nThe terms are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]`\nwrites up to some thousand; `kane`, `hamilton` and `routh` print other forms where there are such.\n",
     });
     latex.push_str("\n\\end{aligned}\n");
     Written { plain, latex, mathml: String::new() }

@@ -78,7 +78,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
                 "`M(q) v̇ + h(q, v) = τ`, whose terms are left out by `equations = structure`."
             }
             false => {
-                "`M(q) v̇ + h(q, v) = τ`, whose terms are too many to be read; `equations = lagrange` among the attribute's arguments writes them all the same."
+                "`M(q) v̇ + h(q, v) = τ`, whose terms are too many to be read; `equations = lagrange` among the attribute's arguments writes up to some thousand."
             }
         };
         let _ = writeln!(text, "\n# Structure\n\n{about}\n");

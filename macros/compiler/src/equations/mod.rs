@@ -4,11 +4,11 @@
 
 use crate::algebra::factor::without_noise;
 use crate::algebra::normal::Normal;
-use crate::algebra::polynomial::{Polynomial, Rank, Ring};
+use crate::algebra::polynomial::{Atom, Polynomial, Rank, Ring};
 use crate::algebra::trigonometry::simplified;
 use crate::algebra::unit::on_unit_sphere;
 use crate::expr::eval::Tape;
-use crate::expr::{Expr, Function, Node, Symbol};
+use crate::expr::{Expr, Function, Node, Symbol, Vec3};
 use crate::kinematics::Joint;
 use crate::kinematics::speeds::quaternions;
 use crate::mechanics::crba::Matrix;
@@ -61,6 +61,8 @@ pub struct Equations {
     pub forces: Vec<Polynomial>,
     /// With declared speeds: the velocities of joints that they replace, by index, as they follow from the speeds.
     pub rates: Vec<(usize, Polynomial)>,
+    /// Forces stand as a name for each velocity, and the Lagrangian is the kinetic energy alone.
+    pub without_forces: bool,
 }
 
 /// The equations of a mechanism; `None` where they would be longer than the limits. Their length decides, as soon as it is known.
@@ -123,8 +125,42 @@ pub fn derive<'g>(
     for (k, speeds) in replaced.into_iter().filter_map(|k| Some((k, speeds?))) {
         rates.push((k, normal.of(speeds.rates[k])?));
     }
-    let found = Equations { ring: Ring::new(rank), lagrangian, motion, forces, rates };
+    let found = Equations { ring: Ring::new(rank), lagrangian, motion, forces, rates, without_forces: false };
     shortened(Short::new(normal.ring, quaternions(model), limits), found)
+}
+
+/// The equations of a mechanism without constraints whose forces are too long to be read: inertia alone, of a body in space
+/// Euler's equations. `None` where that is too long as well.
+pub fn derive_inertia<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &Matrix<'g>,
+    limits: &Limits,
+) -> Option<Equations> {
+    if !model.constraints.is_empty() {
+        return None;
+    }
+    let zero = model.graph.zero();
+    let bare = Model {
+        gravity: Vec3([zero; 3]),
+        springs: Vec::new(),
+        dashpots: Vec::new(),
+        frictions: Vec::new(),
+        potentials: Vec::new(),
+        dissipations: Vec::new(),
+        loads: Vec::new(),
+        acceleration_forces: Vec::new(),
+        passive: None,
+        inputs: Vec::new(),
+        ..model.clone()
+    };
+    let mut found = derive(&bare, joints, mass, None, limits)?;
+    for (k, force) in found.forces.iter_mut().enumerate() {
+        let symbol = found.ring.atom(Atom::Symbol(Quantity::Force(k).symbol()))?;
+        *force = Polynomial::single(symbol, 1.0);
+    }
+    found.without_forces = true;
+    Some(found)
 }
 
 /// `h`, or what stands for it with declared speeds.
@@ -211,7 +247,7 @@ impl Short {
 
 /// Shortened, and few enough terms.
 fn shortened(mut short: Short, found: Equations) -> Option<Equations> {
-    let Equations { lagrangian, motion, forces, rates, .. } = found;
+    let Equations { lagrangian, motion, forces, rates, without_forces, .. } = found;
     let all = || motion.iter().chain(&forces).chain([&lagrangian]);
     if all().map(|p| p.terms.len()).sum::<usize>() > short.long {
         return None;
@@ -220,7 +256,7 @@ fn shortened(mut short: Short, found: Equations) -> Option<Equations> {
     let motion = motion.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
     let forces = forces.iter().map(|p| short.of(p)).collect::<Option<_>>()?;
     let rates = rates.iter().map(|(k, p)| Some((*k, short.of(p)?))).collect::<Option<_>>()?;
-    Some(Equations { ring: short.ring, lagrangian, motion, forces, rates })
+    Some(Equations { ring: short.ring, lagrangian, motion, forces, rates, without_forces })
 }
 
 fn rank(symbol: Symbol) -> Rank {

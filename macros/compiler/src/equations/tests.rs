@@ -10,6 +10,7 @@ use crate::mechanics::{crba, lagrange};
 use crate::mechanism::{Chart, Motion, Pose};
 use std::path::Path;
 
+mod inertia;
 mod kane;
 mod latex;
 mod linear;
@@ -60,6 +61,7 @@ fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
         Quantity::Input(k) => u[k],
         Quantity::Given(k) => multipliers[k],
         Quantity::Time => 0.7,
+        Quantity::Force(k) => 0.3 * k as f64 - 1.0,
         other => panic!("{other:?} in the equations"),
     }
 }
@@ -81,6 +83,7 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
         .chain(all(model.nv(), Quantity::Acceleration))
         .chain(all(model.nu(), Quantity::Input))
         .chain(all(model.constraints.len(), Quantity::Given))
+        .chain(all(model.nv(), Quantity::Force))
         .chain([Quantity::Time]);
     let named: Vec<(String, Symbol)> = quantities
         .map(|q| {
@@ -94,8 +97,9 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
     }
 }
 
-/// The equations of a printed text: both sides of each.
+/// The equations of a printed text, before what the names mean: both sides of each.
 fn printed(text: &str) -> Vec<(String, String)> {
+    let (text, _) = text.trim_end().rsplit_once("\n\n").expect("a legend");
     let joined = text.replace("\n    ", " ");
     let lines = joined.lines().filter_map(|line| line.split_once(" = "));
     lines.map(|(left, right)| (left.to_string(), right.to_string())).collect()

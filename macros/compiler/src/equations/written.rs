@@ -57,7 +57,8 @@ fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     };
     let lines = Lines::of(equations, Plain { name: &name });
     let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
-    let mut out = line(&format!("L = {}", lines.lagrangian));
+    let energy = if equations.without_forces { 'T' } else { 'L' };
+    let mut out = line(&format!("{energy} = {}", lines.lagrangian));
     out.push('\n');
     for (k, rate) in &lines.rates {
         let (name, dots) = rate_name(model, *k);
@@ -68,7 +69,9 @@ fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
         out += &line(&format!("{motion} = {force}"));
     }
     out.push('\n');
-    legend(model, rates).iter().fold(out, |out, sentence| out + &filled(sentence) + "\n")
+    legend(model, equations.without_forces, rates)
+        .iter()
+        .fold(out, |out, sentence| out + &filled(sentence) + "\n")
 }
 
 /// The canonical equations in all ways of writing.
@@ -112,12 +115,23 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     Written { plain, latex, mathml: page(&lines) }
 }
 
+/// The name of a generalized force, which nothing else has.
+fn force_name(model: &Model<'_>, k: usize) -> String {
+    format!("{}{}", free_letter(model, 'Q'), k + 1)
+}
+
+/// A letter, repeated until no parameter and no coordinate begins with it.
+fn free_letter(model: &Model<'_>, letter: char) -> String {
+    let mut found = letter.to_string();
+    while model.parameters.iter().chain(&model.configuration).any(|name| name.starts_with(&found)) {
+        found.push(letter);
+    }
+    found
+}
+
 /// Names of determinants that nothing else has.
 pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
-    let mut letter = "D".to_string();
-    while model.parameters.iter().chain(&model.configuration).any(|name| name.starts_with(&letter)) {
-        letter.push('D');
-    }
+    let letter = free_letter(model, 'D');
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
 }
 
@@ -163,12 +177,14 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
     };
-    let latex = Lines::of(equations, Latex { name: &name }).equations("\\mathcal{L}", &|k| {
-        Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
-    });
-    let mathml = Lines::of(equations, MathMl { name: &name }).equations("<mi>L</mi>", &|k| {
-        MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
-    });
+    let (energy, of_mathml) = match equations.without_forces {
+        true => ("T", "<mi>T</mi>"),
+        false => ("\\mathcal{L}", "<mi>L</mi>"),
+    };
+    let latex = Lines::of(equations, Latex { name: &name })
+        .equations(energy, &|k| Latex { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
+    let mathml = Lines::of(equations, MathMl { name: &name })
+        .equations(of_mathml, &|k| MathMl { name: &|_| left(k) }.symbol(Quantity::Velocity(k).symbol(), 1));
     (aligned(&latex), page(&mathml))
 }
 
@@ -219,24 +235,23 @@ pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String
         }
         Quantity::Input(k) => (model.inputs[k].0.clone(), 0),
         Quantity::Time => ("t".to_string(), 0),
-        Quantity::Force(k) => (format!("tau{k}"), 0),
+        Quantity::Force(k) => (force_name(model, k), 0),
         Quantity::Given(k) => (format!("lambda{}", k + 1), 0),
         _ => (format!("s{}", symbol.0), 0),
     }
 }
 
 /// What the marks mean, in sentences.
-fn legend(model: &Model<'_>, rates: &[bool]) -> Vec<String> {
+fn legend(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String> {
+    let energy = if without_forces { "T is kinetic energy" } else { "L is kinetic less potential energy" };
     let rates = match rates.iter().position(|is_rate| *is_rate) {
         Some(k) => {
             let x = &model.velocities[k].0;
-            format!(
-                "L is kinetic less potential energy; {x}' and {x}'' are the first and second rates of {x}."
-            )
+            format!("{energy}; {x}' and {x}'' are the first and second rates of {x}.")
         }
         None => {
             let w = &model.velocities[0].0;
-            format!("L is kinetic less potential energy; {w}' is the rate of {w}.")
+            format!("{energy}; {w}' is the rate of {w}.")
         }
     };
     let speeds = model.speeds.as_ref().map(|speeds| {
@@ -261,5 +276,16 @@ fn legend(model: &Model<'_>, rates: &[bool]) -> Vec<String> {
             Some(format!("{multipliers} are the multipliers of the constraints {all}, in this order."))
         }
     };
-    std::iter::once(rates).chain(speeds).chain(multipliers).collect()
+    let forces = without_forces.then(|| {
+        let names: Vec<String> = (0..model.nv()).map(|k| force_name(model, k)).collect();
+        let (are, terms) = match names.as_slice() {
+            [_] => ("is the generalized force", "its terms"),
+            _ => ("are the generalized forces", "their terms"),
+        };
+        format!(
+            "{} {are} of gravity, force elements and inputs; {terms} are too many to be read. `equations = lagrange` among the arguments of `#[mechanism]` writes up to some thousand.",
+            all_of(&names)
+        )
+    });
+    std::iter::once(rates).chain(speeds).chain(multipliers).chain(forces).collect()
 }

@@ -1,0 +1,69 @@
+//! Inertia alone, where forces are too long to be read; and what is said where nothing is written.
+
+use super::*;
+use quote::ToTokens;
+
+/// A satellite in a central field, whose forces go with the fifth power of the distance.
+const SATELLITE: &str = "struct Satellite { mu: f64, m: f64, a: f64, b: f64, c: f64,
+    #[body(mass = m, inertia = diagonal(a, b, c))] body: Body,
+    #[joint(ground -> body)] pose: Free,
+    #[acts(on = body, about = body.x)] wheel: Torque,
+    #[acts(between = (ground, body), mu = mu)] pull: Gravity }";
+
+/// Its left sides are those of a free body, which are tested against both derivations; its right sides are named.
+#[test]
+fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
+    let text = with_model("0 * z", SATELLITE, |model| {
+        let joints = crate::kinematics::joints(&model);
+        let mass = crba::mass_matrix(&model, &joints);
+        assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());
+        let e = derive_inertia(&model, &joints, &mass, &Limits::READABLE).expect("short");
+        check_text(&model, &e);
+        crate::equations(&model)
+    });
+    let free = with_model("g * z", FREE, |model| {
+        let mut model = model;
+        model.gravity = Vec3([model.graph.zero(); 3]);
+        crate::equations(&model)
+    });
+    let (found, expected) = (printed(&text), printed(&free));
+    assert_eq!(found.len(), 7);
+    for (k, (found, expected)) in found.iter().zip(&expected).enumerate().skip(1) {
+        assert_eq!((&found.0, &found.1), (&expected.0, &format!("Q{k}")));
+    }
+    assert!(text.contains("\na pose.wx' + (c - b) pose.wy pose.wz = Q4\n"), "{text}");
+    let said = text.replace('\n', " ");
+    assert!(
+        said.contains("Q6 are the generalized forces of gravity, force elements and inputs; their terms"),
+        "{text}"
+    );
+    assert!(said.contains("`equations = lagrange` among the arguments"), "{text}");
+}
+
+/// The constant `EQUATIONS` of a mechanism.
+fn constant(arguments: &str, item: &str) -> String {
+    let emitted = crate::expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    let file = syn::parse_file(&emitted.text).expect("a file");
+    let constants = file.items.iter().filter_map(|item| match item {
+        syn::Item::Impl(block) => Some(&block.items),
+        _ => None,
+    });
+    let found = constants.flatten().find_map(|item| match item {
+        syn::ImplItem::Const(c) if c.ident == "EQUATIONS" => match &c.expr {
+            syn::Expr::Index(index) => Some(index.expr.to_token_stream().to_string()),
+            _ => None,
+        },
+        _ => None,
+    });
+    found.expect("the constant")
+}
+
+#[test]
+fn what_is_left_out_is_said() {
+    let text = constant("gravity = -9.81 * z", SKEW);
+    for part in ["M(q) v' + h(q, v) = tau", "too many to be read", "`equations = lagrange`", "`kane`"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let text = constant("gravity = -9.81 * z, equations = structure", CART_POLE);
+    assert!(text.contains("`equations = structure` leaves the terms out"), "{text}");
+}
