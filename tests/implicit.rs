@@ -449,11 +449,15 @@ fn lanes_have_derivatives() {
     });
     let u = SVector::from([splat(0.3)]);
     let (by_q, by_v, by_u) = lanes.acceleration_derivatives(splat(0.0), &q, &v, &u).unwrap();
+    let linear = at(&lanes, splat(0.0)).linear_motion(&q, &v, &u);
+    assert_eq!((linear.by_q, linear.by_v, linear.by_u), (by_q, by_v, by_u));
     let end = simulate(&lanes).from(q, v).method(Rosenbrock::step(splat(1e-3))).duration(splat(0.1));
     let end = end.finish().unwrap();
     for k in 0..4 {
         let (q, v) = of(k);
         let alone = Mechanism::acceleration_derivatives(&cart, &q, &v, &[0.3].into()).unwrap();
+        let motion = cart.linear_motion(&q, &v, &[0.3].into());
+        assert_eq!(motion.acceleration, linear.acceleration.map(|x| x.0[k]));
         assert_eq!(alone.0, by_q.map(|x| x.0[k]));
         assert_eq!(alone.1, by_v.map(|x| x.0[k]));
         assert_eq!(alone.2, by_u.map(|x| x.0[k]));

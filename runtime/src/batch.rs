@@ -12,6 +12,7 @@
 //! single state has lanes of its own, for alike limbs or for columns of a matrix.
 
 mod columns;
+mod differentiated;
 mod error;
 mod evaluate;
 mod lanewise;

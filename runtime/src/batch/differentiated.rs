@@ -1,0 +1,111 @@
+//! Derivatives of several states in lanes: those of each.
+
+use super::{Batch, Lanewise};
+use crate::blocks::zeros;
+use crate::derivatives::{ByMotion, RheonomicDerivatives};
+use crate::lanes::{lane, set_lane};
+use crate::{Lanes, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// A result that several states have side by side.
+trait Laned<T: Real, const L: usize> {
+    /// The results of all.
+    type All;
+
+    fn none() -> Self::All;
+
+    /// Puts it into lane `k`.
+    fn put(self, all: &mut Self::All, k: usize);
+}
+
+impl<T: Real, const L: usize, const R: usize, const C: usize> Laned<T, L> for SMatrix<T, R, C> {
+    type All = SMatrix<Lanes<T, L>, R, C>;
+
+    fn none() -> Self::All {
+        zeros()
+    }
+
+    fn put(self, all: &mut Self::All, k: usize) {
+        set_lane(all, k, &self);
+    }
+}
+
+impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>> Laned<T, L> for (A, B) {
+    type All = (A::All, B::All);
+
+    fn none() -> Self::All {
+        (A::none(), B::none())
+    }
+
+    fn put(self, all: &mut Self::All, k: usize) {
+        self.0.put(&mut all.0, k);
+        self.1.put(&mut all.1, k);
+    }
+}
+
+impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> Laned<T, L> for (A, B, C) {
+    type All = (A::All, B::All, C::All);
+
+    fn none() -> Self::All {
+        (A::none(), B::none(), C::none())
+    }
+
+    fn put(self, all: &mut Self::All, k: usize) {
+        self.0.put(&mut all.0, k);
+        self.1.put(&mut all.1, k);
+        self.2.put(&mut all.2, k);
+    }
+}
+
+/// What each state has.
+fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::All {
+    let mut all = R::none();
+    for k in 0..L {
+        of(k).put(&mut all, k);
+    }
+    all
+}
+
+/// Functions with `t` and the vectors that follow it.
+macro_rules! of_each {
+    ($($name:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
+        fn $name(&self, $($time: Self::Scalar,)? $($argument: &SVector<Self::Scalar, $of>),*) -> $result {
+            each(|k| RheonomicDerivatives::$name(self.mechanism, $($time.0[k],)? $(&lane($argument, k)),*))
+        }
+    )+};
+}
+
+type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
+type Pair<T, const NV: usize> = (Square<T, NV>, Square<T, NV>);
+
+#[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
+impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> RheonomicDerivatives<NQ, NV, NU>
+    for Lanewise<'_, M, L>
+where
+    M: Batch<NQ, NV, NU> + RheonomicDerivatives<NQ, NV, NU>,
+{
+    const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+
+    of_each! {
+        integrate_derivatives[](dv: NV) -> Pair<Self::Scalar, NV>;
+        tangent_rate_derivatives[](dv: NV, v: NV) -> Pair<Self::Scalar, NV>;
+        integrate_derivatives_at[](q: NQ, dv: NV) -> Pair<Self::Scalar, NV>;
+        displacement_rate_derivatives[](q: NQ, dv: NV, v: NV) -> ByMotion<Self::Scalar, NV, NV>;
+        turning[](q: NQ, v: NV) -> Square<Self::Scalar, NV>;
+        coriolis_matrix[t](q: NQ, v: NV) -> Square<Self::Scalar, NV>;
+        inverse_dynamics_derivatives[t](q: NQ, v: NV, a: NV) -> Pair<Self::Scalar, NV>;
+        generalized_forces_derivatives[t](q: NQ, v: NV, u: NU) -> ByMotion<Self::Scalar, NV, NU>;
+        generalized_momentum_derivatives[t](q: NQ, v: NV) -> Square<Self::Scalar, NV>;
+        momentum_rate_derivatives[t](q: NQ, v: NV) -> Pair<Self::Scalar, NV>;
+        forward_dynamics_derivatives[t](q: NQ, v: NV, tau: NV) -> ByMotion<Self::Scalar, NV, NV>;
+        forward_dynamics_to_first_order[t](q: NQ, v: NV, tau: NV) -> (SVector<Self::Scalar, NV>, ByMotion<Self::Scalar, NV, NV>);
+    }
+
+    /// Constraints of lanes are not at hand.
+    fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
+    where
+        V: crate::constraint::Visitor<Self::Scalar, NQ, NV, NU>,
+    {
+        None
+    }
+}
