@@ -321,6 +321,19 @@ pub fn add_multiple<T: Real, const R: usize, const C: usize>(
     }
 }
 
+/// `Σ s A` of several factors and matrices.
+#[inline]
+pub fn combined<T: Real, const R: usize, const C: usize, const N: usize>(
+    factors: &[T; N],
+    matrices: [&SMatrix<T, R, C>; N],
+) -> SMatrix<T, R, C> {
+    let mut sum = zeros();
+    for (s, matrix) in factors.iter().zip(matrices) {
+        add_multiple(&mut sum, *s, matrix);
+    }
+    sum
+}
+
 /// A matrix and its transpose become their mean: rounding must not grow from instant to instant.
 #[inline(never)]
 pub fn make_symmetric<T: Real, const N: usize>(m: &mut SMatrix<T, N, N>) {

@@ -47,6 +47,7 @@ mod curvature;
 mod explicit;
 mod implicit;
 mod parameters;
+mod plain;
 mod projected;
 mod projection;
 mod second;

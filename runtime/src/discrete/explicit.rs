@@ -1,6 +1,6 @@
 //! Explicit steps, whose derivatives are carried forwards through their stages.
 
-use super::{Chained, DifferentiableStep, Transition, implicit, projected};
+use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
 use crate::Real;
 use crate::blocks::{NearlyIdentity, add_multiple, add_product, product, zeros};
 use crate::constraint::ConstrainedDerivatives;
@@ -217,6 +217,9 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
+        if NQ == NV && !M::SPEEDS {
+            return Ok(plain::runge_kutta(&start, v, h));
+        }
         let v = Sensitive::velocity(v);
         let stage = |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
             let (displacement, v) = (rate.scaled(h), v.plus(h, acceleration));

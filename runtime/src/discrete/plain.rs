@@ -1,0 +1,107 @@
+//! A step of the classical Runge–Kutta method with its Jacobians where the rates of coordinates are velocities.
+//!
+//! Displacements are then sums of accelerations, and only these are carried from stage to stage. With the slopes
+//! `K = (∂a/∂q, ∂a/∂v, ∂a/∂u)` of the acceleration of a stage by the start, and `A_q`, `A_v`, `B` those by where it is evaluated,
+//! a stage at `q + s v + r a_i`, `v + s a_j` has `K = (A_q, A_v + s A_q, B) + r A_q K_i + s A_v K_j`: five products of matrices
+//! with slopes in a step.
+
+use super::Transition;
+use super::explicit::{Sensitive, Start};
+use crate::Real;
+use crate::blocks::{add_multiple, add_product, combined};
+use crate::derivatives::{RheonomicDerivatives, accelerated};
+use crate::private::constant;
+use nalgebra::{SMatrix, SVector};
+
+/// Slopes of a stage before, with what they are multiplied by.
+type Part<'a, T, const NV: usize, const NU: usize> = (T, &'a Sensitive<T, NV, NU>);
+
+impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
+    /// Adds a matrix times the slopes of another.
+    fn add_led(&mut self, by: &SMatrix<T, NV, NV>, other: &Self) {
+        add_product(&mut self.by_q, by, &other.by_q);
+        add_product(&mut self.by_v, by, &other.by_v);
+        add_product(&mut self.by_u, by, &other.by_u);
+    }
+}
+
+/// The acceleration `after` seconds after the start, with its slopes: at a velocity that accelerations `near` have changed, and at a
+/// displacement that those `far` have.
+fn stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    start: &Start<'_, M, T, NQ, NV, NU>,
+    v: &SVector<T, NV>,
+    after: T,
+    near: Option<Part<'_, T, NV, NU>>,
+    far: Option<Part<'_, T, NV, NU>>,
+) -> Sensitive<T, NV, NU>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    let (mut displacement, mut velocity) = (v * after, *v);
+    if let Some((s, near)) = near {
+        velocity += near.value * s;
+    }
+    if let Some((r, far)) = far {
+        displacement += far.value * r;
+    }
+    let q = start.mechanism.integrate(start.q, &displacement);
+    let (value, (by_q, by_v, by_u)) = accelerated(start.mechanism, start.t + after, &q, &velocity, start.u);
+    let mut found = Sensitive { value, by_q, by_v, by_u };
+    add_multiple(&mut found.by_v, after, &by_q);
+    if let Some((s, near)) = near {
+        found.add_led(&(by_v * s), near);
+    }
+    if let Some((r, far)) = far {
+        found.add_led(&(by_q * r), far);
+    }
+    found
+}
+
+/// The step of `h` seconds from a start with the velocity `v`.
+pub(super) fn runge_kutta<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    start: &Start<'_, M, T, NQ, NV, NU>,
+    v: &SVector<T, NV>,
+    h: T,
+) -> Transition<T, NQ, NV, NU>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    let half = h * constant(0.5);
+    let k1 = stage(start, v, T::zero(), None, None);
+    let k2 = stage(start, v, half, Some((half, &k1)), None);
+    let k3 = stage(start, v, half, Some((half, &k2)), Some((half * half, &k1)));
+    let k4 = stage(start, v, h, Some((h, &k3)), Some((h * half, &k2)));
+    // q⁺ = q + h v + h²/6 (a₁ + a₂ + a₃), v⁺ = v + h/6 (a₁ + 2 a₂ + 2 a₃ + a₄).
+    let sixth = h / constant(6.0);
+    let change = sum(sixth, [(1.0, &k1), (2.0, &k2), (2.0, &k3), (1.0, &k4)]);
+    let mut way = sum(h * sixth, [(1.0, &k1), (1.0, &k2), (1.0, &k3)]);
+    way.value += v * h;
+    let one = SMatrix::identity();
+    Transition {
+        q: start.mechanism.integrate(start.q, &way.value),
+        v: v + change.value,
+        q_by_q: way.by_q + one,
+        q_by_v: way.by_v + one * h,
+        q_by_u: way.by_u,
+        v_by_q: change.by_q,
+        v_by_v: change.by_v + one,
+        v_by_u: change.by_u,
+        chained: None,
+    }
+}
+
+/// `s Σ weight · slopes`.
+fn sum<T: Real, const NV: usize, const NU: usize, const N: usize>(
+    s: T,
+    terms: [(f64, &Sensitive<T, NV, NU>); N],
+) -> Sensitive<T, NV, NU> {
+    let weights = terms.map(|(weight, _)| s * constant(weight));
+    Sensitive {
+        value: combined(&weights, terms.map(|(_, k)| &k.value)),
+        by_q: combined(&weights, terms.map(|(_, k)| &k.by_q)),
+        by_v: combined(&weights, terms.map(|(_, k)| &k.by_v)),
+        by_u: combined(&weights, terms.map(|(_, k)| &k.by_u)),
+    }
+}
