@@ -3,10 +3,15 @@
 
 use crate::Real;
 use crate::arithmetic::dispatch::{Evaluate, dispatch};
-use crate::arithmetic::{Arithmetic, Compiled, Vector};
+use crate::arithmetic::{Arithmetic, Compiled};
 use crate::multiplication::{part, put};
 use core::array::{from_mut, from_ref};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
+
+mod nearly;
+mod small;
+
+pub use nearly::NearlyIdentity;
 
 /// `C += A B`. A function of its own for each size: a few dozen products written out one after another are longer than the
 /// instruction cache.
@@ -33,6 +38,9 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
     /// As many rows of four columns at a time as registers hold with room for what is added.
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, sum: &mut SMatrix<T, R, C>) {
+        if (4..=small::MOST).contains(&R) && K <= small::MOST {
+            return small::add_product::<A, T, R, K>(&mut sum.data.0, &self.a.data.0, &self.b.data.0);
+        }
         let (columns, a, b) = (&mut sum.data.0, rolled(&self.a.data.0), &self.b.data.0);
         if A::WIDE && R >= 8 {
             all_rows::<A, T, 8, R, K, C>(columns, a, b);
@@ -207,85 +215,6 @@ pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>)
     SMatrix::from_array_storage(ArrayStorage(turned))
 }
 
-/// A matrix with the columns and rows of the identity but for some neighbouring ones.
-pub struct NearlyIdentity<T, const N: usize> {
-    matrix: SMatrix<T, N, N>,
-    first: usize,
-    end: usize,
-}
-
-impl<T: Real, const N: usize> NearlyIdentity<T, N> {
-    /// Finds the columns of a matrix that are not those of the identity.
-    pub fn of(matrix: &SMatrix<T, N, N>) -> Self {
-        let (mut first, mut end) = (N, 0);
-        for (j, column) in matrix.data.0.iter().enumerate() {
-            let mut beyond = *column;
-            beyond.iter_mut().skip(j).take(1).for_each(|x| *x -= T::one());
-            // Without a way out early a column is compared at once.
-            if beyond.iter().fold(true, |zero, x| zero & (*x == T::zero())) {
-                continue;
-            }
-            (first, end) = (first.min(j), end.max(j + 1));
-            for (i, _) in beyond.iter().enumerate().filter(|(_, x)| **x != T::zero()) {
-                (first, end) = (first.min(i), end.max(i + 1));
-            }
-        }
-        Self { matrix: *matrix, first, end }
-    }
-
-    /// `Dᵀ`.
-    pub fn transposed(&self) -> Self {
-        let mut matrix = self.matrix;
-        for j in self.first..self.end {
-            for i in self.first..self.end {
-                if let (Some(to), Some(from)) = (matrix.get_mut((i, j)), self.matrix.get((j, i))) {
-                    *to = *from;
-                }
-            }
-        }
-        Self { matrix, ..*self }
-    }
-
-    /// `A D` in the place of `A`.
-    pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
-        let given = *a;
-        let some = self.first..self.end;
-        let from = given.data.0.get(some.clone()).unwrap_or(&[]);
-        for j in some {
-            let (Some(to), Some(factors)) = (a.data.0.get_mut(j), self.matrix.data.0.get(j)) else { break };
-            let mut sum = [T::zero(); R];
-            for (from, factor) in from.iter().zip(factors.iter().skip(self.first)) {
-                for (sum, x) in sum.iter_mut().zip(from) {
-                    *sum = Compiled::mul_add(*x, *factor, *sum);
-                }
-            }
-            *to = sum;
-        }
-    }
-
-    /// `D A` in the place of `A`.
-    pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
-        // Eight rows at a time, or those before the end: all others are zero in these columns.
-        let length = N.min(8);
-        for column in &mut a.data.0 {
-            let given = *column;
-            for from in (self.first..self.end).step_by(8) {
-                let start = from.min(N - length);
-                let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
-                for k in self.first..self.end {
-                    let (Some(factor), Some(own)) = (given.get(k), self.matrix.data.0.get(k)) else { break };
-                    sum = Compiled::mul_add(part(own, from), Compiled::splat(*factor), sum);
-                }
-                let kept = self.end.min(start + length);
-                let places = column.get_mut(from..kept).unwrap_or(&mut []);
-                for (place, sum) in places.iter_mut().zip(sum.numbers().iter().skip(from - start)) {
-                    *place = *sum;
-                }
-            }
-        }
-    }
-}
-
 /// `A B`, where most of `B` is zero.
 pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &SMatrix<T, R, K>,
@@ -307,6 +236,12 @@ pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>
 pub fn add_with_transpose<T: Real, const N: usize>(sum: &mut SMatrix<T, N, N>, s: T, b: &SMatrix<T, N, N>) {
     add_multiple(sum, s, b);
     add_multiple(sum, s, &transposed(b));
+}
+
+/// `A *= s`.
+#[inline]
+pub fn scale<T: Real, const R: usize, const C: usize>(matrix: &mut SMatrix<T, R, C>, s: T) {
+    matrix.data.0.as_flattened_mut().iter_mut().for_each(|x| *x *= s);
 }
 
 /// `A += s B`.

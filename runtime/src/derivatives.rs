@@ -1,6 +1,6 @@
 //! First derivatives of the dynamics for generic code: controllers, estimators and optimisers.
 
-use crate::blocks::{add_product, is_zero, product_with_few};
+use crate::blocks::{add_product, is_zero, product_with_few, zeros};
 use crate::constraint::{Frozen, Visitor};
 use crate::forward::each_function;
 use crate::private::constant;
@@ -29,6 +29,9 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// There are [`generalized_momentum_derivatives`](Self::generalized_momentum_derivatives) and
     /// [`momentum_rate_derivatives`](Self::momentum_rate_derivatives): the word `momentum_derivatives` asks for them.
     const MOMENTUM_DERIVATIVES: bool = false;
+    /// The velocity along which each input pushes, where every input is one entry of the generalized forces, as motors at joints are:
+    /// derivatives by inputs are then columns of those by forces.
+    const DIRECT_INPUTS: Option<[usize; NU]> = None;
 
     /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
     fn integrate_derivatives(
@@ -102,18 +105,20 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         tau: &SVector<Self::Scalar, NV>,
     ) -> ByMotion<Self::Scalar, NV, NV>;
 
-    /// The accelerations and their derivatives, [`forward_dynamics`](Mechanism::forward_dynamics) and
-    /// [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives): what is in both may be calculated once.
-    fn forward_dynamics_to_first_order(
+    /// Puts the derivatives of forward dynamics, [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives), into matrices
+    /// and returns the accelerations, which are calculated with them once. The matrices are zero, or hold what this function of the same
+    /// mechanism put there before: entries that are always zero are not written.
+    fn forward_dynamics_derivatives_into(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
-    ) -> (SVector<Self::Scalar, NV>, ByMotion<Self::Scalar, NV, NV>) {
-        (
-            Mechanism::forward_dynamics(self, q, v, tau),
-            Derivatives::forward_dynamics_derivatives(self, q, v, tau),
-        )
+        by_q: &mut Square<Self::Scalar, NV>,
+        by_v: &mut Square<Self::Scalar, NV>,
+        by_tau: &mut Square<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (*by_q, *by_v, *by_tau) = Derivatives::forward_dynamics_derivatives(self, q, v, tau);
+        Mechanism::forward_dynamics(self, q, v, tau)
     }
 
     /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
@@ -180,10 +185,9 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         v: &SVector<Self::Scalar, NV>,
         u: &SVector<Self::Scalar, NU>,
     ) -> LinearMotion<Self::Scalar, NV, NU> {
-        let tau = Mechanism::generalized_forces(self, q, v, u);
-        let (acceleration, by_force) = Derivatives::forward_dynamics_to_first_order(self, q, v, &tau);
-        let of_force = Derivatives::generalized_forces_derivatives(self, q, v, u);
-        let (by_q, by_v, by_u) = under_inputs(by_force, &of_force);
+        let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
+        let t = crate::private::constant(0.0);
+        let acceleration = accelerated_into(&self, t, (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
         LinearMotion { acceleration, by_q, by_v, by_u, turning: Derivatives::turning(self, q, v) }
     }
 }
@@ -202,21 +206,41 @@ pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
     (by_q, by_v, product_with_few(&by_force, force_by_u))
 }
 
-/// The acceleration under the inputs `u`, and its derivatives by configuration, velocity and inputs.
-pub(crate) fn accelerated<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+/// Matrices that derivatives by configuration, velocity and inputs go into.
+pub(crate) type IntoMotion<'a, T, const NV: usize, const NU: usize> =
+    (&'a mut Square<T, NV>, &'a mut Square<T, NV>, &'a mut SMatrix<T, NV, NU>);
+
+/// The acceleration under the inputs `u`, whose derivatives by configuration, velocity and inputs go into matrices of zeros.
+pub(crate) fn accelerated_into<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
-    q: &SVector<T, NQ>,
-    v: &SVector<T, NV>,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     u: &SVector<T, NU>,
-) -> (SVector<T, NV>, ByMotion<T, NV, NU>)
+    (by_q, by_v, by_u): IntoMotion<'_, T, NV, NU>,
+) -> SVector<T, NV>
 where
     T: Real,
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
 {
     let tau = m.generalized_forces(t, q, v, u);
-    let (a, by_force) = m.forward_dynamics_to_first_order(t, q, v, &tau);
-    (a, under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
+    let mut by_force = zeros();
+    let acceleration = m.forward_dynamics_derivatives_into(t, q, v, &tau, by_q, by_v, &mut by_force);
+    if let Some(places) = M::DIRECT_INPUTS {
+        for (to, place) in by_u.data.0.iter_mut().zip(places) {
+            if let Some(from) = by_force.data.0.get(place) {
+                *to = *from;
+            }
+        }
+        return acceleration;
+    }
+    let (force_by_q, force_by_v, force_by_u) = m.generalized_forces_derivatives(t, q, v, u);
+    for (by_state, of_force) in [(by_q, &force_by_q), (by_v, &force_by_v)] {
+        if !is_zero(of_force) {
+            add_product(by_state, &by_force, of_force);
+        }
+    }
+    *by_u = product_with_few(&by_force, &force_by_u);
+    acceleration
 }
 
 /// [`Mechanism::acceleration_derivatives`] of mechanisms with derivatives.
@@ -246,6 +270,8 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
 {
     /// There are derivatives of momenta ([`Derivatives::MOMENTUM_DERIVATIVES`]).
     const MOMENTUM_DERIVATIVES: bool = false;
+    /// Where inputs are entries of the generalized forces ([`Derivatives::DIRECT_INPUTS`]).
+    const DIRECT_INPUTS: Option<[usize; NU]> = None;
 
     /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` ([`Derivatives::integrate_derivatives`]).
     fn integrate_derivatives(
@@ -317,16 +343,20 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         tau: &SVector<Self::Scalar, NV>,
     ) -> ByMotion<Self::Scalar, NV, NV>;
 
-    /// The accelerations and their derivatives, [`forward_dynamics`](Rheonomic::forward_dynamics) and
-    /// [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives): what is in both may be calculated once.
-    fn forward_dynamics_to_first_order(
+    /// Puts `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` into matrices and returns `v̇` ([`Derivatives::forward_dynamics_derivatives_into`]).
+    #[allow(clippy::too_many_arguments, reason = "one each")]
+    fn forward_dynamics_derivatives_into(
         &self,
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
-    ) -> (SVector<Self::Scalar, NV>, ByMotion<Self::Scalar, NV, NV>) {
-        (self.forward_dynamics(t, q, v, tau), self.forward_dynamics_derivatives(t, q, v, tau))
+        by_q: &mut Square<Self::Scalar, NV>,
+        by_v: &mut Square<Self::Scalar, NV>,
+        by_tau: &mut Square<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        (*by_q, *by_v, *by_tau) = self.forward_dynamics_derivatives(t, q, v, tau);
+        self.forward_dynamics(t, q, v, tau)
     }
 
     /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' forces ([`Derivatives::generalized_forces_derivatives`]).
@@ -428,6 +458,7 @@ where
     M: Derivatives<NQ, NV, NU> + ?Sized,
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
 
     each_function!(tangent, plain Derivatives, self => *self);
     each_function!(derivatives, plain Derivatives, self => *self);
@@ -446,6 +477,7 @@ where
     M: Derivatives<NQ, NV, NU>,
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
 
     each_function!(tangent, plain Derivatives, self => self);
     each_function!(derivatives, drop Derivatives, self => self);
@@ -464,6 +496,7 @@ where
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
 
     each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
     each_function!(derivatives, at RheonomicDerivatives, self => self.mechanism, self.t);

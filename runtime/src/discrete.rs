@@ -34,6 +34,7 @@
 //! # }
 //! ```
 
+use crate::blocks::zeros;
 use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
 use crate::derivatives::{RheonomicDerivatives, column, entry};
 use crate::integrate::{
@@ -185,14 +186,18 @@ where
         );
     }
     method.check()?;
-    let found = if M::CONSTRAINED {
+    // What is found is returned where it stands: its matrices are long to copy.
+    let mut found = if M::CONSTRAINED {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
-        mechanism.visit_constraints(Through { method, t, q, v, u }).unwrap_or(Err(undetermined))?
+        mechanism.visit_constraints(Through { method, t, q, v, u }).unwrap_or(Err(undetermined))
     } else {
-        method.differentiate(mechanism, t, q, v, u)?
+        method.differentiate(mechanism, t, q, v, u)
     };
-    let is_finite = found.q.iter().chain(found.v.iter()).all(|x| x.is_finite());
-    if is_finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
+    let is_finite = |step: &Transition<T, NQ, NV, NU>| step.q.iter().chain(&step.v).all(|x| x.is_finite());
+    if found.as_ref().is_ok_and(|step| !is_finite(step)) {
+        found = Err(Error::NotFinite { t: to_f64(t) });
+    }
+    found
 }
 
 /// Methods with steps of a length that is set: all that are not adaptive.
@@ -318,6 +323,21 @@ pub struct Chained<T, const NV: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {
+    /// Nothing but zeros, to be filled.
+    fn zeros() -> Self {
+        Self {
+            q: zeros(),
+            v: zeros(),
+            q_by_q: zeros(),
+            q_by_v: zeros(),
+            q_by_u: zeros(),
+            v_by_q: zeros(),
+            v_by_v: zeros(),
+            v_by_u: zeros(),
+            chained: None,
+        }
+    }
+
     /// `A` of `x⁺ = A x + B δu`: displacements first, then changes of velocity. `NX` is `2 NV`; any other does not compile.
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };

@@ -8,7 +8,7 @@
 /// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators
 /// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time (`given_derivatives` without those of
 /// accelerations), `second` those of second ones, of which `second_tangent` has no time.
-/// A kind is the length of a vector, or `scalar`.
+/// A kind is the length of a vector, `scalar`, `state`, or `square` for a matrix that a result goes into.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
         $crate::forward::write! { $($how)+;
@@ -50,7 +50,7 @@ macro_rules! each_function {
         $crate::forward::each_function!(given_derivatives, $($how)+);
         $crate::forward::write! { $($how)+;
             forward_dynamics_derivatives(q: NQ, v: NV, tau: NV) -> (SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>, SMatrix<Self::Scalar, NV, NV>);
-            forward_dynamics_to_first_order(q: NQ, v: NV, tau: NV) -> (SVector<Self::Scalar, NV>, $crate::ByMotion<Self::Scalar, NV, NV>);
+            forward_dynamics_derivatives_into(q: NQ, v: NV, tau: NV, by_q: square, by_v: square, by_tau: square) -> SVector<Self::Scalar, NV>;
         }
     };
     (given_derivatives, $($how:tt)+) => {
@@ -122,6 +122,7 @@ macro_rules! write_functions {
 /// The type of an argument.
 macro_rules! kind {
     (scalar) => { Self::Scalar };
+    (square) => { &mut SMatrix<Self::Scalar, NV, NV> };
     (state) => { (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>) };
     ($n:ident) => { &SVector<Self::Scalar, $n> };
 }

@@ -54,7 +54,7 @@
 
 use crate::blocks::{
     NearlyIdentity, add_multiple, add_product, add_with_transpose, factors, make_symmetric, product, solve,
-    solved_rows, transposed,
+    solved_rows, transposed, zeros,
 };
 use crate::derivatives::entry;
 use crate::discrete::{Chained, Transition};
@@ -339,9 +339,11 @@ impl<T: Real, const NV: usize> Link<T, NV> {
         d.follow(&mut moved);
         add_multiple(&mut z, h, &moved);
         add_multiple(&mut half, h * constant(0.5), &moved);
-        d.transposed().lead(&mut half);
+        let (mut of_d, mut of_e) = (zeros(), zeros());
+        let back_by_d = d.transposed(&mut of_d);
+        back_by_d.lead(&mut half);
         add_with_transpose(&mut w, h, &half);
-        let back_by_e = e.transposed();
+        let back_by_e = e.transposed(&mut of_e);
         let mut own = after.qq;
         e.follow(&mut own);
         back_by_e.lead(&mut own);
@@ -349,7 +351,7 @@ impl<T: Real, const NV: usize> Link<T, NV> {
         back_by_e.lead(&mut z);
         let (mut of_q, mut of_dv) = (after.q, after.q);
         back_by_e.lead(&mut of_q);
-        d.transposed().lead(&mut of_dv);
+        back_by_d.lead(&mut of_dv);
         Self { z, w, back: [of_q, after.v + of_dv * h] }
     }
 }

@@ -254,6 +254,7 @@ where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
 
     each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
     each_function!(given_derivatives, pass RheonomicDerivatives, self => self.mechanism);
@@ -268,14 +269,19 @@ where
         to_first_order(self.mechanism, self.rate, t, (q, v), tau).1
     }
 
-    fn forward_dynamics_to_first_order(
+    fn forward_dynamics_derivatives_into(
         &self,
         t: M::Scalar,
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NV>,
         tau: &SVector<M::Scalar, NV>,
-    ) -> (SVector<M::Scalar, NV>, ByMotion<M::Scalar, NV, NV>) {
-        to_first_order(self.mechanism, self.rate, t, (q, v), tau)
+        by_q: &mut SMatrix<M::Scalar, NV, NV>,
+        by_v: &mut SMatrix<M::Scalar, NV, NV>,
+        by_tau: &mut SMatrix<M::Scalar, NV, NV>,
+    ) -> SVector<M::Scalar, NV> {
+        let (acceleration, found) = to_first_order(self.mechanism, self.rate, t, (q, v), tau);
+        (*by_q, *by_v, *by_tau) = found;
+        acceleration
     }
 
     /// Constraints are in the accelerations.

@@ -205,6 +205,7 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
 
     each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
     each_function!(given_derivatives, pass RheonomicDerivatives, self => self.mechanism);
@@ -222,16 +223,25 @@ where
         }
     }
 
-    fn forward_dynamics_to_first_order(
+    fn forward_dynamics_derivatives_into(
         &self,
         t: T,
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
         tau: &SVector<T, NV>,
-    ) -> (SVector<T, NV>, ByMotion<T, NV, NV>) {
+        by_q: &mut SMatrix<T, NV, NV>,
+        by_v: &mut SMatrix<T, NV, NV>,
+        by_tau: &mut SMatrix<T, NV, NV>,
+    ) -> SVector<T, NV> {
         match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.decay) {
-            Ok(found) => (found.a, (found.by_q, found.by_v, found.by_tau)),
-            Err(_) => (SVector::repeat(constant(f64::NAN)), (unknown(), unknown(), unknown())),
+            Ok(found) => {
+                (*by_q, *by_v, *by_tau) = (found.by_q, found.by_v, found.by_tau);
+                found.a
+            }
+            Err(_) => {
+                (*by_q, *by_v, *by_tau) = (unknown(), unknown(), unknown());
+                SVector::repeat(constant(f64::NAN))
+            }
         }
     }
 

@@ -2,9 +2,9 @@
 
 use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
 use crate::Real;
-use crate::blocks::{NearlyIdentity, add_multiple, add_product, product, zeros};
+use crate::blocks::{NearlyIdentity, add_multiple, add_product, product, scale, zeros};
 use crate::constraint::ConstrainedDerivatives;
-use crate::derivatives::{RheonomicDerivatives, accelerated};
+use crate::derivatives::{RheonomicDerivatives, accelerated_into};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
@@ -103,9 +103,22 @@ where
         (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
         v: &Sensitive<T, NV, NU>,
     ) -> Sensitive<T, NV, NU> {
-        let (acceleration, (by_q, by_v, by_u)) = accelerated(self.mechanism, self.t + h, q, &v.value, self.u);
-        let found = Sensitive::of(acceleration, (&by_q, motion), (&by_v, v));
-        Sensitive { by_u: found.by_u + by_u, ..found }
+        let own = self.accelerated(h, (q, &v.value));
+        let mut found = Sensitive::of(own.value, (&own.by_q, motion), (&own.by_v, v));
+        add_multiple(&mut found.by_u, T::one(), &own.by_u);
+        found
+    }
+
+    /// The acceleration at a time `h` after the start in a state, with its derivatives by that state and by the inputs.
+    pub(super) fn accelerated(
+        &self,
+        h: T,
+        state: (&SVector<T, NQ>, &SVector<T, NV>),
+    ) -> Sensitive<T, NV, NU> {
+        let mut found = Sensitive { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        let Sensitive { value, by_q, by_v, by_u } = &mut found;
+        *value = accelerated_into(self.mechanism, self.t + h, state, self.u, (by_q, by_v, by_u));
+        found
     }
 
     /// The end of a step.
@@ -149,35 +162,35 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let h = self.length();
-        let (acceleration, (v_by_q, v_by_v, v_by_u)) = accelerated(mechanism, t, q, v, u);
-        let (v_by_q, mut v_by_v, v_by_u) = (v_by_q * h, v_by_v * h, v_by_u * h);
+        // Matrices of large mechanisms are long to copy: each is made in its place.
+        let mut step = Transition::zeros();
+        let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, .. } = &mut step;
+        let acceleration = accelerated_into(mechanism, t, (q, v), u, (v_by_q, v_by_v, v_by_u));
+        scale(v_by_q, h);
+        scale(v_by_v, h);
+        scale(v_by_u, h);
         for (j, column) in v_by_v.data.0.iter_mut().enumerate() {
             column.iter_mut().skip(j).take(1).for_each(|x| *x += T::one());
         }
-        let after = v + acceleration * h;
-        let displacement = after * h;
-        let (mut q_by_q, mut q_by_v, mut q_by_u) = (v_by_q * h, v_by_v * h, v_by_u * h);
-        let (mut by_q, mut by_displacement) = (SMatrix::identity(), SMatrix::identity());
+        add_multiple(q_by_q, h, v_by_q);
+        add_multiple(q_by_v, h, v_by_v);
+        add_multiple(q_by_u, h, v_by_u);
+        step.v = v + acceleration * h;
+        let displacement = step.v * h;
+        step.q = mechanism.integrate(q, &displacement);
+        let mut chain =
+            Chained { period: h, by_q: SMatrix::identity(), by_displacement: SMatrix::identity() };
         // q ⊕ h v⁺; in plain coordinates a displacement is added.
         if NQ != NV || M::SPEEDS {
-            (by_q, by_displacement) = mechanism.integrate_derivatives_at(q, &displacement);
-            let d = NearlyIdentity::of(&by_displacement);
-            d.lead(&mut q_by_q);
-            d.lead(&mut q_by_v);
-            d.lead(&mut q_by_u);
+            (chain.by_q, chain.by_displacement) = mechanism.integrate_derivatives_at(q, &displacement);
+            let d = NearlyIdentity::of(&chain.by_displacement);
+            d.lead(&mut step.q_by_q);
+            d.lead(&mut step.q_by_v);
+            d.lead(&mut step.q_by_u);
         }
-        add_multiple(&mut q_by_q, T::one(), &by_q);
-        Ok(Transition {
-            q: mechanism.integrate(q, &displacement),
-            v: after,
-            q_by_q,
-            q_by_v,
-            q_by_u,
-            v_by_q,
-            v_by_v,
-            v_by_u,
-            chained: Some(Chained { period: h, by_q, by_displacement }),
-        })
+        add_multiple(&mut step.q_by_q, T::one(), &chain.by_q);
+        step.chained = Some(chain);
+        Ok(step)
     }
 
     fn differentiate_held<

@@ -9,7 +9,7 @@ use super::Transition;
 use super::explicit::{Sensitive, Start};
 use crate::Real;
 use crate::blocks::{add_multiple, add_product, combined};
-use crate::derivatives::{RheonomicDerivatives, accelerated};
+use crate::derivatives::RheonomicDerivatives;
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
 
@@ -46,14 +46,17 @@ where
         displacement += far.value * r;
     }
     let q = start.mechanism.integrate(start.q, &displacement);
-    let (value, (by_q, by_v, by_u)) = accelerated(start.mechanism, start.t + after, &q, &velocity, start.u);
-    let mut found = Sensitive { value, by_q, by_v, by_u };
-    add_multiple(&mut found.by_v, after, &by_q);
-    if let Some((s, near)) = near {
-        found.add_led(&(by_v * s), near);
+    let mut found = start.accelerated(after, (&q, &velocity));
+    if near.is_none() && far.is_none() {
+        return found;
     }
-    if let Some((r, far)) = far {
-        found.add_led(&(by_q * r), far);
+    let parts = [near.map(|(s, _)| found.by_v * s), far.map(|(r, _)| found.by_q * r)];
+    let by_q = found.by_q;
+    add_multiple(&mut found.by_v, after, &by_q);
+    for (by, part) in parts.iter().zip([near, far]) {
+        if let (Some(by), Some((_, part))) = (by, part) {
+            found.add_led(by, part);
+        }
     }
     found
 }

@@ -118,14 +118,18 @@ where
         )
     }
 
-    fn forward_dynamics_to_first_order(
+    fn forward_dynamics_derivatives_into(
         &self,
         t: M::Scalar,
         q: &SVector<M::Scalar, NQ>,
         v: &SVector<M::Scalar, NE>,
         tau: &SVector<M::Scalar, NE>,
-    ) -> (SVector<M::Scalar, NE>, ByMotion<M::Scalar, NE, NE>) {
-        (self.forward_dynamics(t, q, v, tau), self.forward_dynamics_derivatives(t, q, v, tau))
+        by_q: &mut SMatrix<M::Scalar, NE, NE>,
+        by_v: &mut SMatrix<M::Scalar, NE, NE>,
+        by_tau: &mut SMatrix<M::Scalar, NE, NE>,
+    ) -> SVector<M::Scalar, NE> {
+        (*by_q, *by_v, *by_tau) = self.forward_dynamics_derivatives(t, q, v, tau);
+        self.forward_dynamics(t, q, v, tau)
     }
 
     fn generalized_forces_derivatives(

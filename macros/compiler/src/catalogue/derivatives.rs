@@ -104,7 +104,7 @@ pub const ROWS: &[Row] = &[
             .concat(),
             shape: forward(f),
             docs: vec![
-                "Puts [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) into `by_q`, `by_v` and `inverse`, `NV` by `NV` each.",
+                "Puts [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) into `by_q`, `by_v` and `inverse`, `NV` by `NV` each, and returns the accelerations, [`forward_dynamics`](Self::forward_dynamics), to rounding.",
                 KEPT,
             ],
             ..Declaration::default()

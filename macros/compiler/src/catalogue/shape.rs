@@ -119,7 +119,7 @@ pub enum Shape {
     /// `M⁻¹`. The outputs are what [`InverseForm`] says.
     Inverse(usize),
     /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
-    /// themselves, and those of `Inverse`.
+    /// themselves, those of `Inverse`, and the accelerations, which are returned where the derivatives go into given matrices.
     Forward(usize),
     /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
     /// what turns displacements.
@@ -166,7 +166,7 @@ impl Shape {
             Shape::Jacobians(rows, n, m) => rows * (3 * n + m),
             Shape::InputHessian(n, m) => 3 * n * n + 2 * n * m + m * m,
             Shape::Inverse(n) => n * n + parts(n),
-            Shape::Forward(n) => 3 * n * n + parts(n),
+            Shape::Forward(n) => 3 * n * n + parts(n) + n,
             Shape::Linear(n, m) => 4 * n * n + parts(n) + n * m,
             Shape::Accelerated(n) => n + n * n + parts(n),
             Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),

@@ -249,7 +249,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let program = |mass: &crba::Matrix<'g>, method: Method| {
             let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
             self.known.replace(&mut found.forces);
-            self.specialisation.program(&all_columns(&found))
+            self.specialisation.program(&[all_columns(&found), found.accelerations].concat())
         };
         let wide = self.wide.iter().map(|most| {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
@@ -264,18 +264,21 @@ impl<'a, 'g> Parts<'a, 'g> {
         let inverse = Inverse::of(&self.mass, trunk);
         let a = inverse.solve(&self.unbalanced());
         let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
-        let outputs = |mut forces: ForceDerivatives<'g>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
+        let outputs = |mut forces: ForceDerivatives<'g>,
+                       [inverse, factors]: [crba::Matrix<'g>; 2],
+                       a: Vec<Expr<'g>>| {
             self.known.replace(&mut forces);
-            [force_columns(&forces), columns(&inverse), factors.concat()].concat()
+            [force_columns(&forces), columns(&inverse), factors.concat(), a].concat()
         };
-        let program = self.specialisation.program(&outputs(forces, [inverse.columns(), inverse.factors()]));
+        let program =
+            self.specialisation.program(&outputs(forces, [inverse.columns(), inverse.factors()], a));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::of(&lanes.mass, lanes.trunk.as_ref()?);
             let a = limb_lanes::accelerations(&lanes.limbs, &inverse);
             let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
             Some([1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
-                lower(&outputs(forces, parts.clone()))
+                lower(&outputs(forces, parts.clone(), lanes.limbs.scattered(&a)))
             }))
         });
         program.or_in_lanes(in_lanes.into_iter().flatten())

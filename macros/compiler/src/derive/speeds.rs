@@ -103,8 +103,9 @@ impl<'g> Derivation<'_, 'g> {
             }
             Id::ForwardDynamicsDerivatives => {
                 let forces = symbolic::derivatives(model, &self.inverse(speeds));
-                let forces = self.at(force_columns(&forces), &self.free_accelerations(speeds));
-                Some([forces, self.inverse_of(speeds, true)].concat())
+                let accelerations = self.free_accelerations(speeds);
+                let forces = self.at(force_columns(&forces), &accelerations);
+                Some([forces, self.inverse_of(speeds, true), accelerations].concat())
             }
             Id::Linearize => Some(self.linearized(speeds)),
             Id::InputDerivatives => {

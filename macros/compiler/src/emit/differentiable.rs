@@ -3,16 +3,33 @@
 
 use super::interface::Interface;
 use super::signature::Signature;
-use crate::catalogue::{Argument, Shape};
+use crate::catalogue::{Argument, Id, Shape};
+use crate::derive::Function;
+use crate::lower::Operand;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
 /// Functions of the configuration space to first order, and the forces of the inputs to first order. Without parts of the
 /// configuration space, for a mechanism that failed to compile, their bodies never return.
-pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_>, s: &Signature<'_>) {
+pub fn write_methods(
+    out: &mut String,
+    charts: Option<&[Chart]>,
+    functions: &[Function],
+    i: &Interface<'_>,
+    s: &Signature<'_>,
+) {
     if i.facts.kinematic || !i.facts.requests.derivatives {
         return;
     }
+    let direct = functions.iter().find(|f| f.id == Id::InputDerivatives).and_then(|f| direct_inputs(f, s));
+    let _ = writeln!(
+        out,
+        "#[doc(hidden)]\npub const __DIRECT_INPUTS: ::core::option::Option<[usize; {}]> = {};",
+        s.nu,
+        direct.map_or("::core::option::Option::None".to_string(), |all| format!(
+            "::core::option::Option::Some({all:?})"
+        ))
+    );
     let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
     for (name, about, arguments, first) in [
         (
@@ -68,6 +85,23 @@ pub fn write_methods(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'
         columns("by_v"),
         columns("by_u"),
     );
+}
+
+/// The velocity along which each input pushes, if each is one entry of the generalized forces and nothing else.
+fn direct_inputs(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
+    let outputs = f.program.outputs.get(s.nv..)?;
+    let (by_state, by_inputs) = outputs.split_at_checked(2 * s.nv * s.nv)?;
+    let is = |o: &Operand, x: f64| *o == Operand::Const(x);
+    if !by_state.iter().all(|o| is(o, 0.0)) {
+        return None;
+    }
+    let columns = (0..s.nu).map(|k| {
+        let column = by_inputs.get(k * s.nv..(k + 1) * s.nv)?;
+        let place = column.iter().position(|o| is(o, 1.0))?;
+        let rest = column.iter().enumerate().filter(|(row, _)| *row != place);
+        rest.into_iter().all(|(_, o)| is(o, 0.0)).then_some(place)
+    });
+    columns.collect()
 }
 
 /// Second derivatives of forward dynamics: those of inverse dynamics along with the accelerations, and with the multipliers of
@@ -247,6 +281,15 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         out.push_str("const MOMENTUM_DERIVATIVES: bool = true;\n");
         functions.push(("generalized_momentum_derivatives", vec![Q, V], square));
         functions.push(("momentum_rate_derivatives", vec![Q, V], pair));
+    }
+    let _ = writeln!(
+        out,
+        "const DIRECT_INPUTS: ::core::option::Option<[usize; {}]> = Self::__DIRECT_INPUTS;",
+        s.nu
+    );
+    if i.facts.constraints.is_none() {
+        let into = ["by_q", "by_v", "by_tau"].map(|name| Argument::Into(name, s.nv));
+        functions.push(("forward_dynamics_derivatives_into", [vec![Q, V, Tau], into.to_vec()].concat(), v));
     }
     for (name, arguments, result) in functions {
         let arguments = s.timed(&arguments);

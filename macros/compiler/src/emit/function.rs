@@ -2,7 +2,7 @@
 
 use super::body::write_body;
 use super::instruction::Build;
-use super::signature::Signature;
+use super::signature::{Signature, given};
 use crate::derive::Function;
 use std::fmt::Write;
 
@@ -15,7 +15,8 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
         let _ = writeln!(out, "#[doc = {:?}]", format!(" {}", f.docs.join("\n\n ")));
     }
     let result = s.result(f);
-    let must_use = if result == "()" { "" } else { "#[must_use]\n" };
+    // What goes into given matrices may be all that is wanted.
+    let must_use = if given(f).is_empty() { "#[must_use]\n" } else { "" };
     let _ = writeln!(
         out,
         "#[inline]\n{must_use}pub fn {}{}({}) -> {result} {{",

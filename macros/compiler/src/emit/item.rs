@@ -68,7 +68,7 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     if !interface.contacts.is_empty() {
         write_carry(&mut methods, Some(&output.charts), &s);
     }
-    differentiable::write_methods(&mut methods, Some(&output.charts), interface, &s);
+    differentiable::write_methods(&mut methods, Some(&output.charts), &output.functions, interface, &s);
     differentiable::write_second(&mut methods, Some(&output.charts), interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations is not a field that nobody reads.
@@ -141,7 +141,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     if !interface.contacts.is_empty() {
         write_carry(&mut methods, None, &s);
     }
-    differentiable::write_methods(&mut methods, None, interface, &s);
+    differentiable::write_methods(&mut methods, None, functions, interface, &s);
     differentiable::write_second(&mut methods, None, interface, &s);
     lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
     validate::write_method(&mut methods, interface, true);

@@ -68,6 +68,11 @@ pub fn one_by_one(f: &Function) -> Option<String> {
             each(&|name| format!("let mut one_{name} = lane({name}, k);\n")),
             each(&|name| format!("set_lane({name}, k, &one_{name});\n")),
         );
+        if matches!(f.shape, Shape::Forward(_) | Shape::CalledForward(_)) {
+            return Some(format!(
+                "use ::linkwork::__private::{{Lanes, lane, lane_by_lane, set_lane}};\nlane_by_lane(|k| {{\n{first}let found = {call};\n{last}found\n}})\n"
+            ));
+        }
         return (!matches!(f.shape, Shape::Accelerated(_))).then(|| {
             format!("use ::linkwork::__private::{{lane, set_lane}};\nfor k in 0..LANES {{\n{first}{call};\n{last}}}\n")
         });

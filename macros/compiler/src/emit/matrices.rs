@@ -18,15 +18,16 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
     let given: Vec<String> = given(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
-            "{}{}",
+            "{}{}{}\n",
             completed([inverse, NOTHING], f, n, 2 * n * n, s, outputs),
-            solved([by_q, by_v], inverse, n, s, &f.structure)
+            solved([by_q, by_v], inverse, n, s, &f.structure),
+            outputs.matrix(f.shape.outputs(&f.structure) - n, n, 1)
         ),
         (Shape::CalledForward(n), [by_q, by_v, inverse]) => {
             let (t, lanes) = (if s.time { "t, " } else { "" }, s.suffix());
             format!(
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
-                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}{}",
+                self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut {by_v});\n{}{}a\n",
                 solved([by_q, by_v], inverse, n, s, &f.structure),
                 known(f, outputs, n)
             )

@@ -56,7 +56,7 @@ pub fn write_prepared(
     if !i.contacts.is_empty() {
         write_carry(&mut methods, content.charts, s);
     }
-    differentiable::write_methods(&mut methods, content.charts, i, s);
+    differentiable::write_methods(&mut methods, content.charts, functions, i, s);
     differentiable::write_second(&mut methods, content.charts, i, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     write_impls(&head, out, &name, &methods, i, s);

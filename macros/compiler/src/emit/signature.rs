@@ -45,6 +45,7 @@ impl Signature<'_> {
     pub fn result(&self, f: &Function) -> String {
         match f.shape {
             Shape::Accelerated(n) => self.vector(n),
+            Shape::Forward(n) | Shape::CalledForward(n) if !given(f).is_empty() => self.vector(n),
             shape if given(f).is_empty() => self.shape(shape),
             _ => "()".to_string(),
         }

@@ -39,6 +39,8 @@ pub struct Linearized<'g> {
     pub by_u: Matrix<'g>,
     /// `M⁻¹`.
     pub inverse: Matrix<'g>,
+    /// The accelerations at which these are the derivatives.
+    pub accelerations: Vec<Expr<'g>>,
 }
 
 /// How the derivatives of inverse dynamics are found. The results are equal; what they cost is not.
@@ -90,8 +92,9 @@ pub fn forward_dynamics<'g>(
     let factor = Factor::of(mass, joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     let r = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
-    let forces = inverse_dynamics(model, joints, &factor.solve(r), method);
-    Linearized { forces, by_u: Vec::new(), inverse: factor.inverse() }
+    let accelerations = factor.solve(r);
+    let forces = inverse_dynamics(model, joints, &accelerations, method);
+    Linearized { forces, by_u: Vec::new(), inverse: factor.inverse(), accelerations }
 }
 
 /// The equations of motion about the motion that the inputs give; their forces `tau` may depend on the state as well.

@@ -100,7 +100,10 @@ impl<'a> Parts<'a> {
             return place(before, k);
         }
         let (k, square) = (k - self.first, self.n * self.n);
-        Some(if k < square { format!("{inverse}[{k}]") } else { format!("beside[{}]", k - square) })
+        match k.checked_sub(square) {
+            None => Some(format!("{inverse}[{k}]")),
+            Some(k) => (k < self.count()).then(|| format!("beside[{k}]")),
+        }
     }
 
     /// Makes the inverse of its parts.

@@ -1,0 +1,111 @@
+//! Products with matrices that are nearly the identity: how configurations with few ball and free joints are displaced.
+
+use super::zeros;
+use crate::Real;
+use crate::arithmetic::{Arithmetic, Compiled, Vector};
+use crate::multiplication::part;
+use nalgebra::SMatrix;
+
+/// A matrix with the columns and rows of the identity but for some neighbouring ones.
+pub struct NearlyIdentity<'a, T, const N: usize> {
+    matrix: &'a SMatrix<T, N, N>,
+    first: usize,
+    end: usize,
+}
+
+impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
+    /// Finds the columns of a matrix that are not those of the identity.
+    pub fn of(matrix: &'a SMatrix<T, N, N>) -> Self {
+        let (mut first, mut end) = (N, 0);
+        for (j, column) in matrix.data.0.iter().enumerate() {
+            // Without a way out early a column is compared at once.
+            let is_zero = |zero: bool, x: &T| zero & (*x == T::zero());
+            let (above, rest) = column.split_at(j);
+            let Some((diagonal, below)) = rest.split_first() else { continue };
+            if above.iter().fold(true, is_zero) & below.iter().fold(true, is_zero) & (*diagonal == T::one()) {
+                continue;
+            }
+            let is_other = |x: &T| *x != T::zero();
+            (first, end) = (first.min(j), end.max(j + 1));
+            first = first.min(above.iter().position(is_other).unwrap_or(j));
+            end = end.max(below.iter().rposition(is_other).map_or(0, |i| j + 2 + i));
+        }
+        Self { matrix, first, end }
+    }
+
+    /// `Dᵀ`, whose columns that are not those of the identity go into a matrix.
+    pub fn transposed<'b>(&self, into: &'b mut SMatrix<T, N, N>) -> NearlyIdentity<'b, T, N> {
+        let some = self.first..self.end;
+        let rows = self.matrix.data.0.get(some.clone()).unwrap_or(&[]);
+        for (i, column) in into.data.0.iter_mut().enumerate().skip(self.first).take(some.len()) {
+            for (entry, row) in column.iter_mut().skip(self.first).zip(rows) {
+                *entry = row.get(i).copied().unwrap_or(T::zero());
+            }
+        }
+        NearlyIdentity { matrix: into, first: self.first, end: self.end }
+    }
+
+    /// `A D` in the place of `A`.
+    pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
+        let mut sums = zeros::<T, R, N>();
+        let some = self.first..self.end;
+        let from = a.data.0.get(some.clone()).unwrap_or(&[]);
+        let factors = self.matrix.data.0.get(some.clone()).unwrap_or(&[]);
+        for (sum, factors) in sums.data.0.iter_mut().zip(factors) {
+            for (from, factor) in from.iter().zip(factors.iter().skip(self.first)) {
+                for (sum, x) in sum.iter_mut().zip(from) {
+                    *sum = Compiled::mul_add(*x, *factor, *sum);
+                }
+            }
+        }
+        for (to, sum) in a.data.0.iter_mut().skip(self.first).zip(sums.data.0.iter().take(some.len())) {
+            *to = *sum;
+        }
+    }
+
+    /// `D A` in the place of `A`.
+    pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
+        if self.end - self.first.min(self.end) > 8 {
+            return self.lead_many(a);
+        }
+        // Eight rows at a time, or those before the end: all others are zero in these columns.
+        let length = N.min(8);
+        let start = self.first.min(N - length);
+        for column in &mut a.data.0 {
+            let sum = self.rows(column, start);
+            let places = column.get_mut(self.first..self.end).unwrap_or(&mut []);
+            for (place, sum) in places.iter_mut().zip(sum.numbers().iter().skip(self.first - start)) {
+                *place = *sum;
+            }
+        }
+    }
+
+    /// Rows from one on of the product with a column.
+    #[inline(always)]
+    fn rows(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
+        let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
+        let some = self.first..self.end;
+        let (factors, own) = (column.get(some.clone()), self.matrix.data.0.get(some));
+        for (factor, own) in factors.unwrap_or(&[]).iter().zip(own.unwrap_or(&[])) {
+            sum = Compiled::mul_add(part(own, start), Compiled::splat(*factor), sum);
+        }
+        sum
+    }
+
+    /// The same for more than eight rows.
+    fn lead_many<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
+        let length = N.min(8);
+        for column in &mut a.data.0 {
+            let given = *column;
+            for from in (self.first..self.end).step_by(8) {
+                let start = from.min(N - length);
+                let sum = self.rows(&given, start);
+                let kept = self.end.min(start + length);
+                let places = column.get_mut(from..kept).unwrap_or(&mut []);
+                for (place, sum) in places.iter_mut().zip(sum.numbers().iter().skip(from - start)) {
+                    *place = *sum;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Products with a small matrix, all of which is in registers.
+
+use crate::Real;
+use crate::arithmetic::{Arithmetic, Vector};
+use crate::multiplication::{part, put};
+
+/// Most rows and columns of a small matrix: it fills half of 32 registers of four numbers.
+pub(super) const MOST: usize = 8;
+
+/// `C += A B`, column by column of `B`.
+#[inline(always)]
+pub(super) fn add_product<A: Arithmetic, T: Real, const R: usize, const K: usize>(
+    sums: &mut [[T; R]],
+    a: &[[T; R]; K],
+    b: &[[T; K]],
+) {
+    if R > 4 { columns::<A, T, 2, R, K>(sums, a, b) } else { columns::<A, T, 1, R, K>(sums, a, b) }
+}
+
+/// With the rows in `V` registers of four. The last begins as much earlier as it would be too long; all are read before any is
+/// written.
+#[inline(always)]
+fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usize>(
+    sums: &mut [[T; R]],
+    a: &[[T; R]; K],
+    b: &[[T; K]],
+) {
+    let mut rows = [[A::splat(T::zero()); V]; K];
+    for (registers, column) in rows.iter_mut().zip(a) {
+        *registers = read::<A, T, V>(column);
+    }
+    for (column, factors) in sums.iter_mut().zip(b) {
+        let mut entries = read::<A, T, V>(column);
+        for (registers, factor) in rows.iter().zip(factors) {
+            let factor = A::splat(*factor);
+            for (entry, x) in entries.iter_mut().zip(registers) {
+                *entry = A::mul_add(*x, factor, *entry);
+            }
+        }
+        for (v, entry) in entries.iter().enumerate() {
+            put(entry, column, 4 * v);
+        }
+    }
+}
+
+/// A column in registers.
+#[inline(always)]
+fn read<A: Arithmetic, T: Real, const V: usize>(column: &[T]) -> [Vector<A, T, 4>; V] {
+    let mut registers = [A::splat(T::zero()); V];
+    for (v, register) in registers.iter_mut().enumerate() {
+        *register = part::<A, T, 4>(column, 4 * v);
+    }
+    registers
+}
