@@ -349,7 +349,8 @@ fn composed_derivatives_go_into_matrices_in_lanes() {
     let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
     let mut into = [SMatrix::zeros(); 3];
     let [by_q, by_v, inverse] = &mut into;
-    Tail.forward_dynamics_derivatives_into_lanes(&q.wide, &v.wide, &tau.wide, by_q, by_v, inverse);
+    let a = Tail.forward_dynamics_derivatives_into_lanes(&q.wide, &v.wide, &tau.wide, by_q, by_v, inverse);
+    assert_near("v̇", 1e-11, &a, |k| Tail.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k]));
     let one = |k: usize| Tail.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
     assert_near("∂v̇/∂q", 1e-11, &into[0], |k| one(k).0);
     assert_near("∂v̇/∂v", 1e-11, &into[1], |k| one(k).1);

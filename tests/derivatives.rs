@@ -65,7 +65,8 @@ macro_rules! robot {
                 assert!(forces == [by_q, by_v], "{}", of("∂τ into matrices"));
                 let (by_q, by_v, inverse) = $robot.forward_dynamics_derivatives(q, v, tau);
                 let [given_q, given_v, given] = &mut motion;
-                $robot.forward_dynamics_derivatives_into(q, v, tau, given_q, given_v, given);
+                let a = $robot.forward_dynamics_derivatives_into(q, v, tau, given_q, given_v, given);
+                close("v̇ with its derivatives", a.as_slice(), $robot.forward_dynamics(q, v, tau).as_slice());
                 assert!(motion == [by_q, by_v, inverse], "{}", of("∂v̇ into matrices"));
                 close("∂v̇/∂q", by_q.as_slice(), expected("dddq_dq").as_slice());
                 close("∂v̇/∂v", by_v.as_slice(), expected("dddq_dv").as_slice());

@@ -137,7 +137,9 @@ macro_rules! solve_the_equations {
                 close("M ∂v̇/∂q", &(mass * by_q), &-forces_by_q);
                 close("M ∂v̇/∂v", &(mass * by_v), &-forces_by_v);
                 let [into_q, into_v, into] = &mut given;
-                $m.forward_dynamics_derivatives_into(&q, &v, &tau, into_q, into_v, into);
+                let with_derivatives =
+                    $m.forward_dynamics_derivatives_into(&q, &v, &tau, into_q, into_v, into);
+                assert_similar("v̇", with_derivatives.as_slice(), a.as_slice(), 1e-10);
                 assert!(given == [by_q, by_v, inverse], "case {case}");
             }
         }

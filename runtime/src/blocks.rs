@@ -184,10 +184,21 @@ pub fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::from_array_storage(ArrayStorage([[T::zero(); R]; C]))
 }
 
-/// `Aᵀ`, in squares of four, whose rows are put together in registers.
-#[inline(never)]
+/// `Aᵀ`.
+#[inline]
 pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> SMatrix<T, C, R> {
-    let mut turned = [[T::zero(); C]; R];
+    let mut turned = zeros();
+    transpose_into(a, &mut turned);
+    turned
+}
+
+/// Puts `Aᵀ` into a matrix, in squares of four, whose rows are put together in registers.
+#[inline(never)]
+pub fn transpose_into<T: Real, const R: usize, const C: usize>(
+    a: &SMatrix<T, R, C>,
+    into: &mut SMatrix<T, C, R>,
+) {
+    let turned = &mut into.data.0;
     let (fours, rest) = a.data.0.as_chunks::<4>();
     for (j, columns) in fours.iter().enumerate() {
         let [a, b, c, d] = columns.each_ref().map(|column| column.as_chunks::<4>().0);
@@ -206,13 +217,12 @@ pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>)
         }
     }
     for (j, column) in (C - C % 4..).zip(rest) {
-        for (row, x) in turned.iter_mut().zip(column) {
+        for (row, x) in turned.iter_mut().zip(column.iter()) {
             if let Some(entry) = row.get_mut(j) {
                 *entry = *x;
             }
         }
     }
-    SMatrix::from_array_storage(ArrayStorage(turned))
 }
 
 /// `A B`, where most of `B` is zero.
@@ -244,6 +254,18 @@ pub fn scale<T: Real, const R: usize, const C: usize>(matrix: &mut SMatrix<T, R,
     matrix.data.0.as_flattened_mut().iter_mut().for_each(|x| *x *= s);
 }
 
+/// Puts `s A` into a matrix.
+#[inline]
+pub fn multiple_into<T: Real, const R: usize, const C: usize>(
+    s: T,
+    a: &SMatrix<T, R, C>,
+    into: &mut SMatrix<T, R, C>,
+) {
+    for (entry, x) in into.data.0.as_flattened_mut().iter_mut().zip(a.data.0.as_flattened()) {
+        *entry = *x * s;
+    }
+}
+
 /// `A += s B`.
 #[inline]
 pub fn add_multiple<T: Real, const R: usize, const C: usize>(
@@ -269,12 +291,12 @@ pub fn combined<T: Real, const R: usize, const C: usize, const N: usize>(
     sum
 }
 
-/// A matrix and its transpose become their mean: rounding must not grow from instant to instant.
+/// Puts the mean of a matrix and its transpose into another: rounding must not grow from instant to instant.
 #[inline(never)]
-pub fn make_symmetric<T: Real, const N: usize>(m: &mut SMatrix<T, N, N>) {
+pub fn symmetric_into<T: Real, const N: usize>(m: &SMatrix<T, N, N>, into: &mut SMatrix<T, N, N>) {
     let half = crate::private::constant::<T>(0.5);
-    let turned = transposed(m);
-    for (entry, x) in m.data.0.as_flattened_mut().iter_mut().zip(turned.data.0.as_flattened()) {
+    transpose_into(m, into);
+    for (entry, x) in into.data.0.as_flattened_mut().iter_mut().zip(m.data.0.as_flattened()) {
         *entry = (*entry + *x) * half;
     }
 }

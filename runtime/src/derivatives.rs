@@ -206,17 +206,13 @@ pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
     (by_q, by_v, product_with_few(&by_force, force_by_u))
 }
 
-/// Matrices that derivatives by configuration, velocity and inputs go into.
-pub(crate) type IntoMotion<'a, T, const NV: usize, const NU: usize> =
-    (&'a mut Square<T, NV>, &'a mut Square<T, NV>, &'a mut SMatrix<T, NV, NU>);
-
 /// The acceleration under the inputs `u`, whose derivatives by configuration, velocity and inputs go into matrices of zeros.
 pub(crate) fn accelerated_into<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     u: &SVector<T, NU>,
-    (by_q, by_v, by_u): IntoMotion<'_, T, NV, NU>,
+    (by_q, by_v, by_u): (&mut Square<T, NV>, &mut Square<T, NV>, &mut SMatrix<T, NV, NU>),
 ) -> SVector<T, NV>
 where
     T: Real,
@@ -226,20 +222,12 @@ where
     let mut by_force = zeros();
     let acceleration = m.forward_dynamics_derivatives_into(t, q, v, &tau, by_q, by_v, &mut by_force);
     if let Some(places) = M::DIRECT_INPUTS {
-        for (to, place) in by_u.data.0.iter_mut().zip(places) {
-            if let Some(from) = by_force.data.0.get(place) {
-                *to = *from;
-            }
-        }
+        let columns = places.iter().filter_map(|k| by_force.data.0.get(*k));
+        by_u.data.0.iter_mut().zip(columns).for_each(|(to, from)| *to = *from);
         return acceleration;
     }
-    let (force_by_q, force_by_v, force_by_u) = m.generalized_forces_derivatives(t, q, v, u);
-    for (by_state, of_force) in [(by_q, &force_by_q), (by_v, &force_by_v)] {
-        if !is_zero(of_force) {
-            add_product(by_state, &by_force, of_force);
-        }
-    }
-    *by_u = product_with_few(&by_force, &force_by_u);
+    let of_force = m.generalized_forces_derivatives(t, q, v, u);
+    (*by_q, *by_v, *by_u) = under_inputs((*by_q, *by_v, by_force), &of_force);
     acceleration
 }
 
@@ -254,9 +242,9 @@ pub fn acceleration_derivatives<M, const NQ: usize, const NV: usize, const NU: u
 where
     M: RheonomicDerivatives<NQ, NV, NU>,
 {
-    let tau = m.generalized_forces(t, q, v, u);
-    let by_force = m.forward_dynamics_derivatives(t, q, v, &tau);
-    Some(under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
+    let (mut by_q, mut by_v, mut by_u) = (zeros(), zeros(), zeros());
+    accelerated_into(m, t, (q, v), u, (&mut by_q, &mut by_v, &mut by_u));
+    Some((by_q, by_v, by_u))
 }
 
 /// What [`Derivatives`] are for a mechanism whose functions depend on time `t`, s. Every mechanism with [`Derivatives`] has

@@ -167,6 +167,31 @@ where
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     S: DifferentiableStep<T>,
 {
+    let mut found = Transition::zeros();
+    transition_into(mechanism, method, t, q, v, u, &mut found)?;
+    Ok(found)
+}
+
+/// [`transition`] into a step that is there, whatever is in it: the matrices of large mechanisms are long to copy, and solvers keep
+/// one for each instant anyway.
+///
+/// # Errors
+///
+/// Those of [`transition`]; what is in the step then means nothing.
+pub fn transition_into<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    method: &S,
+    t: T,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    u: &SVector<T, NU>,
+    into: &mut Transition<T, NQ, NV, NU>,
+) -> Result<(), Error>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    S: DifferentiableStep<T>,
+{
     const {
         assert!(
             !M::CONTACTING,
@@ -186,18 +211,14 @@ where
         );
     }
     method.check()?;
-    // What is found is returned where it stands: its matrices are long to copy.
-    let mut found = if M::CONSTRAINED {
+    if M::CONSTRAINED {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
-        mechanism.visit_constraints(Through { method, t, q, v, u }).unwrap_or(Err(undetermined))
+        *into = mechanism.visit_constraints(Through { method, t, q, v, u }).unwrap_or(Err(undetermined))?;
     } else {
-        method.differentiate(mechanism, t, q, v, u)
-    };
-    let is_finite = |step: &Transition<T, NQ, NV, NU>| step.q.iter().chain(&step.v).all(|x| x.is_finite());
-    if found.as_ref().is_ok_and(|step| !is_finite(step)) {
-        found = Err(Error::NotFinite { t: to_f64(t) });
+        method.differentiate_into(mechanism, t, q, v, u, into)?;
     }
-    found
+    let is_finite = into.q.iter().chain(&into.v).all(|x| x.is_finite());
+    if is_finite { Ok(()) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
 
 /// Methods with steps of a length that is set: all that are not adaptive.
@@ -285,6 +306,27 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     ) -> Result<Transition<T, NQ, NV, NU>, Error>
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>;
+
+    /// [`differentiate`](Self::differentiate) into a step that is there; what [`transition_into`] calls.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`step`].
+    fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+        into: &mut Transition<T, NQ, NV, NU>,
+    ) -> Result<(), Error>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        *into = self.differentiate(mechanism, t, q, v, u)?;
+        Ok(())
+    }
 }
 
 /// The state after a step, and how it changes with the state before and with the inputs.
@@ -323,8 +365,8 @@ pub struct Chained<T, const NV: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {
-    /// Nothing but zeros, to be filled.
-    fn zeros() -> Self {
+    /// Nothing but zeros, for [`transition_into`].
+    pub fn zeros() -> Self {
         Self {
             q: zeros(),
             v: zeros(),

@@ -53,8 +53,8 @@
 //! ```
 
 use crate::blocks::{
-    NearlyIdentity, add_multiple, add_product, add_with_transpose, factors, make_symmetric, product, solve,
-    solved_rows, transposed, zeros,
+    NearlyIdentity, add_multiple, add_product, add_with_transpose, factors, product, solve, solved_rows,
+    symmetric_into, transpose_into, transposed, zeros,
 };
 use crate::derivatives::entry;
 use crate::discrete::{Chained, Transition};
@@ -188,6 +188,11 @@ impl<T: Real, const NV: usize> Value<T, NV> {
 }
 
 impl<T: Real, const NV: usize, const NU: usize> Policy<T, NV, NU> {
+    /// Inputs that stay as they are.
+    pub fn zeros() -> Self {
+        Self { change: zeros(), by_q: zeros(), by_v: zeros(), expected: [T::zero(); 2] }
+    }
+
     /// The change `δu` of the inputs for a state that is off by `dq` and `dv`, with the length `α` of a line search.
     pub fn inputs(&self, length: T, dq: &SVector<T, NV>, dv: &SVector<T, NV>) -> SVector<T, NU> {
         let mut change = self.change * length;
@@ -209,30 +214,36 @@ pub fn backward<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     after: &Value<T, NV>,
     regularisation: T,
 ) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
-    let mut before = Before::of(cost);
-    match &step.chained {
-        Some(chain) => chained(&mut before, step, after, chain),
-        None => general(&mut before, step, after),
-    }
-    minimised(&mut before, regularisation)
+    let (mut policy, mut to_go) = (Policy::zeros(), *after);
+    backward_into(step, cost, regularisation, &mut policy, &mut to_go)?;
+    Ok((policy, to_go))
 }
 
-/// The costs before a step by state and inputs, those after it included; mixed blocks have states as their rows.
-struct Before<T, const NV: usize, const NU: usize> {
-    q: SVector<T, NV>,
-    v: SVector<T, NV>,
-    u: SVector<T, NU>,
-    qq: SMatrix<T, NV, NV>,
-    qv: SMatrix<T, NV, NV>,
-    vv: SMatrix<T, NV, NV>,
-    qu: SMatrix<T, NV, NU>,
-    vu: SMatrix<T, NV, NU>,
-    uu: SMatrix<T, NU, NU>,
+/// [`backward`] into a policy, with costs to go after the step that become those before it: the matrices of large mechanisms are long
+/// to copy.
+///
+/// # Errors
+///
+/// Those of [`backward`]; policy and costs stay as they are then.
+pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    step: &Transition<T, NQ, NV, NU>,
+    cost: &Quadratic<T, NV, NU>,
+    regularisation: T,
+    policy: &mut Policy<T, NV, NU>,
+    to_go: &mut Value<T, NV>,
+) -> Result<(), Indefinite> {
+    // Costs before the step by state and inputs, those after it included.
+    let mut before = *cost;
+    match &step.chained {
+        Some(chain) => chained(&mut before, step, to_go, chain),
+        None => general(&mut before, step, to_go),
+    }
+    minimised(&mut before, regularisation, policy, to_go)
 }
 
 /// For any step.
 fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
-    before: &mut Before<T, NV, NU>,
+    before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
     after: &Value<T, NV>,
 ) {
@@ -282,7 +293,7 @@ fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
 /// For a step with `q⁺ = q ⊕ h v⁺`: with `G` the derivatives of `v⁺`, and those `E` and `D` of `⊕`, `A = [E 0; 0 0] + H G_x` and
 /// `B = H G_u`, `H = [h D; 1]`, so that `W = Hᵀ S H` takes the place of `S`.
 fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
-    before: &mut Before<T, NV, NU>,
+    before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
     after: &Value<T, NV>,
     chain: &Chained<T, NV>,
@@ -356,40 +367,36 @@ impl<T: Real, const NV: usize> Link<T, NV> {
     }
 }
 
-impl<T: Real, const NV: usize, const NU: usize> Before<T, NV, NU> {
-    /// Those of the instant alone.
-    fn of(cost: &Quadratic<T, NV, NU>) -> Self {
-        let Quadratic { q, v, u, qq, qv, vv, qu, vu, uu } = *cost;
-        Self { q, v, u, qq, qv, vv, qu, vu, uu }
-    }
-}
-
 /// The best change of the inputs, and what the costs then are.
 fn minimised<T: Real, const NV: usize, const NU: usize>(
-    before: &mut Before<T, NV, NU>,
+    before: &mut Quadratic<T, NV, NU>,
     regularisation: T,
-) -> Result<(Policy<T, NV, NU>, Value<T, NV>), Indefinite> {
-    let Before { q, v, u, qq, qv, vv, qu, vu, uu } = before;
+    policy: &mut Policy<T, NV, NU>,
+    to_go: &mut Value<T, NV>,
+) -> Result<(), Indefinite> {
+    let Quadratic { q, v, u, qq, qv, vv, qu, vu, uu } = before;
     let (factor, pivots) = factors(uu, regularisation).map_err(|input| Indefinite { input })?;
-    let mut change = *u;
-    solve(&factor, &pivots, &mut change);
+    let Policy { change, by_q, by_v, expected } = policy;
+    *change = *u;
+    solve(&factor, &pivots, change);
     let (of_q, of_v) = (solved_rows(&factor, &pivots, qu), solved_rows(&factor, &pivots, vu));
-    let (by_q, by_v) = (transposed(&of_q), transposed(&of_v));
-    let linear = u.dot(&change);
+    transpose_into(&of_q, by_q);
+    transpose_into(&of_v, by_v);
+    let linear = u.dot(change);
     // (Q_uu + r) change = −Q_u.
-    let quadratic = (linear + regularisation * change.dot(&change)) * constant(-0.5);
+    *expected = [linear, (linear + regularisation * change.dot(change)) * constant(-0.5)];
     // With K = −Q_uu⁻¹ Q_ux the costs to go are Q_xx + Q_xu K; with regularisation r, less by r Kᵀ K.
     if regularisation != T::zero() {
         add_multiple(qu, -regularisation, &of_q);
         add_multiple(vu, -regularisation, &of_v);
     }
-    add_product(q, qu, &change);
-    add_product(v, vu, &change);
-    add_product(qq, qu, &by_q);
-    add_product(qv, qu, &by_v);
-    add_product(vv, vu, &by_v);
-    make_symmetric(qq);
-    make_symmetric(vv);
-    let policy = Policy { change, by_q, by_v, expected: [linear, quadratic] };
-    Ok((policy, Value { q: *q, v: *v, qq: *qq, qv: *qv, vv: *vv }))
+    add_product(q, qu, change);
+    add_product(v, vu, change);
+    add_product(qq, qu, by_q);
+    add_product(qv, qu, by_v);
+    add_product(vv, vu, by_v);
+    (to_go.q, to_go.v, to_go.qv) = (*q, *v, *qv);
+    symmetric_into(qq, &mut to_go.qq);
+    symmetric_into(vv, &mut to_go.vv);
+    Ok(())
 }

@@ -126,7 +126,10 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let step = |q: &_, v: &_, u: &_| discrete::step(m, method, t, q, v, u).expect("it is regular");
     let found = discrete::transition(m, method, t, q, v, u).expect("it is regular");
     let (next_q, next_v) = step(q, v, u);
-    assert!(m.difference(&next_q, &found.q).amax() < 1e-14 && (next_v - found.v).amax() < 1e-13);
+    // Accelerations follow from other expressions than those with derivatives: rounding grows with them.
+    let off = (m.difference(&next_q, &found.q).amax(), (next_v - found.v).amax());
+    let change = (found.v - v).amax().max(1.0);
+    assert!(off.0 < 1e-14 && off.1 < 2e-14 * change, "{name}: {off:?}, {change}");
     let moved = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
         step(&m.integrate(q, dq), &(v + dv), &(u + du))
     };

@@ -2,7 +2,7 @@
 //! parts, and the costs of the iterates, as JSON for `benches/peers/optimal.py`, which has the same problems for Crocoddyl.
 
 use linkwork::nalgebra::{SMatrix, SVector};
-use linkwork::optimal::{Policy, Quadratic, Value, backward};
+use linkwork::optimal::{Policy, Quadratic, Value, backward_into};
 use linkwork::prelude::*;
 use linkwork::{RheonomicDerivatives, discrete};
 use rustix::time::{ClockId, clock_gettime};
@@ -71,42 +71,54 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         0.5 * (weights[0] * off.norm_squared() + weights[1] * v.norm_squared())
     }
 
-    /// The same to second order, without the curvature of the difference (Gauss and Newton).
+    /// Gradients and Hessians by configuration and velocity, without the curvature of the difference (Gauss and Newton).
     fn model<const NV: usize, const NU: usize>(
         &self,
         (q, v): &State<NQ, NV>,
         [of_q, of_v]: [f64; 2],
-    ) -> Value<f64, NV>
-    where
+        [by_q, by_v]: [&mut SVector<f64, NV>; 2],
+        [qq, vv]: [&mut SMatrix<f64, NV, NV>; 2],
+    ) where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
         let off = self.mechanism.difference(&self.goal, q);
-        let mut model = Value { v: v * of_v, vv: SMatrix::identity() * of_v, ..Value::zeros() };
-        (model.q, model.qq) = (off * of_q, SMatrix::identity() * of_q);
+        (*by_v, *vv) = (v * of_v, SMatrix::identity() * of_v);
+        (*by_q, *qq) = (off * of_q, SMatrix::identity() * of_q);
         if NQ != NV {
             // How the difference changes: as its coordinates do, but for the base.
             let (_, changes) = self.mechanism.tangent_rate_derivatives(&off, v);
             let base = changes.fixed_view::<6, 6>(0, 0).into_owned();
-            let gradient = base.tr_mul(&model.q.fixed_rows::<6>(0));
-            model.q.fixed_rows_mut::<6>(0).copy_from(&gradient);
-            model.qq.fixed_view_mut::<6, 6>(0, 0).copy_from(&(base.tr_mul(&base) * of_q));
+            let gradient = base.tr_mul(&by_q.fixed_rows::<6>(0));
+            by_q.fixed_rows_mut::<6>(0).copy_from(&gradient);
+            qq.fixed_view_mut::<6, 6>(0, 0).copy_from(&(base.tr_mul(&base) * of_q));
         }
-        model
     }
 
-    /// A step with its Jacobians, and the costs of its beginning.
+    /// The costs of the last state.
+    fn last<const NV: usize, const NU: usize>(&self, state: &State<NQ, NV>) -> Value<f64, NV>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
+    {
+        let mut all = Value::zeros();
+        let Value { q, v, qq, vv, .. } = &mut all;
+        self.model(state, LAST, [q, v], [qq, vv]);
+        all
+    }
+
+    /// A step with its Jacobians, and the costs of its beginning, into a node with the costs of any other.
     fn node<const NV: usize, const NU: usize>(
         &self,
         state: &State<NQ, NV>,
         u: &SVector<f64, NU>,
-    ) -> Node<NQ, NV, NU>
-    where
+        (step, cost): &mut Node<NQ, NV, NU>,
+    ) where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
-        let step = discrete::transition(self.mechanism, &self.method, 0.0, &state.0, &state.1, u);
-        let Value { q, v, qq, vv, .. } = self.model(state, RUNNING);
-        let uu = SMatrix::<f64, NU, NU>::identity() * EFFORT;
-        (step.expect("it moves"), Quadratic { q, v, qq, vv, u: u * EFFORT, uu, ..Quadratic::zeros() })
+        discrete::transition_into(self.mechanism, &self.method, 0.0, &state.0, &state.1, u, step)
+            .expect("it moves");
+        let Quadratic { q, v, qq, vv, .. } = cost;
+        self.model(state, RUNNING, [q, v], [qq, vv]);
+        (cost.u, cost.uu) = (u * EFFORT, SMatrix::identity() * EFFORT);
     }
 
     /// All nodes from the last to the first, each handed on as soon as it is known.
@@ -118,8 +130,10 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     ) where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
+        let mut node = (discrete::Transition::zeros(), Quadratic::zeros());
         for (k, (state, u)) in states.iter().zip(inputs).enumerate().rev() {
-            then(k, &self.node(state, u));
+            self.node(state, u, &mut node);
+            then(k, &node);
         }
     }
 
@@ -129,9 +143,9 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
         let Trajectory { states, inputs, policies } = all;
-        let mut to_go = self.model(&states[NODES], LAST);
+        let mut to_go = self.last(&states[NODES]);
         self.each(states, inputs, |k, (step, cost)| {
-            (policies[k], to_go) = backward(step, cost, &to_go, 0.0).expect("it is convex");
+            backward_into(step, cost, 0.0, &mut policies[k], &mut to_go).expect("it is convex");
         });
     }
 
@@ -169,16 +183,10 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
-        let none = Policy {
-            change: SVector::zeros(),
-            by_q: SMatrix::zeros(),
-            by_v: SMatrix::zeros(),
-            expected: [0.0; 2],
-        };
         let mut all = Trajectory {
             states: vec![(start, SVector::zeros()); NODES + 1],
             inputs,
-            policies: vec![none; NODES],
+            policies: vec![Policy::zeros(); NODES],
         };
         let mut next = (Vec::with_capacity(NODES + 1), Vec::with_capacity(NODES));
         let inputs: Vec<_> = all.inputs.iter().map(|u| u.as_slice().to_vec()).collect();
@@ -197,11 +205,11 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         });
         let mut kept = Vec::new();
         self.each(&all.states, &all.inputs, |_, node| kept.push(*node));
-        let last = self.model(&all.states[NODES], LAST);
+        let last = self.last(&all.states[NODES]);
         let backwards = least(|| {
             let mut to_go = last;
             for (k, (step, cost)) in (0..NODES).rev().zip(&kept) {
-                (all.policies[k], to_go) = backward(step, cost, &to_go, 0.0).expect("it is convex");
+                backward_into(step, cost, 0.0, &mut all.policies[k], &mut to_go).expect("it is convex");
             }
         });
         let sweep = least(|| self.sweep(&mut all));

@@ -71,11 +71,14 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         // Eight rows at a time, or those before the end: all others are zero in these columns.
         let length = N.min(8);
         let start = self.first.min(N - length);
+        let is_other: [bool; 8] = core::array::from_fn(|k| (self.first..self.end).contains(&(start + k)));
         for column in &mut a.data.0 {
             let sum = self.rows(column, start);
-            let places = column.get_mut(self.first..self.end).unwrap_or(&mut []);
-            for (place, sum) in places.iter_mut().zip(sum.numbers().iter().skip(self.first - start)) {
-                *place = *sum;
+            let places = column.get_mut(start..start + length).unwrap_or(&mut []);
+            for ((place, sum), is_other) in places.iter_mut().zip(sum.numbers()).zip(is_other) {
+                if is_other {
+                    *place = *sum;
+                }
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
 use crate::Real;
-use crate::blocks::{NearlyIdentity, add_multiple, add_product, product, scale, zeros};
+use crate::blocks::{NearlyIdentity, add_multiple, add_product, multiple_into, product, scale, zeros};
 use crate::constraint::ConstrainedDerivatives;
 use crate::derivatives::{RheonomicDerivatives, accelerated_into};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -161,10 +161,26 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        let h = self.length();
-        // Matrices of large mechanisms are long to copy: each is made in its place.
         let mut step = Transition::zeros();
-        let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, .. } = &mut step;
+        self.differentiate_into(mechanism, t, q, v, u, &mut step)?;
+        Ok(step)
+    }
+
+    fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        u: &SVector<T, NU>,
+        step: &mut Transition<T, NQ, NV, NU>,
+    ) -> Result<(), Error>
+    where
+        M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let h = self.length();
+        let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, .. } = &mut *step;
+        (*v_by_q, *v_by_v) = (zeros(), zeros());
         let acceleration = accelerated_into(mechanism, t, (q, v), u, (v_by_q, v_by_v, v_by_u));
         scale(v_by_q, h);
         scale(v_by_v, h);
@@ -172,14 +188,14 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         for (j, column) in v_by_v.data.0.iter_mut().enumerate() {
             column.iter_mut().skip(j).take(1).for_each(|x| *x += T::one());
         }
-        add_multiple(q_by_q, h, v_by_q);
-        add_multiple(q_by_v, h, v_by_v);
-        add_multiple(q_by_u, h, v_by_u);
+        multiple_into(h, v_by_q, q_by_q);
+        multiple_into(h, v_by_v, q_by_v);
+        multiple_into(h, v_by_u, q_by_u);
         step.v = v + acceleration * h;
         let displacement = step.v * h;
         step.q = mechanism.integrate(q, &displacement);
-        let mut chain =
-            Chained { period: h, by_q: SMatrix::identity(), by_displacement: SMatrix::identity() };
+        let (by_q, by_displacement) = (SMatrix::identity(), SMatrix::identity());
+        let chain = step.chained.insert(Chained { period: h, by_q, by_displacement });
         // q ⊕ h v⁺; in plain coordinates a displacement is added.
         if NQ != NV || M::SPEEDS {
             (chain.by_q, chain.by_displacement) = mechanism.integrate_derivatives_at(q, &displacement);
@@ -189,8 +205,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
             d.lead(&mut step.q_by_u);
         }
         add_multiple(&mut step.q_by_q, T::one(), &chain.by_q);
-        step.chained = Some(chain);
-        Ok(step)
+        Ok(())
     }
 
     fn differentiate_held<
