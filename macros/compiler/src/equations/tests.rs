@@ -16,6 +16,7 @@ mod latex;
 mod linear;
 mod mathml;
 mod mechanisms;
+mod random;
 mod reading;
 mod routh;
 

@@ -71,7 +71,7 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 
 /// The printed text, its equations read at states whose accelerations follow from Lagrange's equations with multipliers; the
 /// text is returned.
-fn check_printed(model: &Model<'_>) -> String {
+pub(super) fn check_printed(model: &Model<'_>) -> String {
     let joints = crate::kinematics::joints(model);
     let speeds = InSpeeds::of(model);
     let native = speeds.as_ref().map_or(model, |s| &s.native);
@@ -146,6 +146,12 @@ fn check_printed(model: &Model<'_>) -> String {
             Quantity::Acceleration(k) => a[k],
             _ => at(s),
         };
+        for (motion, force) in found.motion.iter().zip(&found.forces) {
+            let sides = [motion, force].map(|p| found.ring.evaluate(p, &values));
+            let size = motion.terms.iter().map(|t| Polynomial { terms: vec![*t] });
+            let size = size.map(|p| found.ring.evaluate(&p, &values).abs()).fold(1.0, f64::max);
+            assert!((sides[0] - sides[1]).abs() <= 1e-10 * size, "{sides:?}, state {seed}: {text}");
+        }
         let by_name = by_name(named, &values);
         let lines = printed(&text);
         assert!(lines.len() >= nv, "{text}");

@@ -53,7 +53,7 @@ fn at<'a>(model: &Model<'_>, seed: u64, p: &'a [f64], tau: &'a [f64]) -> impl Fn
 
 /// Accelerations, velocities and Routhian against Lagrange's equations of the whole; the names of the cyclic
 /// coordinates are returned.
-fn check_whole(model: &Model<'_>) -> Vec<String> {
+pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
     let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
     let cyclic = routh::cyclic(model, &joints);
