@@ -85,6 +85,7 @@ where
     M: Batch<NQ, NV, NU> + RheonomicDerivatives<NQ, NV, NU>,
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
+    const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
 
     of_each! {
         integrate_derivatives[](dv: NV) -> Pair<Self::Scalar, NV>;
@@ -98,7 +99,34 @@ where
         generalized_momentum_derivatives[t](q: NQ, v: NV) -> Square<Self::Scalar, NV>;
         momentum_rate_derivatives[t](q: NQ, v: NV) -> Pair<Self::Scalar, NV>;
         forward_dynamics_derivatives[t](q: NQ, v: NV, tau: NV) -> ByMotion<Self::Scalar, NV, NV>;
-        forward_dynamics_to_first_order[t](q: NQ, v: NV, tau: NV) -> (SVector<Self::Scalar, NV>, ByMotion<Self::Scalar, NV, NV>);
+    }
+
+    fn forward_dynamics_derivatives_into(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        tau: &SVector<Self::Scalar, NV>,
+        by_q: &mut Square<Self::Scalar, NV>,
+        by_v: &mut Square<Self::Scalar, NV>,
+        by_tau: &mut Square<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, NV> {
+        let (acceleration, found) = each(|k| {
+            let (mut by_q, mut by_v, mut by_tau) = (zeros(), zeros(), zeros());
+            let (q, v, tau) = (lane(q, k), lane(v, k), lane(tau, k));
+            let acceleration = self.mechanism.forward_dynamics_derivatives_into(
+                t.0[k],
+                &q,
+                &v,
+                &tau,
+                &mut by_q,
+                &mut by_v,
+                &mut by_tau,
+            );
+            (acceleration, (by_q, by_v, by_tau))
+        });
+        (*by_q, *by_v, *by_tau) = found;
+        acceleration
     }
 
     /// Constraints of lanes are not at hand.
