@@ -31,6 +31,19 @@ use core::fmt;
 /// assert_eq!(LIFT.value([9.0, 0.0]), 0.5);
 /// assert_eq!(Table::new([&[0.0, 0.0]], &[1.0, 2.0]), Err(TableError::NotIncreasing { axis: 0, place: 1 }));
 /// ```
+///
+/// Figures that are no table stop the compiler where they stand:
+///
+/// ```compile_fail,E0080
+/// use linkwork::Table;
+///
+/// const LIFT: Table<1> = match Table::new([&[0.0, 0.2, 0.1]], &[-0.1, 0.4, 0.5]) {
+///     Ok(table) => table,
+///     // error: an axis of this table does not increase strictly
+///     Err(error) => panic!("{}", error.message()),
+/// };
+/// assert!(LIFT.value([0.0]) < 0.0_f64);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Table<const N: usize> {
     axes: [&'static [f64]; N],

@@ -117,7 +117,8 @@ fn kept(nv: usize, first_order: usize) -> Vec<usize> {
 /// The motion of a mechanism without constraints about a state under the inputs `u`, as `ẋ = A x + B δu`. The states are the
 /// displacements (in body axes for ball and free joints), named like the velocities, then the changes of velocity, named with a
 /// prime; they are the outputs, too, and have the units that the compiler infers. States of first order come last, by their own names: of a mechanism with such states pass
-/// `&at(&m.extended(), t)`.
+/// `&at(&m.extended(), t)`. Under constraints displacements are not independent: beside the exponents of the motion there are two of
+/// zero for each constraint on configurations, which [`Trim::linear_system`](crate::steady::Trim::linear_system) has not.
 ///
 /// ```
 /// use linkwork::prelude::*;

@@ -256,6 +256,16 @@ struct Carriage {
     speed: Scalar,
 }
 
+/// In all displacements the constraint adds two exponents of zero to those of the motion.
+#[test]
+fn displacements_under_constraints_are_not_independent() {
+    let zero = SVector::zeros();
+    let system = linear_system(&Carriage { mass: 2.0 }, &zero, &zero, &[0.0].into()).unwrap();
+    contains(&system, 0.0, (2.0_f64 * 9.81).sqrt());
+    let poles = system.poles().unwrap();
+    assert!(poles.len() == 4 && poles.iter().filter(|pole| pole.norm() < 1e-7).count() == 2, "{poles:?}");
+}
+
 /// A rod as a constraint that decays at `α`: beside the pendulum's own exponents there is `−α` twice.
 #[test]
 fn decaying_constraints_have_their_exponents() {
