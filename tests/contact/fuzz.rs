@@ -143,10 +143,11 @@ pub fn attacks(seed: u64, count: usize) -> usize {
     errors
 }
 
-/// Errors are rare, and are said. `LINKWORK_ORACLE` is how many states of each mechanism are tried.
+/// All have answers but one in ten thousand, whose error is said. `LINKWORK_ORACLE` is how many states of each of the five mechanisms
+/// are tried: 200 000 are a million.
 #[test]
 fn states_at_random_have_answers() {
     let count = std::env::var("LINKWORK_ORACLE").ok().and_then(|n| n.parse().ok()).unwrap_or(100);
     let errors = attacks(7, count);
-    assert!(errors <= count / 10, "{errors}");
+    assert!(errors <= count / 2000, "{errors}");
 }

@@ -227,6 +227,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// What the natural map makes of a contact: the impulse of its gap before it is made zero or more, and what follows.
     fn mode(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
+        self.mode_with(self.friction[k], k, impulses, rates)
+    }
+
+    /// [`mode`](Self::mode) with this friction.
+    fn mode_with(&self, friction: T, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
         let (n, tangents) = self.of(k);
         let step = self.step[k] * self.scale;
         let normal = impulses[n] - self.press(k) * (rates[n] - self.least[self.pressed_by[k]]);
@@ -239,7 +244,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         let [x, y] = direction;
         let size = (x * x + y * y).sqrt();
-        if size <= self.friction[k] * normal {
+        if size <= friction * normal {
             return (normal, Mode::Stick);
         }
         (normal, Mode::Slip { size, direction: [x / size, y / size] })
@@ -267,7 +272,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (touches.entries(), along)
     }
 
-    /// The natural map of a contact: its impulses without what they are by their law.
+    /// The natural map of a contact: its impulses without what they are by their law. Friction that is stronger than what presses
+    /// counts by what would press it, so that rounding of the latter is not taken for more than it is.
     fn map(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> [T; 3] {
         let (n, tangents) = self.of(k);
         let (normal, mode) = self.mode(k, impulses, rates);
@@ -278,7 +284,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 Mode::Open => impulses[i],
                 Mode::Stick => self.step[k] * self.scale * rates[i],
                 Mode::Slip { direction, .. } => {
-                    impulses[i] - component(&direction, c) * self.friction[k] * normal
+                    let friction = self.friction[k];
+                    (impulses[i] - component(&direction, c) * friction * normal) / friction.max(T::one())
                 }
             };
         }

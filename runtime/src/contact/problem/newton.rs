@@ -1,5 +1,6 @@
 //! Newton's method for the natural map.
 
+use super::super::total::Total;
 use super::linear::{identify, square};
 use super::{List, Mode, Problem, Square, component};
 use crate::Real;
@@ -30,12 +31,25 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if self.residual(&other).0 < self.residual(&best).0 { other } else { best }
     }
 
+    /// [`newton_twice`](Self::newton_twice) from impulses that fulfil the laws with other friction, `before`: what contacts do then
+    /// they are taken to do still at first.
+    pub(super) fn follow(&self, start: List<T, NR>, before: &Total<T, NK>) -> List<T, NR> {
+        let mut system = square();
+        let mut right =
+            self.linearise(&start, before, constant(APART[1]), &mut system).each(|change| [change]);
+        self.eliminate(&mut system, &mut right);
+        let mut next = start;
+        next.iter_mut().zip(right.iter()).for_each(|(next, [change])| *next += *change);
+        self.newton_twice(next)
+    }
+
     fn newton(&self, start: List<T, NR>, lift: T) -> List<T, NR> {
         let mut impulses = start;
         let mut left = self.size_of_map(&impulses);
         let mut system = square();
         for _ in 0..NEWTON {
-            let mut right = self.linearise(&impulses, lift, &mut system).each(|change| [change]);
+            let mut right =
+                self.linearise(&impulses, &self.friction, lift, &mut system).each(|change| [change]);
             self.eliminate(&mut system, &mut right);
             let mut part = T::one();
             let next = loop {
@@ -71,7 +85,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Makes `system` the natural map's derivative; what takes its value away.
-    fn linearise(&self, impulses: &List<T, NR>, lift: T, system: &mut Square<T, NR>) -> List<T, NR> {
+    /// With what contacts do by the friction `judged`.
+    fn linearise(
+        &self,
+        impulses: &List<T, NR>,
+        judged: &Total<T, NK>,
+        lift: T,
+        system: &mut Square<T, NR>,
+    ) -> List<T, NR> {
         let rates = self.rates(impulses);
         identify(system);
         let mut right = List::repeat(T::zero());
@@ -79,7 +100,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let (step, press) = (self.step[k] * self.scale, self.press(k));
             let friction = self.friction[k];
             let (n, tangents) = self.of(k);
-            let (normal, mode) = self.mode(k, impulses, &rates);
+            let (normal, mode) = self.mode_with(judged[k], k, impulses, &rates);
             if let Mode::Open = mode {
                 self.all_of(k).for_each(|i| right[i] = -impulses[i]);
                 continue;

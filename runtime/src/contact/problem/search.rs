@@ -12,10 +12,24 @@ const ROUNDS: usize = 12;
 const SWEEPS: usize = 21;
 /// Factors of the steps of the natural map, round by round.
 const SCALES: [f64; 5] = [1.0, 8.0, 0.125, 64.0, 1.0 / 64.0];
-/// Parts of the angle of friction where nothing else helps.
-const DEGREES: u32 = 12;
+/// Parts in which friction grows where nothing else helps.
+const DEGREES: u32 = 24;
+/// The friction up to which it grows by its angle, in the first half; what is stronger grows by equal factors in the second.
+const STEEP: f64 = 4.0;
 /// Contacts of which all selections are tried where nothing else helps.
 const GUESSED: usize = 6;
+
+/// Less friction, by a share of the way from none.
+fn part_of<T: Real>(friction: T, share: T) -> T {
+    let (steep, twice) = (constant::<T>(STEEP), share + share);
+    if friction <= steep {
+        return (friction.atan() * share).tan();
+    }
+    match twice <= T::one() {
+        true => (steep.atan() * twice).tan(),
+        false => steep * (friction / steep).powf(twice - T::one()),
+    }
+}
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses.
@@ -143,17 +157,21 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         found
     }
 
-    /// The impulses by way of those with less friction, whose angle grows from none in equal parts.
+    /// The impulses by way of those with less friction.
     fn by_degrees(&mut self) -> Option<List<T, NR>> {
         let friction = self.friction;
         let mut impulses = List::repeat(T::zero());
         for part in 1..=DEGREES {
             let share = constant::<T>(f64::from(part) / f64::from(DEGREES));
-            self.friction = if part < DEGREES {
-                friction.each(|friction| (friction.atan() * share).tan())
-            } else {
-                friction
-            };
+            let before = self.friction;
+            self.friction =
+                if part < DEGREES { friction.each(|friction| part_of(friction, share)) } else { friction };
+            // What is near already is not left for gradients of strong friction.
+            let near = self.follow(impulses, if part > 1 { &before } else { &self.friction });
+            if self.is_solved(&near) {
+                impulses = near;
+                continue;
+            }
             self.relax(&mut impulses, SWEEPS);
             for scale in SCALES {
                 let found = self.newton_scaled(impulses, scale);
