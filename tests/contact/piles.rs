@@ -42,6 +42,37 @@ fn a_tower_of_ten_boxes_stands() {
     thread::Builder::new().stack_size(32 << 20).spawn(tower).unwrap().join().unwrap();
 }
 
+/// Four boxes, each on the faces of the one below.
+#[mechanism(gravity = -9.81 * z)]
+struct Stack {
+    #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
+    block: [Body; 4],
+    #[joint(ground -> block[i])]
+    pose: [Free; 4],
+    #[contact(block[0].cuboid(0.2, 0.2, 0.1), ground.plane(z), friction = 0.6)]
+    base: Contact,
+    #[contact(block[i + 1].cuboid(0.2, 0.2, 0.1), block[i].cuboid(0.2, 0.2, 0.1), friction = 0.6)]
+    seat: [Contact; 3],
+}
+
+/// 47 points of which 16 touch, whose places follow from where the boxes are: none moves.
+fn stack() {
+    let m = Stack {};
+    let mut q = m.neutral();
+    for k in 0..4 {
+        q[7 * k] = 0.02 * ((k % 3) as f64 - 1.0);
+        q[7 * k + 2] = 0.05 + 0.1 * k as f64;
+    }
+    let run = simulate(&m).from(q, [0.0; 24]).method(TimeStepping::step(1e-2)).duration(0.5);
+    let moved = (run.finish().unwrap().q - q).norm();
+    assert!(moved < 1e-12, "{moved:e} m");
+}
+
+#[test]
+fn boxes_stand_on_boxes() {
+    thread::Builder::new().stack_size(32 << 20).spawn(stack).unwrap().join().unwrap();
+}
+
 /// Two cards lean on each other: the edge of the left one touches the face of the right one.
 #[mechanism(gravity = -9.81 * y)]
 struct Cards {
