@@ -49,3 +49,26 @@ fn names_of_functions_are_taken() {
     // The Jacobian of such an output would be another one's function.
     assert!(!check(empty(), item("frame"), Path::new("")).is_empty());
 }
+
+/// Passes divide plain numbers with another sign, which are numbers all the same.
+#[test]
+fn accelerations_are_outputs_whatever_the_figures() {
+    let item = "struct Drone {
+        #[body(mass = 0.8, inertia = diagonal(0.006, 0.007, 0.012))] frame: Body,
+        #[joint(ground -> frame)] flight: Free,
+        #[body(mass = 0.1, com = -0.3 * z, inertia = diagonal(0.001, 0.001, 0.0002))] load: Body,
+        #[joint(frame -> load)] hook: Ball,
+        #[acts(on = frame.at(0.15 * x), along = frame.z)] front: Force,
+        #[acts(on = frame.at(-0.15 * x), along = frame.z)] back: Force,
+        #[acts(on = frame.at(0.15 * y), along = frame.z)] left: Force,
+        #[acts(on = frame.at(-0.15 * y), along = frame.z)] right: Force,
+        #[acts(on = frame, about = frame.z)] yaw: Torque,
+        #[output(omega(frame / ground), resolved_in = frame)] gyroscope: Vector,
+        #[output(a(frame / ground / ground) + 9.81 * z, resolved_in = frame)] accelerometer: Vector,
+        #[output(r(frame / ground))] fix: Vector,
+    }";
+    let arguments = "gravity = -9.81 * z, derivatives".parse().unwrap();
+    let emitted = expand(arguments, item.parse().unwrap(), Path::new(""));
+    let code = format!("{}{}", emitted.tokens, emitted.text);
+    assert!(!code.contains("compile_error"), "{}", code.split("compile_error").nth(1).unwrap_or_default());
+}

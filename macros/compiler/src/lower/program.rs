@@ -248,17 +248,30 @@ impl Program {
         finite && self.tuples.iter().flatten().all(|c| c.is_finite())
     }
 
-    /// A function of plain numbers alone that is no number itself, since it would have been calculated: as it is written.
+    /// A function of plain numbers alone that is no number itself, as it is written. What is one may be left as it is where a pass
+    /// has put another sign to it.
     pub fn undefined(&self) -> Option<String> {
         let constant = |o: Operand| match o {
             Operand::Const(c) => Some(c),
             _ => None,
         };
-        self.instructions.iter().find_map(|op| match *op {
-            Op::Call(f, a) => Some(format!("{}({})", f.name(), constant(a)?)),
-            Op::Pow(a, b) => Some(format!("pow({}, {})", constant(a)?, constant(b)?)),
-            Op::Div(a, b) => Some(format!("{} / {}", constant(a)?, constant(b)?)),
-            _ => None,
+        self.instructions.iter().find_map(|op| {
+            let (value, text) = match *op {
+                Op::Call(f, a) => {
+                    let a = constant(a)?;
+                    (f.apply(a), format!("{}({a})", f.name()))
+                }
+                Op::Pow(a, b) => {
+                    let (a, b) = (constant(a)?, constant(b)?);
+                    (a.powf(b), format!("pow({a}, {b})"))
+                }
+                Op::Div(a, b) => {
+                    let (a, b) = (constant(a)?, constant(b)?);
+                    (a / b, format!("{a} / {b}"))
+                }
+                _ => return None,
+            };
+            (!value.is_finite()).then_some(text)
         })
     }
 
