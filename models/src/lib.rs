@@ -171,7 +171,7 @@
 //! | 2 | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_in_two_charts` |
 //! | 2 | physical matrices: projectors, rotation and cross-product matrices, their products and transposes, resolved in any frame | `Matrix`: `projector`, `rotation`, `skew`, `outer`, `transpose`, `trace` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
 //! | 2 | resolving in a frame, orientation matrices | `resolved_in = frame`, `rotation(B / A)`, `linkwork::rotation` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
-//! | 2 | nonstandard and reciprocal frames | `linkwork::rotation::reciprocal`; mechanisms have orthonormal frames alone | `textbook/matrices.rs`: `components_in_oblique_frames` |
+//! | 2 | nonstandard and reciprocal frames | `linkwork::rotation::reciprocal`, and components along any three vectors as expressions, `dot(v, cross(f2, f3)) / dot(f1, cross(f2, f3))`; frames that carry bodies are orthonormal, because rigid bodies turn by rotations | `textbook/matrices.rs`: `components_in_oblique_frames`, `outputs_have_components_in_oblique_frames` |
 //! | 2 | gradients of scalar fields | `gradient(field / point)` | `textbook/curves.rs`: `a_force_is_the_gradient_of_its_field` |
 //! | 3 | tensors of second order as matrices, dyads, how components change with the frame | `Matrix`, `outer(a, b)`, `resolved_in` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
 //! | 3 | Kronecker products, vectorised matrices, wedge products | nalgebra's `kronecker`; `vectorized`, `wedge` of `linkwork::rotation` | `textbook/matrices.rs`: `kronecker_products_solve_sylvester_s_equation` |

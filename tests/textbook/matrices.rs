@@ -101,6 +101,46 @@ fn matrices_are_what_their_vectors_say() {
     }
 }
 
+/// A velocity of a free body in three of its directions that are not perpendicular, by reciprocal vectors as expressions.
+#[mechanism]
+struct Oblique {
+    #[body(mass = 1, inertia = sphere(1, 1))]
+    body: Body,
+    #[joint(ground -> body)]
+    flight: Free,
+    #[define(body.x + 0.5 * body.y)]
+    first: Vector,
+    #[define(body.y - 0.3 * body.z)]
+    second: Vector,
+    #[define(body.z + 0.2 * body.x + 0.4 * body.y)]
+    third: Vector,
+    #[define(dot(first, cross(second, third)))]
+    volume: Scalar,
+    #[define(v(body / ground / ground))]
+    velocity: Vector,
+    #[output(dot(velocity, cross(second, third)) / volume)]
+    along_first: Scalar,
+    #[output(dot(velocity, cross(third, first)) / volume)]
+    along_second: Scalar,
+    #[output(dot(velocity, cross(first, second)) / volume)]
+    along_third: Scalar,
+}
+
+#[test]
+fn outputs_have_components_in_oblique_frames() {
+    let frame = Matrix3::new(1.0, 0.0, 0.2, 0.5, 1.0, 0.4, 0.0, -0.3, 1.0);
+    let dual = reciprocal(&frame).unwrap();
+    let (m, mut random) = (Oblique {}, Random::new(11));
+    for _ in 0..5 {
+        let (q, v): (SVector<f64, 7>, SVector<f64, 6>) = (random.configuration(&m), random.vector(2.0));
+        let found = Vector3::new(m.along_first(&q, &v), m.along_second(&q, &v), m.along_third(&q, &v));
+        // Velocities of free joints are in body axes.
+        let linear = Vector3::new(v[0], v[1], v[2]);
+        assert!((found - dual.transpose() * linear).amax() < 1e-13, "{found}");
+        assert!((frame * found - linear).amax() < 1e-13, "{found}");
+    }
+}
+
 /// With vectors that are not perpendicular: `g₁ = f₂ × f₃ / (f₁ · f₂ × f₃)` and so on, and Cramer's rule for the components.
 #[test]
 fn components_in_oblique_frames() {

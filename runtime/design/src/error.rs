@@ -3,6 +3,18 @@
 use nalgebra::Complex;
 use std::fmt;
 
+/// A number of things.
+struct Counted(usize, &'static str);
+
+impl fmt::Display for Counted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Counted(1, what) => write!(f, "one {what}"),
+            Counted(n, what) => write!(f, "{n} {what}s"),
+        }
+    }
+}
+
 /// Why a result does not exist. Every variant names what is to blame.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -195,7 +207,9 @@ impl fmt::Display for Error {
             Self::Constraint(error) => error.fmt(f),
             Self::NoSteadyState { condition, residual, conditions, unknowns, place } => write!(
                 f,
-                "no steady state near the guess: {unknowns} unknowns meet {conditions} conditions, and `{condition}` is left at {residual:.3e}, at {}",
+                "no steady state near the guess: {} for {}, and `{condition}` is left at {residual:.3e}, at {}",
+                Counted(*unknowns, "unknown"),
+                Counted(*conditions, "condition"),
                 Listed(place)
             ),
             Self::Undetermined { unknowns, place } => write!(

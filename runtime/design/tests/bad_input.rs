@@ -325,3 +325,53 @@ fn linear_motions_off_a_steady_state_say_by_how_much() {
     assert!(tilted.linear_system(&tilted.find().unwrap()).is_ok());
     says("not steady: `angle` is off by -2.000e-1", tilted.linear_system(&hanging));
 }
+
+/// What a steady state is asked for: names that there are not, names twice, too few unknowns and too many.
+#[test]
+fn problems_that_are_posed_wrongly_are_named() {
+    let whole = Pendulum { lag: 0.2, torque: 0.0 };
+    let whole = whole.extended();
+    let rest = || equilibrium(&whole);
+    let unknown = |kind: &str| format!("no {kind} `hing`, perhaps `hinge`; there are hinge, torque");
+    says(&unknown("coordinate"), rest().coordinates(["hing"]).find());
+    says(&unknown("coordinate"), rest().fix(["hing"]).find());
+    says(&unknown("coordinate"), rest().hold(["hing"]).find());
+    says(&unknown("speed"), rest().speeds(["hing"]).find());
+    says(&unknown("velocity"), rest().accelerating(["hing"]).find());
+    says(&unknown("velocity"), rest().acceleration("hing", 1.0).find());
+    says("no input `comand`, perhaps `command`; there are command", rest().inputs(["comand"]).find());
+    let turned = || rest().inputs(["command"]).output("angle", 0.2);
+    let angel = rest().inputs(["command"]).output("angel", 0.2);
+    says("no output `angel`, perhaps `angle`; there are angle", angel.find());
+    says("the coordinate `hinge` is asked for twice", rest().coordinates(["hinge", "hinge"]).find());
+    says("the coordinate `hinge` is asked for twice", rest().hold(["hinge"]).hold(["hinge"]).find());
+    says("the input `command` is asked for twice", turned().inputs(["command"]).find());
+    says("the output `angle` is asked for twice", turned().output("angle", 0.3).find());
+    says(
+        "the velocity `hinge` is asked for twice",
+        rest().accelerating(["hinge"]).acceleration("hinge", 1.0).find(),
+    );
+    // Too many unknowns.
+    says(
+        "the conditions leave hinge, torque', command open at hinge 0.000000, torque' 0.000000, command 0.000000: fix or hold one of them, add a condition, or take the nearest",
+        rest().inputs(["command"]).find(),
+    );
+    // Too few, and as many without a solution: `hinge''` and `torque'` at most.
+    for (trim, start) in [
+        (
+            rest().output("angle", 0.2),
+            "no steady state near the guess: 2 unknowns for 3 conditions, and `hinge''` is left at ",
+        ),
+        (
+            rest().fix(["hinge"]).from([0.5].into()),
+            "no steady state near the guess: one unknown for 2 conditions, and `torque'` is left at ",
+        ),
+        (
+            rest().with_inputs([100.0].into()),
+            "no steady state near the guess: 2 unknowns for 2 conditions, and `torque'` is left at ",
+        ),
+    ] {
+        let text = trim.find().unwrap_err().to_string();
+        assert!(text.starts_with(start) && text.contains(", at hinge "), "{text}");
+    }
+}

@@ -161,7 +161,18 @@ fn index(kind: &'static str, name: &str, known: &[&str]) -> Result<usize, Error>
 }
 
 fn indices(kind: &'static str, names: &[String], known: &[&str]) -> Result<Vec<usize>, Error> {
+    check_repeated(kind, names)?;
     names.iter().map(|name| index(kind, name, known)).collect()
+}
+
+/// What is asked for twice would be two unknowns or two conditions for one.
+fn check_repeated(kind: &'static str, names: &[String]) -> Result<(), Error> {
+    let twice = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name));
+    twice.map_or(Ok(()), |(_, name)| Err(Error::Repeated { kind, name: name.clone() }))
+}
+
+fn names<T>(list: &[(String, T)]) -> Vec<String> {
+    list.iter().map(|(name, _)| name.clone()).collect()
 }
 
 impl<'a, 'm, M, const NQ: usize, const NV: usize, const NU: usize> Problem<'a, 'm, M, NQ, NV, NU>
@@ -169,6 +180,9 @@ where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
     pub fn new(trim: &'a Trim<'m, M, NQ, NV, NU>) -> Result<Self, Error> {
+        check_repeated("parameter", &names(&trim.parameters))?;
+        check_repeated("velocity", &names(&trim.accelerations))?;
+        check_repeated("output", &names(&trim.conditions))?;
         let held = indices("coordinate", &trim.held, &M::VELOCITIES)?;
         let fixed = indices("coordinate", &trim.fixed, &M::VELOCITIES)?;
         let among = match &trim.coordinates {
