@@ -321,3 +321,26 @@ fn elements_deliver_what_energies_gain() {
         assert!((m.stored(&q, &v) + slope).abs() < 1e-6 * (1.0 + slope.abs()));
     }
 }
+
+/// A bracket on a wall.
+#[mechanism(gravity = -9.81 * y, second_derivatives, momentum_derivatives, batch)]
+struct Bracket {
+    #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
+    arm: Body,
+    #[joint(ground -> arm)]
+    wall: Weld,
+    #[output(reaction_torque(wall))]
+    moment: Vector,
+}
+
+/// Where nothing moves there are no velocities to differentiate by, and the wall holds the weight.
+#[test]
+fn what_is_welded_has_reactions_and_no_motion() {
+    let none = SVector::<f64, 0>::zeros();
+    let moment = Bracket {}.moment(&none, &none);
+    assert!((moment - SVector::from([0.0, 0.0, 2.0 * 9.81 * 0.5])).amax() < 1e-12, "{moment}");
+    let (a, b) = Bracket {}.linearize(&none, &none, &none);
+    assert_eq!((a.shape(), b.shape()), ((0, 0), (0, 0)));
+    let (by_q, ..) = Bracket {}.forward_dynamics_derivatives(&none, &none, &none);
+    assert_eq!(by_q.shape(), (0, 0));
+}

@@ -80,6 +80,8 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             completed(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
             solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
+        // Nothing moves.
+        Shape::Linear(0, m) => format!("({}, {})\n", outputs.matrix(0, 0, 0), outputs.matrix(0, 0, m)),
         Shape::Linear(n, m) => {
             format!(
                 "{}let (mut by_q, mut by_v) = ({}, {});\n{}{}",
@@ -253,8 +255,11 @@ fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structu
     products(inverse, n, n, &[factor(0), factor(1)], s)
 }
 
-/// Minus the products of the inverse with factors of so many columns, in the place of these.
+/// Minus the products of the inverse with factors of so many columns, in the place of these; nothing where nothing moves.
 fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Signature<'_>) -> String {
+    if n == 0 {
+        return String::new();
+    }
     format!(
         "::linkwork::__private::minus_products::<Ops, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
         s.scalar.name(),
