@@ -71,19 +71,19 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         0.5 * (weights[0] * off.norm_squared() + weights[1] * v.norm_squared())
     }
 
-    /// Gradients and Hessians by configuration and velocity, without the curvature of the difference (Gauss and Newton).
+    /// Gradients by configuration and velocity, and what of the Hessian is not the same everywhere, without the curvature of the
+    /// difference (Gauss and Newton).
     fn model<const NV: usize, const NU: usize>(
         &self,
         (q, v): &State<NQ, NV>,
         [of_q, of_v]: [f64; 2],
         [by_q, by_v]: [&mut SVector<f64, NV>; 2],
-        [qq, vv]: [&mut SMatrix<f64, NV, NV>; 2],
+        qq: &mut SMatrix<f64, NV, NV>,
     ) where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
         let off = self.mechanism.difference(&self.goal, q);
-        (*by_v, *vv) = (v * of_v, SMatrix::identity() * of_v);
-        (*by_q, *qq) = (off * of_q, SMatrix::identity() * of_q);
+        (*by_v, *by_q) = (v * of_v, off * of_q);
         if NQ != NV {
             // How the difference changes: as its coordinates do, but for the base.
             let (_, changes) = self.mechanism.tangent_rate_derivatives(&off, v);
@@ -101,7 +101,8 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     {
         let mut all = Value::zeros();
         let Value { q, v, qq, vv, .. } = &mut all;
-        self.model(state, LAST, [q, v], [qq, vv]);
+        (*qq, *vv) = (SMatrix::identity() * LAST[0], SMatrix::identity() * LAST[1]);
+        self.model(state, LAST, [q, v], qq);
         all
     }
 
@@ -116,9 +117,9 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     {
         discrete::transition_into(self.mechanism, &self.method, 0.0, &state.0, &state.1, u, step)
             .expect("it moves");
-        let Quadratic { q, v, qq, vv, .. } = cost;
-        self.model(state, RUNNING, [q, v], [qq, vv]);
-        (cost.u, cost.uu) = (u * EFFORT, SMatrix::identity() * EFFORT);
+        let Quadratic { q, v, qq, .. } = cost;
+        self.model(state, RUNNING, [q, v], qq);
+        cost.u = u * EFFORT;
     }
 
     /// All nodes from the last to the first, each handed on as soon as it is known.
@@ -130,7 +131,9 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     ) where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
     {
-        let mut node = (discrete::Transition::zeros(), Quadratic::zeros());
+        let (qq, vv) = (SMatrix::identity() * RUNNING[0], SMatrix::identity() * RUNNING[1]);
+        let costs = Quadratic { qq, vv, uu: SMatrix::identity() * EFFORT, ..Quadratic::zeros() };
+        let mut node = (discrete::Transition::zeros(), costs);
         for (k, (state, u)) in states.iter().zip(inputs).enumerate().rev() {
             self.node(state, u, &mut node);
             then(k, &node);
