@@ -56,7 +56,9 @@ fn limbs_of_all_masses_and_angles_with_noise_obey_kanes_equations() {
     for seed in seeds(20) {
         let noise = (seed % 2 == 0).then(|| 10.0_f64.powi(-16 + (seed % 14) as i32));
         let limbs = 2 + seed as usize % 4;
-        let style = Style { limbs, decades: 6.0, noise, ..PLAIN };
+        // Heavy limbs on a light trunk lie farther apart by their moments of inertia about its joint than by their masses; what
+        // is lighter than the rest by thirteen powers of ten counts as nothing.
+        let style = Style { limbs, decades: 5.5, noise, ..PLAIN };
         programs::check(&spec(4_000_000 + seed, style), seed);
     }
 }
