@@ -52,7 +52,7 @@ fn debug_builds_compute_one_state_after_another() {
     for call in [
         "|k| self.inverse_dynamics(",
         "|k| self.forward_dynamics(",
-        "\nself.forward_dynamics_derivatives_into(",
+        "let found = self.forward_dynamics_derivatives_into(",
     ] {
         let one = format!("{call}&lane(q, k)");
         assert!(bodies.iter().any(|(debug, other)| debug.contains(&one) && !other.contains(&one)), "{call}");

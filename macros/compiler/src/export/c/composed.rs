@@ -21,7 +21,11 @@ pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>
             let parts = Parts::of(f, n, 2 * n * n);
             parts.declare(body);
             let forces = [("by_q", n, n), ("by_v", n, n)];
-            write_program(body, &f.program, scope, &|k| parts.place(k, "by_tau", &forces), support);
+            // Behind these come the accelerations, which are not given back.
+            let mut program = f.program.clone();
+            program.outputs.truncate(3 * n * n + parts.count());
+            program.sweep();
+            write_program(body, &program, scope, &|k| parts.place(k, "by_tau", &forces), support);
             parts.finish(body, "by_tau", support);
             solved(body, f, n, support);
         }
@@ -100,10 +104,7 @@ impl<'a> Parts<'a> {
             return place(before, k);
         }
         let (k, square) = (k - self.first, self.n * self.n);
-        match k.checked_sub(square) {
-            None => Some(format!("{inverse}[{k}]")),
-            Some(k) => (k < self.count()).then(|| format!("beside[{k}]")),
-        }
+        Some(if k < square { format!("{inverse}[{k}]") } else { format!("beside[{}]", k - square) })
     }
 
     /// Makes the inverse of its parts.
