@@ -374,7 +374,7 @@ fn a_rolling_disk_prints_kanes_equations() {
     for line in [
         "heading' = u3/cos(lean)\n",
         "roll' = u2 - sin(lean) u3/cos(lean)\n",
-        "1/4 m radius² u3' + 1/2 m radius² u1 u2 - 1/4 m radius² sin(lean) u1 u3/cos(lean) = 0\n",
+        "1/2 m radius² (1/2 u3' + (u2 - 1/2 sin(lean) u3/cos(lean)) u1) = 0\n",
     ] {
         assert!(text.contains(line), "{text}");
     }
