@@ -208,7 +208,7 @@ fn an_airliner_has_the_modes_of_cook() {
     is_at(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
 }
 
-/// The same source, ch. 5: the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the wind, from the state
+/// Cook, *Flight Dynamics Principles* (2007), ch. 5: the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the wind, from the state
 /// matrix as printed: `(s² + 0.033 s + 0.020) (s² + 0.902 s + 2.666)`.
 #[test]
 fn modes_of_printed_matrices_are_named() {

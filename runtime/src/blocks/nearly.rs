@@ -95,7 +95,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         sum
     }
 
-    /// The same for more than eight rows.
+    /// [`lead`](Self::lead) of matrices of more than eight rows.
     fn lead_many<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         let length = N.min(8);
         for column in &mut a.data.0 {

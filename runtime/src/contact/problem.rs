@@ -418,7 +418,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Some(kept.spread(&pushes))
     }
 
-    /// The same with other rates without impulses.
+    /// The problem with other rates without impulses.
     fn with(&self, free: List<T, NR>) -> Self {
         Self { free, ..*self }
     }

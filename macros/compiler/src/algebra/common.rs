@@ -22,7 +22,7 @@ pub enum Among {
     None,
 }
 
-/// The same sum with common factors taken out.
+/// A sum with common factors taken out.
 pub fn gathered(order: &Order, mut items: Vec<Item>, among: Among) -> Vec<Item> {
     let kept = if among == Among::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
     let rules = Rules { order, kept, room: NESTED };

@@ -12,7 +12,8 @@ const ENOUGH: f64 = 1e-14;
 /// What may be left of conditions, by what they change with unknowns of size one.
 const LEFT: f64 = 1e-9;
 
-/// The same of a state that a linear motion is taken about; at a double root conditions are less sensitive than on the way to it.
+/// What may be left of conditions, beside what they change with unknowns of size one, in a state that a linear motion is taken about:
+/// at a double root conditions are less sensitive than on the way to it.
 const STEADY: f64 = 1e-5;
 
 /// Singular values below this, of a matrix whose rows and columns have the norm one, count as zero. At a double root the place
