@@ -17,6 +17,8 @@ pub enum Origin {
     Joint,
     /// A constraint, such as rolling, with the friction of a slipping one.
     Constraint,
+    /// A contact that opens and closes: nothing where it is open. A stop on a joint's own coordinate is with its joint.
+    Contact,
 }
 
 /// A force and a torque on a body. Vectors are in the axes of the diagram.
@@ -42,9 +44,16 @@ impl<T: Real> Action<T> {
     }
 }
 
-/// All that acts on a body, in the motion of the mechanism: gravity, force elements, inputs, joints and constraints, `N` actions.
+/// All that acts on a body, in the motion of the mechanism: gravity, force elements, inputs, joints, constraints and contacts, `N`
+/// actions.
 /// By the equations of Newton and Euler their sum is `m a_C`, and about the centre of mass the rate of the angular momentum
 /// `Ḣ_C`, of the body with all that is fixed on it.
+///
+/// Beside [contacts](crate::contact) that open and close the function of an output `loads` gives a `Result`: the diagram under the
+/// forces that contacts exert in this state ([`contact::acting`](crate::contact::acting)). A second function,
+/// `loads_under(q, v, u, forces)`, takes these forces, in the order of `CONTACT_ROWS`: those of a step
+/// ([`contact::forces`](crate::contact::forces)), or of contacts that are taken to hold
+/// ([`contact::forward_dynamics`](crate::contact::forward_dynamics)).
 ///
 /// ```
 /// use linkwork::free_body::Origin;

@@ -119,6 +119,7 @@ impl Shown {
             Origin::Input => "#d55e00",
             Origin::Joint => "#005aa0",
             Origin::Constraint => "#aa3c82",
+            Origin::Contact => "#8c6400",
         };
         Shown { name: action.name, colour, point, force, torque, figures }
     }

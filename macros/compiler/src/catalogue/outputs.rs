@@ -92,11 +92,14 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     functions
 }
 
-/// The hidden function of an output that names reactions: of the motion, its accelerations and its multipliers.
-pub fn reaction(name: &str, size: usize, f: &Facts) -> Declared {
+/// The hidden function of an output that names reactions: of the motion, its accelerations and its multipliers, and of a free-body
+/// diagram the forces at contacts.
+pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V, A];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", 0, c.all)));
+    let touched = is_diagram && f.contacts[0] > 0;
+    arguments.extend(touched.then_some(Argument::Given(CONTACT_FORCES, 0, f.contacts[1])));
     declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
 }
 

@@ -15,12 +15,12 @@ pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
         let names = |f: fn(&Quantity) -> bool| {
             symbols_in(&output.values).into_iter().map(Quantity::of).any(|q| f(&q))
         };
-        let touched = names(|q| matches!(q, Quantity::ContactForce(_)));
+        let touched = output.diagram.is_none() && names(|q| matches!(q, Quantity::ContactForce(_)));
         let follows = touched || output.diagram.is_some() || reactions::names_one(&output.values);
         match (follows, facts.kinematic) {
             (true, true) => Vec::new(),
             (true, false) if touched => vec![catalogue::touched(&output.name, size, facts)],
-            (true, false) => vec![catalogue::reaction(&output.name, size, facts)],
+            (true, false) => vec![catalogue::reaction(&output.name, size, output.diagram.is_some(), facts)],
             (false, _) => catalogue::output(&output.name, size, uses(output), facts),
         }
     };
@@ -51,7 +51,7 @@ pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
         return Vec::new();
     };
     match declared.id {
-        Id::Reaction => reactions::resolved(model, &output.values),
+        Id::Reaction => reactions::resolved(model, &output.values, output.diagram.is_some()),
         Id::OutputJacobian => jacobian(model, output),
         Id::OutputDerivatives => derivatives(model, &output.values),
         Id::OutputByParameters => by_parameters(model, &output.values),

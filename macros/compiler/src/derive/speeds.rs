@@ -62,7 +62,7 @@ impl<'g> Derivation<'_, 'g> {
             Id::Reaction => {
                 let name = declared.name.strip_prefix(crate::catalogue::REACTION)?;
                 let output = native.outputs.iter().find(|output| output.name == name)?;
-                scalars(reactions::resolved(native, &output.values))
+                scalars(reactions::resolved(native, &output.values, output.diagram.is_some()))
             }
             Id::JointTorqueRegressor => self.regressor_in_speeds(speeds, true),
             Id::BaseRegressor => self.regressor_in_speeds(speeds, false),

@@ -33,9 +33,15 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
                 format!("let (a, lambda) = self.constrained_dynamics({t}q, v, &tau);")
             }
         };
+        let diagram = i.diagrams.iter().find(|(known, _)| known == name).map(|(_, diagram)| diagram);
+        if let Some(diagram) = diagram.filter(|_| !i.contacts.is_empty()) {
+            let call = format!("self.{}({t}{pass}, &forces.data.0[0])", f.name);
+            write_touched_diagram(out, i, (name, diagram), (&arguments, &tau, &solve, &call), s);
+            continue;
+        }
         let call = format!("self.{}({t}{pass})", f.name);
-        let (docs, shape, result) = match i.diagrams.iter().find(|(known, _)| known == name) {
-            Some((_, diagram)) => (diagram_docs(diagram, s), diagram_type(diagram, s), made(diagram, &call)),
+        let (docs, shape, result) = match diagram {
+            Some(diagram) => (diagram_docs(diagram, s), diagram_type(diagram, s), made(diagram, &call)),
             None => (about(s), s.shape(f.shape), call),
         };
         let _ = writeln!(
@@ -53,13 +59,70 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
     }
 }
 
+/// A free-body diagram of a mechanism with contacts: under the forces that these exert, and under given ones.
+fn write_touched_diagram(
+    out: &mut String,
+    i: &Interface<'_>,
+    (name, diagram): (&str, &Diagram),
+    (arguments, tau, solve, call): (&[Argument], &str, &str, &str),
+    s: &Signature<'_>,
+) {
+    let (scalar, kind) = (s.scalar.name(), diagram_type(diagram, s));
+    let parameters = s.parameters(&s.timed(arguments));
+    let (pass, t) = match s.time {
+        true => ("t, ", "t".to_string()),
+        false => ("", format!("::linkwork::__private::constant::<{scalar}>(0.0)")),
+    };
+    let (own, inputs) = match s.nu {
+        0 => ("q, v", format!("&<{}>::zeros()", s.vector(0))),
+        _ => ("q, v, u", "u".to_string()),
+    };
+    let acting = format!(
+        "{} Under the forces that contacts exert in this state (`linkwork::contact::acting`); an error where friction and constraints contradict each other.",
+        diagram_docs(diagram, s)
+    );
+    let under = format!(
+        "{} Under given forces of the contacts, N and N·m, in the order of `CONTACT_ROWS`.",
+        diagram_docs(diagram, s)
+    );
+    let _ = writeln!(
+        out,
+        "#[doc = {:?}]
+        pub fn {name}({parameters}) -> ::core::result::Result<{kind}, ::linkwork::ConstraintError> {{
+            let forces = ::linkwork::contact::acting(self, {t}, q, v, {inputs})?;
+            ::core::result::Result::Ok(self.{name}_under({pass}{own}, &forces))
+        }}
+        #[doc = {:?}]
+        #[must_use]
+        pub fn {name}_under({parameters}, forces: &{}) -> {kind} {{
+            let tau = {tau} + ::linkwork::Contacts::contact_jacobian(self, {t}, q).tr_mul(forces);
+            {solve}
+            {}
+        }}",
+        output_docs(i, name, &acting),
+        output_docs(i, name, &under),
+        s.vector(i.facts.contacts[1]),
+        made(diagram, call)
+    );
+}
+
 /// Free-body diagrams of a mechanism that failed to compile: what acts is not known.
 pub fn write_unknown(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     for (name, diagram) in &i.diagrams {
         let mut arguments = vec![Argument::Q, Argument::V];
         arguments.extend((s.nu > 0).then_some(Argument::U));
         let parameters = s.parameters(&s.timed(&arguments));
-        let _ = writeln!(out, "pub fn {name}({parameters}) -> {} {{ loop {{}} }}", diagram_type(diagram, s));
+        let kind = diagram_type(diagram, s);
+        if i.contacts.is_empty() {
+            let _ = writeln!(out, "pub fn {name}({parameters}) -> {kind} {{ loop {{}} }}");
+        } else {
+            let forces = s.vector(i.facts.contacts[1]);
+            let _ = writeln!(
+                out,
+                "pub fn {name}({parameters}) -> ::core::result::Result<{kind}, ::linkwork::ConstraintError> {{ loop {{}} }}
+                pub fn {name}_under({parameters}, forces: &{forces}) -> {kind} {{ loop {{}} }}"
+            );
+        }
     }
 }
 

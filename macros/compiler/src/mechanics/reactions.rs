@@ -18,8 +18,9 @@ pub fn names_one(e: &[Expr<'_>]) -> bool {
     symbols_in(e).into_iter().any(|s| matches!(Quantity::of(s), Quantity::Reaction(_)))
 }
 
-/// Expressions with the reactions in place: of `q`, `v`, `a`, the inputs, and the multipliers as given numbers.
-pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+/// Expressions with the reactions in place: of `q`, `v`, `a`, the inputs, and the multipliers as given numbers; `touched` with
+/// the forces at contacts, which are none otherwise.
+pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Expr<'g>> {
     let multiplier = |s: Symbol, all: &[Expr<'g>]| match Quantity::of(s) {
         Quantity::Reaction(k) => all.get(k.checked_sub(Quantity::MULTIPLIERS)?).copied(),
         _ => None,
@@ -28,7 +29,7 @@ pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let all = constraints::multipliers(model);
         return replace_all(e, &|s| multiplier(s, &all));
     };
-    let (held, multipliers) = on_released_coordinates(model, released);
+    let (held, multipliers) = on_released_coordinates(model, released, touched);
     let of = |s: Symbol| {
         let Quantity::Reaction(k) = Quantity::of(s) else { return None };
         if k >= Quantity::MULTIPLIERS {
@@ -72,7 +73,11 @@ fn is_open(model: &Model<'_>, s: Symbol) -> bool {
 }
 
 /// The forces that hold the coordinates of released joints at zero, and the multipliers of all constraints.
-fn on_released_coordinates<'g>(model: &Model<'g>, released: &Released<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+fn on_released_coordinates<'g>(
+    model: &Model<'g>,
+    released: &Released<'g>,
+    touched: bool,
+) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (g, open) = (model.graph, &released.model);
     let joints = joints(open);
     let closed = |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
@@ -85,6 +90,11 @@ fn on_released_coordinates<'g>(model: &Model<'g>, released: &Released<'g>) -> (V
     let held = constraints::forces(open, &multipliers);
     for (k, force) in forces_needed.iter_mut().enumerate() {
         *force -= inputs[k] + held[k];
+    }
+    let rates = if touched { open.contact_rates() } else { Vec::new() };
+    for (i, row) in constraints::jacobian_of(open, &rates).into_iter().enumerate() {
+        let force = Quantity::ContactForce(i).expr(g);
+        forces_needed.iter_mut().zip(row).for_each(|(needed, entry)| *needed -= entry * force);
     }
     let closed = |e: &[Expr<'g>]| replace_all(e, &|s| is_open(model, s).then(|| g.zero()));
     let mut needed = closed(&forces_needed[model.nv()..]);

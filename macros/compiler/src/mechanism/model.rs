@@ -132,6 +132,8 @@ pub struct Diagram {
     pub body: String,
     /// Name of each action, and what of the declaration it is.
     pub actions: Vec<(String, Origin)>,
+    /// What has to be released: joints, then places of bodies and particles, in the order of the declaration.
+    pub released: Vec<usize>,
 }
 
 /// Where an action of a free-body diagram comes from.
@@ -147,6 +149,8 @@ pub enum Origin {
     Joint,
     /// A constraint.
     Constraint,
+    /// A contact that opens and closes.
+    Contact,
 }
 
 /// What a value depends on beside the configuration and time.

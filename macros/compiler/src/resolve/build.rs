@@ -44,7 +44,7 @@ pub fn build_model<'g>(
         return None;
     }
     let mut model = build(description, graph, None, cx)?;
-    let joints = reaction::to_release(&model, description);
+    let joints = reaction::to_release(&model);
     if !joints.is_empty() {
         let same = build(description, graph, Some((&joints, &model.constraints)), cx)?;
         for output in model.outputs.iter_mut().filter(|output| output.diagram.is_some()) {
@@ -252,6 +252,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             joint_frames: BTreeMap::new(),
             applied: Vec::new(),
             touching: BTreeMap::new(),
+            moved_by_place: Vec::new(),
             partials: Partials::default(),
             group: 0,
             mobility: Diagnostics::new(),

@@ -59,10 +59,12 @@ pub struct Builder<'a, 'g> {
     pub solved_loops: Vec<ClosedFormLoop>,
     /// Joints to be released, and the names of the constraints that a mechanism with released joints keeps.
     pub releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
-    /// By joint of the tree: its frame on the parent, before it is released.
+    /// By joint of the tree its frame on the parent, and by body that is placed its own, before they are released.
     pub joint_frames: BTreeMap<usize, Placed<'g>>,
     /// By force element, energy and dissipation: its generalized forces on the coordinates of released joints.
     pub applied: Vec<(String, Vec<expr::Expr<'g>>)>,
+    /// Bodies and particles that move by what `at` and `frame` say: number among what can be released, and what carries them.
+    pub moved_by_place: Vec<(usize, Option<LinkId>)>,
     /// By constraint of surfaces that touch at a point: where, from the ground's origin.
     pub touching: BTreeMap<String, Terms<'g>>,
     /// Derivatives of the places of the links so far.

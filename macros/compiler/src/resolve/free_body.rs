@@ -4,10 +4,10 @@
 //! joints transmit are their reactions, with the motors, springs and dashpots on their own coordinates.
 
 use super::builder::Builder;
+use super::holders::name_of;
 use super::power::Counts;
 use super::reaction::RELEASED;
 use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};
-use super::tree;
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
 use crate::expr::replace::replace_all;
@@ -15,7 +15,7 @@ use crate::expr::sample::sample;
 use crate::expr::{Expr, Function, Symbol, Vec3};
 use crate::kinematics::{random_configuration, time_derivative, velocity_gradient};
 use crate::mechanism::{Diagram, LinkId, Origin, OutputValue, Pose, Quantity};
-use crate::syntax::{self, ActionKind, Definition, Description, Endpoint, ExprKind, JointKind, Target};
+use crate::syntax::{self, ActionKind, Definition, Endpoint, ExprKind, JointKind, Target};
 use std::collections::BTreeMap;
 
 /// States in which is looked at what acts.
@@ -44,27 +44,6 @@ struct Freed<'g> {
 
 /// An action: its name, where it comes from, where it acts, and what it does.
 type Acting<'g> = (String, Origin, Option<Terms<'g>>, Wrench<'g>);
-
-/// The joints of the tree that hold a body or are held by it.
-pub fn joints_of<'a>(d: &'a Description, body: &'a str) -> impl Iterator<Item = usize> + 'a {
-    let closing = tree::closing(d);
-    let tree = move |j: &usize| closing.get(*j) == Some(&false);
-    let joins = move |j: &usize| {
-        let joint = &d.joints[*j];
-        joint.child.body.text == body || carrier(d, &joint.parent.body.text) == body
-    };
-    (0..d.joints.len()).filter(tree).filter(joins)
-}
-
-/// The body that carries a point or a particle; a body itself.
-fn carrier<'a>(d: &'a Description, name: &'a str) -> &'a str {
-    let on = |name: &str| {
-        let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
-        let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
-        tree::base_name(point.or(particle)?)
-    };
-    (0..=d.points.len() + d.particles.len()).fold(name, |at, _| on(at).unwrap_or(at))
-}
 
 impl<'g> Builder<'_, 'g> {
     /// Expressions with the coordinates of released joints at zero, and their rates.
@@ -124,21 +103,22 @@ impl<'g> Builder<'_, 'g> {
     pub fn free_body(&self, output: &Definition, cx: &mut Diagnostics) -> Option<OutputValue<'g>> {
         let name = self.check_free_body(output, cx)?;
         let axes = self.output_axes(output, cx)?;
-        let empty = Diagram { body: name.clone(), actions: Vec::new() };
+        let holders = self.holders_of(&name);
+        let released: Vec<usize> = holders.iter().map(|(number, _)| *number).collect();
+        let empty = Diagram { body: name.clone(), actions: Vec::new(), released };
         let named =
             |values, diagram| OutputValue { name: output.name.text.clone(), values, diagram: Some(diagram) };
         let Some((released, _)) = self.releasing else { return Some(named(Vec::new(), empty)) };
-        let joints = joints_of(self.description, &name).filter_map(|j| {
-            let holds = self.description.joints[j].child.body.text == name;
-            Some((released.iter().position(|open| *open == j)?, holds))
-        });
-        let joints: Vec<(usize, bool)> = joints.collect();
+        let at = |number: &usize| released.iter().position(|open| open == number);
+        let joints: Vec<(usize, bool)> =
+            holders.iter().filter_map(|(number, holds)| Some((at(number)?, *holds))).collect();
         let (link, mass, center) = self.rigid_part(&name, &joints, output, cx)?;
         let body = Freed { name, link, mass, center, joints, axes };
         let mut all: Vec<Acting<'g>> = self.gravity_on(&body).into_iter().collect();
         all.extend(self.elements_on(&body));
         all.extend(self.joints_on(&body));
         all.extend(self.constraints_on(&body));
+        all.extend(self.contacts_on(&body));
         let (mut values, mut actions) = (Vec::new(), Vec::new());
         let rotation = &body.axes.1.rotation;
         for (name, origin, place, wrench) in all {
@@ -147,7 +127,7 @@ impl<'g> Builder<'_, 'g> {
             values.extend([point, wrench.force, wrench.torque].map(|v| rotation.to_child(v).0).concat());
             actions.push((name, origin));
         }
-        Some(named(self.with_released_at_rest(&values), Diagram { body: body.name, actions }))
+        Some(named(self.with_released_at_rest(&values), Diagram { body: body.name, actions, ..empty }))
     }
 
     /// The name of the body, if it can have a diagram.
@@ -156,14 +136,9 @@ impl<'g> Builder<'_, 'g> {
         let e = &output.value;
         self.scope.in_context(Context::new(Allowed::Reaction, ground), |scope| scope.heavy(e, cx))?;
         let name = e.name()?;
-        if let Some(contact) = self.description.contacts.first().filter(|_| !self.model.contacts.is_empty()) {
-            cx.error(e.place.clone(), "a free-body diagram beside contacts that open and close")
-                .help(format!("joints and accelerations would have to follow from them: `contact_force({})` gives their forces", contact.name.text));
-            return None;
-        }
-        if joints_of(self.description, name).all(|j| self.description.joints[j].child.body.text != name) {
-            cx.error(e.place.clone(), format!("no joint holds `{name}`, so that it cannot be freed"))
-                .help("a free-body diagram is that of a body or a particle with a joint; what is placed by `at` or `frame` is held by what its place says");
+        if self.holders_of(name).iter().all(|(_, holds)| !holds) {
+            cx.error(e.place.clone(), format!("nothing holds `{name}` that could be released"))
+                .help("a free-body diagram is that of a body or a particle that moves by a joint or by its own `at` and `frame`; what is fixed on another body belongs to the diagram of that");
             return None;
         }
         Some(name.to_string())
@@ -319,17 +294,20 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// What the joints of the tree transmit to the body.
+    /// What the joints of the tree transmit to the body, and what holds it, or what it carries, on a place that is given.
     fn joints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
         let g = self.scope.graph;
         let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
         let mut all = Vec::new();
         for (at, holds) in &body.joints {
-            let Some(joint) = released.get(*at).map(|j| (*j, &self.description.joints[*j])) else { continue };
-            let (j, joint) = joint;
-            let Some(frame) = self.joint_frames.get(&j).filter(|_| joint.kind != JointKind::Free) else {
-                continue;
+            let Some(&j) = released.get(*at) else { continue };
+            let (name, origin) = match (self.description.joints.get(j), name_of(self.description, j)) {
+                (Some(joint), _) if joint.kind == JointKind::Free => continue,
+                (Some(joint), _) => (joint.name.text.clone(), Origin::Joint),
+                (None, Some(name)) => (format!("{}.place", name.text), Origin::Constraint),
+                (None, None) => continue,
             };
+            let Some(frame) = self.joint_frames.get(&j) else { continue };
             let sign = g.num(if *holds { 1.0 } else { -1.0 });
             let out = |k: usize| {
                 let v = Vec3([0, 1, 2].map(|i| Quantity::Reaction(RELEASED * j + k + i).expr(g) * sign));
@@ -337,7 +315,7 @@ impl<'g> Builder<'_, 'g> {
                 self.scope.kinematics.borrow().resolve(&terms, body.axes.0, Vec3::zero(g))
             };
             let wrench = Wrench { force: out(0), torque: out(3) };
-            all.push((joint.name.text.clone(), Origin::Joint, Some(self.position_of(frame)), wrench));
+            all.push((name, origin, Some(self.position_of(frame)), wrench));
         }
         all
     }
@@ -385,6 +363,35 @@ impl<'g> Builder<'_, 'g> {
             Some((name, Origin::Constraint, place, wrench))
         };
         by_name.into_iter().filter_map(act).collect()
+    }
+
+    /// What contacts that open and close do to the body, by their forces.
+    fn contacts_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
+        let g = self.scope.graph;
+        let open = RELEASED * self.releasing.map_or(0, |(joints, _)| joints.len());
+        let first = self.model.nv() - open;
+        let (mut all, mut number) = (Vec::new(), 0);
+        for contact in &self.model.contacts {
+            let mut forces = vec![g.zero(); open];
+            for rate in &contact.rates {
+                let force = Quantity::ContactForce(number).expr(g);
+                number += 1;
+                for (v, d) in velocity_gradient(*rate).into_iter().filter(|(v, _)| *v >= first) {
+                    forces[v - first] += force * d;
+                }
+            }
+            let forces = self.with_released_at_rest(&forces);
+            let wrench = self.on_body(body, &forces);
+            if self.acts(&wrench, &forces) {
+                let place = self.touching.get(&contact.name).cloned();
+                let wrench = match &place {
+                    Some(_) => Wrench { torque: Vec3::zero(g), ..wrench },
+                    None => wrench,
+                };
+                all.push((contact.name.clone(), Origin::Contact, place, wrench));
+            }
+        }
+        all
     }
 
     /// The end of a joint that belongs to the body.

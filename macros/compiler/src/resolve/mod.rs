@@ -26,6 +26,7 @@ mod flight;
 mod free_body;
 mod freedom;
 mod functions;
+mod holders;
 mod inertia;
 mod input;
 mod joint;

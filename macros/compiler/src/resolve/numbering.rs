@@ -1,6 +1,7 @@
 //! Numbers of coordinates and velocities, in the order of declaration.
 
 use super::builder::{Builder, JointCoordinates};
+use super::holders;
 use super::joint::{charts, coordinate_names, full_name, is_angle, own_coordinate};
 use super::reaction::RELEASED;
 use super::{closed_form, tree};
@@ -76,7 +77,7 @@ impl<'g> Builder<'_, 'g> {
     /// Adds the coordinates of released joints after all others.
     pub fn number_released_coordinates(&mut self, joints: &[usize]) {
         for j in joints {
-            let name = &self.description.joints[*j].name;
+            let Some(name) = holders::name_of(self.description, *j) else { continue };
             for k in 0..RELEASED {
                 let (q, v) = (self.model.nq(), self.model.nv());
                 self.model.charts.push(Chart::Plain(q, v));

@@ -128,7 +128,7 @@ fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
 fn diagram(output: &Definition) -> Option<(String, Diagram)> {
     let is_one = output.rank == Rank::FreeBody;
     let body = output.value.name().unwrap_or_default().to_string();
-    is_one.then(|| (output.name.text.clone(), Diagram { body, actions: Vec::new() }))
+    is_one.then(|| (output.name.text.clone(), Diagram { body, actions: Vec::new(), released: Vec::new() }))
 }
 
 /// The value or law of a force element.

@@ -4,6 +4,7 @@
 use super::builder::Builder;
 use super::carriers::carries;
 use super::curves::FRAMES;
+use super::holders;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use super::tree::Order;
 use crate::diag::{Diagnostics, all_of};
@@ -220,7 +221,7 @@ impl<'a, 'g> Builder<'a, 'g> {
                 let free = !carries(d, &p.name.text);
                 let (link, pose) =
                     self.place_at(at, free, cx).unwrap_or_else(|| (None, self.somewhere(true)));
-                let (link, pose) = self.link_if_moving(link, pose);
+                let (link, pose) = self.link_of_place(holders::of_particle(d, k), link, pose);
                 self.register(&p.name.text, link, pose, PlacedKind::Point);
             }
         }
@@ -304,7 +305,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             _ => (None, self.somewhere(true)),
         };
-        let (link, pose) = self.link_if_moving(link, pose);
+        let (link, pose) = self.link_of_place(holders::of_body(self.description, k), link, pose);
         self.places[k] = Some((link, pose.clone()));
         self.register(&body.name.text, link, pose, PlacedKind::Body);
     }

@@ -4,21 +4,20 @@
 //! A joint that closes a loop transmits what the multipliers of its constraints do.
 
 use super::builder::Builder;
-use super::free_body;
 use super::joint::own_coordinate;
 use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
-use crate::syntax::{self, Description, ExprKind, Name};
+use crate::syntax::{self, ExprKind, Name};
 
 /// Coordinates of an released joint: three along axes, three about them.
 pub const RELEASED: usize = 6;
 
 /// The joints to be released: those whose reactions the outputs name, and with them those that loops are solved for in
-/// closed form, whose forces tell what closes the loops; of a body whose free-body diagram is an output, all joints.
-pub fn to_release(model: &Model<'_>, description: &Description) -> Vec<usize> {
+/// closed form, whose forces tell what closes the loops; of a body whose free-body diagram is an output, all joints and places.
+pub fn to_release(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)
         .into_iter()
@@ -27,8 +26,7 @@ pub fn to_release(model: &Model<'_>, description: &Description) -> Vec<usize> {
             _ => None,
         })
         .collect();
-    let bodies = model.outputs.iter().filter_map(|o| Some(o.diagram.as_ref()?.body.as_str()));
-    joints.extend(bodies.flat_map(|body| free_body::joints_of(description, body)));
+    joints.extend(model.outputs.iter().filter_map(|o| o.diagram.as_ref()).flat_map(|d| d.released.clone()));
     if !joints.is_empty() {
         joints.extend(model.solved.iter().map(|side| side.joint));
     }

@@ -21,6 +21,7 @@ pub use surface::arguments_of;
 pub use terrain::PLACE;
 
 use super::builder::Builder;
+use super::scope::Terms;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::jet::{Moving, Relative};
@@ -105,10 +106,15 @@ impl<'g> Builder<'_, 'g> {
 
     /// Remembers where a pair touches, for free-body diagrams.
     fn know_contact(&mut self, name: &str, pair: &Pair<'g>, contact: &Contact<'g>) {
+        self.touching.insert(name.to_string(), self.place_of_touch(pair, contact.point));
+    }
+
+    /// The place of a point that is given from the first one's centre.
+    fn place_of_touch(&self, pair: &Pair<'g>, point: Vec3<'g>) -> Terms<'g> {
         let frame = &pair.a.frame;
         let mut place = self.scope.kinematics.borrow().position(frame.link, frame.pose.translation);
-        place.push((pair.on_a.ancestor, contact.point));
-        self.touching.insert(name.to_string(), place);
+        place.push((pair.on_a.ancestor, point));
+        place
     }
 
     /// Reads a pair, for its mistakes alone.

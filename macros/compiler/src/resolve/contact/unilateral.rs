@@ -11,7 +11,7 @@ use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
 use crate::resolve::power::{Counts, is_asked};
-use crate::resolve::scope::{Allowed, Context, Exerted};
+use crate::resolve::scope::{Allowed, Context, Exerted, Terms};
 use crate::syntax::contact::{EXAMPLE, collision};
 use crate::syntax::{self, ExprKind, GROUND};
 
@@ -47,6 +47,8 @@ pub(super) struct Point<'g> {
     pub(super) turns: [Expr<'g>; 3],
     /// The link in whose axes the directions are.
     pub(super) ancestor: Option<LinkId>,
+    /// Where it is.
+    pub(super) place: Terms<'g>,
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -146,7 +148,8 @@ impl<'g> Builder<'_, 'g> {
             let slip = self.slip(&pair, touch.point);
             let rates = touch.axes.map(|(_, e)| (e * side, e.dot(slip)));
             let turns = touch.axes.map(|(_, e)| e.dot(w_a - w_b));
-            Point { gap: touch.gap, rates, turns, ancestor: pair.on_a.ancestor }
+            let place = self.place_of_touch(&pair, touch.point);
+            Point { gap: touch.gap, rates, turns, ancestor: pair.on_a.ancestor, place }
         });
         Some(points.collect())
     }
@@ -166,6 +169,7 @@ impl<'g> Builder<'_, 'g> {
         }
         let rates = rates.into_iter().map(|(_, rate)| rate).collect();
         let presses = self.model.contacts.len();
+        self.touching.insert(name.clone(), point.place.clone());
         self.push_contact(name.clone(), (point.gap, false), None, rates, (laws.friction, laws.restitution));
         let none = self.scope.graph.zero();
         for (word, about, most) in [("spin", 0..1, laws.torsional), ("roll", 1..3, laws.rolling)] {

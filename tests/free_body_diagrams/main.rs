@@ -7,6 +7,9 @@ use linkwork::prelude::*;
 use support::compare::assert_close;
 use support::random::Random;
 
+mod contacts;
+mod places;
+
 /// Differences of order two over 2e-4 s.
 const DIFFERENCE: f64 = 2e-6;
 

@@ -1,0 +1,76 @@
+//! What holds bodies and can be released, for free-body diagrams: joints of the tree, and places that are given by `at` and `frame`.
+
+use super::builder::Builder;
+use super::scope::{Placed, PlacedKind};
+use super::tree;
+use crate::mechanism::{LinkId, Pose};
+use crate::syntax::{self, Description};
+
+/// The number of a body's place among what can be released: joints come first, then bodies, then particles.
+pub fn of_body(d: &Description, body: usize) -> usize {
+    d.joints.len() + body
+}
+
+/// The number of a particle's place.
+pub fn of_particle(d: &Description, particle: usize) -> usize {
+    d.joints.len() + d.bodies.len() + particle
+}
+
+/// The name of a joint, or of a body or particle that is placed.
+pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
+    let joints = d.joints.iter().map(|joint| &joint.name);
+    let bodies = d.bodies.iter().map(|body| &body.name);
+    joints.chain(bodies).chain(d.particles.iter().map(|particle| &particle.name)).nth(number)
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// The link of a body or a particle that is placed, if it moves by that; where its place is released, with six motions more.
+    pub fn link_of_place(
+        &mut self,
+        number: usize,
+        carrier: Option<LinkId>,
+        pose: Pose<'g>,
+    ) -> (Option<LinkId>, Pose<'g>) {
+        let (link, pose) = self.link_if_moving(carrier, pose);
+        if link == carrier {
+            return (link, pose);
+        }
+        self.moved_by_place.push((number, carrier));
+        let Some((released, _)) = self.releasing else { return (link, pose) };
+        let Some(at) = released.iter().position(|open| *open == number) else { return (link, pose) };
+        self.joint_frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
+        self.release(at, released.len(), link, pose)
+    }
+
+    /// The body that carries a point, or a particle that does not move on it; a body itself.
+    fn carrier<'b>(&'b self, name: &'b str) -> &'b str {
+        let d = self.description;
+        let moves = |name: &str| {
+            let numbers = self.moved_by_place.iter().map(|(number, _)| *number);
+            numbers.filter_map(|number| name_of(d, number)).any(|moved| moved.text == name)
+        };
+        let on = |name: &str| {
+            let point = d.points.iter().find(|p| p.name.text == name).and_then(|p| p.on.as_ref());
+            let particle = d.particles.iter().find(|p| p.name.text == name).and_then(|p| p.at.as_ref());
+            tree::base_name(point.or(particle.filter(|_| !moves(name)))?)
+        };
+        (0..=d.points.len() + d.particles.len()).fold(name, |at, _| on(at).unwrap_or(at))
+    }
+
+    /// What holds a body or is held by it, and whether it holds: joints of the tree, and places.
+    pub fn holders_of(&self, body: &str) -> Vec<(usize, bool)> {
+        let d = self.description;
+        let closing = tree::closing(d);
+        let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
+            let holds = joint.child.body.text == body;
+            let joins = holds || self.carrier(&joint.parent.body.text) == body;
+            (joins && closing.get(j) == Some(&false)).then_some((j, holds))
+        });
+        let own = self.scope.kinematics.borrow().places.get(body).and_then(|placed| placed.link);
+        let places = self.moved_by_place.iter().filter_map(|(number, carrier)| {
+            let holds = name_of(d, *number).is_some_and(|name| name.text == body);
+            (holds || (carrier.is_some() && *carrier == own)).then_some((*number, holds))
+        });
+        joints.chain(places).collect()
+    }
+}

@@ -1,0 +1,99 @@
+//! Bodies and particles that move by `at` and `frame`: what holds them on their places acts on them, and on what carries them.
+
+use super::check;
+use linkwork::free_body::Origin;
+use linkwork::prelude::*;
+use support::random::Random;
+
+/// An arm with a bead that a coordinate moves along it, and on the bead a pendulum; a plate on a path that is given in time and by
+/// a coordinate, with a weight on it.
+#[mechanism(gravity = -9.81 * z)]
+struct Places {
+    slide: Coordinate,
+    turn: Coordinate,
+    #[body(mass = 2, com = 0.3 * x, inertia = diagonal(0.05, 0.2, 0.2))]
+    arm: Body,
+    #[joint(ground -> arm, about = (y, z))]
+    base: Universal,
+    #[particle(mass = 0.7, at = arm.at((0.4 + slide) * x + 0.2 * slide * slide * z))]
+    bead: Particle,
+    #[body(mass = 0.4, com = -0.2 * z, inertia = rod(0.4, 0.4, z))]
+    bob: Body,
+    #[joint(bead -> bob, about = (x, y))]
+    hook: Universal,
+    #[acts(between = (ground.at(0.5 * z), bead), stiffness = 30, free_length = 0.2)]
+    cord: Spring,
+    #[frame(ground, z(turn), x(0.3 * sin(2 * t)))]
+    axes: Frame,
+    #[body(mass = 1.5, com = 0.1 * y, inertia = diagonal(0.02, 0.03, 0.04), frame = axes, at = cos(turn) * x + 0.3 * t * z)]
+    plate: Body,
+    #[particle(mass = 0.3, at = plate.at(0.2 * x))]
+    weight: Particle,
+    #[acts(on = plate.at(0.2 * y), along = x)]
+    push: Force,
+
+    #[output(arm)]
+    on_arm: FreeBody,
+    #[output(momentum(arm))]
+    p_arm: Vector,
+    #[output(angular_momentum(arm / ground))]
+    h_arm: Vector,
+    #[output(center_of_mass(arm / ground))]
+    c_arm: Vector,
+    #[output(bead)]
+    on_bead: FreeBody,
+    #[output(momentum(bead))]
+    p_bead: Vector,
+    #[output(angular_momentum(bead / ground))]
+    h_bead: Vector,
+    #[output(center_of_mass(bead / ground))]
+    c_bead: Vector,
+    #[output(plate)]
+    on_plate: FreeBody,
+    #[output(momentum((plate, weight)))]
+    p_plate: Vector,
+    #[output(angular_momentum((plate, weight) / ground))]
+    h_plate: Vector,
+    #[output(center_of_mass((plate, weight) / ground))]
+    c_plate: Vector,
+}
+
+#[test]
+fn places_hold_what_moves_on_them() {
+    let m = Places {};
+    let mut random = Random::new(12);
+    for t in [0.0, 0.4, 1.3] {
+        let q = m.integrate(&m.neutral(), &random.vector(0.7));
+        let (v, u) = (random.vector(1.5), random.vector(4.0));
+        let a = m.forward_dynamics(t, &q, &v, &m.generalized_forces(t, &q, &u));
+        let at = |h: f64| (m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
+        check(&m.on_arm(t, &q, &v, &u), |h| {
+            let (q, v) = at(h);
+            [m.p_arm(t + h, &q, &v), m.h_arm(t + h, &q, &v), m.c_arm(t + h, &q)]
+        });
+        check(&m.on_bead(t, &q, &v, &u), |h| {
+            let (q, v) = at(h);
+            [m.p_bead(t + h, &q, &v), m.h_bead(t + h, &q, &v), m.c_bead(t + h, &q)]
+        });
+        check(&m.on_plate(t, &q, &v, &u), |h| {
+            let (q, v) = at(h);
+            [m.p_plate(t + h, &q, &v), m.h_plate(t + h, &q, &v), m.c_plate(t + h, &q)]
+        });
+        let (on_arm, on_bead) = (m.on_arm(t, &q, &v, &u), m.on_bead(t, &q, &v, &u));
+        let names = |actions: &[linkwork::free_body::Action<f64>]| -> Vec<&str> {
+            actions.iter().map(|action| action.name).collect()
+        };
+        assert_eq!(names(&on_arm.actions), ["gravity", "base", "bead.place"]);
+        assert_eq!(names(&on_bead.actions), ["gravity", "cord", "hook", "bead.place"]);
+        assert_eq!(names(&m.on_plate(t, &q, &v, &u).actions), ["gravity", "push", "plate.place"]);
+        // What the arm does to the bead the bead does to the arm; a place of a point gives no torque.
+        let (here, there) =
+            (on_bead.get("bead.place").expect("it is held"), on_arm.get("bead.place").expect("it is held"));
+        assert_eq!(here.origin, Origin::Constraint);
+        assert!((here.force + there.force).norm() < 1e-9 && here.torque.norm() < 1e-9);
+        // Along the way that is left to the bead nothing holds it.
+        let along = |x: f64| m.c_bead(t, &(q + SVector::from_fn(|k, _| if k == 0 { x } else { 0.0 })));
+        let tangent = (along(1e-5) - along(-1e-5)).normalize();
+        assert!(here.force.dot(&tangent).abs() < 1e-6 * (1.0 + here.force.norm()));
+    }
+}
