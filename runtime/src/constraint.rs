@@ -225,14 +225,16 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         p: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
         let half = h * constant(0.5);
-        let within = if NC > NH { self.integrate(q, &(v * half)) } else { *q };
+        let way = crate::speeds::way_of(self, q, v, half);
+        let within = if NC > NH { self.integrate(q, &way) } else { *q };
         let mut gap = if NC > NH || h == nalgebra::zero() {
             self.constraint_rates(t + half, &within, v)
         } else {
             SVector::zeros()
         };
         if h != nalgebra::zero() {
-            let residuals = self.constraint_residuals(t + h, &self.integrate(q, &(v * h)));
+            let residuals =
+                self.constraint_residuals(t + h, &self.integrate(q, &(way * constant::<Self::Scalar>(2.0))));
             gap.iter_mut().zip(residuals.iter()).for_each(|(gap, residual)| *gap = *residual / h);
         }
         self.constraint_response(t, q, p, &gap)

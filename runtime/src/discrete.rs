@@ -53,6 +53,7 @@ mod projected;
 mod projection;
 mod second;
 
+pub(crate) use implicit::eliminated;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
 
@@ -106,7 +107,7 @@ where
     System::new(mechanism, held).advance(method, &mut memory, t, &start, None, false)
 }
 
-/// The state after a step of `h` seconds, and the velocity that leads there.
+/// The state after a step of `h` seconds, and the mean rate of the displacement that leads there.
 fn advanced<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,

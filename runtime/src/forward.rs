@@ -80,7 +80,7 @@ macro_rules! each_function {
             impulse(q: NQ, v: NV, h: scalar, p: NV) -> SVector<Self::Scalar, NV>;
             is_nearly_singular(q: NQ, dv: NV) -> bool;
             acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<Self::Scalar, NV, NU>>;
-            carry(dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+            carry(q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
             contact_step(start: state, end: state, given: NV, h: scalar) -> Result<$crate::contact::Touched<Self::Scalar, NQ, NV>, $crate::ConstraintError>;
         }
     };

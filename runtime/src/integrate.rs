@@ -116,10 +116,6 @@ pub trait Method<T: Real> {
     /// Whether events at contacts are located, which needs the mechanism itself ([`Dynamics::follow`]).
     const LOCATES: bool = false;
 
-    /// Under constraints steps are made of `h v` as a displacement, which it is not where speeds were declared
-    /// ([`Mechanism::SPEEDS`](crate::Mechanism::SPEEDS)).
-    const BY_VELOCITIES: bool = false;
-
     /// Whether the settings make sense: [`Error::InvalidStep`] names the first that does not.
     fn check(&self) -> Result<(), Error>;
 

@@ -26,7 +26,7 @@
 //! # }
 //! ```
 
-use crate::blocks::{add_product, factors, solve, transposed, zeros};
+use crate::blocks::{add_product, factors, product, solve, transposed, zeros};
 use crate::limits::at_least;
 use crate::private::{constant, to_f64};
 use crate::{Frames, Limits, Real, Rheonomic, placement_difference};
@@ -257,12 +257,19 @@ where
     M: Rheonomic<NQ, NV, NU, Scalar = T> + Limits<NQ, NV, Scalar = T>,
 {
     // Plain coordinates are displacements from zero; others have no limits.
-    let at = mechanism.difference(&mechanism.neutral(), q);
+    let (at, of_rates) = match mechanism.limited_coordinates(q) {
+        Some((at, of_rates)) => (at, Some(of_rates)),
+        None => (mechanism.difference(&mechanism.neutral(), q), None),
+    };
     let (lower, upper) = (mechanism.lower_limits(), mechanism.upper_limits());
     let damping = at_least(damping, constant(1e-12));
     let (mut normal, mut right) = (left.normal, left.gradient + posture);
     for k in 0..NV {
         normal[(k, k)] += damping;
+    }
+    if let Some(of_rates) = &of_rates {
+        let rows = transposed(of_rates);
+        (normal, right) = (product(&product(&rows, &normal), of_rates), rows * right);
     }
     let mut held = [false; NV];
     // Each round holds one more at least.
@@ -284,7 +291,7 @@ where
             }
         }
         if !more {
-            return step;
+            return of_rates.map_or(step, |of_rates| of_rates * step);
         }
     }
     SVector::zeros()

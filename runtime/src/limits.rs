@@ -2,7 +2,7 @@
 
 use crate::private::constant;
 use crate::{At, Real};
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// What the coordinates of a mechanism, their velocities and the generalized forces on them stay within: what a file says of its
 /// joints, and each [`Limit`](crate::elements::Limit) of a struct. Every mechanism implements it; entries that nothing bounds are
@@ -34,12 +34,14 @@ pub trait Limits<const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;
 
-    /// The least value of the coordinate whose rate is each entry of `v`, m or rad; −∞ where there is none.
+    /// The least value of the coordinate whose rate is each entry of `v`, m or rad; −∞ where there is none. Where speeds are declared
+    /// ([`Speed`](crate::elements::Speed)), that of the coordinate whose rate the entry would be without them.
     fn lower_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::NEG_INFINITY))
     }
 
-    /// The largest value of the coordinate whose rate is each entry of `v`, m or rad; ∞ where there is none.
+    /// The largest value of the coordinate whose rate is each entry of `v`, m or rad; ∞ where there is none. With declared speeds as
+    /// for [`lower_limits`](Self::lower_limits).
     fn upper_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::INFINITY))
     }
@@ -57,6 +59,17 @@ pub trait Limits<const NQ: usize, const NV: usize> {
     /// The configuration with each coordinate that is beyond a limit put at that limit. What is not a number stays so.
     fn clamp_configuration(&self, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NQ> {
         *q
+    }
+
+    /// The coordinates in the order of these limits, and by which matrix speeds follow from their rates; `None` where no speeds are
+    /// declared, and velocities are rates.
+    #[doc(hidden)]
+    #[allow(clippy::type_complexity, reason = "a vector and a matrix")]
+    fn limited_coordinates(
+        &self,
+        _q: &SVector<Self::Scalar, NQ>,
+    ) -> Option<(SVector<Self::Scalar, NV>, SMatrix<Self::Scalar, NV, NV>)> {
+        None
     }
 
     /// The velocity with each entry that is beyond its limit put at that limit. What is not a number stays so.
@@ -108,6 +121,13 @@ macro_rules! pass_on {
 
         fn clamp_configuration(&$self, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NQ> {
             $to.clamp_configuration(q)
+        }
+
+        fn limited_coordinates(
+            &$self,
+            q: &SVector<Self::Scalar, NQ>,
+        ) -> Option<(SVector<Self::Scalar, NV>, SMatrix<Self::Scalar, NV, NV>)> {
+            $to.limited_coordinates(q)
         }
 
         fn clamp_velocity(&$self, v: &SVector<Self::Scalar, NV>) -> SVector<Self::Scalar, NV> {

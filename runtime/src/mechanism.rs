@@ -114,10 +114,12 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         None
     }
 
-    /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`: its components change, and bodies
-    /// move as before. Only of mechanisms with contacts, others leave it as it is.
+    /// The velocity `v` at the configuration `q` in the axes that ball and free joints have after the displacement `dv`, and in the
+    /// speeds there if some were declared: its components change, and bodies move as before. Only of mechanisms with contacts, others
+    /// leave it as it is.
     fn carry(
         &self,
+        _q: &SVector<Self::Scalar, NQ>,
         _dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {

@@ -3,10 +3,100 @@
 //!
 //! The matrix `G(q, u)` has as its columns how `Z(q) u` changes at constant `u` along the configurations that move with a speed.
 
-use crate::Real;
-use nalgebra::SMatrix;
+use crate::discrete::eliminated;
+use crate::private::{constant, epsilon};
+use crate::{Real, Rheonomic, RheonomicDerivatives};
+use nalgebra::{SMatrix, SVector};
 
 type Square<T, const N: usize> = SMatrix<T, N, N>;
+
+/// Iterations of a displacement at most; each gains a factor of about the angle through which speeds turn on the way.
+const MOST_ITERATIONS: usize = 50;
+
+/// The displacement `ξ = s ξ̇(ξ, v)` by which the configuration is away after `s` seconds with the speeds `v` that it has there, from the
+/// rate `ξ̇` of a displacement: the implicit midpoint rule has such midpoints. `s v` where speeds are the velocities of joints.
+///
+/// Where the iteration does not settle, what it has come to: methods of integration look at their own equations.
+pub(crate) fn way<T: Real, const N: usize>(
+    rate: impl Fn(&SVector<T, N>) -> SVector<T, N>,
+    v: &SVector<T, N>,
+    s: T,
+) -> SVector<T, N> {
+    let mut way = v * s;
+    let mut last = None;
+    for _ in 0..MOST_ITERATIONS {
+        let next = rate(&way) * s;
+        let change = (next - way).amax();
+        way = next;
+        let stalls = last.is_some_and(|last| change >= last);
+        if change <= way.amax() * epsilon() || (stalls && change <= way.amax() * epsilon::<T>().sqrt()) {
+            break;
+        }
+        last = Some(change);
+    }
+    way
+}
+
+/// [`way`] of a mechanism.
+pub(crate) fn way_of<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    s: T,
+) -> SVector<T, NV>
+where
+    T: Real,
+    M: Rheonomic<NQ, NV, NU, Scalar = T> + ?Sized,
+{
+    if M::SPEEDS { way(|way| m.displacement_rate(q, way, v), v, s) } else { v * s }
+}
+
+/// The velocity of the midpoint of a displacement that takes twice `s` seconds, from its mean rate.
+pub(crate) fn at_midpoint<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<T, NQ>,
+    mean: SVector<T, NV>,
+    s: T,
+) -> SVector<T, NV>
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    if !M::SPEEDS {
+        return mean;
+    }
+    // The rate of a displacement is linear in the velocity.
+    let (.., by_v) = m.displacement_rate_derivatives(q, &(mean * s), &mean);
+    eliminated(by_v, mean)
+}
+
+/// Where the velocity `v` of a midpoint leads from `q`: how the configuration after `s` seconds, and that after twice the time, change
+/// with `q` and with the displacement `s v`, or `2 s v`, at the velocities of joints.
+pub(crate) fn led<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    s: T,
+) -> [(Square<T, NV>, Square<T, NV>); 2]
+where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    let two = constant::<T>(2.0);
+    let way = way_of(m, q, v, s);
+    if !M::SPEEDS {
+        return [m.integrate_derivatives(&way), m.integrate_derivatives(&(v * (s * two)))];
+    }
+    // δξ = s (∂ξ̇/∂q δq + ∂ξ̇/∂ξ δξ + ∂ξ̇/∂v δv)
+    let (by_q, by_way, by_v) = m.displacement_rate_derivatives(q, &way, v);
+    let own = Square::<T, NV>::identity() - by_way * s;
+    let (by_q, by_v) = (eliminated(own, by_q * s), eliminated(own, by_v));
+    let through = |times: T| {
+        let (turned, moves) = m.integrate_derivatives_at(q, &(way * times));
+        (turned + moves * by_q * times, moves * by_v)
+    };
+    [through(T::one()), through(two)]
+}
 
 /// `(∂/∂q, ∂/∂dv)` of `q₁ = q ⊕ Z(q) dv`, from `Z(q)`, `Y(q₁)`, the derivatives for the joints' displacement, and `G(q, dv)`.
 pub fn integrate_derivatives_in_speeds<T: Real, const N: usize>(

@@ -81,7 +81,14 @@ fn implicit_steps_change_as_their_jacobians_say() {
 }
 
 /// All methods on a mechanism with constraints, at states that fulfil them: also along directions that they forbid.
-fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+pub(super) fn check_constrained<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     name: &str,
     m: &M,
     random: &mut Random,

@@ -6,6 +6,7 @@ use linkwork::{Frames, Rheonomic, RheonomicDerivatives, frame, index_of};
 use support::random::Random;
 
 mod implicit;
+mod speeds;
 
 /// A flying body with four rotors, of which two also turn it by drag, and a pendulum on a ball joint below.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]

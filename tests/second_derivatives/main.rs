@@ -4,6 +4,7 @@
 mod constrained;
 mod hyper;
 mod reference;
+mod speeds;
 mod turning;
 
 use linkwork::prelude::*;
@@ -109,13 +110,14 @@ where
         let (u, t) = (random.vector::<NU>(push), random.uniform(1.0));
         let (v, a, tau, lambda): (SVector<f64, NV>, SVector<f64, NV>, _, _) = (v, a, tau, lambda);
         let at_q = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
-        let mean = |b: SMatrix<f64, NV, NV>| (b + b.transpose()) * 0.5;
+        // How motions of `q ⊕ dq` follow from those of `dq`.
+        let moved = |dq: &SVector<f64, NV>| m.integrate_derivatives_at(&q, dq).1;
         let scale = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
 
         let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(t, &q, &v, &a, &lambda);
         let first = |q: &_, v: &_, a: &_| RheonomicDerivatives::inverse_dynamics_derivatives(m, t, q, v, a);
         let expected = [
-            mean(contracted(&lambda, |d| first(&at_q(d), &v, &a).0)),
+            contracted(&lambda, |d| first(&at_q(d), &v, &a).0 * moved(d)),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).0),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &a).1),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(a + d)).0),
@@ -131,7 +133,7 @@ where
         let first =
             |q: &_, v: &_, tau: &_| RheonomicDerivatives::forward_dynamics_derivatives(m, t, q, v, tau);
         let expected = [
-            mean(contracted(&lambda, |d| first(&at_q(d), &v, &tau).0)),
+            contracted(&lambda, |d| first(&at_q(d), &v, &tau).0 * moved(d)),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).0),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &tau).1),
             contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &v, &(tau + d)).0),
@@ -148,7 +150,7 @@ where
         let first = |q: &_, v: &_, u: &_| now.linear_motion(q, v, u);
         let by_u = |d: &SVector<f64, NU>| first(&q, &v, &(u + d));
         let states = [
-            (qq, mean(contracted(&lambda, |d| first(&at_q(d), &v, &u).by_q))),
+            (qq, contracted(&lambda, |d| first(&at_q(d), &v, &u).by_q * moved(d))),
             (qv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_q)),
             (vv, contracted(&lambda, |d: &SVector<f64, NV>| first(&q, &(v + d), &u).by_v)),
         ];

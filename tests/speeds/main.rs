@@ -8,6 +8,9 @@ use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 use support::simulate::advance;
 
+mod contacts;
+mod singular;
+
 /// Against differences of order four.
 const DIFFERENCE: f64 = 1e-8;
 
@@ -396,4 +399,35 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
     assert_similar("∂u̇/∂q", by_q.as_slice(), expected.as_slice(), 1e-7);
     let expected = slopes(|e| m.forward_dynamics(&q, &u, &(tau + e)));
     assert_similar("∂u̇/∂τ", by_tau.as_slice(), expected.as_slice(), 1e-7);
+}
+
+/// Implicit steps under constraints: their order, and energy that does not drift.
+#[test]
+fn constrained_methods_keep_their_orders() {
+    let (plain, m) = (Disk {}, DiskInSpeeds {});
+    let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
+    let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");
+    let u = m.speeds_of_rates(&q, &rates);
+    let exact = advance(&plain, &q, &rates, 0.5);
+    let error = |(q, v): (SVector<f64, 6>, SVector<f64, 6>)| {
+        (q - exact.0).norm() + (m.rates_of_speeds(&q, &v) - exact.1).norm()
+    };
+    let midpoint = |h: f64, duration: f64| {
+        let run = simulate(&m).from(q, u).duration(duration).method(ImplicitMidpoint::step(h));
+        let end = run.finish().expect("it rolls");
+        (end.q, end.v)
+    };
+    let order = (error(midpoint(0.01, 0.5)) / error(midpoint(0.005, 0.5))).log2();
+    assert!((1.9..2.1).contains(&order), "{order}");
+    let euler = |h: f64| {
+        let run = simulate(&m).from(q, u).duration(0.5).method(SemiImplicitEuler::step(h));
+        let end = run.finish().expect("it rolls");
+        error((end.q, end.v))
+    };
+    let order = (euler(0.002) / euler(0.001)).log2();
+    assert!((0.9..1.1).contains(&order), "{order}");
+    let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
+    let lost = |(at, v): (SVector<f64, 6>, SVector<f64, 6>)| (energy(&at, &v) - energy(&q, &u)).abs();
+    let (early, late) = (lost(midpoint(0.01, 1.0)), lost(midpoint(0.01, 20.0)));
+    assert!(late < 20.0 * early.max(1e-5), "{early:e} {late:e}");
 }

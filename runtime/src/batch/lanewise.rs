@@ -118,10 +118,11 @@ where
     fn carry(
         &self,
         t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
-        lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(dv, k), &lane(v, k)))
+        lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
     /// Lane by lane; a lane whose contacts have no impulses is no number afterwards, and it is an error if all are so.

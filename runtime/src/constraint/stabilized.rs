@@ -222,10 +222,11 @@ where
     fn carry(
         &self,
         t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
         dv: &SVector<M::Scalar, NV>,
         v: &SVector<M::Scalar, NV>,
     ) -> SVector<M::Scalar, NV> {
-        self.mechanism.carry(t, dv, v)
+        self.mechanism.carry(t, q, dv, v)
     }
 
     fn contact_step(

@@ -337,12 +337,11 @@ where
     let tau = mechanism.generalized_forces(t, q, v, u);
     let held = forward_dynamics_derivatives(mechanism, t, q, v, &tau, touches)?;
     let (force_by_q, force_by_v, force_by_u) = mechanism.generalized_forces_derivatives(t, q, v, u);
-    let (turning, _) = mechanism.tangent_rate_derivatives(&SVector::zeros(), v);
     Ok(LinearMotion {
         acceleration: held.a,
         by_q: held.by_q + product(&held.by_tau, &force_by_q),
         by_v: held.by_v + product(&held.by_tau, &force_by_v),
         by_u: product(&held.by_tau, &force_by_u),
-        turning: turning * constant::<T>(2.0),
+        turning: mechanism.turning(q, v),
     })
 }

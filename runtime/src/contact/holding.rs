@@ -173,8 +173,8 @@ where
         self.mechanism.held_derivatives(t, (q, v), u, &self.touches, self.decay)
     }
 
-    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        self.mechanism.carry(t, dv, v)
+    fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.carry(t, q, dv, v)
     }
 
     /// Nothing opens or closes.

@@ -418,7 +418,7 @@ where
         put(&mut left, first, entry(&gaps, k));
     }
     let push = undone(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
-    let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, &push, v));
+    let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, q, &push, v));
     let v = v + undone(&mechanism.contact_rates(t, &q, &v), &laws);
     (q, v)
 }

@@ -99,7 +99,7 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    mechanism.contact_rates(t, q, &mechanism.carry(t, &mechanism.difference(start, q), v))
+    mechanism.contact_rates(t, q, &mechanism.carry(t, start, &mechanism.difference(start, q), v))
 }
 
 /// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts, a velocity; on the way
@@ -138,13 +138,13 @@ where
     // What impulses do to the velocity they do in the mean of the step.
     let led = |after: &SVector<T, NV>| {
         let moved = (after - free - given) * half;
-        Touched { q: mechanism.integrate(q, &moved), v: mechanism.carry(t, &moved, after) }
+        Touched { q: mechanism.integrate(q, &moved), v: mechanism.carry(t, q, &moved, after) }
     };
     let mut touched = led(&after);
     let Some(mut acted) = acted.filter(|acted| acted.is_any) else { return Ok(touched) };
     // The energy without what contacts have done: they have worked along the mean of the velocities.
     let most = || {
-        let carried = mechanism.carry(t, &mechanism.difference(start, q), v);
+        let carried = mechanism.carry(t, start, &mechanism.difference(start, q), v);
         let mean = (carried + free + given) * constant::<T>(0.5);
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
         energy(mechanism, t, &Touched { q: *q, v: free + given }) - work
@@ -233,7 +233,10 @@ where
     let mut part = T::one();
     for _ in 0..PARTS {
         let push = push * part;
-        let to = Touched { q: mechanism.integrate(&from.q, &push), v: mechanism.carry(t, &push, &from.v) };
+        let to = Touched {
+            q: mechanism.integrate(&from.q, &push),
+            v: mechanism.carry(t, &from.q, &push, &from.v),
+        };
         let after = energy(mechanism, t, &to);
         if after <= most + rounding(before) {
             return to;

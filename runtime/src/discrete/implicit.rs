@@ -11,6 +11,7 @@ use crate::constraint::{ConstrainedDerivatives, column, each_column, multipliers
 use crate::derivatives::{ByMotion, Derivatives, RheonomicDerivatives};
 use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
 use crate::private::{constant, epsilon};
+use crate::speeds::{at_midpoint, led, way_of};
 use crate::{Real, at};
 use nalgebra::{SMatrix, SVector};
 
@@ -76,6 +77,10 @@ struct Made<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     h: T,
     q: &'a SVector<T, NQ>,
     w: SVector<T, NV>,
+    /// The configuration of the midpoint.
+    middle: SVector<T, NQ>,
+    /// How it and that of the end change with the configuration before and with the velocity of the midpoint.
+    led: [(SMatrix<T, NV, NV>, SMatrix<T, NV, NV>); 2],
     end: (SVector<T, NQ>, SVector<T, NV>),
     rate: ByMotion<T, NV, NU>,
     start: ByMotion<T, NV, NU>,
@@ -180,16 +185,11 @@ where
         self.h * constant(0.5)
     }
 
-    /// The configuration of the midpoint.
-    fn middle(&self) -> SVector<T, NQ> {
-        self.m.integrate(self.q, &(self.w * self.half()))
-    }
-
     /// The derivative of what the midpoint's equation lacks by its velocity.
     fn matrix(&self) -> SMatrix<T, NV, NV> {
         let half = self.half();
-        let (by_q, by_v) = momentum(self.m, self.t + half, &self.middle(), &self.w);
-        let moves = self.m.integrate_derivatives(&(self.w * half)).1;
+        let (by_q, by_v) = momentum(self.m, self.t + half, &self.middle, &self.w);
+        let moves = self.led[0].1;
         by_v - self.rate.1 * half + (by_q - self.rate.0 * half) * moves * half
     }
 
@@ -203,13 +203,13 @@ where
         rate: &SMatrix<T, NV, C>,
     ) -> (SMatrix<T, NV, C>, SMatrix<T, NV, C>) {
         let half = self.half();
-        let (p_by_q, mass) = momentum(self.m, self.t + half, &self.middle(), &self.w);
-        let (turned, moves) = self.m.integrate_derivatives(&(self.w * half));
+        let (p_by_q, mass) = momentum(self.m, self.t + half, &self.middle, &self.w);
+        let [(turned, moves), end] = self.led;
         let force = start + rate * half - (p_by_q - self.rate.0 * half) * turned * by_q;
         let w = answer.middle(&force, by_q);
         let middle = turned * by_q + moves * w * half;
         let p = (p_by_q + self.rate.0 * half) * middle + (mass + self.rate.1 * half) * w + rate * half;
-        let (turned, moves) = self.m.integrate_derivatives(&(self.w * self.h));
+        let (turned, moves) = end;
         let end = turned * by_q + moves * w * self.h;
         (end, answer.end(&p, &end))
     }
@@ -237,7 +237,7 @@ where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
         let (m, t, h, half, still) = (self.m, self.t, self.h, self.half(), SVector::zeros());
-        let (middle, (end, after)) = (self.middle(), &self.end);
+        let (middle, (end, after)) = (self.middle, &self.end);
         m.check_regular(t, self.q)?;
         m.check_regular(t + h, end)?;
         let matrix = self.matrix();
@@ -247,9 +247,9 @@ where
         // Constraints on configurations at the end, divided by the period; those on velocities half-way.
         let (mut by_w, mut by_q) = (SMatrix::<T, NC, NV>::zeros(), SMatrix::<T, NC, NV>::zeros());
         let at_end = m.constraint_jacobian(t + h, end);
-        let (turned, moves) = m.integrate_derivatives(&(self.w * h));
+        let [half_way, (turned, moves)] = self.led;
         let (of_w, of_q) = (at_end * moves, at_end * turned / h);
-        let (turned, moves) = m.integrate_derivatives(&(self.w * half));
+        let (turned, moves) = half_way;
         let rates = m.equation_derivatives(t + half, &middle, &self.w, &still, &SVector::zeros()).rates_by_q;
         let on_w = rates * moves * half + m.constraint_jacobian(t + half, &middle);
         let on_q = rates * turned;
@@ -312,7 +312,7 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
         let made = self.made(m, t, q, v, u)?;
-        let (now, middle) = (t + made.half(), made.middle());
+        let (now, middle) = (t + made.half(), made.middle);
         let force = m.momentum_rate(now, &middle, &made.w) + m.generalized_forces(now, &middle, &made.w, u);
         made.held(&(force * made.half()))
     }
@@ -330,18 +330,15 @@ impl<T: Real> ImplicitMidpoint<T> {
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        const {
-            assert!(
-                !M::SPEEDS,
-                "derivatives of this step take velocities for displacements, which declared speeds are not: take those of `Rk4`"
-            );
-        }
         let h = self.length();
-        let (end, w) = advanced(m, self, t, q, v, u, h)?;
+        let (end, mean) = advanced(m, self, t, q, v, u, h)?;
         let half = h * constant(0.5);
+        let w = at_midpoint(m, q, mean, half);
         let (by_q, by_v) = momentum(m, t, q, v);
-        let middle = m.integrate(q, &(w * half));
+        let middle = m.integrate(q, &way_of(m, q, &w, half));
         Ok(Made {
+            led: led(m, q, &w, half),
+            middle,
             m,
             t,
             h,
@@ -376,21 +373,18 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    const {
-        assert!(
-            !M::SPEEDS,
-            "derivatives of this step take velocities for displacements, which declared speeds are not: take those of `Rk4`"
-        );
-    }
     let (h, still) = (method.length(), SVector::zeros());
-    let (end, w) = advanced(m, method, t, q, v, u, h)?;
+    let (end, mean) = advanced(m, method, t, q, v, u, h)?;
     let half = h * constant(0.5);
+    let w = at_midpoint(m, q, mean, half);
     let (by_q, by_v) = momentum(m, t, q, v);
     let (force_by_q, force_by_v, force_by_u) = m.generalized_forces_derivatives(t, q, v, u);
     let rest_by_q = m.momentum_rate_derivatives(t, q, &still).0;
-    let middle = m.integrate(q, &(w * half));
+    let middle = m.integrate(q, &way_of(m, q, &w, half));
     let force = m.momentum_rate(t, q, &still) + m.generalized_forces(t, q, v, u);
     let made = Made {
+        led: led(m, q, &w, half),
+        middle,
         m,
         t,
         h,
@@ -407,7 +401,7 @@ where
 }
 
 /// `x` with `m x = b` by Gaussian elimination with complete pivots; what pivots of rounding alone would determine is zero.
-fn eliminated<T: Real, const N: usize, const C: usize>(
+pub fn eliminated<T: Real, const N: usize, const C: usize>(
     mut m: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, C>,
 ) -> SMatrix<T, N, C> {

@@ -56,7 +56,6 @@ where
     S: StepByParameters<T>,
 {
     const {
-        assert!(!M::SPEEDS, "steps in declared speeds have no derivatives by parameters");
         assert!(
             !M::CONSTRAINED,
             "a step with derivatives by parameters is one of a mechanism without constraints"
@@ -126,7 +125,7 @@ where
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
 {
     let here = m.integrate(q, &displacement.value);
-    let moved = moved(m, displacement);
+    let moved = moved(m, q, displacement);
     let motion = at(m, t).linear_motion(&here, &v.value, u);
     let tau = m.generalized_forces(t, &here, &v.value, u);
     let mut by = m.forward_dynamics_by_parameters(t, &here, &v.value, &tau);
@@ -143,16 +142,17 @@ where
 /// How the configuration after a displacement moves.
 fn moved<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
+    q: &SVector<T, NQ>,
     displacement: &Changing<T, NV, NP>,
 ) -> SMatrix<T, NV, NP>
 where
     T: Real,
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
 {
-    if NQ == NV {
+    if NQ == NV && !M::SPEEDS {
         displacement.by
     } else {
-        product(&m.integrate_derivatives(&displacement.value).1, &displacement.by)
+        product(&m.integrate_derivatives_at(q, &displacement.value).1, &displacement.by)
     }
 }
 
@@ -169,7 +169,7 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
     {
         let (h, v) = (self.length(), Changing::fixed(v));
         let after = v.plus(h, &acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
-        (moved(m, &after.scaled(h)), after.by)
+        (moved(m, q, &after.scaled(h)), after.by)
     }
 }
 
@@ -188,8 +188,8 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
         let half = h * constant(0.5);
         let stage = |after: T, (rate, change): &(Changing<T, NV, NP>, Changing<T, NV, NP>)| {
             let (displacement, v) = (rate.scaled(after), v.plus(after, change));
-            let (by_dv, by_v) = m.tangent_rate_derivatives(&displacement.value, &v.value);
-            let value = m.tangent_rate(&displacement.value, &v.value);
+            let (_, by_dv, by_v) = m.displacement_rate_derivatives(q, &displacement.value, &v.value);
+            let value = m.displacement_rate(q, &displacement.value, &v.value);
             let mut by = product(&by_v, &v.by);
             add_product(&mut by, &by_dv, &displacement.by);
             (Changing { value, by }, acceleration(m, t + after, (q, &displacement), &v, u))
@@ -201,6 +201,6 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
         let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
         let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
         let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
-        (moved(m, &displacement), change.by)
+        (moved(m, q, &displacement), change.by)
     }
 }

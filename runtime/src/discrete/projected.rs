@@ -130,9 +130,6 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    const {
-        assert!(!M::SPEEDS, "steps in declared speeds have no derivatives under constraints");
-    }
     let failed = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, &free.q, &free.v).map_err(failed)?;
     m.check_regular(t, &q)?;
@@ -140,7 +137,7 @@ where
     let mut moved = SMatrix::<T, NV, NV>::identity();
     for _ in 0..MOST_CORRECTIONS {
         let Correction { x, change, done, .. } = m.correction(t, &near);
-        let (by_q, by_x) = m.integrate_derivatives(&x);
+        let (by_q, by_x) = m.integrate_derivatives_at(&near, &x);
         moved = product(&(by_q + product(&by_x, &change)), &moved);
         near = m.integrate(&near, &x);
         if done {

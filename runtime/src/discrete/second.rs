@@ -64,7 +64,7 @@ where
     const {
         assert!(
             !M::SPEEDS,
-            "a step with second derivatives is one in the velocities of joints: declared speeds have none"
+            "a step with second derivatives is one in the velocities of joints: the displacements of declared speeds have first derivatives alone; declare no speeds, or take `transition`"
         );
         assert!(
             !M::CONTACTING,

@@ -281,11 +281,12 @@ where
     fn carry(
         &self,
         t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
         dv: &SVector<M::Scalar, NE>,
         v: &SVector<M::Scalar, NE>,
     ) -> SVector<M::Scalar, NE> {
         let (dv, (v, x)) = (apart::<_, NV, NX, NE>(dv).0, apart::<_, NV, NX, NE>(v));
-        together(&self.mechanism.carry(t, &dv, &v), &x)
+        together(&self.mechanism.carry(t, q, &dv, &v), &x)
     }
 
     fn contact_step(

@@ -16,10 +16,25 @@
 use super::{Dynamics, Error, State, is_finite, largest, settled};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
+use crate::speeds;
 use nalgebra::SVector;
 
 /// Iterations allowed for one step; a step well inside the region of convergence takes about ten.
 pub(super) const MOST_ITERATIONS: usize = 100;
+
+/// The displacement from `q` to a midpoint after a time `half`: there the configuration moves with the velocity `v`.
+pub(super) fn way<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    q: &SVector<T, NQ>,
+    v: &SVector<T, NV>,
+    half: T,
+) -> SVector<T, NV> {
+    if system.has_speeds() {
+        speeds::way(|way| system.displacement_rate(q, way, v), v, half)
+    } else {
+        v * half
+    }
+}
 
 /// Whether iterations of a velocity have come to their end: changes are rounding.
 pub(super) struct Settling<T> {
@@ -68,6 +83,8 @@ const LEAP: f64 = 0.5;
 pub(super) struct Middle<T, const NV: usize> {
     /// Its velocity.
     pub v: SVector<T, NV>,
+    /// The displacement of the whole step.
+    pub way: SVector<T, NV>,
     /// The momentum after the step, before the push at its end.
     pub p: SVector<T, NV>,
     iterations: usize,
@@ -94,7 +111,7 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
     if let Some(found) = found.as_ref().ok().filter(quick) {
         // Pushes in a singular end leave in the velocity what these constraints alone forbid.
         let before = ended.0.unwrap_or_else(|| singular(start.t, &start.q));
-        let after = singular(start.t + h, &system.integrate(&start.q, &(found.v * h)));
+        let after = singular(start.t + h, &system.integrate(&start.q, &found.way));
         ended.0 = Some(after);
         return before || after;
     }
@@ -141,12 +158,12 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
     h: T,
     mut v: SVector<T, NV>,
 ) -> Result<Middle<T, NV>, Error> {
-    let half = h * constant(0.5);
+    let (half, two) = (h * constant(0.5), constant::<T>(2.0));
     let t = start.t + half;
     let mut settling = Settling::new(half);
     let mut pace = Pace { last: SVector::zeros(), share: T::one() };
     for iterations in 0..MOST_ITERATIONS {
-        let q = system.integrate(&start.q, &(v * half));
+        let q = system.integrate(&start.q, &way(system, &start.q, &v, half));
         let gain = rate(system, t, &q, &v) * half;
         let own = system.momentum(t, &q, &v);
         let change = system.impulse(start.t, &start.q, &v, h, &(p + gain - own));
@@ -155,15 +172,16 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
             return Err(lost(start.t, iterations));
         }
         if settling.is_done(largest(&change), &q, &v) {
-            let q = system.integrate(&start.q, &(v * half));
+            let way = way(system, &start.q, &v, half);
+            let q = system.integrate(&start.q, &way);
             let p = system.momentum(t, &q, &v) + rate(system, t, &q, &v) * half;
-            return Ok(Middle { v, p, iterations });
+            return Ok(Middle { v, p, way: way * two, iterations });
         }
     }
     Err(Error::NotConverged { t: to_f64(start.t), iterations: MOST_ITERATIONS })
 }
 
-/// The end of a step near a singular position, and the velocity of its midpoint: `v = v₀ + (h/2) v̇(q_m, v)` with
+/// The end of a step near a singular position, and the displacement that leads there: with the velocity of the midpoint `v = v₀ + (h/2) v̇(q_m, v)` with
 /// `q_m = q₀ ⊕ (h/2) v`, where the midpoint is brought onto the constraints before its acceleration is taken. That is the one
 /// thing which is continuous there: pushes at the ends of a step are not, and their directions turn within it. Order 2.
 /// `None` where the iteration does not settle.
@@ -178,7 +196,8 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
     let mut v = start.v;
     let mut last: Option<T> = None;
     for iteration in 0..MOST_ITERATIONS {
-        let q = system.integrate(&start.q, &(v * half));
+        let way = way(system, &start.q, &v, half);
+        let q = system.integrate(&start.q, &way);
         let (q, on) = system.project(middle, &q, &v).ok()?;
         let mut gain = system.acceleration(middle, &q, &on) * half;
         // Rounding of the place may lead round in a circle.
@@ -198,8 +217,9 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
             || change <= epsilon::<T>() * largest(&v)
             || (circles && stalls && change <= known * largest(&v));
         if settles {
-            let q = system.integrate(&start.q, &(v * h));
-            return settled(system, State { t, q, v: v + gain }, start.t).ok().map(|end| (v, end));
+            let way = self::way(system, &start.q, &v, half) * constant::<T>(2.0);
+            let q = system.integrate(&start.q, &way);
+            return settled(system, State { t, q, v: v + gain }, start.t).ok().map(|end| (way, end));
         }
         last = Some(change);
     }

@@ -100,7 +100,6 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
     type Memory<const NV: usize> = MidpointMemory<T, NV>;
 
     const FIXED: bool = true;
-    const BY_VELOCITIES: bool = true;
 
     fn check(&self) -> Result<(), Error> {
         positive("the step", self.step)
@@ -132,17 +131,17 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
             let found = midpoint(system, D::momentum_rate, start, &p, h, guess);
             let crossing = is_crossing(system, start, h, &found, &mut memory.ended);
             let passed = if crossing { passing(system, start, t, h) } else { None };
-            let (v, end) = match passed {
+            let (way, end) = match passed {
                 Some(passed) => passed,
                 None => {
-                    let Middle { v, p, .. } = found?;
-                    let q = system.integrate(&start.q, &(v * h));
+                    let Middle { v, p, way, .. } = found?;
+                    let q = system.integrate(&start.q, &way);
                     let v1 = system.velocity(t, &q, &p, &(v + v - start.v));
-                    (v, settled(system, State { t, q, v: v1 }, start.t)?)
+                    (way, settled(system, State { t, q, v: v1 }, start.t)?)
                 }
             };
             // The push at the end changes the momentum.
-            (v * h, v, end, None)
+            (way, way / h, end, None)
         } else {
             let (q, [way, v, rate]) = solve(system, start, &p, half, guess)?;
             let p = p + rate * h;

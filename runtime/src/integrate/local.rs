@@ -59,8 +59,8 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.project(self.origin + t, q, v)
     }
 
-    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        self.system.carry(self.origin + t, dv, v)
+    fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.carry(self.origin + t, q, dv, v)
     }
 
     fn contact_step(

@@ -54,7 +54,7 @@ pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
     let half = h * constant(0.5);
     let mut stage = |h: T, mean: &Rates<T, NV>| {
         let (displacement, acceleration) = rates(system, start, h, mean);
-        (displacement, acceleration + system.carry(start.t, &(mean.0 * h), added))
+        (displacement, acceleration + system.carry(start.t, &start.q, &(mean.0 * h), added))
     };
     let k1 = (start.v, before + added);
     let k2 = stage(half, &k1);

@@ -62,15 +62,14 @@ fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         settled(system, State { v, ..*state }, state.t).ok()
     };
     let later = pushed(system, start, half)?;
-    let (v, end) = passing(system, &later, t, h)?;
-    Some((v, pushed(system, &end, -half)?))
+    let (way, end) = passing(system, &later, t, h)?;
+    Some((way, pushed(system, &end, -half)?))
 }
 
 impl<T: Real> Method<T> for SemiImplicitEuler<T> {
     type Memory<const NV: usize> = Ended;
 
     const FIXED: bool = true;
-    const BY_VELOCITIES: bool = true;
 
     fn check(&self) -> Result<(), Error> {
         positive("the step", self.step)
@@ -101,7 +100,7 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
         } else {
             SVector::zeros()
         };
-        let (v, end) = if constrained {
+        let (way, end) = if constrained {
             let p = system.momentum(start.t, &start.q, &start.v) + force(system, start) * h;
             let rate = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
             let found = midpoint(system, rate, start, &p, h, start.v);
@@ -110,21 +109,22 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
             match passed {
                 Some(passed) => passed,
                 None => {
-                    let Middle { v, p, .. } = found?;
-                    let q = system.integrate(&start.q, &(v * h));
-                    (v, settled(system, State { t, q, v: system.velocity(t, &q, &p, &v) }, start.t)?)
+                    let Middle { v, p, way, .. } = found?;
+                    let q = system.integrate(&start.q, &way);
+                    (way, settled(system, State { t, q, v: system.velocity(t, &q, &p, &v) }, start.t)?)
                 }
             }
         } else {
             let v = start.v + before * h;
-            let q = system.integrate(&start.q, &(v * h));
-            (v, settled(system, State { t, q, v }, start.t)?)
+            let way = v * h;
+            let q = system.integrate(&start.q, &way);
+            (way, settled(system, State { t, q, v }, start.t)?)
         };
-        let step = Step::linear(*start, end, v * h);
+        let step = Step::linear(*start, end, way);
         if !dense {
             return Ok(step);
         }
         let after = system.acceleration(end.t, &end.q, &end.v);
-        Ok(step.cubic(system, &(v * h), [before, after]))
+        Ok(step.cubic(system, &way, [before, after]))
     }
 }

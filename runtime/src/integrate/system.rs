@@ -170,7 +170,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     }
 
     /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`, where there are contacts.
-    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
+    fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
     /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity.
@@ -260,12 +260,6 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
             assert!(
                 !(M::CONTACTING && S::LOCATES) || M::LOCATABLE,
                 "events at the contacts of this mechanism cannot be located, as those of lanes, states of first order and stabilised constraints: simulate it with `.method(TimeStepping::step(1e-3))`"
-            );
-        }
-        const {
-            assert!(
-                !(M::CONSTRAINED && M::SPEEDS && S::BY_VELOCITIES),
-                "under constraints this method of integration takes velocities for displacements, which declared speeds are not: simulate it with another, such as `.method(Rk4::step(1e-3))` or `.method(DormandPrince::new())`"
             );
         }
         self.undetermined = None;
@@ -403,8 +397,8 @@ where
         under(p) - under(&SVector::zeros())
     }
 
-    fn carry(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        self.mechanism.carry(t, dv, v)
+    fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.carry(t, q, dv, v)
     }
 
     fn contact_step(

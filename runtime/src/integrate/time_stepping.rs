@@ -150,5 +150,5 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
 ) -> (State<T, NQ, NV>, SVector<T, NV>) {
     let (displacement, change) = through(system, start, h, *before, rate);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
-    (end, system.carry(start.t, &displacement, &(*rate * h)))
+    (end, system.carry(start.t, &start.q, &displacement, &(*rate * h)))
 }

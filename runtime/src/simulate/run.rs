@@ -100,6 +100,10 @@ where
         };
         // Going nowhere makes quaternions unit.
         let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
+        // Where declared speeds determine no rates, nothing leads anywhere.
+        if M::SPEEDS && unit.iter().any(|x| !x.is_finite()) {
+            return Err(Error::NotFinite { t: to_f64(start.t) });
+        }
         let off = |i: &usize| unit.get(*i).zip(start.q.get(*i)).is_some_and(|(a, b)| far(*a, *b));
         // From the back: what is not a number may have spread to the place in front of the quaternion.
         if let Some(coordinate) = (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {

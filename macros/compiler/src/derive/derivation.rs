@@ -109,7 +109,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     fn contact_responses(&self) -> Program {
-        self.dynamics().contact_responses(&constraints::contact_rows(self.model))
+        let native = self.speeds.map_or(self.model, |speeds| &speeds.native);
+        self.dynamics().contact_responses(&constraints::contact_rows(native))
     }
 
     /// What is conserved, for the word of that name.

@@ -155,8 +155,7 @@ impl<'g> Dynamics<'g> {
     /// What impulses along given rates do to the velocities and to these rates.
     pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
         self.of_best(|variants| {
-            // Contacts and speeds exclude each other.
-            variants.cheapest(Role::Scalars, |model| {
+            variants.cheapest(Role::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
                 Factor::of(&mass, &variants.joints).responses(rows)
             })

@@ -47,6 +47,7 @@ pub(super) fn constraints(model: &Model<'_>, specialisation: Specialisation) -> 
     specialisation.program(&outputs)
 }
 
-fn state<'g>(found: &Hessian<'g>) -> [Vec<Expr<'g>>; 4] {
+/// The blocks of the state and the accelerations, each column by column.
+pub(super) fn state<'g>(found: &Hessian<'g>) -> [Vec<Expr<'g>>; 4] {
     [&found.qq, &found.qv, &found.vv, &found.qa].map(columns)
 }

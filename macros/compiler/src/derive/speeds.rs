@@ -3,17 +3,19 @@
 
 use super::derivation::Derivation;
 use super::derivatives::columns;
+use super::second;
 use crate::catalogue::{Declared, Id};
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
 use crate::expr::replace::replace_all;
 use crate::kinematics::symbols_in;
+use crate::mechanics::derivatives::second::{self as hessian, Hessian, InputHessian};
 use crate::mechanics::derivatives::{Factor, ForceDerivatives, analytic, subtract, symbolic};
 use crate::mechanics::speeds::{InSpeeds, Role};
 use crate::mechanics::{
     self, added_mass, constraints, crba, energy, forces, momentum, power, reactions, rnea,
 };
-use crate::mechanism::Quantity;
+use crate::mechanism::{Model, Quantity};
 use crate::syntax::{Printed, Requests};
 
 /// What a word asks for that there is not with these speeds.
@@ -21,13 +23,7 @@ pub(super) fn without(speeds: &InSpeeds<'_>, requests: Requests) -> Option<(&'st
     if requests.routh || requests.equations == Printed::Routh {
         return Some((
             "Routh's equations are those of coordinates, not of declared speeds",
-            "leave `routh` out, or the speeds",
-        ));
-    }
-    if requests.second_derivatives {
-        return Some((
-            "second derivatives are not there with declared speeds",
-            "leave the word `second_derivatives` out, or the speeds",
+            "the reduction eliminates the rates of cyclic coordinates by their momenta, and with speeds these rates are no velocities: leave `routh` out, or the speeds",
         ));
     }
     let of_speeds: Vec<Expr<'_>> = speeds.of_speeds().iter().flatten().copied().collect();
@@ -114,6 +110,9 @@ impl<'g> Derivation<'_, 'g> {
                 Some([tau.clone(), of(&tau), by_inputs].concat())
             }
             Id::Turning => Some(columns(&speeds.turning())),
+            Id::InverseDynamicsSecondDerivatives
+            | Id::GeneralizedForcesSecondDerivatives
+            | Id::ConstraintCurvature => Some(self.second_in_speeds(speeds, id)),
             Id::MotionDerivatives => Some(self.constrained_motion(speeds)),
             _ => None,
         }
@@ -188,6 +187,38 @@ impl<'g> Derivation<'_, 'g> {
         outputs.extend(columns(&first.rates));
         outputs.extend(columns(&speeds.turning()));
         outputs
+    }
+
+    /// Second derivatives: along `q ⊕ ε dv` the joints move by `ε Z(q) dv`, so that those in the displacements of the joints are
+    /// turned by `Z` as it is at `q`.
+    fn second_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Vec<Expr<'g>> {
+        let native = &speeds.native;
+        let turned = |found: Hessian<'g>| Hessian {
+            qq: speeds.metric(&found.qq),
+            qv: speeds.along(&found.qv),
+            qa: speeds.along(&found.qa),
+            ..found
+        };
+        match id {
+            Id::ConstraintCurvature => {
+                // In displacements of the joints, of constraints in speeds.
+                let constraints = speeds.model.constraints.clone();
+                let found = hessian::of_constraints(&Model { constraints, ..native.clone() });
+                let mut outputs = second::state(&turned(found.state)).concat();
+                outputs.extend(columns(&speeds.along(&found.q_lambda)));
+                outputs
+            }
+            Id::GeneralizedForcesSecondDerivatives => {
+                let InputHessian { state, qu, vu, uu } =
+                    hessian::of_inputs(native, &self.input_forces(speeds));
+                let [qq, qv, vv, _] = second::state(&turned(state));
+                [qq, qv, vv, columns(&speeds.along(&qu)), columns(&vu), columns(&uu)].concat()
+            }
+            _ => {
+                let found = hessian::of_power(native, &self.inverse(speeds), &hessian::factors(native));
+                second::state(&turned(found)).concat()
+            }
+        }
     }
 
     /// Derivatives by all parameters, a list for each.

@@ -144,15 +144,30 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         out,
         "const CONTACTING: bool = true;
         const LOCATABLE: bool = true;
-        #[inline]\nfn carry(&self, {t}dv: &{v}, v: &{v}) -> {v} {{ self.__carry(dv, v) }}
+        {}
         fn contact_step(&self, {t}start: (&{q}, &{v}), end: (&{q}, &{v}), given: &{v}, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
             ::linkwork::contact::step(self, {any}, start, end, given, h)
         }}
         #[inline]\nfn visit_contacts<V: ::linkwork::contact::Visitor<{scalar}, {}, {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
             ::core::option::Option::Some(::linkwork::contact::Visitor::visit(visitor, self))
         }}",
-        s.nq, s.nv, s.nq, s.nv, s.nu
+        carry(i, &t, s), s.nq, s.nv, s.nq, s.nv, s.nu
     );
+}
+
+/// The velocity of one configuration in the axes, and the speeds, of another.
+fn carry(i: &Interface<'_>, t: &str, s: &Signature<'_>) -> String {
+    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (name, body) = match i.facts.speeds {
+        false => ("_q", "self.__carry(dv, v)"),
+        true => (
+            "q",
+            "let way = self.rates_of_speeds(q, dv);
+            let there = self.__integrate(q, &way);
+            self.speeds_of_rates(&there, &self.__carry(&way, &self.rates_of_speeds(q, v)))",
+        ),
+    };
+    format!("#[inline]\nfn carry(&self, {t}{name}: &{q}, dv: &{v}, v: &{v}) -> {v} {{ {body} }}")
 }
 
 /// A table for the struct's documentation.

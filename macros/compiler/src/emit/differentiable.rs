@@ -238,6 +238,9 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
             "#[inline]\nfn tangent_rate_second_derivatives(&self, dv: &{v}, v: &{v}, lambda: &{v}) -> ({square}, {square}) {{ self.__tangent_rate_second_derivatives(dv, v, lambda) }}"
         );
     }
+    if i.facts.speeds {
+        super::speeds::write_second_derivatives(out, s);
+    }
     let n = s.nv;
     for (name, third, shape) in [
         ("inverse_dynamics_second_derivatives", A, Shape::Hessian(n)),

@@ -53,7 +53,7 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
         }
     }
     units(&mut text, interface);
-    limits::write_docs(&mut text, &interface.limits, &interface.velocities);
+    limits::write_docs(&mut text, &interface.limits);
     constraints(&mut text, interface);
     contacts::write_docs(&mut text, &interface.contacts);
     if !interface.snapped.is_empty() {

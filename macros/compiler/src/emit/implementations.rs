@@ -22,7 +22,7 @@ pub fn write_impls(
         "{ALLOW}impl{generics} ::linkwork::Limits<{}, {}> for {name}{arguments} {bounds} {{",
         s.nq, s.nv
     );
-    limits::write_trait(out, &i.limits, s);
+    limits::write_trait(out, &i.limits, i.facts.speeds, s);
     out.push_str("}\n");
     if i.facts.kinematic {
         return;

@@ -1,16 +1,19 @@
 //! The limits of the coordinates.
 
 use super::signature::Signature;
+use crate::catalogue::Shape;
 use crate::mechanism::{Limit, Model};
 use std::fmt::Write;
 
 /// Where the bounds of an entry of `v` stand among the values of the hidden function, and its coordinate.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Limited {
     /// Index of the coordinate in `q`.
     q: usize,
     /// Index in `v`.
     v: usize,
+    /// The name of the coordinate.
+    name: String,
     /// Lower, upper, speed, effort: index of the value, and the value if it is a number.
     bounds: [Option<(usize, Option<f64>)>; 4],
 }
@@ -25,7 +28,9 @@ impl Limited {
                 next += 1;
                 Some(found)
             });
-            Limited { q: limit.q, v: limit.v, bounds }
+            let names = model.speeds.as_ref().map_or(&model.velocities, |speeds| &speeds.velocities);
+            let name = names.get(limit.v).map_or(String::new(), |(name, _)| name.clone());
+            Limited { q: limit.q, v: limit.v, name, bounds }
         };
         model.limits.iter().map(&mut place).collect()
     }
@@ -45,7 +50,7 @@ const FUNCTIONS: [(&str, &str); 4] = [
 ];
 
 /// The functions of the runtime's trait of limits; those that are not written say that there are none.
-pub fn write_trait(out: &mut String, limited: &[Limited], s: &Signature<'_>) {
+pub fn write_trait(out: &mut String, limited: &[Limited], speeds: bool, s: &Signature<'_>) {
     let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
     for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {
@@ -72,6 +77,19 @@ pub fn write_trait(out: &mut String, limited: &[Limited], s: &Signature<'_>) {
     if limited.iter().all(|limit| limit.index(0).is_none() && limit.index(1).is_none()) {
         return;
     }
+    if speeds {
+        let mut entries = vec![format!("::linkwork::__private::constant::<{scalar}>(0.0)"); s.nv];
+        limited.iter().for_each(|limit| entries[limit.v] = format!("q[{}]", limit.q));
+        let _ = writeln!(
+            out,
+            "fn limited_coordinates(&self, q: &{q}) -> ::core::option::Option<({v}, {})> {{
+            let of_rates = self.__speed_matrix(q);
+            let [q] = q.data.0;
+            ::core::option::Option::Some((::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([[{}]])), of_rates))\n}}",
+            s.shape(Shape::Square(s.nv)),
+            entries.join(", ")
+        );
+    }
     let _ = writeln!(
         out,
         "#[inline]\nfn clamp_configuration(&self, q: &{q}) -> {q} {{\nlet limits = self.__limits();\nlet [mut q] = q.data.0;"
@@ -90,7 +108,7 @@ pub fn write_trait(out: &mut String, limited: &[Limited], s: &Signature<'_>) {
 }
 
 /// A table for the struct's documentation.
-pub fn write_docs(text: &mut String, limited: &[Limited], velocities: &[String]) {
+pub fn write_docs(text: &mut String, limited: &[Limited]) {
     if limited.is_empty() {
         return;
     }
@@ -98,8 +116,7 @@ pub fn write_docs(text: &mut String, limited: &[Limited], velocities: &[String])
         "\n# Limits\n\nSI units; forces are generalized ones.\n\n| | from | to | speed | force |\n| --- | ---: | ---: | ---: | ---: |\n",
     );
     for limit in limited {
-        let name = velocities.get(limit.v).map_or("", String::as_str);
-        let _ = write!(text, "| `{name}` |");
+        let _ = write!(text, "| `{}` |", limit.name);
         for bound in limit.bounds {
             let _ = match bound {
                 Some((_, Some(number))) => write!(text, " {number} |"),

@@ -115,3 +115,13 @@ pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
         #[inline]\nfn turning(&self, q: &{q}, v: &{v}) -> {square} {{ self.__turning(q, v) }}",
     );
 }
+
+/// The function of the trait of second derivatives that belongs to the configuration space.
+pub fn write_second_derivatives(out: &mut String, s: &Signature<'_>) {
+    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn tangent_rate_second_derivatives(&self, _dv: &{v}, _v: &{v}, _lambda: &{v}) -> ({square}, {square}) {{ ({unknown}, {unknown}) }}"
+    );
+}

@@ -38,6 +38,8 @@ pub enum Role {
     InverseMetric,
     /// A matrix of so many rows for velocities, column by column.
     Columns(usize),
+    /// For each of so many impulses the velocities that it adds; then scalars.
+    Responses(usize),
 }
 
 /// What leads from the velocities of joints to speeds.
@@ -73,6 +75,7 @@ impl<'g> InSpeeds<'g> {
         let model = Model { gradients: Gradients::default(), passive: None, ..model.clone() };
         let mut found = InSpeeds { native, model, speeds, rates, accelerations, change, efforts };
         found.exchange_constraints();
+        found.exchange_contacts();
         for k in 0..found.model.outputs.len() {
             found.model.outputs[k].values = found.written(&found.native.outputs[k].values);
         }
@@ -89,6 +92,17 @@ impl<'g> InSpeeds<'g> {
         for (k, constraint) in self.model.constraints.iter_mut().enumerate() {
             constraint.rate = rates[k];
             constraint.bias = biases[k] + turned[k];
+        }
+    }
+
+    fn exchange_contacts(&mut self) {
+        for k in 0..self.model.contacts.len() {
+            let native = &self.native.contacts[k];
+            let rows = constraints::jacobian_of(&self.native, &native.rates);
+            let turned = times(&rows, &self.change);
+            let biases = self.written(&native.biases);
+            self.model.contacts[k].rates = self.written(&native.rates);
+            self.model.contacts[k].biases = biases.iter().zip(turned).map(|(b, t)| *b + t).collect();
         }
     }
 
@@ -168,6 +182,14 @@ impl<'g> InSpeeds<'g> {
             Role::Metric => columns(&self.metric(&square(e, n))),
             Role::InverseMetric => columns(&self.inverse_metric(&square(e, n))),
             Role::Columns(rows) => self.columns_by_speed(e, rows),
+            Role::Responses(impulses) => {
+                let (added, rest) = e.split_at((n * impulses).min(e.len()));
+                let added = self.written(added);
+                let mut out: Vec<Expr<'g>> =
+                    added.chunks(n.max(1)).flat_map(|part| self.speeds_of(part)).collect();
+                out.extend(self.written(rest));
+                out
+            }
         }
     }
 
@@ -176,6 +198,11 @@ impl<'g> InSpeeds<'g> {
         let rows: Matrix<'g> = mass.iter().map(|row| transposed_times(&self.speeds.rates, row)).collect();
         let by_column = transposed(&rows);
         transposed(&by_column.iter().map(|c| transposed_times(&self.speeds.rates, c)).collect())
+    }
+
+    /// `Zᵀ X`, of a matrix whose rows belong to displacements.
+    pub fn along(&self, m: &Matrix<'g>) -> Matrix<'g> {
+        transposed(&transposed(m).iter().map(|column| transposed_times(&self.speeds.rates, column)).collect())
     }
 
     /// `Y M⁻¹ Yᵀ`.

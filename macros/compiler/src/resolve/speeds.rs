@@ -162,17 +162,19 @@ impl<'a, 'g> Builder<'a, 'g> {
             .help(format!("every velocity that speeds name is replaced: declare as many speeds, such as one for `{rate}` itself, `#[speed(rate({rate}))] {}_rate: Speed`", rate.replace('.', "_")));
             return false;
         }
-        if !self.model.contacts.is_empty() {
-            cx.error(declared[0].name.place.clone(), "speeds beside contacts that open and close")
-                .help("contacts are solved in the velocities that joints have: leave the speeds out, and make them outputs: `#[output(…)]`");
-            return false;
-        }
-        if let Some(limit) = self.model.limits.iter().find(|limit| named.contains(&limit.v)) {
+        let bounded = self.model.limits.iter().find_map(|limit| {
+            let key = if limit.speed.is_some() { "max_speed" } else { "max_effort" };
+            let bounds = limit.speed.or(limit.effort).is_some();
+            (bounds && named.contains(&limit.v)).then_some((limit.v, key))
+        });
+        if let Some((k, key)) = bounded {
+            let (rate, what) =
+                (list(&[k]), if key == "max_speed" { "the rate" } else { "the force on the rate" });
             cx.error(
                 declared[0].name.place.clone(),
-                format!("speeds replace the rate of {}, which has limits", list(&[limit.v])),
+                format!("speeds replace the rate of {rate}, which has a `{key}`"),
             )
-            .help("limits belong to coordinates with their rates: leave them out, or choose speeds that keep this rate");
+            .help(format!("it bounds {what} of {rate}, which is none of the velocities any more: leave it out, or choose speeds that keep this rate; bounds `from` and `to` of the coordinate may stay"));
             return false;
         }
         true

@@ -54,9 +54,14 @@ fn speeds_that_are_none() {
             "declare a speed for each",
         ),
         (
-            "#[speed(rate(rail))] u: Speed, #[limit(on = rail, from = 0, to = 1)] stop: Limit,",
-            "speeds replace the rate of `rail`, which has limits",
-            "limits belong to coordinates",
+            "#[speed(rate(rail))] u: Speed, #[limit(on = rail, to = 1, max_speed = 2)] stop: Limit,",
+            "speeds replace the rate of `rail`, which has a `max_speed`",
+            "it bounds the rate of `rail`, which is none of the velocities any more",
+        ),
+        (
+            "#[speed(rate(rail))] u: Speed, #[limit(on = rail, max_effort = 2)] stop: Limit,",
+            "speeds replace the rate of `rail`, which has a `max_effort`",
+            "it bounds the force on the rate of `rail`",
         ),
         ("#[speed(rate(rail))] u: GeneralizedSpeed,", "unknown element type `GeneralizedSpeed`", "Speed"),
     ];

@@ -1,0 +1,152 @@
+//! Steps of mechanisms with declared speeds, under constraints too: their Jacobians against differences of steps.
+
+use super::check_steps;
+use super::implicit::check_constrained;
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::*;
+use support::random::Random;
+
+/// A body on Cardan's angles, in its angular velocity along its own axes, with a slider.
+#[mechanism(gravity = -9.81 * z, momentum_derivatives)]
+struct Gimbal {
+    #[body(mass = 0, inertia = 0)]
+    first: Body,
+    #[body(mass = 0, inertia = 0)]
+    second: Body,
+    #[body(mass = 2, com = 0.3 * z, inertia = diagonal(0.2, 0.3, 0.45))]
+    top: Body,
+    #[joint(ground -> first, about = z)]
+    psi: Pin,
+    #[joint(first -> second, about = y)]
+    theta: Pin,
+    #[joint(second -> top, about = x)]
+    phi: Pin,
+    #[particle(mass = 0.3)]
+    bead: Particle,
+    #[joint(top.at(0.1 * x) -> bead, along = z)]
+    rail: Sleeve,
+    #[acts(on = rail, stiffness = 40)]
+    spring: Spring,
+    #[acts(on = rail, damping = 0.3)]
+    dashpot: Dashpot,
+    #[acts(on = phi)]
+    motor: Torque,
+    #[speed(dot(omega(top / ground), top.x))]
+    wx: Speed,
+    #[speed(dot(omega(top / ground), top.y))]
+    wy: Speed,
+    #[speed(dot(omega(top / ground), top.z))]
+    wz: Speed,
+}
+
+/// A ball that rolls on a tilted plane, with a pendulum inside, in the velocity of its centre along the axes of the ground.
+#[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
+struct Ballbot {
+    radius: f64,
+    mass: f64,
+    #[body(mass = 2, com = 0.03 * z, inertia = diagonal(0.01, 0.02, 0.015))]
+    shell: Body,
+    #[body(mass = mass, com = -radius / 2 * z, inertia = diagonal(0.004, 0.005, 0.001))]
+    pendulum: Body,
+    #[joint(ground -> shell)]
+    flight: Free,
+    #[joint(shell -> pendulum, about = unit(x + 0.3 * y))]
+    hinge: Pin,
+    #[constraint(rolls(shell.sphere(radius), ground.plane(unit(0.2 * x + z))))]
+    contact: Rolling,
+    #[acts(on = hinge)]
+    motor: Torque,
+    #[acts(on = shell.at(0.1 * x), along = shell.y)]
+    push: Force,
+    #[speed(dot(v(shell / ground / ground), x))]
+    ux: Speed,
+    #[speed(dot(v(shell / ground / ground), y))]
+    uy: Speed,
+    #[speed(dot(v(shell / ground / ground), z))]
+    uz: Speed,
+    #[speed(dot(omega(shell / ground), x))]
+    wx: Speed,
+    #[speed(dot(omega(shell / ground), y))]
+    wy: Speed,
+    #[speed(dot(omega(shell / ground), z))]
+    wz: Speed,
+}
+
+/// Two arms whose ends are held together by a rod that becomes longer and shorter: a spatial loop, in time.
+#[mechanism(gravity = -9.81 * z, momentum_derivatives)]
+struct Arms {
+    span: f64,
+    rate: f64,
+    #[body(mass = 0.8, com = 0.3 * x, inertia = diagonal(0.01, 0.05, 0.06))]
+    left: Body,
+    #[body(mass = 1.1, com = -0.4 * x + 0.1 * y, inertia = diagonal(0.03, 0.05, 0.05))]
+    right: Body,
+    #[joint(ground -> left)]
+    shoulder: Ball,
+    #[joint(ground.at(span * x) -> right, about = (y, z))]
+    other: Universal,
+    #[constraint(norm(r(right.at(-0.8 * x) / left.at(0.7 * x))) = span - 1.4 + 0.05 * sin(rate * t))]
+    rod: Holonomic,
+    #[acts(on = other.first)]
+    motor: Torque,
+    #[speed(dot(omega(left / ground), x))]
+    wx: Speed,
+    #[speed(dot(omega(left / ground), y))]
+    wy: Speed,
+    #[speed(dot(omega(left / ground), z))]
+    wz: Speed,
+    #[speed(rate(other.first) * cos(other.second))]
+    swing: Speed,
+}
+
+/// A loop of four pins in space, in the angular velocities of its bars and the speed of one end along the bar that it belongs to.
+#[mechanism(gravity = -9.81 * y, momentum_derivatives)]
+struct FourBar {
+    base: f64,
+    mass: f64,
+    #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
+    crank: Body,
+    #[body(mass = mass, com = x, inertia = rod(mass, 2, x))]
+    coupler: Body,
+    #[body(mass = 1.5, com = 0.75 * x, inertia = rod(1.5, 1.5, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    first: Pin,
+    #[joint(crank.at(0.9 * x) -> coupler, about = z)]
+    second: Pin,
+    #[joint(ground.at(base * x) -> rocker, about = z)]
+    third: Pin,
+    #[joint(rocker.at(1.5 * x) -> coupler.at(2 * x), about = z)]
+    closing: Pin,
+    #[acts(on = first)]
+    motor: Torque,
+    #[speed(dot(v(coupler.at(2 * x) / ground / ground), coupler.y))]
+    across: Speed,
+    #[speed(dot(omega(coupler / ground), z))]
+    turn: Speed,
+}
+
+#[test]
+fn steps_in_speeds_change_as_their_jacobians_say() {
+    check_steps("gimbal, Rk4", &Gimbal {}, &Rk4::step(0.02), 1.0, 1.0);
+    check_steps("gimbal, Euler", &Gimbal {}, &SemiImplicitEuler::step(0.02), 1.0, 1.0);
+    check_steps("gimbal, midpoint", &Gimbal {}, &ImplicitMidpoint::step(0.02), 1.0, 1.0);
+}
+
+#[test]
+fn constrained_steps_in_speeds_change_as_their_jacobians_say() {
+    let mut random = Random::new(23);
+    for k in 0..2 {
+        let mut near = |x: f64| x * (1.0 + random.uniform(0.15));
+        let bars = FourBar { base: near(1.8), mass: near(2.0) };
+        let arms = Arms { span: near(1.9), rate: near(5.0) };
+        let ball = Ballbot { radius: near(0.3), mass: near(1.0) };
+        let closed = bars.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
+        check_constrained(&format!("four bars, {k}"), &bars, &mut random, &closed);
+        let bent = arms.integrate(&linkwork::Rheonomic::neutral(&arms), &[0.1, 0.1, 0.4, 0.1, -0.1].into());
+        check_constrained(&format!("arms, {k}"), &arms, &mut random, &bent);
+        let mut lifted: SVector<f64, 8> = Mechanism::neutral(&ball);
+        lifted[2] = ball.radius;
+        check_constrained(&format!("ball, {k}"), &ball, &mut random, &lifted);
+    }
+}

@@ -1,0 +1,84 @@
+//! Second derivatives in declared speeds.
+
+use super::check;
+use linkwork::prelude::*;
+
+/// A body on Cardan's angles, in its angular velocity along its own axes, pushed along them.
+#[mechanism(gravity = -9.81 * z, second_derivatives)]
+struct Gimbal {
+    #[body(mass = 0, inertia = 0)]
+    first: Body,
+    #[body(mass = 0, inertia = 0)]
+    second: Body,
+    #[body(mass = 2, com = 0.3 * z + 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
+    top: Body,
+    #[joint(ground -> first, about = z)]
+    psi: Pin,
+    #[joint(first -> second, about = y)]
+    theta: Pin,
+    #[joint(second -> top, about = x)]
+    phi: Pin,
+    #[acts(on = top.at(0.2 * y), along = ground.x)]
+    push: Force,
+    #[acts(on = top.at(0.1 * z), value = -0.8 * v(top.at(0.1 * z) / ground / ground))]
+    drag: Force,
+    #[speed(dot(omega(top / ground), top.x))]
+    wx: Speed,
+    #[speed(dot(omega(top / ground), top.y))]
+    wy: Speed,
+    #[speed(dot(omega(top / ground), top.z))]
+    wz: Speed,
+}
+
+/// A body in space with a pendulum, in velocities along the axes of the ground.
+#[mechanism(gravity = -9.81 * z, second_derivatives)]
+struct Satellite {
+    #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
+    hull: Body,
+    #[body(mass = 0.5, com = -0.4 * z, inertia = rod(0.5, 0.8, z))]
+    boom: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[joint(hull.at(0.2 * y) -> boom, about = y)]
+    hinge: Pin,
+    #[acts(on = hull, along = x)]
+    thrust: Force,
+    #[speed(dot(v(hull / ground / ground), x))]
+    ux: Speed,
+    #[speed(dot(v(hull / ground / ground), y))]
+    uy: Speed,
+    #[speed(dot(v(hull / ground / ground), z))]
+    uz: Speed,
+    #[speed(dot(omega(hull / ground), x))]
+    wx: Speed,
+    #[speed(dot(omega(hull / ground), y))]
+    wy: Speed,
+    #[speed(dot(omega(hull / ground), z))]
+    wz: Speed,
+}
+
+/// A sleigh whose blade is pulled sideways by a driven point, in its speeds along and across the blade.
+#[mechanism(second_derivatives)]
+struct Sleigh {
+    #[body(mass = 3, com = 0.2 * x, inertia = diagonal(0.3, 0.3, 0.4))]
+    sleigh: Body,
+    #[joint(ground -> sleigh, about = z)]
+    pose: Planar,
+    #[constraint(dot(v(sleigh / ground / ground), sleigh.y) = 0.1 * sin(t))]
+    blade: Nonholonomic,
+    #[acts(between = (ground.at(2 * x), sleigh.at(0.3 * y)), stiffness = 5, free_length = 0.5)]
+    cord: Spring,
+    #[acts(on = sleigh.at(0.4 * x), along = y)]
+    push: Force,
+    #[speed(dot(v(sleigh / ground / ground), sleigh.x))]
+    along: Speed,
+    #[speed(dot(v(sleigh / ground / ground), sleigh.y))]
+    across: Speed,
+}
+
+#[test]
+fn first_derivatives_in_speeds_change_as_second_ones_say() {
+    check("gimbal", &Gimbal {}, 3.0);
+    check("satellite", &Satellite {}, 3.0);
+    check("sleigh", &Sleigh {}, 3.0);
+}

@@ -1,0 +1,267 @@
+//! Contacts that open and close, and limits, beside declared speeds: against the same mechanisms in the velocities of their joints.
+
+use super::{DIFFERENCE, slopes};
+use linkwork::contact::{self, Contacts, Touch};
+use linkwork::discrete;
+use linkwork::nalgebra::{SMatrix, SVector};
+use linkwork::prelude::*;
+
+use linkwork::inverse_kinematics::{InverseKinematics, Target, Unreached};
+use linkwork::{Frames, index_of};
+use support::compare::{assert_close, assert_similar};
+use support::random::Random;
+
+/// Three feet below a body, of which one is a ball, and a wind.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct Tripod {
+    #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
+    hull: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[contact(hull.at(0.3 * x), ground.plane(z), friction = 0.4, restitution = 0.3)]
+    front: Contact,
+    #[contact(hull.at(-0.2 * x + 0.2 * y).sphere(0.02), ground.plane(z), friction = 0.6, torsional = 0.01)]
+    left: Contact,
+    #[contact(hull.at(-0.2 * x - 0.2 * y), ground.plane(z))]
+    right: Contact,
+    #[acts(on = hull, along = ground.x)]
+    wind: Force,
+}
+
+/// The same in the velocity of the hull's origin and its angular velocity along the axes of the ground.
+#[mechanism(gravity = -9.81 * z, derivatives)]
+struct TripodInSpeeds {
+    #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
+    hull: Body,
+    #[joint(ground -> hull)]
+    pose: Free,
+    #[contact(hull.at(0.3 * x), ground.plane(z), friction = 0.4, restitution = 0.3)]
+    front: Contact,
+    #[contact(hull.at(-0.2 * x + 0.2 * y).sphere(0.02), ground.plane(z), friction = 0.6, torsional = 0.01)]
+    left: Contact,
+    #[contact(hull.at(-0.2 * x - 0.2 * y), ground.plane(z))]
+    right: Contact,
+    #[acts(on = hull, along = ground.x)]
+    wind: Force,
+    #[speed(dot(v(hull / ground / ground), x))]
+    ux: Speed,
+    #[speed(dot(v(hull / ground / ground), y))]
+    uy: Speed,
+    #[speed(dot(v(hull / ground / ground), z))]
+    uz: Speed,
+    #[speed(dot(omega(hull / ground), x))]
+    wx: Speed,
+    #[speed(dot(omega(hull / ground), y))]
+    wy: Speed,
+    #[speed(dot(omega(hull / ground), z))]
+    wz: Speed,
+}
+
+/// A leg whose knee has stops.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct Leg {
+    #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
+    thigh: Body,
+    #[body(mass = 1, com = -0.2 * y, inertia = rod(1, 0.4, y))]
+    shank: Body,
+    #[joint(ground -> thigh, about = z)]
+    hip: Pin,
+    #[joint(thigh.at(-0.4 * y) -> shank, about = z)]
+    knee: Pin,
+    #[limit(on = knee, from = 0, to = 2, restitution = 0.4)]
+    stop: Limit,
+}
+
+/// The same in the angular velocity of its shank, times a length, and the speed of its foot across the thigh.
+#[mechanism(gravity = -9.81 * y, derivatives)]
+struct LegInSpeeds {
+    #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
+    thigh: Body,
+    #[body(mass = 1, com = -0.2 * y, inertia = rod(1, 0.4, y))]
+    shank: Body,
+    #[joint(ground -> thigh, about = z)]
+    hip: Pin,
+    #[joint(thigh.at(-0.4 * y) -> shank, about = z)]
+    knee: Pin,
+    #[body(mass = 0, inertia = 0)]
+    foot: Body,
+    #[joint(shank.at(-0.4 * y) -> foot)]
+    sole: Weld,
+    #[limit(on = knee, from = 0, to = 2, restitution = 0.4)]
+    stop: Limit,
+    #[speed(0.4 * rate(hip) + 0.4 * rate(knee))]
+    swing: Speed,
+    #[speed(dot(v(shank.at(-0.7 * y) / ground / ground), thigh.x))]
+    across: Speed,
+}
+
+fn tripod() -> (SVector<f64, 7>, SVector<f64, 6>) {
+    let m = Tripod {};
+    let q = m.integrate(&m.neutral(), &[0.2, -0.1, 0.06, 0.1, 0.15, 0.9].into());
+    (q, [0.6, -0.3, -0.8, 0.5, -1.2, 2.0].into())
+}
+
+/// `Z(q)`, by which the velocities of joints follow from speeds.
+fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
+    let unit = |i: usize| SVector::<f64, 6>::from_fn(|j, _| if i == j { 1.0 } else { 0.0 });
+    SMatrix::from_columns(&std::array::from_fn::<_, 6, _>(|i| TripodInSpeeds {}.rates_of_speeds(q, &unit(i))))
+}
+
+#[test]
+fn contacts_are_the_same_in_speeds() {
+    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod());
+    let (u, z) = (m.speeds_of_rates(&q, &rates), rates_of(&q));
+    assert_close("gaps", m.contact_gaps(&q).as_slice(), plain.contact_gaps(&q).as_slice(), 1e-14);
+    assert_close(
+        "rates",
+        m.contact_rates(&q, &u).as_slice(),
+        plain.contact_rates(&q, &rates).as_slice(),
+        1e-13,
+    );
+    let jacobian = plain.contact_jacobian(&q);
+    assert_close("Jacobian", m.contact_jacobian(&q).as_slice(), (jacobian * z).as_slice(), 1e-13);
+    // Accelerations that belong together, and what they make of the rates.
+    let tau: SVector<f64, 6> = Random::new(4).vector(5.0);
+    let a = plain.forward_dynamics(&q, &rates, &tau);
+    let du = m.forward_dynamics(&q, &u, &(z.transpose() * tau));
+    let expected = jacobian * a + plain.contact_bias(&q, &rates);
+    let found = m.contact_jacobian(&q) * du + m.contact_bias(&q, &u);
+    assert_close("accelerations", found.as_slice(), expected.as_slice(), 1e-11);
+    let (ours, theirs) =
+        (m.contact_responses(0.0, &q, &[true; 4]), plain.contact_responses(0.0, &q, &[true; 4]));
+    assert_close("responses", ours.rates.as_slice(), theirs.rates.as_slice(), 1e-12);
+    assert_close("responses", (z * ours.velocities).as_slice(), theirs.velocities.as_slice(), 1e-12);
+    for touches in [
+        [Touch::Sticks, Touch::Slips, Touch::Open, Touch::Sticks],
+        [Touch::Slips, Touch::Sticks, Touch::Slips, Touch::Open],
+    ] {
+        let forces = m.generalized_forces(&q, &[3.0].into());
+        let held = contact::forward_dynamics(&m, 0.0, &q, &u, &forces, &touches).unwrap();
+        let tau = plain.generalized_forces(&q, &[3.0].into());
+        let expected = contact::forward_dynamics(&plain, 0.0, &q, &rates, &tau, &touches).unwrap();
+        assert_close("held", held.forces.as_slice(), expected.forces.as_slice(), 1e-10);
+        let (landed, other) = (
+            contact::land(&m, 0.0, &q, &u, &touches).unwrap(),
+            contact::land(&plain, 0.0, &q, &rates, &touches).unwrap(),
+        );
+        assert_close("landed", (z * landed.v).as_slice(), other.v.as_slice(), 1e-12);
+    }
+    let mut down = q;
+    down[2] -= plain.contact_gaps(&q).min() + 1e-12;
+    let struck = contact::impact(&m, 0.0, &down, &u).unwrap();
+    let expected = contact::impact(&plain, 0.0, &down, &rates).unwrap();
+    assert!(expected.impulses.amax() > 0.1, "{expected:?}");
+    assert_close("impulses", struck.impulses.as_slice(), expected.impulses.as_slice(), 1e-11);
+    assert_close("struck", (rates_of(&down) * struck.v).as_slice(), expected.v.as_slice(), 1e-11);
+}
+
+/// With all events located the motions are the same; steps of fixed length come to it as they become short.
+#[test]
+fn a_tripod_falls_and_slides_alike_in_speeds() {
+    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod());
+    let u = m.speeds_of_rates(&q, &rates);
+    let events = EventDriven::new().tolerance(1e-12, 1e-12);
+    for duration in [0.1, 0.4] {
+        let expected = simulate(&plain).from(q, rates).duration(duration).method(events).finish().unwrap();
+        let end = simulate(&m).from(q, u).duration(duration).method(events).finish().unwrap();
+        let gaps = plain.contact_gaps(&expected.q);
+        assert!(duration < 0.4 || gaps.iter().any(|gap| gap.abs() < 1e-6), "{gaps}");
+        assert_close("place", end.q.as_slice(), expected.q.as_slice(), 1e-8);
+        assert_close("velocity", m.rates_of_speeds(&end.q, &end.v).as_slice(), expected.v.as_slice(), 1e-7);
+        let off = |h: f64| {
+            let end =
+                simulate(&m).from(q, u).duration(duration).method(TimeStepping::step(h)).finish().unwrap();
+            (end.q - expected.q).amax()
+        };
+        let (coarse, fine) = (off(1e-3), off(1e-4));
+        assert!(fine < coarse.max(1e-9) * 0.3 && fine < 2e-4, "{coarse:e} {fine:e}");
+    }
+}
+
+#[test]
+fn motions_with_contacts_have_derivatives_in_speeds() {
+    let (m, (q, rates)) = (TripodInSpeeds {}, tripod());
+    let u = m.speeds_of_rates(&q, &rates);
+    let tau: SVector<f64, 6> = Random::new(6).vector(3.0);
+    let touches = [Touch::Slips, Touch::Sticks, Touch::Open, Touch::Open];
+    let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &u, &tau, &touches).unwrap();
+    let held = |q: &SVector<f64, 7>, u: &SVector<f64, 6>, tau: &SVector<f64, 6>| {
+        contact::forward_dynamics(&m, 0.0, q, u, tau, &touches).unwrap()
+    };
+    let moved = |e: &SVector<f64, 6>| m.integrate(&q, e);
+    let check = |what: &str, found: &[f64], expected: &[f64]| {
+        assert_similar(what, found, expected, DIFFERENCE * 10.0);
+    };
+    check("∂u̇/∂q", found.by_q.as_slice(), slopes(|e| held(&moved(&e), &u, &tau).a).as_slice());
+    check("∂u̇/∂u", found.by_v.as_slice(), slopes(|e| held(&q, &(u + e), &tau).a).as_slice());
+    check("∂u̇/∂τ", found.by_tau.as_slice(), slopes(|e| held(&q, &u, &(tau + e)).a).as_slice());
+    check("∂f/∂q", found.forces_by_q.as_slice(), slopes(|e| held(&moved(&e), &u, &tau).forces).as_slice());
+    check("∂f/∂u", found.forces_by_v.as_slice(), slopes(|e| held(&q, &(u + e), &tau).forces).as_slice());
+    let landed = contact::land_derivatives(&m, 0.0, &q, &u, &touches).unwrap();
+    let land = |q: &SVector<f64, 7>, u: &SVector<f64, 6>| contact::land(&m, 0.0, q, u, &touches).unwrap().v;
+    check("∂u⁺/∂q", landed.by_q.as_slice(), slopes(|e| land(&moved(&e), &u)).as_slice());
+    check("∂u⁺/∂u", landed.by_v.as_slice(), slopes(|e| land(&q, &(u + e))).as_slice());
+    let push = [0.7].into();
+    let motion = contact::linear_motion(&m, 0.0, &q, &u, &push, &touches).unwrap();
+    check("turning", motion.turning.as_slice(), m.turning(&q, &u).as_slice());
+    // Steps while contacts hold.
+    let stance = contact::hold(&m, touches).stabilized(20.0);
+    fn steps<S: discrete::DifferentiableStep<f64>>(
+        stance: &contact::Holding<'_, TripodInSpeeds, f64, 4, 8>,
+        method: &S,
+        (q, u): (&SVector<f64, 7>, &SVector<f64, 6>),
+    ) {
+        let push = [0.7].into();
+        let next = discrete::transition(stance, method, 0.0, q, u, &push).unwrap();
+        let step = |q: &_, u: &_| discrete::step(stance, method, 0.0, q, u, &push).unwrap();
+        let m = TripodInSpeeds {};
+        let by_q = slopes(|e| m.difference(&next.q, &step(&m.integrate(q, &e), u).0));
+        assert_similar("q by q", next.q_by_q.as_slice(), by_q.as_slice(), DIFFERENCE);
+        let by_v = slopes(|e| m.difference(&next.q, &step(q, &(u + e)).0));
+        assert_similar("q by u", next.q_by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
+        let by_q = slopes(|e| step(&m.integrate(q, &e), u).1);
+        assert_similar("u by q", next.v_by_q.as_slice(), by_q.as_slice(), DIFFERENCE * 10.0);
+        let by_v = slopes(|e| step(q, &(u + e)).1);
+        assert_similar("u by u", next.v_by_v.as_slice(), by_v.as_slice(), DIFFERENCE * 10.0);
+    }
+    steps(&stance, &Rk4::step(0.01), (&q, &u));
+    steps(&stance, &ImplicitMidpoint::step(0.01), (&q, &u));
+}
+
+/// Stops of a coordinate whose rate is no velocity any more.
+#[test]
+fn a_leg_strikes_its_stops_alike_in_speeds() {
+    let (plain, m) = (Leg {}, LegInSpeeds {});
+    let (q, rates): (SVector<f64, 2>, SVector<f64, 2>) = ([0.4, 1.1].into(), [-1.0, 4.0].into());
+    let u = m.speeds_of_rates(&q, &rates);
+    for duration in [0.3, 0.6] {
+        let events = EventDriven::new().tolerance(1e-12, 1e-12);
+        let expected = simulate(&plain).from(q, rates).duration(duration).method(events).finish().unwrap();
+        let end = simulate(&m).from(q, u).duration(duration).method(events).finish().unwrap();
+        assert_close("place", end.q.as_slice(), expected.q.as_slice(), 1e-9);
+        let found = m.rates_of_speeds(&end.q, &end.v);
+        assert_close("velocity", found.as_slice(), expected.v.as_slice(), 1e-8);
+    }
+    assert_eq!(<LegInSpeeds as Contacts<2, 2, 0, 2, 2>>::CONTACTS, ["stop.from", "stop.to"]);
+}
+
+/// Bounds of a coordinate hold whatever its velocity is, and inverse kinematics finds its way along them.
+#[test]
+fn limits_of_coordinates_stay_with_speeds() {
+    let m = LegInSpeeds {};
+    assert_eq!(m.lower_limits().as_slice(), [f64::NEG_INFINITY, 0.0]);
+    assert_eq!(m.upper_limits().as_slice(), Leg {}.upper_limits().as_slice());
+    assert_eq!(m.clamp_configuration(&[5.0, -0.3].into()).as_slice(), [5.0, 0.0]);
+    // Two configurations put the foot there; one of them bends the knee the wrong way.
+    let foot = index_of(<LegInSpeeds as Frames<2, 2>>::FRAMES, "foot").expect("it is a frame");
+    let wanted = m.placement_of(foot, 0.0, &[0.5, 0.7].into()).unwrap();
+    let found = InverseKinematics::new()
+        .reach(&m, 0.0, &[Target::position(foot, wanted.translation.vector)], &[1.2, -0.7].into())
+        .expect("it is in reach");
+    assert_close("reached", found.q.as_slice(), &[0.5, 0.7], 1e-5);
+    // Straight is as far as it goes.
+    let beyond = Target::position(foot, [0.1, -0.9, 0.0].into());
+    let stretched = InverseKinematics::new().reach(&m, 0.0, &[beyond], &[0.6, 0.4].into()).unwrap_err();
+    let Unreached::OutOfReach { q, .. } = stretched else { panic!("{stretched}") };
+    assert_close("stretched", q.as_slice(), &[(0.1_f64 / 0.9).atan(), 0.0], 1e-4);
+}

@@ -1,0 +1,64 @@
+//! Speeds that do not determine the rates of coordinates in single configurations: nothing moves there, and errors say so.
+
+use super::{DiskInSpeeds, Satellite, Speeds, speeds};
+use linkwork::discrete;
+use linkwork::nalgebra::SVector;
+use linkwork::prelude::*;
+
+/// `ψ` and `φ` turn about one axis where `sin θ = 0`.
+fn lock() -> (SVector<f64, 3>, SVector<f64, 3>) {
+    ([0.3, 0.0, -0.4].into(), [0.5, -0.7, 6.0].into())
+}
+
+#[test]
+fn rates_are_not_finite_where_speeds_do_not_determine_them() {
+    let (m, (q, u)) = (speeds(), lock());
+    assert!(m.rates_of_speeds(&q, &u).iter().any(|x| !x.is_finite()));
+    assert!(m.forward_dynamics(&q, &u, &SVector::zeros()).iter().any(|x| !x.is_finite()));
+    // What needs no rates is what it is elsewhere: the other way, inertia and energies.
+    let back = m.speeds_of_rates(&q, &[1.0, 2.0, 3.0].into());
+    assert!((back - SVector::from([2.0 * (-0.4_f64).cos(), 2.0 * 0.4_f64.sin(), 4.0])).norm() < 1e-14);
+    let energy = m.kinetic_energy(&[0.3, 1e-4, -0.4].into(), &u);
+    let fixed = 2.0 * 0.3 * 0.3;
+    let expected = 0.5 * ((0.2 + fixed) * 0.25 + (0.3 + fixed) * 0.49 + 0.45 * 36.0);
+    assert!((energy - expected).abs() < 1e-9, "{energy} {expected}");
+}
+
+#[test]
+fn motions_that_begin_there_are_errors() {
+    let (m, (q, u)) = (speeds(), lock());
+    fn begin<S: linkwork::integrate::Method<f64>>(
+        m: &Speeds,
+        (q, u): (SVector<f64, 3>, SVector<f64, 3>),
+        method: S,
+    ) -> Error {
+        let run = simulate(m).from(q, u).duration(0.1).method(method).finish();
+        run.map(|end| end.q).expect_err("it has no rates")
+    }
+    for error in [
+        begin(&m, (q, u), Rk4::step(1e-3)),
+        begin(&m, (q, u), SemiImplicitEuler::step(1e-3)),
+        begin(&m, (q, u), ImplicitMidpoint::step(1e-3)),
+        begin(&m, (q, u), DormandPrince::new()),
+        begin(&m, (q, u), Rodas::new()),
+    ] {
+        assert!(matches!(error, Error::NotFinite { t: 0.0 }), "{error}");
+    }
+    let push = [1.0].into();
+    let step = discrete::step(&m, &Rk4::step(1e-3), 0.0, &q, &u, &push);
+    assert!(matches!(step, Err(Error::NotFinite { .. })), "{step:?}");
+    let step = discrete::transition(&m, &Rk4::step(1e-3), 0.0, &q, &u, &push);
+    assert!(matches!(step, Err(Error::NotFinite { .. })));
+}
+
+/// A body in space has no such configuration; a rolling disk that lies flat has.
+#[test]
+fn constraints_do_not_hide_it() {
+    let flat: SVector<f64, 6> = [0.0, 0.0, 0.0, 0.2, std::f64::consts::FRAC_PI_2, 0.1].into();
+    let run = simulate(&DiskInSpeeds {}).from(flat, [0.1, 0.0, 0.0, 0.3, 0.2, 0.1]).duration(0.1);
+    // Where `cos` of a right angle is 6e-17, rates are finite, and too large for any step.
+    assert!(run.method(Rk4::step(1e-3)).finish().is_err());
+    let m = Satellite {};
+    let upside_down = m.integrate(&m.neutral(), &[0.0, 0.0, 0.0, 0.0, std::f64::consts::PI, 0.0, 0.0].into());
+    assert!(m.rates_of_speeds(&upside_down, &SVector::repeat(1.0)).iter().all(|x| x.is_finite()));
+}
