@@ -100,9 +100,10 @@ pub fn export_c(
                     "CasADi has no functions of single precision".to_string(),
                     "export them in double precision".to_string(),
                 ),
-                export::c::Unfit::Speeds => (
-                    "C sources have no declared speeds yet".to_string(),
-                    "leave `#[speed(…)]` out, or call the mechanism from a library in Rust".to_string(),
+                export::c::Unfit::CasadiSpeeds => (
+                    "functions for CasADi have no declared speeds".to_string(),
+                    "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the rates of coordinates: leave `#[speed(…)]` out, or export plain C"
+                        .to_string(),
                 ),
                 export::c::Unfit::Lanes(of) => (
                     format!("Linkwork made a mistake: `{of}` was derived with lanes"),

@@ -20,6 +20,8 @@ mod expressions;
 mod figures;
 #[path = "mistakes/files.rs"]
 mod files;
+#[path = "mistakes/forms.rs"]
+mod forms;
 #[path = "mistakes/grammar.rs"]
 mod grammar;
 #[path = "mistakes/idle.rs"]

@@ -217,6 +217,16 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     body.push_str("    double p[24] = {0.0};\n    p[0] = p[4] = p[8] = 1.0;\n");
     let is_jacobian = access.name == "frame_jacobian";
     let (twist, acceleration) = (access.name == "frame_velocity", access.name == "frame_acceleration");
+    // Steps are in the velocities of the joints.
+    let (v, a) = if o.speeds { ("rates", "changes") } else { ("v", "a") };
+    if o.speeds && (twist || acceleration) {
+        let call = o.timeless_call("rates_of_speeds", &["q", "v", "rates"]);
+        let _ = writeln!(body, "    double rates[{}];\n    {call};", o.nv.max(1));
+    }
+    if o.speeds && acceleration {
+        let call = o.timeless_call("rate_accelerations", &["q", "v", "a", "changes"]);
+        let _ = writeln!(body, "    double changes[{}];\n    {call};", o.nv.max(1));
+    }
     if has_links {
         let links = format!("{}_LINKS", o.prefix.to_ascii_uppercase());
         if is_jacobian {
@@ -238,13 +248,13 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
         if acceleration {
             let _ = write!(
                 body,
-                "        link_acceleration(path[k], {own}{time}q, v, a, p + 12, next + 6);\n        link_twist(path[k], {own}{time}q, v, p + 12, next);\n        memcpy(p + 12, next, sizeof next);\n"
+                "        link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, sizeof next);\n"
             );
         }
         if twist {
             let _ = write!(
                 body,
-                "        link_twist(path[k], {own}{time}q, v, p + 12, next);\n        memcpy(p + 12, next, 6 * sizeof next[0]);\n"
+                "        link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, 6 * sizeof next[0]);\n"
             );
         }
         body.push_str("    }\n");
@@ -274,6 +284,26 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     }}
 ",
                 6 * most.unwrap_or(0).max(1)
+            );
+        }
+        if o.speeds {
+            let call = o.timeless_call("rate_matrix", &["q", "z"]);
+            let _ = write!(
+                body,
+                "    double joints[6 * {0}], z[{0} * {0}];
+    {call};
+    memcpy(joints, result, sizeof joints);
+    for (int j = 0; j < {0}; ++j) {{
+        for (int i = 0; i < 6; ++i) {{
+            double sum = 0.0;
+            for (int k = 0; k < {0}; ++k) {{
+                sum += joints[6 * k + i] * z[j * {0} + k];
+            }}
+            result[6 * j + i] = sum;
+        }}
+    }}
+",
+                o.nv.max(1)
             );
         }
     } else {

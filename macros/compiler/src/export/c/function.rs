@@ -31,6 +31,8 @@ pub struct Outline<'a> {
     pub passive: [usize; 2],
     /// There are derivatives of the dynamics.
     pub derivatives: bool,
+    /// Velocities are speeds that were declared.
+    pub speeds: bool,
 }
 
 /// A result: its name, rows and columns.
@@ -125,6 +127,13 @@ impl Outline<'_> {
             .chain(arguments.iter().copied())
             .chain(given.iter().copied())
             .collect();
+        format!("{}_{name}({})", self.prefix, list.join(", "))
+    }
+
+    /// The same of a function that takes no time.
+    pub fn timeless_call(&self, name: &str, arguments: &[&str]) -> String {
+        let own = self.has_own().then_some("self");
+        let list: Vec<&str> = own.into_iter().chain(arguments.iter().copied()).collect();
         format!("{}_{name}({})", self.prefix, list.join(", "))
     }
 

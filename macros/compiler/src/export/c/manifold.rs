@@ -2,6 +2,7 @@
 
 use super::docs;
 use super::function::Outline;
+use super::in_speeds;
 use super::support::Support;
 use crate::mechanism::Chart;
 use std::fmt::Write;
@@ -21,7 +22,7 @@ const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     ("tangent_rate", ["dv", "v"], "Rate of `dv` for which `integrate(q, dv)` moves with velocity `v`."),
 ];
 
-fn own(o: &Outline<'_>) -> String {
+pub fn own(o: &Outline<'_>) -> String {
     if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() }
 }
 
@@ -30,7 +31,7 @@ fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
-/// Definitions.
+/// Definitions. With declared speeds those of the joints are hidden, and what the outside sees is made of them.
 pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     for (name, [a, b], _) in MANIFOLD {
         let mut body = String::new();
@@ -57,11 +58,23 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
             let _ = writeln!(body, "    {kind}_{name}({a} + {x}, {b} + {y}, result + {r});");
         }
         let unused = o.unused(&body, &[], &[a, b, "result"]);
-        let _ = writeln!(out, "{} {{\n{unused}{body}}}\n", signature(o, name, [a, b]));
+        let _ = match o.speeds {
+            true => writeln!(out, "static {} {{\n{unused}{body}}}\n", signature(o, &of_joints(name), [a, b])),
+            false => writeln!(out, "{} {{\n{unused}{body}}}\n", signature(o, name, [a, b])),
+        };
+    }
+    if o.speeds {
+        in_speeds::define(out, charts, o, support);
+        return;
     }
     if o.derivatives {
-        TO_FIRST_ORDER.iter().for_each(|of| define_derivatives(out, of, charts, o, support));
+        define_all_derivatives(out, charts, o, support);
     }
+}
+
+/// Definitions of the derivatives.
+pub fn define_all_derivatives(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
+    TO_FIRST_ORDER.iter().for_each(|of| define_derivatives(out, of, charts, o, support));
 }
 
 /// A function's derivatives: its name, what they take, their names, and the value of the first one for plain coordinates.
@@ -91,10 +104,11 @@ const TO_FIRST_ORDER: [ToFirstOrder; 2] = [
 ];
 
 fn derivatives_signature(o: &Outline<'_>, of: &ToFirstOrder) -> String {
+    let name = if o.speeds { of_joints(of.name) } else { of.name.to_string() };
     let given = of.arguments.iter().map(|name| format!("const double *{name}"));
     let results = of.results.iter().map(|name| format!("double *{name}"));
     let list: Vec<String> = given.chain(results).collect();
-    format!("void {}_{}_derivatives({}{})", o.prefix, of.name, own(o), list.join(", "))
+    format!("void {}_{name}_derivatives({}{})", o.prefix, own(o), list.join(", "))
 }
 
 fn define_derivatives(
@@ -125,7 +139,8 @@ fn define_derivatives(
     }
     let names = [of.arguments, &of.results].concat();
     let unused = o.unused(&body, &[], &names);
-    let _ = writeln!(out, "{} {{\n{unused}{body}}}\n", derivatives_signature(o, of));
+    let hidden = if o.speeds { "static " } else { "" };
+    let _ = writeln!(out, "{hidden}{} {{\n{unused}{body}}}\n", derivatives_signature(o, of));
 }
 
 /// The kind of a joint whose displacements are not added, its place among velocities, and how many it has; what is needed for its
@@ -144,9 +159,17 @@ pub fn block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize
     }
 }
 
+/// The name of a function of the configuration space in the velocities of joints, where speeds were declared.
+fn of_joints(name: &str) -> String {
+    format!("joints_{name}")
+}
+
 /// Declarations.
 pub fn declare(o: &Outline<'_>) -> String {
     let mut text = String::new();
+    if o.speeds {
+        return in_speeds::declare(o);
+    }
     for (name, arguments, about) in MANIFOLD {
         text.push_str(&docs::wrapped(about, "/* ", " * "));
         let _ = writeln!(text, " */\n{};\n", signature(o, name, arguments));

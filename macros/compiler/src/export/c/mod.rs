@@ -9,6 +9,7 @@ mod composed;
 mod docs;
 mod frames;
 mod function;
+mod in_speeds;
 mod manifold;
 mod names;
 mod pieces;

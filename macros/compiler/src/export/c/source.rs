@@ -6,7 +6,7 @@ use super::function::{Outline, declare, define, plain, results};
 use super::scalar::in_single_precision;
 use super::support::Support;
 use super::{frames, manifold, names, steps, tables};
-use crate::catalogue::{Argument, Id, REACTION, Shape, TOUCHED};
+use crate::catalogue::{Argument, CONTACT_FORCES, Id, REACTION, Shape, TOUCHED};
 use crate::derive::{Function, Output};
 use crate::lower::{Op, Program};
 use crate::mechanism::Model;
@@ -41,8 +41,8 @@ pub struct Files {
 /// Why a mechanism cannot be written in C.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unfit {
-    /// Velocities are speeds that were declared.
-    Speeds,
+    /// Velocities are speeds that were declared, and CasADi's functions take those of joints.
+    CasadiSpeeds,
     /// A program has lanes: it was derived with them.
     Lanes(String),
     /// What is to be fixed is no parameter.
@@ -61,10 +61,10 @@ pub fn write(
     tables: &[String],
     options: &Options,
 ) -> Result<Files, Unfit> {
-    if model.speeds.is_some() {
-        return Err(Unfit::Speeds);
-    }
     check(output)?;
+    if model.speeds.is_some() && options.casadi.is_some() {
+        return Err(Unfit::CasadiSpeeds);
+    }
     if options.single && options.casadi.is_some() {
         return Err(Unfit::SingleCasadi);
     }
@@ -86,6 +86,7 @@ pub fn write(
         time: model.time,
         passive: [length(Id::PassiveForces), length(Id::PassiveDerivatives)],
         derivatives: output.functions.iter().any(|f| f.id == Id::InputDerivatives),
+        speeds: model.speeds.is_some(),
     };
     let chosen = Chosen::of(output);
     let mut support = Support::new(options.single);
@@ -201,10 +202,21 @@ impl<'a> Chosen<'a> {
             left_out: Vec::new(),
         };
         let has_dynamics = output.functions.iter().any(|f| f.id == Id::ForwardDynamics);
+        let has_derivatives = output.functions.iter().any(|f| f.id == Id::InputDerivatives);
+        let has_frames = !output.frames.is_empty();
         for f in &output.functions {
             match f.id {
+                Id::RateMatrix if has_frames || has_derivatives => chosen.hidden.push(f),
+                Id::RateAccelerations if has_frames => chosen.hidden.push(f),
+                Id::SpeedMatrix | Id::RateChanges if has_derivatives => chosen.hidden.push(f),
                 Id::PassiveForces | Id::PassiveDerivatives | Id::AccelerationsAndInverse => {
                     chosen.hidden.push(f)
+                }
+                Id::Reaction
+                    if f.arguments.iter().any(|a| matches!(a, Argument::Given(CONTACT_FORCES, ..))) =>
+                {
+                    let name = f.name.strip_prefix(REACTION).unwrap_or_default();
+                    chosen.left_out.push(format!("{name}: what acts on a body under the forces of contacts"));
                 }
                 Id::Reaction if has_dynamics => chosen.reactions.push(f),
                 Id::Limits => chosen.limits = Some(f),

@@ -120,7 +120,19 @@ impl<'a> Steps<'a> {
         let mut put = |word: &str, by: &str| text = text.replace(word, by);
         put("@FORCES@", &self.forces(o));
         put("@LINEAR@", &self.linear(o));
-        let has_blocks = self.charts.iter().any(|chart| !matches!(chart, Chart::Plain(..)));
+        let has_blocks = !o.speeds && self.charts.iter().any(|chart| !matches!(chart, Chart::Plain(..)));
+        let ways = match o.speeds {
+            true => include_str!("templates/ways_in_speeds.c"),
+            false => include_str!("templates/ways.c"),
+        };
+        put("@WAYS@", ways);
+        put("@RATE_OF_WAY@", &rate_of_way(o));
+        let [start, start_declared] = match o.speeds {
+            true => [format!("{own}q, "), format!("{own_declared}const double *q, ")],
+            false => Default::default(),
+        };
+        put("@START@", &start);
+        put("@START_DECLARED@", &start_declared);
         put("@MOVED_BLOCK@", if has_blocks { include_str!("templates/moved_block.c") } else { "" });
         put("@MOVED@", &self.blocks(o, "integrate", support));
         put("@RATE@", &self.blocks(o, "tangent_rate", support));
@@ -228,6 +240,14 @@ impl<'a> Steps<'a> {
             };
         }
         text
+    }
+}
+
+/// The call for the rate of a displacement.
+fn rate_of_way(o: &Outline<'_>) -> String {
+    match o.speeds {
+        true => o.timeless_call("displacement_rate", &["q", "dv", "w", "rate"]),
+        false => o.timeless_call("tangent_rate", &["dv", "w", "rate"]),
     }
 }
 

@@ -33,7 +33,7 @@ static void accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, const
             dv[k] = s * rate[k];
             w[k] = v[k] + s * a[k];
         }
-        @PREFIX@_tangent_rate(@OWN@dv, w, rate);
+        @RATE_OF_WAY@;
         @PREFIX@_integrate(@OWN@q, dv, at);
         accelerations_under(@OWN@@LATER@at, w, u, a);
         for (int k = 0; k < @N@; ++k) {

@@ -19,22 +19,7 @@ static void plus_part(const double *a, double part, double h, const double *b, d
     }
 }
 
-@MOVED_BLOCK@/* How the configuration moves that a displacement leads to. */
-static void moved(const double *displacement, double *motion) {
-    for (int k = 0; k < CHANGING; ++k) {
-        motion[k] = displacement[k];
-    }
-@MOVED_PLAIN@@MOVED@}
-
-/* The rate of a displacement with which the configuration moves with the velocity v. */
-static void rate_of(const double *displacement, const double *v, double *rate) {
-    for (int k = 0; k < CHANGING; ++k) {
-        rate[k] = v[k];
-    }
-    (void)(displacement);
-@RATE@}
-
-/* The acceleration of a motion and a velocity that change. */
+@WAYS@/* The acceleration of a motion and a velocity that change. */
 static void changing_acceleration(@OWN_DECLARED@@T_DECLARED@const double *q, const double *motion, const double *v, const double *u,
     double *result) {
     double by_q[@NV@ * @NV@], by_v[@NV@ * @NV@];
@@ -71,7 +56,7 @@ static void put_columns(const double *motion, const double *v, double *next_v, d
     linear_motion(@OWN@@T@q, v, u, a, a + BY_Q, a + BY_V, a + BY_U);
     plus_part(start, 1.0, h, a, w);
     plus_part(displacement, 1.0, h, w, displacement);
-    moved(displacement, motion);
+    moved(@START@displacement, motion);
     @PREFIX@_integrate(@OWN@q, displacement, next_q);
     put_columns(motion, w, next_v, by_state, by_input@H_PASSED@);
 }
@@ -101,8 +86,8 @@ static void put_columns(const double *motion, const double *v, double *next_v, d
         const double part = parts[stage], weight = stage < 3 ? 2.0 : 1.0;
 @S@        plus_part(zero, part, h, rate, displacement);
         plus_part(start, part, h, a, w);
-        rate_of(displacement, w, rate);
-        moved(displacement, motion);
+        rate_of(@START@displacement, w, rate);
+        moved(@START@displacement, motion);
         @PREFIX@_integrate(@OWN@q, displacement, at);
         changing_acceleration(@OWN@@LATER@at, motion, w, u, a);
         for (int k = 0; k < CHANGING; ++k) {
@@ -112,7 +97,7 @@ static void put_columns(const double *motion, const double *v, double *next_v, d
     }
     plus_part(zero, 1.0 / 6.0, h, sum_rate, displacement);
     plus_part(start, 1.0 / 6.0, h, sum_a, w);
-    moved(displacement, motion);
+    moved(@START@displacement, motion);
     @PREFIX@_integrate(@OWN@q, displacement, next_q);
     put_columns(motion, w, next_v, by_state, by_input@H_PASSED@);
 }

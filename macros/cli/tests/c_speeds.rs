@@ -1,0 +1,158 @@
+//! C of a mechanism with declared speeds against the same functions in Rust.
+
+use linkwork::prelude::*;
+use linkwork::{discrete, frame};
+use mechanisms_in_speeds::Juggler;
+use std::fmt::Write;
+use std::path::Path;
+use std::process::Command;
+
+#[path = "mechanisms/speeds.rs"]
+mod mechanisms_in_speeds;
+
+/// An array as C writes it.
+fn array(name: &str, numbers: &[f64]) -> String {
+    let list: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
+    format!("    const double {name}[] = {{{}}};\n", list.join(", "))
+}
+
+/// What a program prints: a line for each function.
+fn printed(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join("speeds");
+    std::fs::create_dir_all(&folder).expect("a folder of the tests'");
+    let exported = Command::new(env!("CARGO_BIN_EXE_linkwork"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .args(["export", "c", "--out"])
+        .arg(&folder)
+        .arg("tests/mechanisms/speeds.rs")
+        .output()
+        .expect("the command starts");
+    assert!(exported.status.success(), "{}", String::from_utf8_lossy(&exported.stderr));
+    let mut main = format!(
+        "#include <stdio.h>\n#include \"juggler.h\"\n\nint main(void) {{\n    const juggler self[] = {{{{0.7}}}};\n{given}"
+    );
+    for (name, call, expected) in entries {
+        let n = expected.len();
+        let _ = writeln!(
+            main,
+            "    {{\n        double r[{n}];\n        {call};\n        for (int k = 0; k < {n}; ++k) {{\n            printf(\"%.17g \", r[k]);\n        }}\n        printf(\"\\n\"); /* {name} */\n    }}"
+        );
+    }
+    main.push_str("    return 0;\n}\n");
+    std::fs::write(folder.join("main.c"), main).expect("a file of the tests'");
+    let compiled = Command::new("cc")
+        .current_dir(&folder)
+        .args(["-std=c99", "-O1", "-Wall", "-Wextra", "-pedantic", "-Werror"])
+        .args(["-o", "main", "juggler.c", "main.c", "-lm"])
+        .output()
+        .expect("the compiler starts");
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let run = Command::new(folder.join("main")).output().expect("the program starts");
+    let text = String::from_utf8_lossy(&run.stdout).into_owned();
+    let line = |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
+    text.lines().map(line).collect()
+}
+
+/// Numbers of several results, one after another.
+fn all(parts: &[&[f64]]) -> Vec<f64> {
+    parts.concat()
+}
+
+#[test]
+fn speeds_are_the_same_in_c() {
+    let m = Juggler { axial: 0.7 };
+    const N: usize = Juggler::NV;
+    let some = |seed: f64| SVector::<f64, N>::from_fn(|k, _| 0.6 * (seed + 1.7 * k as f64).sin());
+    let q = m.integrate(&m.neutral(), &some(0.3));
+    let (v, a, tau, dv): (_, _, _, SVector<f64, N>) = (some(1.1), some(2.3), some(4.0), some(0.9) * 0.3);
+    let u = SVector::from([0.8]);
+    let there = m.integrate(&q, &dv);
+    let (f, h) = (frame!(Juggler, "hand"), 0.02);
+    let (by_q, by_v) = m.inverse_dynamics_derivatives(&q, &v, &a);
+    let (a_by_q, a_by_v, by_tau) = m.forward_dynamics_derivatives(&q, &v, &tau);
+    let (by_state, by_input) = m.linearize(&q, &v, &u);
+    let moved = Derivatives::integrate_derivatives_at(&m, &q, &dv);
+    let rates = Derivatives::displacement_rate_derivatives(&m, &q, &dv, &v);
+    let mut entries: Vec<(&str, &str, Vec<f64>)> = vec![
+        ("rates_of_speeds", "(self, q, v, r)", all(&[m.rates_of_speeds(&q, &v).as_slice()])),
+        ("speeds_of_rates", "(self, q, v, r)", all(&[m.speeds_of_rates(&q, &v).as_slice()])),
+        ("mass_matrix", "(self, q, r)", all(&[m.mass_matrix(&q).as_slice()])),
+        ("inverse_dynamics", "(self, q, v, a, r)", all(&[m.inverse_dynamics(&q, &v, &a).as_slice()])),
+        ("forward_dynamics", "(self, q, v, tau, r)", all(&[m.forward_dynamics(&q, &v, &tau).as_slice()])),
+        ("generalized_forces", "(self, q, u, r)", all(&[m.generalized_forces(&q, &u).as_slice()])),
+        ("integrate", "(self, q, dv, r)", all(&[there.as_slice()])),
+        ("difference", "(self, q, there, r)", all(&[m.difference(&q, &there).as_slice()])),
+        ("displacement_rate", "(self, q, dv, v, r)", all(&[m.displacement_rate(&q, &dv, &v).as_slice()])),
+        (
+            "integrate_derivatives",
+            "(self, q, dv, r, r + N * N)",
+            all(&[moved.0.as_slice(), moved.1.as_slice()]),
+        ),
+        (
+            "displacement_rate_derivatives",
+            "(self, q, dv, v, r, r + N * N, r + 2 * N * N)",
+            all(&[rates.0.as_slice(), rates.1.as_slice(), rates.2.as_slice()]),
+        ),
+        (
+            "inverse_dynamics_derivatives",
+            "(self, q, v, a, r, r + N * N)",
+            all(&[by_q.as_slice(), by_v.as_slice()]),
+        ),
+        (
+            "forward_dynamics_derivatives",
+            "(self, q, v, tau, r, r + N * N, r + 2 * N * N)",
+            all(&[a_by_q.as_slice(), a_by_v.as_slice(), by_tau.as_slice()]),
+        ),
+        ("linearize", "(self, q, v, u, r, r + 4 * N * N)", all(&[by_state.as_slice(), by_input.as_slice()])),
+        ("frame_velocity", "(self, HAND, q, v, r)", all(&[m.frame_velocity(f, &q, &v).as_slice()])),
+        (
+            "frame_acceleration",
+            "(self, HAND, q, v, a, r)",
+            all(&[m.frame_acceleration(f, &q, &v, &a).as_slice()]),
+        ),
+        ("frame_jacobian", "(self, HAND, q, r)", all(&[m.frame_jacobian(f, &q).as_slice()])),
+        ("pull", "(self, q, v, u, r)", all(&[m.pull(&q, &v, &u).as_slice()])),
+    ];
+    let step =
+        |next: (SVector<f64, { Juggler::NQ }>, SVector<f64, N>)| all(&[next.0.as_slice(), next.1.as_slice()]);
+    let rk4 = discrete::step(&m, &Rk4::step(h), 0.0, &q, &v, &u).expect("it is regular");
+    let euler = discrete::step(&m, &SemiImplicitEuler::step(h), 0.0, &q, &v, &u).expect("it is regular");
+    entries.push(("rk4_step", "(self, q, v, u, 0.02, r, r + NQ)", step(rk4)));
+    entries.push(("semi_implicit_euler_step", "(self, q, v, u, 0.02, r, r + NQ)", step(euler)));
+    let transition = |next: discrete::Transition<f64, { Juggler::NQ }, N, 1>| {
+        all(&[next.a::<{ 2 * N }>().as_slice(), next.b::<{ 2 * N }>().as_slice()])
+    };
+    let call = "(self, q, v, u, 0.02, next, next + NQ, r, r + 4 * N * N, by_h)";
+    let rk4 = discrete::transition(&m, &Rk4::step(h), 0.0, &q, &v, &u).expect("it is regular");
+    let euler =
+        discrete::transition(&m, &SemiImplicitEuler::step(h), 0.0, &q, &v, &u).expect("it is regular");
+    entries.push(("rk4_transition", call, transition(rk4)));
+    entries.push(("semi_implicit_euler_transition", call, transition(euler)));
+
+    let mut given = String::from(
+        "    enum { N = JUGGLER_NV, NQ = JUGGLER_NQ, HAND = JUGGLER_FRAME_HAND };\n    double next[NQ + N], by_h[2 * N];\n    (void)(next);\n    (void)(by_h);\n",
+    );
+    let arrays = [("v", v), ("a", a), ("tau", tau), ("dv", dv)];
+    arrays.iter().for_each(|(name, numbers)| given.push_str(&array(name, numbers.as_slice())));
+    given.push_str(&array("q", q.as_slice()));
+    given.push_str(&array("there", there.as_slice()));
+    given.push_str(&array("u", u.as_slice()));
+    let calls: Vec<(&str, String, Vec<f64>)> = entries
+        .into_iter()
+        .map(|(name, call, expected)| {
+            // The frame stands before everything but the parameters.
+            (name, format!("juggler_{name}{call}"), expected)
+        })
+        .collect();
+    let borrowed: Vec<(&str, &str, Vec<f64>)> =
+        calls.iter().map(|(name, call, expected)| (*name, call.as_str(), expected.clone())).collect();
+    let found = printed(&borrowed, &given);
+    assert_eq!(found.len(), borrowed.len());
+    for ((name, _, expected), found) in borrowed.iter().zip(found) {
+        let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
+        assert_eq!(found.len(), expected.len(), "{name}");
+        for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
+            assert!((found - expected).abs() < 1e-11 * size, "{name}, {k}: {found} is not {expected}");
+        }
+    }
+}

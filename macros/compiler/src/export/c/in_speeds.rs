@@ -1,0 +1,102 @@
+//! The configuration space in declared speeds: its functions in terms of hidden ones for the velocities of the joints, as in Rust.
+
+use super::docs;
+use super::function::Outline;
+use super::manifold::{self, own};
+use super::support::Support;
+use crate::mechanism::Chart;
+use std::fmt::Write;
+
+/// Name, arguments, results and documentation of a function.
+struct Space {
+    name: &'static str,
+    arguments: &'static [&'static str],
+    results: &'static [&'static str],
+    docs: &'static str,
+}
+
+const SPACE: [Space; 3] = [
+    Space {
+        name: "integrate",
+        arguments: &["q", "dv"],
+        results: &["result"],
+        docs: "The configuration that is reached from `q` in one unit of time with the constant velocities of the joints that the speeds `dv` stand for at `q`; quaternions are normalised. The result may be `q` itself.",
+    },
+    Space {
+        name: "difference",
+        arguments: &["from", "to"],
+        results: &["result"],
+        docs: "The speeds, at `from`, that lead from one configuration to another in one unit of time.",
+    },
+    Space {
+        name: "displacement_rate",
+        arguments: &["q", "dv", "v"],
+        results: &["result"],
+        docs: "Rate of `dv` for which `integrate(q, dv)` moves with the speeds `v`, from `q`.",
+    },
+];
+
+const TO_FIRST_ORDER: [Space; 2] = [
+    Space {
+        name: "integrate_derivatives",
+        arguments: &["q", "dv"],
+        results: &["by_q", "by_dv"],
+        docs: "How the result of `integrate` moves with `q` and with `dv`, in speeds there: NV by NV each, column by column.",
+    },
+    Space {
+        name: "displacement_rate_derivatives",
+        arguments: &["q", "dv", "v"],
+        results: &["by_q", "by_dv", "by_v"],
+        docs: "Derivatives of `displacement_rate`: NV by NV each, column by column.",
+    },
+];
+
+fn all(o: &Outline<'_>) -> impl Iterator<Item = &'static Space> {
+    let derivatives: &[Space] = if o.derivatives { &TO_FIRST_ORDER } else { &[] };
+    SPACE.iter().chain(derivatives)
+}
+
+fn signature(o: &Outline<'_>, of: &Space) -> String {
+    let given = of.arguments.iter().map(|name| format!("const double *{name}"));
+    let results = of.results.iter().map(|name| format!("double *{name}"));
+    let list: Vec<String> = given.chain(results).collect();
+    format!("void {}_{}({}{})", o.prefix, of.name, own(o), list.join(", "))
+}
+
+/// Declarations.
+pub fn declare(o: &Outline<'_>) -> String {
+    let mut text = String::new();
+    for of in all(o) {
+        text.push_str(&docs::wrapped(of.docs, "/* ", " * "));
+        let _ = writeln!(text, " */\n{};\n", signature(o, of));
+    }
+    text
+}
+
+/// Definitions.
+pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
+    if o.derivatives {
+        support.sums = true;
+        manifold::define_all_derivatives(out, charts, o, support);
+        out.push_str(&filled(include_str!("templates/products_of_squares.c"), o));
+    }
+    for of in all(o) {
+        let body = match of.name {
+            "integrate" => include_str!("templates/integrate_in_speeds.c"),
+            "difference" => include_str!("templates/difference_in_speeds.c"),
+            "displacement_rate" => include_str!("templates/rate_in_speeds.c"),
+            "integrate_derivatives" => include_str!("templates/integrate_derivatives_in_speeds.c"),
+            _ => include_str!("templates/rate_derivatives_in_speeds.c"),
+        };
+        let _ = writeln!(out, "{} {{\n{}}}\n", signature(o, of), filled(body, o));
+    }
+}
+
+fn filled(template: &str, o: &Outline<'_>) -> String {
+    let own = if o.has_own() { "self, " } else { "" };
+    template
+        .replace("@PREFIX@", &o.prefix)
+        .replace("@OWN@", own)
+        .replace("@NQ@", &o.nq.max(1).to_string())
+        .replace("@NV@", &o.nv.max(1).to_string())
+}

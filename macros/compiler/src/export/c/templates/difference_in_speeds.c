@@ -1,0 +1,3 @@
+    double way[@NV@];
+    @PREFIX@_joints_difference(@OWN@from, to, way);
+    @PREFIX@_speeds_of_rates(@OWN@from, way, result);

@@ -1,0 +1,13 @@
+    enum { N = @NV@ * @NV@ };
+    double way[@NV@], there[@NQ@], z[N], y[N], of_q[N], of_way[N], changes[N], sum[N];
+    @PREFIX@_rates_of_speeds(@OWN@q, dv, way);
+    @PREFIX@_joints_integrate(@OWN@q, way, there);
+    @PREFIX@_rate_matrix(@OWN@q, z);
+    @PREFIX@_speed_matrix(@OWN@there, y);
+    @PREFIX@_rate_changes(@OWN@q, dv, changes);
+    @PREFIX@_joints_integrate_derivatives(@OWN@way, of_q, of_way);
+    product_of(of_q, z, sum);
+    add_products(@NV@, of_way, changes, sum);
+    product_of(y, sum, by_q);
+    product_of(of_way, z, sum);
+    product_of(y, sum, by_dv);

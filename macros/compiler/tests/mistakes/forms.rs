@@ -1,0 +1,68 @@
+//! Forms of the equations that a mechanism has none of.
+
+use super::{Row, answers};
+
+/// What is said of the attribute stands before `|`, further fields behind it.
+fn setting(said: &str) -> (String, String) {
+    let (words, fields) = said.split_once('|').unwrap_or((said, ""));
+    let own =
+        "m: f64, #[body(mass = m)] cart: Body, #[body(mass = m, com = y, inertia = sphere(m, 1))] arm: Body,
+        #[joint(ground -> cart, along = x)] rail: Sleeve, #[joint(cart -> arm, about = z)] hinge: Pin,
+        #[acts(on = rail, stiffness = 3)] spring: Spring,";
+    (format!("gravity = -9.81 * y, {words}"), format!("{own} {fields}"))
+}
+
+#[test]
+fn mechanisms_without_a_form_say_which_they_have() {
+    const ROWS: &[Row] = &[
+        (
+            "equations = hamilton|#[constraint(rail * rail + hinge * hinge = 1)] wire: Holonomic,",
+            "Hamilton's equations are printed for mechanisms without constraints",
+            "`equations = lagrange`",
+        ),
+        (
+            "routh|#[constraint(rail * rail + hinge * hinge = 1)] wire: Holonomic,",
+            "Routh's equations are those of mechanisms without constraints",
+            "`conserved`",
+        ),
+        (
+            "equations = hamilton|#[speed(2 * rate(rail))] u: Speed,",
+            "Hamilton's equations are printed in the momenta of coordinates, not of declared speeds",
+            "Kane's equations in speeds",
+        ),
+        ("equations = routh", "no coordinate of this mechanism is cyclic", "remove the word"),
+        ("routh", "no coordinate of this mechanism is cyclic", "remove the word"),
+        (
+            "equations = routh|#[speed(2 * rate(rail))] u: Speed,",
+            "Routh's equations are those of coordinates, not of declared speeds",
+            "eliminates the rates of cyclic coordinates",
+        ),
+        (
+            "routh|#[speed(2 * rate(rail))] u: Speed,",
+            "Routh's equations are those of coordinates, not of declared speeds",
+            "eliminates the rates of cyclic coordinates",
+        ),
+        (
+            "sensitivities|#[speed(m * rate(rail))] u: Speed,",
+            "there are no derivatives by parameters with speeds that contain parameters",
+            "the configuration would move otherwise with other parameters",
+        ),
+    ];
+    answers(setting, ROWS);
+}
+
+/// What slips holds its normal force, which no independent speeds eliminate.
+#[test]
+fn contacts_that_slip_have_no_equations_of_kane() {
+    fn setting(words: &str) -> (String, String) {
+        let fields = "#[body(mass = 1, inertia = disk(1, 0.2, z))] disk: Body, #[joint(ground -> disk, about = z)] pose: Planar,
+            #[constraint(slips(disk.circle(0.2, z), ground.plane(y)), friction = 0.3, speed = 0.01)] contact: Slipping,";
+        (format!("gravity = -9.81 * y, {words}"), fields.to_string())
+    }
+    const ROWS: &[Row] = &[(
+        "equations = kane",
+        "the equations of a contact that slips hold its normal force, a multiplier",
+        "write `equations = lagrange`",
+    )];
+    answers(setting, ROWS);
+}
