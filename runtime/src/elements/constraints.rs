@@ -106,7 +106,7 @@ pub enum Slipping {}
 /// | `cuboid(a, b, c)`, a box with these lengths along the body's axes: eight points, its corners | `plane(normal)` |
 /// | `cuboid(a, b, c)`: thirteen points, of faces that look at each other where edges begin and end or are cut off, and of two edges that cross | `cuboid(a, b, c)` |
 /// | `capsule(radius, length, axis)`: five points, the ends, where the sides of a face cut it off, and where it crosses an edge | `cuboid(a, b, c)` |
-/// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away | `plane(normal)` |
+/// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away, which move as the points of the body that are there | `plane(normal)` |
 /// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
 /// | a point, `sphere(radius)`, the ends of a `capsule(…)`, the corners of a `cuboid(…)` | `terrain(height)` |
 ///

@@ -1,7 +1,9 @@
 //! Random mechanisms of everything that the language has at once. Each compiles, or is answered as a mistake of its author's: never
-//! as one of the compiler's own, and every value that generated code names is there.
+//! as one of the compiler's own, every value that generated code names is there, and what it computes agrees with itself.
 
+mod agreement;
 mod source;
+mod values;
 
 use crate::seeds;
 use linkwork_compiler::expand;
@@ -59,6 +61,14 @@ fn combinations_compile_or_are_answered() {
         compiled += u64::from(!text.contains("compile_error"));
     }
     assert!(4 * compiled > all.end - all.start, "only {compiled} compile");
+}
+
+#[test]
+fn functions_agree_with_each_other() {
+    let all = seeds(30);
+    let compared: Vec<usize> = all.clone().map(agreement::check).collect();
+    let (many, most) = (compared.iter().filter(|n| **n > 20).count() as u64, all.end - all.start);
+    assert!(5 * many > most, "only {many} of {most} mechanisms have much to compare");
 }
 
 /// Long bodies are written in blocks, before which sines and cosines stand: some are results as they are.

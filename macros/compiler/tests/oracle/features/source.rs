@@ -1,5 +1,5 @@
-//! A random mechanism in the words of the language: joints of all types, force elements, values and outputs that are expressions of
-//! anything, contacts, limits, constraints, and words that ask for functions.
+//! A random mechanism in the words of the language: joints of all types, loops, force elements, values and outputs that are
+//! expressions of anything, states, speeds, contacts, limits, constraints, and words that ask for functions.
 
 use crate::random::Random;
 use std::fmt::Write;
@@ -34,7 +34,71 @@ const SOLIDS: [&str; 5] = [
     "cuboid(M, 0.1, 0.2, 0.3)",
     "cylinder(M, 0.1, 0.3, y)",
 ];
-const VALUES: [&str; 6] = ["S", "S * S", "S + 0.5 * S", "cos(S) * S", "min(S, S)", "max(S, 0.2 * S)"];
+/// Values of scalars `S` and vectors `V`.
+const VALUES: [&str; 10] = [
+    "S",
+    "S * S",
+    "S + 0.5 * S",
+    "cos(S) * S",
+    "min(S, S)",
+    "max(S, 0.2 * S)",
+    "if S > 0.3 { S } else { S }",
+    "if B > 0.3 { 2 * (B - 0.3) } else { 0 }",
+    "S / (1.5 + S * S)",
+    "0.3 * dot(V, V)",
+];
+/// Vectors of points `P`, axes `A`, bodies `H` and scalars `S`.
+const VECTOR_VALUES: [&str; 8] = [
+    "S * ground.y",
+    "r(P / P)",
+    "0.7 * A.x",
+    "v(P / P / ground)",
+    "omega(A / ground)",
+    "cross(r(P / P), A.y)",
+    "project(r(P / ground), A.z)",
+    "S * A.y + 0.2 * ground.x",
+];
+/// The surface of [`SURFACES`] that has rims.
+pub const RIMS: &str = "cylinder(0.2, 0.5, x), ground";
+/// Pairs of surfaces of a body `H` and the ground.
+const SURFACES: [&str; 7] = [
+    "H.sphere(0.1), ground.plane(y)",
+    "H.sphere(0.1), ground.plane(y), rolling = 0.01, torsional = 0.02",
+    "H.at([0.3, 0.1, -0.2]), ground.plane(y)",
+    "H.cuboid(0.2, 0.3, 0.4), ground.plane(y)",
+    "H.capsule(0.1, 0.4, z), ground.plane(x)",
+    "H.at([0, 1, 0]).sphere(0.1), ground.at([0, 3, 0]).sphere(0.7)",
+    "H.cylinder(0.2, 0.5, x), ground.plane(y)",
+];
+/// What outputs alone may be.
+const SCALAR_OUTPUTS: [&str; 8] = [
+    "kinetic_energy(H)",
+    "moment_of_inertia(H / P, ground.z)",
+    "rate(dot(V, ground.x))",
+    "norm(v(P / ground / A) + 0.1 * ground.x)",
+    "trace(inertia(H / P) * outer(V, V))",
+    "dot(a(P / P / A), V)",
+    "angle(r(P / ground) + 3 * ground.x, A.x + 2 * ground.y)",
+    "rate(S * S)",
+];
+const VECTOR_OUTPUTS: [&str; 10] = [
+    "momentum(H)",
+    "angular_momentum(H / P)",
+    "center_of_mass(H / P)",
+    "rate(momentum(H) / ground)",
+    "alpha(A / ground / ground)",
+    "rotation(A / ground) * V",
+    "inertia(H / P) * omega(A / ground)",
+    "rate(V / ground)",
+    "a(P / ground / A)",
+    "v(P / P / A)",
+];
+const MATRIX_OUTPUTS: [&str; 4] = [
+    "rotation(A / ground)",
+    "inertia(H / P)",
+    "outer(V, V) + skew(V)",
+    "rate(rotation(A / ground) / ground)",
+];
 const LAWS: [(&str, &str); 4] = [
     ("stiffness = 2, free_length = 0.3", "Spring"),
     ("damping = 2", "Dashpot"),
@@ -42,6 +106,7 @@ const LAWS: [(&str, &str); 4] = [
     ("strength = 0.3", "Attraction"),
 ];
 const WORDS: [&str; 17] = [
+    "formulation = speeds",
     "derivatives",
     "second_derivatives",
     "momentum_derivatives",
@@ -58,7 +123,6 @@ const WORDS: [&str; 17] = [
     "equations = kane",
     "equations = hamilton",
     "equations = structure",
-    "target_only",
 ];
 
 /// The fields so far, and what further ones may name.
@@ -68,6 +132,13 @@ struct Source {
     bodies: Vec<String>,
     particles: Vec<String>,
     coordinates: Vec<String>,
+    /// Axes that are no body's.
+    frames: Vec<String>,
+    /// Points and states by their names.
+    points: Vec<String>,
+    states: Vec<String>,
+    /// Elements that take no part in functions of some words.
+    has_constraints: bool,
     has_parameters: bool,
 }
 
@@ -79,19 +150,25 @@ pub fn source(seed: u64) -> (String, String) {
         bodies: Vec::new(),
         particles: Vec::new(),
         coordinates: Vec::new(),
+        frames: Vec::new(),
+        points: Vec::new(),
+        states: Vec::new(),
+        has_constraints: false,
         has_parameters: false,
     };
     for k in 0..1 + source.random.below(4) {
         source.add_body(k);
     }
-    for k in 0..source.random.below(6) {
+    for k in 0..source.random.below(7) {
         source.add_element(k);
     }
     let mut arguments = "gravity = -9.81 * y".to_string();
     for word in WORDS {
         let needs_parameters = ["sensitivities", "prepare"].contains(&word);
-        if source.chance(6)
+        let needs_constraints = word == "formulation = speeds";
+        if source.chance(if word == "derivatives" { 2 } else { 6 })
             && (source.has_parameters || !needs_parameters)
+            && (source.has_constraints || !needs_constraints)
             && !arguments.contains("equations")
         {
             let _ = write!(arguments, ", {word}");
@@ -159,6 +236,10 @@ impl Source {
 
     fn point(&mut self) -> String {
         let particles = self.particles.len();
+        if !self.points.is_empty() && self.chance(5) {
+            let n = self.random.below(self.points.len());
+            return self.points[n].clone();
+        }
         let n = self.random.below(particles + self.bodies.len() + 1);
         if n < particles {
             return self.particles[n].clone();
@@ -173,7 +254,11 @@ impl Source {
             let n = self.random.below(self.coordinates.len());
             self.coordinates[n].clone()
         });
-        match (self.random.below(9), coordinate) {
+        if !self.states.is_empty() && self.chance(5) {
+            let n = self.random.below(self.states.len());
+            return self.states[n].clone();
+        }
+        match (self.random.below(12), coordinate) {
             (0, _) => "t".to_string(),
             (1, _) => self.number(),
             (2, _) => format!("look({})", self.number()),
@@ -186,12 +271,44 @@ impl Source {
         }
     }
 
-    fn value(&mut self) -> String {
-        let mut value = self.one_of(&VALUES).to_string();
-        while value.contains('S') {
-            value = value.replacen('S', &self.scalar(), 1);
+    /// A form with scalars, vectors, points and bodies in the places of its letters; a `B` is one scalar throughout.
+    fn filled(&mut self, form: &str) -> String {
+        let same = self.scalar();
+        let mut text = String::new();
+        for (k, c) in form.char_indices() {
+            let alone = |c: Option<char>| !c.is_some_and(char::is_alphanumeric);
+            let is_letter = alone(form[..k].chars().last()) && alone(form[k + 1..].chars().next());
+            match c {
+                'S' if is_letter => text += &self.scalar(),
+                'B' if is_letter => text += &same,
+                'P' if is_letter => text += &self.point(),
+                'V' if is_letter => {
+                    let form = self.one_of(&VECTOR_VALUES);
+                    text += &self.filled(form);
+                }
+                'A' if is_letter => text += &self.axes(),
+                'H' if is_letter => text += &self.heavy(),
+                _ => text.push(c),
+            }
         }
-        value
+        text
+    }
+
+    fn heavy(&mut self) -> String {
+        let n = self.random.below(self.bodies.len());
+        self.bodies.get(n).cloned().unwrap_or_else(|| "ground".to_string())
+    }
+
+    /// A body, or a frame.
+    fn axes(&mut self) -> String {
+        let n = self.random.below(self.bodies.len() + self.frames.len() + 1);
+        let all = self.bodies.iter().chain(&self.frames);
+        all.cloned().nth(n).unwrap_or_else(|| "ground".to_string())
+    }
+
+    fn value(&mut self) -> String {
+        let form = self.one_of(&VALUES);
+        self.filled(form)
     }
 
     fn add_element(&mut self, k: usize) {
@@ -201,7 +318,7 @@ impl Source {
         };
         let coordinate = any(self, |source| &source.coordinates);
         let body = any(self, |source| &source.bodies);
-        let (kind, law) = (self.random.below(13), self.one_of(&LAWS));
+        let (kind, law) = (self.random.below(32), self.one_of(&LAWS));
         let field = match (kind, coordinate, body) {
             (0, Some(on), _) => format!("#[acts(on = {on}, stiffness = 2)] element{k}: Spring"),
             (1, Some(on), _) => {
@@ -231,14 +348,108 @@ impl Source {
             (7, ..) => format!("#[output(a({} / ground / ground))] output{k}: Vector", self.point()),
             (8, _, Some(body)) => format!("#[output({body}, resolved_in = ground)] output{k}: FreeBody"),
             (9, _, Some(body)) => {
-                format!(
-                    "#[contact({body}.sphere(0.1), ground.plane(z), friction = 0.3, rolling = 0.01)] contact{k}: Contact"
-                )
+                let surfaces = self.one_of(&SURFACES).replace('H', &body);
+                format!("#[contact({surfaces}, friction = 0.3)] contact{k}: Contact")
             }
             (10, Some(on), _) => format!("#[limit(on = {on}, from = -1, to = 1)] limit{k}: Limit"),
-            (11, ..) => format!("#[constraint({})] constraint{k}: Holonomic", self.value()),
-            _ => format!("#[output({})] output{k}: Scalar", self.value()),
+            (11, ..) => {
+                self.has_constraints = true;
+                format!("#[constraint({})] constraint{k}: Holonomic", self.value())
+            }
+            (30 | 31, _, Some(body)) => {
+                let surfaces = self.one_of(&SURFACES).replace('H', &body);
+                format!("#[contact({surfaces}, friction = 0.4, restitution = 0.2)] contact{k}: Contact")
+            }
+            (12, ..) => format!("#[output({})] output{k}: Scalar", self.value()),
+            _ => self.further(kind, k),
         };
         let _ = writeln!(self.fields, "{field},");
+    }
+
+    /// Elements that are seldom met.
+    fn further(&mut self, kind: usize, k: usize) -> String {
+        let coordinate = self.coordinates.last().cloned().unwrap_or_else(|| "t".to_string());
+        let body = self.bodies.last().cloned().unwrap_or_else(|| "ground".to_string());
+        match kind {
+            13 | 14 => {
+                let form = self.one_of(&SCALAR_OUTPUTS);
+                format!("#[output({})] output{k}: Scalar", self.filled(form))
+            }
+            15 | 16 => {
+                let form = self.one_of(&VECTOR_OUTPUTS);
+                let axes = self.axes();
+                format!("#[output({}, resolved_in = {axes})] output{k}: Vector", self.filled(form))
+            }
+            17 => {
+                let form = self.one_of(&MATRIX_OUTPUTS);
+                format!("#[output({})] output{k}: Matrix", self.filled(form))
+            }
+            18 => {
+                self.coordinates.push(format!("own{k}"));
+                let (point, along) = (self.one_of(&VECTORS), self.axes());
+                format!(
+                    "own{k}: Coordinate,\n#[particle(mass = 0.7, at = {body}.at(own{k} * {along}.x + {point}))] bead{k}: Particle"
+                )
+            }
+            19 => {
+                let (on, angle) = (self.axes(), self.scalar());
+                self.frames.push(format!("frame{k}"));
+                format!("#[frame({on}, {}({angle}))] frame{k}: Frame", self.one_of(&["x", "y", "z"]))
+            }
+            20 => {
+                let at = self.one_of(&VECTORS);
+                self.points.push(format!("point{k}"));
+                format!("#[point(on = {body}, at = {at} + 0.3 * {coordinate} * y)] point{k}: Point")
+            }
+            21 => format!("#[energy({})] energy{k}: Potential", self.value()),
+            22 => format!("#[dissipation(0.2 * pow(rate({coordinate}), 2))] loss{k}: Rayleigh"),
+            23 => {
+                self.has_constraints = true;
+                let (point, axes) = (self.point(), self.axes());
+                format!(
+                    "#[constraint(dot(v({point} / ground / ground), {axes}.x) = 0)] constraint{k}: Nonholonomic"
+                )
+            }
+            24 => {
+                self.has_constraints = true;
+                format!("#[constraint(rolls({body}.sphere(0.2), ground.plane(y)))] constraint{k}: Rolling")
+            }
+            25 => {
+                let rate = self.value();
+                self.states.push(format!("state{k}"));
+                format!("#[state(rate = {rate})] state{k}: State")
+            }
+            26 => {
+                let (a, b, c) = (self.point(), self.point(), self.point());
+                format!(
+                    "#[acts(on = norm(r({a} / {b}) + 2 * ground.z) + norm(r({b} / {c}) - 3 * ground.x), stiffness = 2, free_length = 0.4)] element{k}: Spring"
+                )
+            }
+            27 => {
+                self.has_constraints = true;
+                let other = self.bodies.first().cloned().unwrap_or_else(|| "ground".to_string());
+                let kind = self.one_of(&[
+                    "about = z)] loop{k}: Pin",
+                    "about = (x, y))] loop{k}: Universal",
+                    ")] loop{k}: Ball",
+                ]);
+                let comma = if kind.starts_with('a') { ", " } else { "" };
+                let (here, there) = (self.one_of(&VECTORS), self.one_of(&VECTORS));
+                format!(
+                    "#[joint({other}.at({here}) -> {body}.at({there}){comma}{}",
+                    kind.replace("{k}", &k.to_string())
+                )
+            }
+            28 => format!(
+                "#[acts(on = {coordinate}, value = -0.2 * rate(rate({coordinate})) + S)] added{k}: Force"
+            )
+            .replace('S', &self.scalar()),
+            _ => {
+                let other = self.coordinates.first().cloned().unwrap_or_else(|| "t".to_string());
+                format!(
+                    "#[speed(1.5 * rate({coordinate}) + 0.4 * cos({other}) * rate({other}))] speed{k}: Speed"
+                )
+            }
+        }
     }
 }

@@ -1,0 +1,555 @@
+//! What must agree among the functions of one mechanism, whatever it is: derivatives with differences, forward with inverse
+//! dynamics, momenta, energies and powers with each other, constraints with their rates, and every function with itself as other
+//! passes, prepared numbers or vector registers make it.
+
+use super::source;
+use super::values::{By, Values, difference, slope};
+use linkwork_compiler::catalogue::{self, Id};
+use linkwork_compiler::derive::{Function, Output};
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::Model;
+use linkwork_compiler::{compile, read};
+use std::path::Path;
+
+/// Largest difference of what passes change alone, relative to the result's largest entry.
+const SAME: f64 = 1e-9;
+/// Largest difference from differences, relative to the largest of both and of what they are differences of.
+const TOLERANCE: f64 = 1e-7;
+/// Step of differences of differences.
+const WIDE: f64 = 8e-3;
+const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
+
+/// Compiles a mechanism, if there is no mistake in it, and calls `f` with it.
+fn with_compiled(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Output)) {
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    if let Some((model, output)) = source.as_ref().and_then(|source| compile(source, &graph, &mut cx)) {
+        f(&model, &output);
+    }
+}
+
+/// Everything of the mechanism of a seed. The number of comparisons that were possible.
+pub fn check(seed: u64) -> usize {
+    let (arguments, item) = source::source(seed);
+    let name = format!("seed {seed}\n#[mechanism({arguments})]\n{item}");
+    let mut compared = 0;
+    with_compiled(&arguments, &item, &mut |model, output| {
+        let values = Values::random(model, seed);
+        let mut case = Case { model, output, values, name: name.clone(), compared: 0 };
+        case.check_variants();
+        case.check_dynamics();
+        case.check_outputs();
+        case.check_constraints();
+        case.check_contacts();
+        case.check_derivatives();
+        case.check_parameters();
+        case.check_requested();
+        compared = case.compared;
+        with_compiled(&format!("{arguments}{SKIPPED}"), &item, &mut |_, plain| case.check_passes(plain));
+    });
+    compared
+}
+
+struct Case<'a, 'g> {
+    model: &'a Model<'g>,
+    output: &'a Output,
+    values: Values,
+    name: String,
+    compared: usize,
+}
+
+fn size(list: &[f64]) -> f64 {
+    list.iter().fold(0.0, |most, x| most.max(x.abs()))
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The product of a matrix, column by column, and a vector.
+fn product(columns: &[f64], vector: &[f64]) -> Vec<f64> {
+    let rows = columns.len() / vector.len().max(1);
+    (0..rows).map(|i| vector.iter().enumerate().map(|(j, x)| columns[j * rows + i] * x).sum()).collect()
+}
+
+fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+impl Case<'_, '_> {
+    fn function(&self, name: &str) -> Option<&Function> {
+        self.output.functions.iter().find(|f| f.name == name)
+    }
+
+    /// A function's result; nothing of a function that the mechanism does not have.
+    fn run(&self, name: &str, values: &Values) -> Vec<f64> {
+        self.function(name).map_or_else(Vec::new, |f| values.run(self.output, f))
+    }
+
+    fn here(&self, name: &str) -> Vec<f64> {
+        self.run(name, &self.values)
+    }
+
+    /// Compares lists; `more` is what may be doubtful of them. Where mechanisms have no value, both have none.
+    fn close(&mut self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
+        assert_eq!(found.len(), expected.len(), "{what} of {}", self.name);
+        self.compared += 1;
+        for (k, (a, b)) in found.iter().zip(expected).enumerate() {
+            let both_none = !a.is_finite() && !b.is_finite();
+            assert!(
+                both_none || (a - b).abs() <= bound,
+                "{what}, entry {k}: {a} and {b} within {bound}, {}",
+                self.name
+            );
+        }
+    }
+
+    /// Compares a list with the derivative of another along some motion, unless that is at a kink.
+    fn compare(&mut self, what: &str, found: &[f64], of: &dyn Fn(f64) -> Vec<f64>) {
+        let (expected, doubt) = slope(of);
+        let scale = 1.0 + size(found) + size(&expected) + size(&of(0.0));
+        if doubt < 1e-4 * scale {
+            self.close(what, found, &expected, TOLERANCE * scale + doubt);
+        }
+    }
+
+    /// Compares columns with the derivatives of a function.
+    fn compare_columns(&mut self, what: &str, found: &[f64], by: By, of: &dyn Fn(&Values) -> Vec<f64>) {
+        let n = self.values.size(by);
+        let rows = of(&self.values).len();
+        assert_eq!(found.len(), n * rows, "{what} by {by:?} of {}", self.name);
+        for k in 0..n {
+            let (values, changed) = (self.values.clone(), self.changer());
+            let column = &found[k * rows..(k + 1) * rows];
+            self.compare(&format!("{what} by {by:?}, column {k}"), column, &|h| {
+                of(&changed(&values, by, k, h))
+            });
+        }
+    }
+
+    /// The functions that contain derivatives of another one after another.
+    fn check_columns(&mut self, what: &str, base: &str, by: &[By]) {
+        let found = self.here(what);
+        if found.is_empty() || self.function(base).is_none() {
+            return;
+        }
+        let (output, function) = (self.output, self.function(base).cloned());
+        let of = |values: &Values| function.as_ref().map_or_else(Vec::new, |f| values.run(output, f));
+        let rows = of(&self.values).len();
+        let mut rest = &found[..];
+        for by in by {
+            let (columns, after) = rest.split_at(self.values.size(*by) * rows);
+            self.compare_columns(what, columns, *by, &of);
+            rest = after;
+        }
+        assert!(rest.is_empty(), "{what} has more than derivatives, {}", self.name);
+    }
+
+    /// The values with one entry changed: where speeds are declared, a displacement is measured in them.
+    fn changer(&self) -> impl Fn(&Values, By, usize, f64) -> Values + use<> {
+        let charts = self.model.charts.clone();
+        let (function, nv) = (self.function("__rate_matrix").map(|f| f.program.clone()), self.values.v.len());
+        move |values, by, k, h| match (by, &function) {
+            (By::Q, Some(matrix)) => {
+                let columns = values.run_alone(matrix);
+                let step: Vec<f64> = columns[k * nv..(k + 1) * nv].iter().map(|x| h * x).collect();
+                values.displaced(&charts, &step)
+            }
+            (By::Q, None) => {
+                let step: Vec<f64> = (0..nv).map(|j| if j == k { h } else { 0.0 }).collect();
+                values.displaced(&charts, &step)
+            }
+            _ => values.changed(by, k, h),
+        }
+    }
+
+    /// The derivative of a function along the motion.
+    fn along<F: Fn(&Values) -> Vec<f64>>(&self, of: F) -> impl Fn(f64) -> Vec<f64> + use<F> {
+        let (values, charts) = (self.values.clone(), self.model.charts.clone());
+        // With declared speeds the joints have other velocities.
+        let joints = match self.function("rates_of_speeds") {
+            Some(rates) => values.run(self.output, rates),
+            None => values.v.clone(),
+        };
+        move |h| of(&values.later(&charts, &joints, h))
+    }
+
+    /// Every function in vector registers, and of prepared numbers.
+    fn check_variants(&mut self) {
+        let output = self.output;
+        for function in &output.functions {
+            let found = self.values.run(output, function);
+            let bound = SAME * (1.0 + size(&found));
+            if let Some(lanes) = self.values.run_lanes(output, function) {
+                self.close(&format!("{} in lanes", function.name), &lanes, &found, bound);
+            }
+        }
+        let Some(prepared) = &output.prepared else { return };
+        for function in &prepared.functions {
+            let plain = output.functions.iter().find(|f| f.name == function.name);
+            if let Some(plain) = plain.filter(|plain| is_alike(plain, function)) {
+                let expected = self.values.run(output, plain);
+                let found = self.values.run_prepared(prepared, function);
+                let bound = SAME * (1.0 + size(&expected));
+                self.close(&format!("{} prepared", function.name), &found, &expected, bound);
+            }
+        }
+    }
+
+    /// Every function as it is without passes.
+    fn check_passes(&mut self, plain: &Output) {
+        for function in &plain.functions {
+            if let Some(own) = self.function(&function.name).filter(|own| is_alike(own, function)) {
+                let found = self.values.run(self.output, own);
+                let expected = self.values.run(plain, function);
+                let bound = SAME * (1.0 + size(&expected));
+                self.close(&format!("{} without passes", function.name), &found, &expected, bound);
+            }
+        }
+    }
+
+    fn check_dynamics(&mut self) {
+        let output = self.output;
+        let get = |name: &str| self.function(name).cloned();
+        let (Some(inverse), Some(kinetic), Some(potential), Some(momentum)) = (
+            get("inverse_dynamics"),
+            get("kinetic_energy"),
+            get("potential_energy"),
+            get("generalized_momentum"),
+        ) else {
+            return;
+        };
+        let forces = self.here("inverse_dynamics");
+        let depends_on_accelerations = !self.model.acceleration_forces.is_empty();
+        let (mass, momenta) = (self.here("mass_matrix"), self.here("generalized_momentum"));
+        if !depends_on_accelerations {
+            self.compare_columns("mass matrix", &mass, By::A, &|x| x.run(output, &inverse));
+            let rate = self.here("momentum_rate");
+            let along = self.along(|x| x.run(output, &momentum));
+            self.compare("momenta", &sum(&rate, &forces), &along);
+        }
+        self.compare_columns("momenta", &momenta, By::V, &|x| x.run(output, &kinetic));
+        if !self.model.time && !depends_on_accelerations {
+            let power = dot(&forces, &self.values.v) + self.here("disturbance_power")[0]
+                - self.here("dissipated_power")[0];
+            let along = self.along(|x| sum(&x.run(output, &kinetic), &x.run(output, &potential)));
+            self.compare("energy", &[power], &along);
+            let effort = dot(&self.here("generalized_forces"), &self.values.v);
+            let bound = SAME * (1.0 + effort.abs());
+            self.close("power of inputs", &self.here("control_power"), &[effort], bound);
+        }
+        let found = self.here("forward_dynamics");
+        if !found.is_empty() && found.iter().all(|a| a.is_finite()) {
+            let there = Values { a: found.clone(), ..self.values.clone() };
+            let forces = there.run(output, &inverse);
+            let scale = 1.0 + size(&forces) + size(&self.values.tau) + size(&mass) * size(&found);
+            let tau = self.values.tau.clone();
+            self.close("forward dynamics", &forces, &tau, SAME * scale);
+        }
+    }
+
+    fn check_outputs(&mut self) {
+        let outputs: Vec<Function> =
+            self.output.functions.iter().filter(|f| f.id == Id::Output).cloned().collect();
+        for function in outputs {
+            let depends_on_velocities = function.arguments.contains(&catalogue::Argument::V);
+            let by = if depends_on_velocities { By::V } else { By::Q };
+            let named = |suffix: &str| format!("{}{suffix}", function.name);
+            self.check_columns(&named(catalogue::JACOBIAN), &function.name, &[by]);
+            self.check_columns(&named(catalogue::DERIVATIVES), &function.name, &[By::Q, By::V, By::A, By::U]);
+            self.check_columns(&named(catalogue::BY_PARAMETERS), &function.name, &[By::Parameters]);
+        }
+    }
+
+    fn check_constraints(&mut self) {
+        let (Some(rates), Some(residuals)) =
+            (self.function("constraint_rates").cloned(), self.function("constraint_residuals").cloned())
+        else {
+            return;
+        };
+        let output = self.output;
+        self.check_columns("constraint_jacobian", "constraint_rates", &[By::V]);
+        let along = self.along(|x| x.run(output, &residuals));
+        let holonomic = self.here("constraint_residuals").len();
+        self.compare("residuals", &self.here("constraint_rates")[..holonomic], &along);
+        let jacobian = self.here("constraint_jacobian");
+        let change = sum(&product(&jacobian, &self.values.a), &self.here("constraint_bias"));
+        let along = self.along(|x| x.run(output, &rates));
+        self.compare("rates of constraints", &change, &along);
+        self.check_constrained_dynamics(&jacobian);
+    }
+
+    /// What elimination finds, where it says that it is to be trusted: it fulfils the equations of motion and the constraints.
+    fn check_constrained_dynamics(&mut self, jacobian: &[f64]) {
+        use catalogue::{Record, Shape};
+        let Some(function) = self.function("__constrained_dynamics").cloned() else { return };
+        let Shape::Record(Record::Elimination(nv, nc)) = function.shape else { return };
+        let found = self.values.run(self.output, &function);
+        let (a, rest) = found.split_at(nv);
+        let (multipliers, rest) = rest.split_at(nc);
+        let (pivots, before) = rest.split_at(nc);
+        if !pivots.iter().zip(before).all(|(pivot, before)| *pivot > 1e-3 * before) {
+            return;
+        }
+        let there = Values { a: a.to_vec(), ..self.values.clone() };
+        let balance: Vec<f64> =
+            (0..nv).map(|j| dot(&jacobian[j * nc..(j + 1) * nc], multipliers) + self.values.tau[j]).collect();
+        let forces = self.run("inverse_dynamics", &there);
+        let scale = 1.0 + size(&balance) + size(jacobian) * size(multipliers) + size(&forces);
+        self.close("constrained dynamics", &forces, &balance, 1e-4 * TOLERANCE * scale);
+        let change = sum(&product(jacobian, a), &self.here("constraint_bias"));
+        let scale = 1.0 + size(jacobian) * size(a) + size(&self.here("constraint_bias"));
+        self.close("constrained accelerations", &change, &vec![0.0; nc], 1e-4 * TOLERANCE * scale);
+    }
+
+    fn check_contacts(&mut self) {
+        let Some(gaps) = self.function("contact_gaps").cloned() else { return };
+        self.check_contact_derivatives();
+        let output = self.output;
+        self.check_columns("contact_jacobian", "contact_rates", &[By::V]);
+        let rates = self.here("contact_rates");
+        let (mut first, mut approach, mut of) = (0, Vec::new(), Vec::new());
+        for (k, contact) in self.model.contacts.iter().enumerate() {
+            if contact.pressed_by.is_none() {
+                approach.push(rates[first]);
+                of.push(k);
+            }
+            first += contact.rates.len();
+        }
+        // Of the rim of a cylinder those points count that are there at the moment: their gaps are not followed.
+        if self.name.contains(source::RIMS) {
+            return;
+        }
+        let along = self.along(move |x| {
+            let gaps = x.run(output, &gaps);
+            of.iter().map(|k| gaps[*k]).collect()
+        });
+        self.compare("gaps", &approach, &along);
+    }
+
+    /// `Gᵀ f`, `G a + b` and the rates `G v + …`.
+    fn check_contact_derivatives(&mut self) {
+        let found = self.here("__contact_derivatives");
+        let get = |name: &str| self.function(name).cloned();
+        let (Some(jacobian), Some(bias), Some(rates)) =
+            (get("contact_jacobian"), get("contact_bias"), get("contact_rates"))
+        else {
+            return;
+        };
+        if found.is_empty() {
+            return;
+        }
+        let (output, nv, nr) = (self.output, self.values.v.len(), self.values.contact_forces.len());
+        let forces = |x: &Values| {
+            let columns = x.run(output, &jacobian);
+            (0..nv).map(|j| dot(&columns[j * nr..(j + 1) * nr], &x.contact_forces)).collect()
+        };
+        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
+        let (first, rest) = found.split_at(nv * nv);
+        let (second, rest) = rest.split_at(nr * nv);
+        let (third, rest) = rest.split_at(nr * nv);
+        self.compare_columns("forces at contacts", first, By::Q, &forces);
+        self.compare_columns("changes at contacts", second, By::Q, &change);
+        self.compare_columns("changes at contacts", third, By::V, &change);
+        self.compare_columns("rates at contacts", rest, By::Q, &|x| x.run(output, &rates));
+    }
+
+    fn check_derivatives(&mut self) {
+        let output = self.output;
+        self.check_columns("inverse_dynamics_derivatives", "inverse_dynamics", &[By::Q, By::V]);
+        self.check_columns("generalized_momentum_derivatives", "generalized_momentum", &[By::Q]);
+        self.check_columns("momentum_rate_derivatives", "momentum_rate", &[By::Q, By::V]);
+        let inputs = self.here("__input_derivatives");
+        if let Some(forces) = self.function("generalized_forces").cloned().filter(|_| !inputs.is_empty()) {
+            let nv = self.values.v.len();
+            let of = |x: &Values| x.run(output, &forces);
+            let bound = SAME * (1.0 + size(&inputs));
+            self.close("forces of inputs", &inputs[..nv], &of(&self.values), bound);
+            let mut rest = &inputs[nv..];
+            for by in [By::Q, By::V, By::U] {
+                let (columns, after) = rest.split_at(self.values.size(by) * nv);
+                self.compare_columns("forces of inputs", columns, by, &of);
+                rest = after;
+            }
+        }
+        self.check_motion_derivatives();
+        self.check_forward_derivatives();
+        self.check_second_derivatives();
+    }
+
+    /// `M a + h − Jᵀ λ`, `J a + b` and the rates.
+    fn check_motion_derivatives(&mut self) {
+        let found = self.here("__motion_derivatives");
+        let get = |name: &str| self.function(name).cloned();
+        let (Some(inverse), Some(jacobian), Some(bias), Some(rates)) = (
+            get("inverse_dynamics"),
+            get("constraint_jacobian"),
+            get("constraint_bias"),
+            get("constraint_rates"),
+        ) else {
+            return;
+        };
+        if found.is_empty() {
+            return;
+        }
+        let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
+        let balance = |x: &Values| {
+            let (columns, forces) = (x.run(output, &jacobian), x.run(output, &inverse));
+            (0..nv).map(|j| forces[j] - dot(&columns[j * nc..(j + 1) * nc], &x.given[..nc])).collect()
+        };
+        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
+        let mut rest = &found[..];
+        let mut part = |n: usize| {
+            let (part, after) = rest.split_at(n);
+            rest = after;
+            part
+        };
+        self.compare_columns("forces with multipliers", part(nv * nv), By::Q, &balance);
+        self.compare_columns("forces with multipliers", part(nv * nv), By::V, &balance);
+        self.compare_columns("changes of rates", part(nc * nv), By::Q, &change);
+        self.compare_columns("changes of rates", part(nc * nv), By::V, &change);
+        self.compare_columns("rates", part(nc * nv), By::Q, &|x| x.run(output, &rates));
+    }
+
+    /// Columns of forward dynamics that are known, and those of the forces that are multiplied by the inverse.
+    fn check_forward_derivatives(&mut self) {
+        let Some(function) = self.function("forward_dynamics_derivatives").cloned() else { return };
+        let get = |name: &str| self.function(name).cloned();
+        let (Some(inverse), Some(forward)) = (get("inverse_dynamics"), get("forward_dynamics")) else {
+            return;
+        };
+        let (output, nv) = (self.output, self.values.v.len());
+        if !matches!(function.shape, catalogue::Shape::Forward(_)) {
+            return;
+        }
+        let found = self.values.run(output, &function);
+        let accelerations = self.values.run(output, &forward);
+        if accelerations.iter().any(|a| !a.is_finite()) {
+            return;
+        }
+        let there = Values { a: accelerations, ..self.values.clone() };
+        let changed = self.changer();
+        for (block, by) in [By::Q, By::V].into_iter().enumerate() {
+            for k in 0..nv {
+                let column = &found[block * nv * nv + k * nv..][..nv];
+                let known = function.structure.known[block].contains(&k);
+                let of = if known { &forward } else { &inverse };
+                self.compare(
+                    &format!("forward dynamics by {by:?}, column {k}, known: {known}"),
+                    column,
+                    &|h| changed(&there, by, k, h).run(output, of),
+                );
+            }
+        }
+    }
+
+    fn check_second_derivatives(&mut self) {
+        use By::{A, Q, U, V};
+        self.check_hessian(
+            "inverse_dynamics_second_derivatives",
+            "inverse_dynamics",
+            &[(Q, Q), (Q, V), (V, V), (Q, A)],
+        );
+        self.check_hessian(
+            "generalized_forces_second_derivatives",
+            "generalized_forces",
+            &[(Q, Q), (Q, V), (V, V), (Q, U), (V, U), (U, U)],
+        );
+    }
+
+    /// Second derivatives by two things each, contracted with the factors, against differences of differences; of those by
+    /// configuration twice the mean of both orders.
+    fn check_hessian(&mut self, what: &str, base: &str, blocks: &[(By, By)]) {
+        let found = self.here(what);
+        let Some(function) = self.function(base).cloned().filter(|_| !found.is_empty()) else { return };
+        let (output, changed, nv) = (self.output, self.changer(), self.values.v.len());
+        let factors = self.values.given[..nv].to_vec();
+        let of = |x: &Values| vec![dot(&x.run(output, &function), &factors)];
+        let mut first = 0;
+        for (rows, columns) in blocks {
+            let (m, n) = (self.values.size(*rows), self.values.size(*columns));
+            for (i, j) in (0..n).flat_map(|j| (0..m).map(move |i| (i, j))) {
+                let entry = found[first + j * m + i];
+                let values = self.values.clone();
+                // The inner motion begins where the outer one has led to.
+                let mixed = |outer: (By, usize), inner: (By, usize), h: f64| {
+                    difference(h, &|e| {
+                        let there = changed(&values, outer.0, outer.1, e);
+                        difference(h, &|e| of(&changed(&there, inner.0, inner.1, e)))
+                    })[0]
+                };
+                let (row, column) = ((*rows, i), (*columns, j));
+                let mean = |h: f64| 0.5 * (mixed(row, column, h) + mixed(column, row, h));
+                let (wide, narrow) = (mean(WIDE), mean(0.5 * WIDE));
+                let scale = 1.0 + entry.abs() + narrow.abs() + 10.0 * of(&values)[0].abs();
+                let doubt = (wide - narrow).abs() / 8.0;
+                if doubt < 1e-4 * scale {
+                    let what = format!("{what}, {row:?} and {column:?}");
+                    self.close(&what, &[entry], &[narrow], TOLERANCE * scale + doubt);
+                }
+            }
+            first += m * n;
+        }
+        assert_eq!(first, found.len(), "{what} of {}", self.name);
+    }
+
+    fn check_parameters(&mut self) {
+        for base in ["inverse_dynamics", "forward_dynamics", "generalized_forces"] {
+            self.check_columns(&format!("{base}_by_parameters"), base, &[By::Parameters]);
+        }
+    }
+
+    fn check_requested(&mut self) {
+        let output = self.output;
+        let Values { v, a, .. } = self.values.clone();
+        if let Some(momentum) = self.function("momentum").cloned() {
+            let matrix = self.here("centroidal_momentum_matrix");
+            if !matrix.is_empty() {
+                self.compare_columns("momentum", &matrix, By::V, &|x| x.run(output, &momentum));
+                let change = sum(&product(&matrix, &a), &self.here("centroidal_momentum_bias"));
+                let along = self.along(|x| x.run(output, &momentum));
+                self.compare("momentum", &change, &along);
+            }
+        }
+        if self.function("hamiltonian").is_some() {
+            let momenta = self.here("generalized_momentum");
+            let canonical = Values { given: momenta.clone(), ..self.values.clone() };
+            let scale = 1.0 + size(&self.here("mass_matrix")) * size(&v);
+            let found = self.run("canonical_velocity", &canonical);
+            let again = Values { v: found.clone(), ..self.values.clone() };
+            let found = self.run("generalized_momentum", &again);
+            self.close("canonical velocity", &found, &momenta, SAME * scale);
+            let energy =
+                dot(&momenta, &v) - self.here("kinetic_energy")[0] + self.here("potential_energy")[0];
+            let found = self.run("hamiltonian", &canonical);
+            self.close("hamiltonian", &found, &[energy], SAME * (scale * (1.0 + size(&v)) + energy.abs()));
+            let rate = sum(&self.here("momentum_rate"), &self.values.tau);
+            let found = self.run("canonical_momentum_rate", &canonical);
+            let bound = SAME * (scale * (1.0 + size(&v)) + size(&rate));
+            self.close("canonical momentum rate", &found, &rate, bound);
+        }
+        let forward = self.here("forward_dynamics");
+        if let Some(conserved) = self.function("conserved").cloned().filter(|_| !forward.is_empty()) {
+            self.values.u.iter_mut().for_each(|u| *u = 0.0);
+            let tau = self.here("generalized_forces");
+            self.values.tau = tau;
+            let a = self.here("forward_dynamics");
+            let before = std::mem::replace(&mut self.values.a, a);
+            let kept = self.here("conserved");
+            let along = self.along(|x| x.run(output, &conserved));
+            self.compare("what is conserved", &vec![0.0; kept.len()], &along);
+            self.values.a = before;
+        }
+    }
+}
+
+/// True for functions whose results mean the same, entry by entry.
+fn is_alike(a: &Function, b: &Function) -> bool {
+    use catalogue::Shape;
+    let divided =
+        matches!(a.shape, Shape::Inverse(_) | Shape::Forward(_) | Shape::Linear(..) | Shape::Accelerated(_));
+    let called = a.shape.calls() || b.shape.calls() || a.name.starts_with("__passive");
+    a.shape == b.shape && a.arguments == b.arguments && !divided && !called && a.id != Id::Part
+}

@@ -1,0 +1,220 @@
+//! The functions of a compiled mechanism in numbers, where it is in some state, and how they change with it.
+
+use crate::random::Random;
+use linkwork_compiler::catalogue::Called;
+use linkwork_compiler::derive::{Function, Output, Prepared};
+use linkwork_compiler::lower::Program;
+use linkwork_compiler::mechanism::{Chart, Model, Quantity};
+
+/// Step of differences of sixth order.
+const H: f64 = 4e-3;
+
+/// What functions depend on, with a list of numbers for each kind.
+#[derive(Clone)]
+pub struct Values {
+    pub t: f64,
+    pub q: Vec<f64>,
+    pub v: Vec<f64>,
+    pub a: Vec<f64>,
+    pub tau: Vec<f64>,
+    pub u: Vec<f64>,
+    pub parameters: Vec<f64>,
+    /// Multipliers, factors and momenta.
+    pub given: Vec<f64>,
+    pub contact_forces: Vec<f64>,
+}
+
+/// By what a function is differentiated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum By {
+    Q,
+    V,
+    A,
+    U,
+    Parameters,
+}
+
+impl Values {
+    pub fn random(model: &Model<'_>, seed: u64) -> Values {
+        let mut random = Random::new(seed ^ 0xfee1);
+        let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
+        let (nq, nv) = (model.nq(), model.nv());
+        let mut values = Values {
+            t: 0.4,
+            q: list(nq, 0.9),
+            v: list(nv, 0.8),
+            a: list(nv, 1.5),
+            tau: list(nv, 2.0),
+            u: list(model.inputs.len(), 1.0),
+            parameters: list(model.parameters.len(), 0.3).iter().map(|p| 1.2 + p).collect(),
+            given: list(4 * (nv + model.constraints.len()), 0.7),
+            contact_forces: list(model.contacts.iter().map(|c| c.rates.len()).sum(), 0.9),
+        };
+        for chart in &model.charts {
+            if let Some(quaternion) = quaternion(*chart, &mut values.q) {
+                quaternion[3] += 1.5;
+                normalise(quaternion);
+            }
+        }
+        values
+    }
+
+    /// A result of a function, which may begin with those of functions that it calls.
+    pub fn run(&self, output: &Output, function: &Function) -> Vec<f64> {
+        self.run_program(output, function, false)
+    }
+
+    /// By the program in lanes, where there is one.
+    pub fn run_lanes(&self, output: &Output, function: &Function) -> Option<Vec<f64>> {
+        function.program.simd.is_some().then(|| self.run_program(output, function, true))
+    }
+
+    fn run_program(&self, output: &Output, function: &Function, lanes: bool) -> Vec<f64> {
+        let called = Called::ALL.map(|called| {
+            let of = output.functions.iter().find(|f| f.name == called.function());
+            of.map_or_else(Vec::new, |f| self.run_alone(&f.program))
+        });
+        let program = function.program.simd.as_deref().filter(|_| lanes).unwrap_or(&function.program);
+        program.run(&|s| match Quantity::of(s) {
+            Quantity::PassiveForce(k) => called[0][k],
+            Quantity::PassiveDerivative(k) => called[1][k],
+            quantity => self.at(quantity, &[]),
+        })
+    }
+
+    /// A result of a function of the prepared mechanism.
+    pub fn run_prepared(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
+        let numbers = prepared.numbers.run(&|s| self.at(Quantity::of(s), &[]));
+        let at = |name: &str| {
+            let of = prepared.functions.iter().find(|f| f.name == name);
+            of.map_or_else(Vec::new, |f| f.program.run(&|s| self.at(Quantity::of(s), &numbers)))
+        };
+        let called = Called::ALL.map(|called| at(called.function()));
+        function.program.run(&|s| match Quantity::of(s) {
+            Quantity::PassiveForce(k) => called[0][k],
+            Quantity::PassiveDerivative(k) => called[1][k],
+            quantity => self.at(quantity, &numbers),
+        })
+    }
+
+    fn at(&self, quantity: Quantity, numbers: &[f64]) -> f64 {
+        let get = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
+        match quantity {
+            Quantity::Time => self.t,
+            Quantity::Configuration(k) => get(&self.q, k),
+            Quantity::Velocity(k) => get(&self.v, k),
+            Quantity::Acceleration(k) => get(&self.a, k),
+            Quantity::Force(k) => get(&self.tau, k),
+            Quantity::Input(k) => get(&self.u, k),
+            Quantity::Parameter(k) => get(&self.parameters, k),
+            Quantity::Prepared(k) => get(numbers, k),
+            Quantity::Given(k) => get(&self.given, k),
+            Quantity::ContactForce(k) => get(&self.contact_forces, k),
+            Quantity::Reaction(_) | Quantity::PassiveForce(_) | Quantity::PassiveDerivative(_) => f64::NAN,
+        }
+    }
+
+    /// A result of a program that calls nothing.
+    pub fn run_alone(&self, program: &Program) -> Vec<f64> {
+        program.run(&|s| self.at(Quantity::of(s), &[]))
+    }
+
+    /// The values with one entry changed, of anything but a configuration.
+    pub fn changed(&self, by: By, k: usize, h: f64) -> Values {
+        let mut values = self.clone();
+        match by {
+            By::V => values.v[k] += h,
+            By::A => values.a[k] += h,
+            By::U => values.u[k] += h,
+            By::Parameters => values.parameters[k] += h,
+            By::Q => {}
+        }
+        values
+    }
+
+    /// The values elsewhere, by a small motion.
+    pub fn displaced(&self, charts: &[Chart], step: &[f64]) -> Values {
+        let mut values = self.clone();
+        move_along(charts, &mut values.q, step);
+        values
+    }
+
+    /// The values a little later, by the velocities of the joints, with the accelerations as they are.
+    pub fn later(&self, charts: &[Chart], joints: &[f64], h: f64) -> Values {
+        let step: Vec<f64> = joints.iter().map(|v| h * v).collect();
+        let mut values = self.displaced(charts, &step);
+        values.t += h;
+        values.v.iter_mut().zip(&self.a).for_each(|(v, a)| *v += h * a);
+        values
+    }
+
+    pub fn size(&self, by: By) -> usize {
+        match by {
+            By::Q | By::V => self.v.len(),
+            By::A => self.a.len(),
+            By::U => self.u.len(),
+            By::Parameters => self.parameters.len(),
+        }
+    }
+}
+
+fn quaternion(chart: Chart, q: &mut [f64]) -> Option<&mut [f64]> {
+    match chart {
+        Chart::Plain(..) => None,
+        Chart::Ball(first, _) => Some(&mut q[first..first + 4]),
+        Chart::Free(first, _) => Some(&mut q[first + 3..first + 7]),
+    }
+}
+
+fn normalise(q: &mut [f64]) {
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    q.iter_mut().for_each(|x| *x /= length);
+}
+
+/// `a × b`
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Adds a small motion, in the axes of balls and free bodies.
+fn move_along(charts: &[Chart], q: &mut [f64], step: &[f64]) {
+    for chart in charts {
+        match *chart {
+            Chart::Plain(first, velocity) => q[first] += step[velocity],
+            Chart::Ball(first, velocity) => turn(&mut q[first..first + 4], &step[velocity..velocity + 3]),
+            Chart::Free(first, velocity) => {
+                let (position, quaternion) = q[first..first + 7].split_at_mut(3);
+                let (along, axis) = ([0, 1, 2].map(|k| step[velocity + k]), [0, 1, 2].map(|k| quaternion[k]));
+                let once = cross(axis, along);
+                let twice = cross(axis, once);
+                (0..3).for_each(|k| position[k] += along[k] + 2.0 * (quaternion[3] * once[k] + twice[k]));
+                turn(quaternion, &step[velocity + 3..velocity + 6]);
+            }
+        }
+    }
+}
+
+/// Turns a quaternion (scalar part last) by a small rotation vector in its own axes.
+fn turn(quaternion: &mut [f64], step: &[f64]) {
+    let (axis, scalar) = ([0, 1, 2].map(|k| quaternion[k]), quaternion[3]);
+    let half = [0, 1, 2].map(|k| 0.5 * step[k]);
+    let across = cross(axis, half);
+    (0..3).for_each(|k| quaternion[k] += scalar * half[k] + across[k]);
+    quaternion[3] -= axis.iter().zip(&half).map(|(a, h)| a * h).sum::<f64>();
+    normalise(quaternion);
+}
+
+/// The derivative at zero of what depends on a small number, by differences of sixth order over steps of `h`.
+pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
+    let [one, two, three] = [h, 2.0 * h, 3.0 * h].map(|h| (of(h), of(-h)));
+    let part = |(plus, minus): &(Vec<f64>, Vec<f64>), k: usize| plus[k] - minus[k];
+    let at = |k: usize| (45.0 * part(&one, k) - 9.0 * part(&two, k) + part(&three, k)) / (60.0 * h);
+    (0..one.0.len()).map(at).collect()
+}
+
+/// Such a derivative, and what is doubtful of it: halving the step changes 63 times what is left of the error.
+pub fn slope(of: &dyn Fn(f64) -> Vec<f64>) -> (Vec<f64>, f64) {
+    let (wide, narrow) = (difference(H, of), difference(0.5 * H, of));
+    let doubt = wide.iter().zip(&narrow).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    (narrow, doubt / 8.0)
+}
