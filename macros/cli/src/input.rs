@@ -3,10 +3,13 @@
 use crate::Stop;
 use crate::commands::given;
 use clap::ArgMatches;
+use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
+use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
+use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::syntax::FileFormat;
-use linkwork_compiler::{Source, read};
+use linkwork_compiler::{Source, compile, read};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
 use std::io::{ErrorKind, Read};
@@ -26,6 +29,16 @@ pub struct Input {
     pub folder: PathBuf,
     /// A robot file, not one of Rust.
     pub is_robot: bool,
+}
+
+/// A mechanism without mistakes.
+pub struct Compiled<'g> {
+    /// What the user wrote.
+    pub source: Source,
+    /// The checked mechanism.
+    pub model: Model<'g>,
+    /// What is generated for it.
+    pub output: Output,
 }
 
 impl Input {
@@ -101,6 +114,14 @@ impl Input {
             Some(made) if cx.is_empty() => Ok(made),
             _ => Err(self.report(cx)),
         }
+    }
+
+    /// The mechanism with what is generated for it; else its mistakes are printed.
+    pub fn compiled<'g>(&self, graph: &'g Graph) -> Result<Compiled<'g>, Stop> {
+        let cx = &mut Diagnostics::new();
+        let source = self.checked(self.read(cx), cx)?;
+        let (model, output) = self.checked(compile(&source, graph, cx), cx)?;
+        Ok(Compiled { source, model, output })
     }
 
     /// File, line and column of a mistake.

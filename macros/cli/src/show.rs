@@ -1,11 +1,9 @@
 //! `linkwork show`: what the compiler made of a mechanism.
 
 use crate::Stop;
-use crate::input::Input;
+use crate::input::{Compiled, Input};
 use clap::ArgMatches;
-use linkwork_compiler::compile;
 use linkwork_compiler::derive::Output;
-use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 use serde_json::{Value, json};
@@ -14,12 +12,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let as_json = matches.get_flag("json");
     let mut all = Vec::new();
     for input in &Input::all(matches)? {
-        let cx = &mut Diagnostics::new();
-        let source = input.read(cx);
-        let source = input.checked(source, cx)?;
         let graph = Graph::new();
-        let made = compile(&source, &graph, cx);
-        let (model, output) = input.checked(made, cx)?;
+        let Compiled { source, model, output } = input.compiled(&graph)?;
         let shown = Shown { model: &model, output: &output, structure: source.structure() };
         match as_json {
             true => all.push(shown.json()),

@@ -2,22 +2,16 @@
 
 use crate::Stop;
 use crate::export::put;
-use crate::input::Input;
+use crate::input::{Compiled, Input};
 use crate::motion::{Sample, Start};
 use clap::ArgMatches;
-use linkwork_compiler::compile;
-use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
-    let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let source = input.checked(source, cx)?;
     let graph = Graph::new();
-    let made = compile(&source, &graph, cx);
-    let (model, output) = input.checked(made, cx)?;
+    let Compiled { source, model, output } = input.compiled(&graph)?;
     let samples = Start::new(&source, &model, &output, matches)?.run(matches)?;
     put(matches, &csv(&model, &samples))
 }

@@ -1,13 +1,11 @@
 //! `linkwork view`: a page of HTML that shows a motion.
 
 use crate::Stop;
-use crate::input::Input;
+use crate::input::{Compiled, Input};
 use crate::motion::Start;
 use crate::table::Table;
 use clap::ArgMatches;
 use linkwork::drawing::{Kind, Piece, Role};
-use linkwork_compiler::compile;
-use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, PieceKind};
 use linkwork_view::{Figure, Motion, Page};
@@ -21,12 +19,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     if !input.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
         input.add(quote::quote!(drawing));
     }
-    let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let source = input.checked(source, cx)?;
     let graph = Graph::new();
-    let made = compile(&source, &graph, cx);
-    let (model, output) = input.checked(made, cx)?;
+    let Compiled { source, model, output } = input.compiled(&graph)?;
     let start = Start::new(&source, &model, &output, matches)?;
     let states = match matches.get_one::<PathBuf>("motion") {
         Some(path) => from_log(path, &start)?,

@@ -9,14 +9,13 @@ mod write;
 use crate::Stop;
 use crate::commands::given;
 use crate::grid::{self, Grid};
-use crate::input::Input;
+use crate::input::{Compiled, Input};
 use clap::ArgMatches;
 use functions::{Function, Kind};
-use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::syntax::ScalarType;
-use linkwork_compiler::{Source, compile, expand};
+use linkwork_compiler::{Source, expand};
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
@@ -70,12 +69,8 @@ impl Known<'_, '_> {
 
 /// Writes the crate of a mechanism: with the sources of Linkwork in the folder `--linkwork`, if not with crates of a registry.
 pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
-    let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let source = input.checked(source, cx)?;
     let graph = Graph::new();
-    let made = compile(&source, &graph, cx);
-    let (model, output) = input.checked(made, cx)?;
+    let Compiled { source, model, output } = input.compiled(&graph)?;
     let shell = &source.mechanism.shell;
     if shell.generics.type_params().count() > 1 || shell.generics.const_params().next().is_some() {
         return Err(Stop::Failure(format!(
