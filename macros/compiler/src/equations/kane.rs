@@ -14,6 +14,7 @@ use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
 use crate::equations::print::mathml::page;
+use crate::equations::print::names::primed;
 use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::eval::Tape;
 use crate::expr::replace::replace_all;
@@ -248,18 +249,12 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     let rates = rates(model);
     let names = names_with(model, &[]);
     let name = |symbol: Symbol| name(model, &rates, symbol);
-    let marked = |symbol| {
-        let (name, dots) = name(symbol);
-        name + &"'".repeat(usize::from(dots))
-    };
+    let marked = |symbol| primed(name(symbol));
     let dotted = |symbol| {
         let (name, dots) = name(symbol);
         (names.get(&name), dots)
     };
-    let left = |k: usize| {
-        let (name, dots) = rate_name(model, k);
-        name + &"'".repeat(usize::from(dots))
-    };
+    let left = |k: usize| primed(rate_name(model, k));
     let lines = Lines::of(kane, Plain { name: &marked }, &left);
     let line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(line).collect();

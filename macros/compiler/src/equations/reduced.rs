@@ -2,13 +2,14 @@
 //! that are, by their momenta.
 
 use super::canonical::{determinant, velocities_of};
-use super::written::{determinants, filled, name, names_with, rates};
+use super::written::{about_inertias, determinants, filled, name, names_with, rates};
 use super::{Limits, Short, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
 use crate::equations::print::mathml::page;
+use crate::equations::print::names::primed;
 use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
@@ -119,10 +120,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
         Quantity::Prepared(k) => (inertias[k].clone(), 0),
         _ => name(model, &rates, symbol),
     };
-    let marked = |symbol| {
-        let (name, dots) = name(symbol);
-        name + &"'".repeat(usize::from(dots))
-    };
+    let marked = |symbol| primed(name(symbol));
     let dotted = |symbol| {
         let (name, dots) = name(symbol);
         (all.get(&name), dots)
@@ -144,11 +142,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
         all_of(&names),
         if still { ", and constant" } else { "" }
     );
-    match inertias.as_slice() {
-        [] => {}
-        [one] => about += &format!(" {one} is an inertia, of coupled coordinates its determinant."),
-        all => about += &format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
-    }
+    about += &about_inertias(&inertias);
     plain = plain + "\n" + &filled(&about) + "\n";
     let mut lines = self::lines(reduced, Latex { name: &dotted });
     lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);

@@ -4,7 +4,7 @@ use super::{Canonical, Equations, determinant};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
 use crate::equations::print::mathml::page;
-use crate::equations::print::names::Names;
+use crate::equations::print::names::{Names, primed};
 use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Model, Quantity};
@@ -51,18 +51,14 @@ impl Lines {
 
 /// The Lagrangian, an equation for every velocity, and what primes mean.
 fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
-    let name = |symbol| {
-        let (name, dots) = name(model, rates, symbol);
-        name + &"'".repeat(usize::from(dots))
-    };
+    let name = |symbol| primed(name(model, rates, symbol));
     let lines = Lines::of(equations, Plain { name: &name });
     let line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
     let energy = if equations.without_forces { 'T' } else { 'L' };
     let mut out = line(&format!("{energy} = {}", lines.lagrangian));
     out.push('\n');
     for (k, rate) in &lines.rates {
-        let (name, dots) = rate_name(model, *k);
-        out += &line(&format!("{name}{} = {rate}", "'".repeat(usize::from(dots))));
+        out += &line(&format!("{} = {rate}", primed(rate_name(model, *k))));
     }
     out.push_str(if lines.rates.is_empty() { "" } else { "\n" });
     for (motion, force) in lines.motion {
@@ -88,10 +84,7 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
         Quantity::Prepared(k) => (determinants[k].clone(), 0),
         _ => name(model, &rates, symbol),
     };
-    let marked = |symbol| {
-        let (name, dots) = name(symbol);
-        name + &"'".repeat(usize::from(dots))
-    };
+    let marked = |symbol| primed(name(symbol));
     let dotted = |symbol| {
         let (name, dots) = name(symbol);
         (all.get(&name), dots)
@@ -101,11 +94,7 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let mut plain = line(&format!("H = {}", lines[0])) + "\n";
     plain.extend(lines[1..].iter().map(line));
     let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, and a prime marks a rate.".to_string();
-    match determinants.as_slice() {
-        [] => {}
-        [one] => about += &format!(" {one} is an inertia, of coupled coordinates its determinant."),
-        all => about += &format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
-    }
+    about += &about_inertias(&determinants);
     plain = plain + "\n" + &filled(&about) + "\n";
     let mut lines = canonical_lines(canonical, Latex { name: &dotted });
     lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
@@ -133,6 +122,15 @@ fn free_letter(model: &Model<'_>, letter: char) -> String {
 pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
     let letter = free_letter(model, 'D');
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
+}
+
+/// A sentence that says what determinants are, if there are any.
+pub(super) fn about_inertias(determinants: &[String]) -> String {
+    match determinants {
+        [] => String::new(),
+        [one] => format!(" {one} is an inertia, of coupled coordinates its determinant."),
+        all => format!(" {} are inertias, of coupled coordinates their determinants.", all_of(all)),
+    }
 }
 
 /// The Hamiltonian; then equations for the rates of coordinates and of momenta.

@@ -1,9 +1,12 @@
 //! Texts that are put together from pieces of several files, which know where they come from. Knows no file format.
 
-use super::context::{Piece, position, quote};
-use super::{LARGEST_FILE, file};
+use super::context::{Cx, Piece, position, quote};
+use super::element::Node;
+use super::imported::Imported;
+use super::{LARGEST_FILE, file, xml};
 use crate::diag::Diagnostics;
-use crate::syntax::Name;
+use crate::syntax::{FileFormat, Name};
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
 /// Files that include one another, each in the next.
@@ -73,6 +76,24 @@ impl Whole {
         }
         Some(())
     }
+}
+
+/// What `read` makes of a text of several files, of which the user names the first one.
+pub(super) fn imported(
+    whole: Whole,
+    name: &Name,
+    format: FileFormat,
+    cx: &mut Diagnostics,
+    read: impl FnOnce(Node<'_>, &mut Cx<'_>) -> Option<Imported>,
+) -> Option<Imported> {
+    let files: Vec<(&str, &str)> =
+        whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
+    let cx = &mut Cx::of_pieces(&files, whole.pieces, name.place.span, cx);
+    let declared = OnceCell::new();
+    let document = xml::parse(&whole.text, &declared, format, cx)?;
+    let mut imported = read(document.root_element(), cx)?;
+    imported.files.extend(whole.files.into_iter().skip(1).map(|file| file.path));
+    Some(imported)
 }
 
 /// Reports a file that includes itself, by way of those that are open, which are included at these places.

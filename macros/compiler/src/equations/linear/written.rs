@@ -8,6 +8,7 @@ use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Term};
 use crate::diag::all_of;
 use crate::equations::print::aligned::aligned;
 use crate::equations::print::mathml::page;
+use crate::equations::print::names::primed;
 use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
@@ -143,10 +144,7 @@ fn in_one(stability: &Stability) -> Polynomial {
 /// Linear equations in all ways of writing.
 pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
     let words = Words::new(model, at);
-    let marked = |symbol| {
-        let (name, dots) = words.name(symbol);
-        name + &"'".repeat(usize::from(dots))
-    };
+    let marked = |symbol| primed(words.name(symbol));
     let plain = plain(&words, linear, &Lines::of(linear, Plain { name: &marked }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);

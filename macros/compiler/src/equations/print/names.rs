@@ -118,6 +118,11 @@ fn numbered(text: &str) -> (&str, &str) {
     text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len())
 }
 
+/// A name in plain text, with a prime for each time that it is differentiated.
+pub fn primed((name, dots): (String, u8)) -> String {
+    name + &"'".repeat(usize::from(dots))
+}
+
 /// Names for typesetting: those that would look like another one are left whole.
 pub struct Names(Vec<(String, Name)>);
 

@@ -7,7 +7,7 @@ use super::defaults::Element;
 use super::law::{Force, OTHER_INPUTS, read_force};
 use super::reader::Reader;
 use super::tendon::Tendon;
-use crate::import::context::{Cx, quote};
+use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, elements, name, place};
 use crate::import::imported::Placed;
 use crate::import::robot::unused;
@@ -175,18 +175,7 @@ impl<'a> Reader<'a> {
             return Some((vec![(joint, 1.0)], turns));
         }
         if let Some(tendon) = element.name("tendon", cx) {
-            let Some(found) = tendons.iter().find(|known| known.name.text == tendon.text) else {
-                let known = tendons.iter().map(|known| known.name.text.as_str());
-                let message = format!("unknown tendon {}", quote(&tendon.text));
-                cx.error(&tendon.place, message, |d| d.suggest(&tendon.text, known));
-                return None;
-            };
-            if found.terms.is_none() {
-                let message =
-                    format!("tendon {} goes through space, where none is driven", quote(&tendon.text));
-                cx.error(&tendon.place, message, |d| d.help(OTHER_INPUTS));
-            }
-            return Some((found.terms.clone()?, false));
+            return Some((Tendon::terms_of(&tendon, tendons, ("driven", OTHER_INPUTS), cx)?, false));
         }
         let message = "an actuator on no joint and no tendon is not supported";
         cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));

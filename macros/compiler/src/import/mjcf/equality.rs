@@ -250,15 +250,5 @@ fn terms_of(
     cx: &mut Cx<'_>,
 ) -> Option<Vec<(Name, f64)>> {
     let tendon = name(element.node, attribute, cx)?;
-    let Some(found) = tendons.iter().find(|known| known.name.text == tendon.text) else {
-        let known = tendons.iter().map(|known| known.name.text.as_str());
-        let message = format!("unknown tendon {}", quote(&tendon.text));
-        cx.error(&tendon.place, message, |d| d.suggest(&tendon.text, known));
-        return None;
-    };
-    if found.terms.is_none() {
-        let message = format!("tendon {} goes through space, where none is coupled", quote(&tendon.text));
-        cx.error(&tendon.place, message, |d| d.help(LEAVE_OUT));
-    }
-    found.terms.clone().filter(|terms| !terms.is_empty())
+    Tendon::terms_of(&tendon, tendons, ("coupled", LEAVE_OUT), cx).filter(|terms| !terms.is_empty())
 }

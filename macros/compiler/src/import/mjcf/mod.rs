@@ -5,7 +5,7 @@
 
 use super::context::{Cx, quote};
 use super::element::{Node, elements, place, tag};
-use super::xml;
+use super::whole::imported;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, Order};
@@ -14,7 +14,6 @@ use defaults::Defaults;
 use mesh::Meshes;
 use reader::Reader;
 use settings::Settings;
-use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -69,14 +68,8 @@ pub(super) fn import(
     cx: &mut Diagnostics,
 ) -> Option<Imported> {
     let whole = include::read_whole(text, path, &options.path, cx)?;
-    let files: Vec<(&str, &str)> =
-        whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
-    let cx = &mut Cx::of_pieces(&files, whole.pieces, options.path.place.span, cx);
-    let declared = OnceCell::new();
-    let document = xml::parse(&whole.text, &declared, FileFormat::Mjcf, cx)?;
-    let mut imported = read(document.root_element(), path.parent().unwrap_or(path), options, cx)?;
-    imported.files.extend(whole.files.into_iter().skip(1).map(|file| file.path));
-    Some(imported)
+    let folder = path.parent().unwrap_or(path);
+    imported(whole, &options.path, FileFormat::Mjcf, cx, |root, cx| read(root, folder, options, cx))
 }
 
 fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {

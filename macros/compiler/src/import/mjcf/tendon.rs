@@ -13,6 +13,28 @@ pub(super) struct Tendon {
     pub(super) terms: Option<Vec<(Name, f64)>>,
 }
 
+impl Tendon {
+    /// The joints, with their weights, of a tendon that something `does` things to: none of those through space.
+    pub(super) fn terms_of(
+        name: &Name,
+        tendons: &[Tendon],
+        (does, help): (&str, &str),
+        cx: &mut Cx<'_>,
+    ) -> Option<Vec<(Name, f64)>> {
+        let Some(found) = tendons.iter().find(|known| known.name.text == name.text) else {
+            let known = tendons.iter().map(|known| known.name.text.as_str());
+            let message = format!("unknown tendon {}", quote(&name.text));
+            cx.error(&name.place, message, |d| d.suggest(&name.text, known));
+            return None;
+        };
+        if found.terms.is_none() {
+            let message = format!("tendon {} goes through space, where none is {does}", quote(&name.text));
+            cx.error(&name.place, message, |d| d.help(help));
+        }
+        found.terms.clone()
+    }
+}
+
 impl<'a> Reader<'a> {
     /// Reads all tendons, with their springs and dampers.
     pub(super) fn tendons(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Vec<Tendon> {

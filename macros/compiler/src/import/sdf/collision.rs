@@ -1,6 +1,6 @@
 //! `<collision>` → shapes of links that contacts name.
 
-use super::frames::{Frames, origin, read_frame};
+use super::frames::{Frames, pose_in};
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, children, content, elements, place, required, tag};
 use crate::import::robot::FileCollision;
@@ -11,28 +11,21 @@ pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "e
 
 /// Reads all collision geometry of a link.
 pub(super) fn read(
-    link: Node<'_>,
-    (name, prefix): (&Name, &str),
+    node: Node<'_>,
+    link: (&Name, &str),
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Vec<FileCollision> {
-    let parts = elements(link).filter(|node| node.tag_name().name() == "collision");
-    parts.filter_map(|part| read_part(part, (name, prefix), frames, cx)).collect()
+    let parts = elements(node).filter(|node| node.tag_name().name() == "collision");
+    parts.filter_map(|part| read_part(part, link, frames, cx)).collect()
 }
 
-fn read_part(
-    node: Node<'_>,
-    (name, prefix): (&Name, &str),
-    frames: &Frames,
-    cx: &mut Cx<'_>,
-) -> Option<FileCollision> {
+fn read_part(node: Node<'_>, link: (&Name, &str), frames: &Frames, cx: &mut Cx<'_>) -> Option<FileCollision> {
     let geometry = elements(node).find(|child| child.tag_name().name() == "geometry");
     let geometry = required(geometry, node, "geometry", &[], cx)?;
     let shape = elements(geometry).find(|child| child.tag_name().name() != "empty")?;
-    let frame = read_frame(node, prefix, &name.text, cx);
-    let pose = frames.resolve(name, cx)?.back().then(&frames.resolve(&frame.base, cx)?.then(&frame.pose));
-    let at = place(node, cx);
-    Some(FileCollision { origin: origin(&pose, &at), shape: read_shape(shape, cx)?, place: at })
+    let origin = pose_in(node, link, frames, cx)?;
+    Some(FileCollision { origin, shape: read_shape(shape, cx)?, place: place(node, cx) })
 }
 
 /// What an element of `<geometry>` is.

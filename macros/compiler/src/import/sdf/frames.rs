@@ -53,6 +53,18 @@ pub(super) fn read_frame(node: Node<'_>, prefix: &str, base: &str, cx: &mut Cx<'
     Frame { base, pose, attached: None }
 }
 
+/// Where the pose of an element of a link puts it in the link's axes.
+pub(super) fn pose_in(
+    node: Node<'_>,
+    (link, prefix): (&Name, &str),
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Option<Origin> {
+    let frame = read_frame(node, prefix, &link.text, cx);
+    let pose = frames.resolve(link, cx)?.back().then(&frames.resolve(&frame.base, cx)?.then(&frame.pose));
+    Some(origin(&pose, &place(node, cx)))
+}
+
 /// The whole name of what is called `name` in the model that `prefix` stands for.
 pub(super) fn whole(prefix: &str, name: &str) -> String {
     match name {

@@ -9,10 +9,9 @@ use super::pose::Pose;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
-use crate::import::xml;
+use crate::import::whole::imported;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
 use frames::{Frame, Frames, WORLD, model, origin, read_frame};
-use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -58,14 +57,7 @@ pub(super) fn import(
     cx: &mut Diagnostics,
 ) -> Option<Imported> {
     let whole = include::read_whole(text, path, &options.path, cx)?;
-    let files: Vec<(&str, &str)> =
-        whole.files.iter().map(|file| (file.text.as_str(), file.shown.as_str())).collect();
-    let cx = &mut Cx::of_pieces(&files, whole.pieces, options.path.place.span, cx);
-    let declared = OnceCell::new();
-    let document = xml::parse(&whole.text, &declared, FileFormat::Sdf, cx)?;
-    let mut imported = read(document.root_element(), options, cx)?;
-    imported.files.extend(whole.files.into_iter().skip(1).map(|file| file.path));
-    Some(imported)
+    imported(whole, &options.path, FileFormat::Sdf, cx, |root, cx| read(root, options, cx))
 }
 
 /// Reads the root element.
