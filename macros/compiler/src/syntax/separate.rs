@@ -1,9 +1,9 @@
-//! Structs whose fields are not separated by commas. Rustc says so before it gives the struct to the attribute, which is best
+//! Structs whose fields are not separated by commas, or have no colon. Rustc says so before it gives the struct to the attribute, which is best
 //! served by what was meant: a second error for one mistake helps nobody.
 
-use super::guard;
+use super::{element, guard};
 use crate::diag::{Diagnostics, syn_error};
-use proc_macro2::{Delimiter, Group, Ident, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, quote};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
@@ -29,9 +29,18 @@ fn parse_fields(input: ParseStream<'_>) -> syn::Result<(Vec<TokenStream>, Option
     while !input.is_empty() {
         let attributes = Attribute::parse_outer(input)?;
         let visibility: Visibility = input.parse()?;
-        let (name, colon): (Ident, Token![:]) = (input.parse()?, input.parse()?);
-        let kind: Type = input.parse()?;
+        let mut name: Ident = input.parse()?;
+        let (colon, place) = parse_colon(input)?;
+        let mut kind: Type = input.parse()?;
+        // The type stands first, as in other languages.
+        if let Some((known, other)) = swapped(&name, &kind).filter(|_| place.is_some()) {
+            (name, kind) = (other, known);
+        }
         let written = format!("{name}: {}", kind.to_token_stream()).replace(" :: ", "::");
+        if let Some(place) = place {
+            let help = format!("a field is a name and its type: write `{written},`");
+            first.get_or_insert_with(|| syn_error(place, "expected `:`", &help));
+        }
         fields.push(quote!(#(#attributes)* #visibility #name #colon #kind));
         let (span, help) = if input.is_empty() {
             break;
@@ -53,4 +62,23 @@ fn parse_fields(input: ParseStream<'_>) -> syn::Result<(Vec<TokenStream>, Option
         first.get_or_insert_with(|| syn_error(span, "expected `,`", &help));
     }
     Ok((fields, first))
+}
+
+/// The colon between a name and a type, and where one is missing: nothing stands there, or an equals sign.
+fn parse_colon(input: ParseStream<'_>) -> syn::Result<(Token![:], Option<Span>)> {
+    if input.peek(Token![=]) {
+        let sign: Token![=] = input.parse()?;
+        return Ok((Token![:](sign.span), Some(sign.span)));
+    }
+    if input.peek(syn::Ident) {
+        return Ok((Token![:](input.span()), Some(input.span())));
+    }
+    Ok((input.parse()?, None))
+}
+
+/// Type and name, if it is the name that says an element's type.
+fn swapped(name: &Ident, kind: &Type) -> Option<(Type, Ident)> {
+    let other: Ident = syn::parse2(kind.to_token_stream()).ok()?;
+    let is_type = |word: &Ident| element::is_element(&word.to_string());
+    (is_type(name) && !is_type(&other)).then(|| (Type::Verbatim(name.to_token_stream()), other))
 }

@@ -248,7 +248,10 @@ pub const CONTACT: Words = &[
     ("e cor bounce bounciness elasticity rebound restitutioncoefficient", "restitution"),
     ("k compliance rigidity", "stiffness"),
     ("damping c damper", "dissipation"),
-    ("on between surfaces bodies", "both surfaces stand first: `ball.sphere(radius), ground.plane(z)`"),
+    (
+        "on between surfaces bodies radius r size",
+        "both surfaces stand first: `ball.sphere(radius), ground.plane(z)`",
+    ),
 ];
 
 /// Arguments of a limit.
