@@ -4,7 +4,7 @@ use linkwork::contact;
 use linkwork::prelude::*;
 
 #[mechanism(
-    urdf = "../models/urdf/solo12.urdf",
+    urdf = "../../models/urdf/solo12.urdf",
     base = free,
     gravity = -9.81 * cos(slope) * z - 9.81 * sin(slope) * x
 )]

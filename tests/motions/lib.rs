@@ -1,0 +1,1 @@
+//! Tests that integrate long motions: they stand in files of their own, and are optimised.
