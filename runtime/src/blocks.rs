@@ -3,13 +3,15 @@
 
 use crate::Real;
 use crate::arithmetic::dispatch::{Evaluate, dispatch};
-use crate::arithmetic::{Arithmetic, Compiled};
-use crate::multiplication::{part, put};
+use crate::arithmetic::{Arithmetic, Compiled, Vector};
+use crate::multiplication::{part, put, registers_of_eight, registers_of_four};
 use core::array::{from_mut, from_ref};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 mod nearly;
 mod small;
+#[cfg(test)]
+mod tests;
 
 pub use nearly::NearlyIdentity;
 
@@ -43,11 +45,11 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
         }
         let (columns, a, b) = (&mut sum.data.0, rolled(&self.a.data.0), &self.b.data.0);
         if A::WIDE && R >= 8 {
-            all_rows::<A, T, 8, R, K, C>(columns, a, b);
+            wide_rows::<A, T, R, K, C>(columns, a, b);
         } else if R >= 4 {
-            all_rows::<A, T, 4, R, K, C>(columns, a, b);
+            rows_of::<A, T, 4, R, K, C>(columns, a, b);
         } else {
-            all_rows::<A, T, 1, R, K, C>(columns, a, b);
+            rows_of::<A, T, 1, R, K, C>(columns, a, b);
         }
     }
 }
@@ -58,35 +60,64 @@ fn rolled<T>(list: &[T]) -> &[T] {
     core::hint::black_box(list)
 }
 
+/// How many numbers are left for a last strip of more than one register and at most three, in strips of two registers of `W`.
+const fn left(rows: usize, w: usize) -> usize {
+    if rows > 3 * w { (rows - w - 1) % (2 * w) + w + 1 } else { rows }
+}
+
 /// All rows, in registers of so many: two registers at a time, and at last as many as are left, up to three. The last of these begins
-/// as much earlier as it would be too long; both read before either writes.
+/// as much earlier as it would be too long; all are read before any is written.
 #[inline(always)]
-fn all_rows<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
+fn rows_of<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
     a: &[[T; R]],
     b: &[[T; K]; C],
 ) {
-    let left = if R > 3 * W { (R - W - 1) % (2 * W) + W + 1 } else { R };
+    let left = left(R, W);
     let mut from = 0;
     for _ in 0..(R - left) / (2 * W) {
-        strip::<A, T, W, 2, R, K, C>(columns, a, b, from);
+        strip::<A, T, W, 2, 0, R, K, C>(columns, a, b, from);
         from += 2 * W;
     }
     match left.div_ceil(W) {
-        1 => strip::<A, T, W, 1, R, K, C>(columns, a, b, from),
-        2 => strip::<A, T, W, 2, R, K, C>(columns, a, b, from),
-        3 => strip::<A, T, W, 3, R, K, C>(columns, a, b, from),
+        1 => strip::<A, T, W, 1, 0, R, K, C>(columns, a, b, from),
+        2 => strip::<A, T, W, 2, 0, R, K, C>(columns, a, b, from),
+        3 => strip::<A, T, W, 3, 0, R, K, C>(columns, a, b, from),
         _ => {}
     }
 }
 
-/// Adds the product in `V` registers of rows, from a given row on, in all columns.
+/// [`rows_of`] eight, with a register of four at the end where that holds the rest: half as long an instruction on processors that execute
+/// those of eight in two parts.
+#[inline(always)]
+fn wide_rows<A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
+    columns: &mut [[T; R]; C],
+    a: &[[T; R]],
+    b: &[[T; K]; C],
+) {
+    let left = left(R, 8);
+    let mut from = 0;
+    for _ in 0..(R - left) / 16 {
+        strip::<A, T, 8, 2, 0, R, K, C>(columns, a, b, from);
+        from += 16;
+    }
+    match (registers_of_eight(left, true), registers_of_four(left, true)) {
+        (1, 0) => strip::<A, T, 8, 1, 0, R, K, C>(columns, a, b, from),
+        (1, _) => strip::<A, T, 8, 1, 1, R, K, C>(columns, a, b, from),
+        (2, 0) => strip::<A, T, 8, 2, 0, R, K, C>(columns, a, b, from),
+        (2, _) => strip::<A, T, 8, 2, 1, R, K, C>(columns, a, b, from),
+        _ => strip::<A, T, 8, 3, 0, R, K, C>(columns, a, b, from),
+    }
+}
+
+/// Adds the product in `V` registers of rows and `F` of four, from a given row on, in all columns.
 #[inline(always)]
 fn strip<
     A: Arithmetic,
     T: Real,
     const W: usize,
     const V: usize,
+    const F: usize,
     const R: usize,
     const K: usize,
     const C: usize,
@@ -99,31 +130,78 @@ fn strip<
     let (fours, rest) = columns.as_chunks_mut::<4>();
     let (factors, last) = b.as_chunks::<4>();
     for (columns, b) in fours.iter_mut().zip(factors) {
-        tile::<A, T, W, V, 4, R, K>(columns, a, b, from);
+        tile::<A, T, W, V, F, 4, R, K>(columns, a, b, from);
     }
     match (rest, last) {
         ([x, y, z], [d, e, f]) => {
             let mut three = [*x, *y, *z];
-            tile::<A, T, W, V, 3, R, K>(&mut three, a, &[*d, *e, *f], from);
+            tile::<A, T, W, V, F, 3, R, K>(&mut three, a, &[*d, *e, *f], from);
             [*x, *y, *z] = three;
         }
         ([x, y], [d, e]) => {
             let mut two = [*x, *y];
-            tile::<A, T, W, V, 2, R, K>(&mut two, a, &[*d, *e], from);
+            tile::<A, T, W, V, F, 2, R, K>(&mut two, a, &[*d, *e], from);
             [*x, *y] = two;
         }
-        ([x], [d]) => tile::<A, T, W, V, 1, R, K>(from_mut(x), a, from_ref(d), from),
+        ([x], [d]) => tile::<A, T, W, V, F, 1, R, K>(from_mut(x), a, from_ref(d), from),
         _ => {}
     }
 }
 
-/// Adds the product in `V` registers of rows, from a given row on, in some columns.
+/// Rows of a column in registers: `V` of `W`, then `F` of four.
+#[derive(Clone, Copy)]
+struct Rows<A, T, const W: usize, const V: usize, const F: usize> {
+    whole: [Vector<A, T, W>; V],
+    fours: [Vector<A, T, 4>; F],
+}
+
+impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Rows<A, T, W, V, F> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self { whole: [A::splat(T::zero()); V], fours: [A::splat(T::zero()); F] }
+    }
+
+    #[inline(always)]
+    fn read(&mut self, column: &[T], from: usize) {
+        for (v, register) in self.whole.iter_mut().enumerate() {
+            *register = part::<A, T, W>(column, from + v * W);
+        }
+        for (f, register) in self.fours.iter_mut().enumerate() {
+            *register = part::<A, T, 4>(column, from + V * W + 4 * f);
+        }
+    }
+
+    #[inline(always)]
+    fn write(&self, column: &mut [T], from: usize) {
+        for (v, register) in self.whole.iter().enumerate() {
+            put(register, column, from + v * W);
+        }
+        for (f, register) in self.fours.iter().enumerate() {
+            put(register, column, from + V * W + 4 * f);
+        }
+    }
+
+    #[inline(always)]
+    fn add_multiple(&mut self, rows: &Self, factor: T) {
+        let wide = A::splat(factor);
+        for (entry, x) in self.whole.iter_mut().zip(&rows.whole) {
+            *entry = A::mul_add(*x, wide, *entry);
+        }
+        let narrow = A::splat(factor);
+        for (entry, x) in self.fours.iter_mut().zip(&rows.fours) {
+            *entry = A::mul_add(*x, narrow, *entry);
+        }
+    }
+}
+
+/// Adds the product in some registers of rows, from a given row on, in some columns.
 #[inline(always)]
 fn tile<
     A: Arithmetic,
     T: Real,
     const W: usize,
     const V: usize,
+    const F: usize,
     const G: usize,
     const R: usize,
     const K: usize,
@@ -133,30 +211,21 @@ fn tile<
     b: &[[T; K]; G],
     from: usize,
 ) {
-    let mut all = [[A::splat(T::zero()); V]; G];
-    for (registers, column) in all.iter_mut().zip(columns.iter()) {
-        for (v, register) in registers.iter_mut().enumerate() {
-            *register = part::<A, T, W>(column, from + v * W);
-        }
+    let mut all = [Rows::<A, T, W, V, F>::zero(); G];
+    for (rows, column) in all.iter_mut().zip(columns.iter()) {
+        rows.read(column, from);
     }
     for (k, column) in a.iter().enumerate().take(K) {
-        let mut rows = [A::splat(T::zero()); V];
-        for (v, register) in rows.iter_mut().enumerate() {
-            *register = part::<A, T, W>(column, from + v * W);
-        }
-        for (registers, factors) in all.iter_mut().zip(b) {
+        let mut rows = Rows::zero();
+        rows.read(column, from);
+        for (sums, factors) in all.iter_mut().zip(b) {
             if let Some(factor) = factors.get(k) {
-                let factor = A::splat(*factor);
-                for (entry, x) in registers.iter_mut().zip(&rows) {
-                    *entry = A::mul_add(*x, factor, *entry);
-                }
+                sums.add_multiple(&rows, *factor);
             }
         }
     }
-    for (column, registers) in columns.iter_mut().zip(&all) {
-        for (v, register) in registers.iter().enumerate() {
-            put(register, column, from + v * W);
-        }
+    for (column, rows) in columns.iter_mut().zip(&all) {
+        rows.write(column, from);
     }
 }
 
@@ -244,8 +313,26 @@ pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>
 /// `A += s (B + Bᵀ)`.
 #[inline(never)]
 pub fn add_with_transpose<T: Real, const N: usize>(sum: &mut SMatrix<T, N, N>, s: T, b: &SMatrix<T, N, N>) {
-    add_multiple(sum, s, b);
-    add_multiple(sum, s, &transposed(b));
+    let mut turned = zeros();
+    transpose_into(b, &mut turned);
+    let parts = b.data.0.as_flattened().iter().zip(turned.data.0.as_flattened());
+    for (entry, (x, y)) in sum.data.0.as_flattened_mut().iter_mut().zip(parts) {
+        *entry = Compiled::mul_add(*x + *y, s, *entry);
+    }
+}
+
+/// Puts `A + s B` into a matrix.
+#[inline]
+pub fn sum_into<T: Real, const R: usize, const C: usize>(
+    a: &SMatrix<T, R, C>,
+    s: T,
+    b: &SMatrix<T, R, C>,
+    into: &mut SMatrix<T, R, C>,
+) {
+    let parts = a.data.0.as_flattened().iter().zip(b.data.0.as_flattened());
+    for (entry, (x, y)) in into.data.0.as_flattened_mut().iter_mut().zip(parts) {
+        *entry = Compiled::mul_add(*y, s, *x);
+    }
 }
 
 /// `A *= s`.
@@ -339,15 +426,26 @@ pub fn solve<T: Real, const N: usize, const C: usize>(
 }
 
 /// `−B (L D Lᵀ)⁻¹`.
-#[inline(never)]
+#[inline]
 pub fn solved_rows<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
     b: &SMatrix<T, R, N>,
 ) -> SMatrix<T, R, N> {
     let mut solved = zeros();
-    dispatch::<1, T, _, _>(&Solve { l, inverse, b }, &mut solved);
+    solve_rows_into(l, inverse, b, &mut solved);
     solved
+}
+
+/// Puts `−B (L D Lᵀ)⁻¹` into a matrix.
+#[inline(never)]
+pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
+    l: &SMatrix<T, N, N>,
+    inverse: &SVector<T, N>,
+    b: &SMatrix<T, R, N>,
+    into: &mut SMatrix<T, R, N>,
+) {
+    dispatch::<1, T, _, _>(&Solve { l, inverse, b }, into);
 }
 
 /// What is solved.
@@ -363,9 +461,13 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, out: &mut SMatrix<T, R, N>) {
         let out = &mut out.data.0;
+        // The last rows begin as much earlier as they would be too long, and are solved twice.
         if A::WIDE && R >= 8 {
-            // The last rows begin as much earlier as they would be too long, and are solved twice.
-            (0..R).step_by(8).for_each(|from| self.some::<A, 8>(out, from));
+            let eights = registers_of_eight(R, true);
+            (0..eights).for_each(|k| self.some::<A, 8>(out, 8 * k));
+            if registers_of_four(R, true) > 0 {
+                self.some::<A, 4>(out, 8 * eights);
+            }
         } else if R >= 4 {
             (0..R).step_by(4).for_each(|from| self.some::<A, 4>(out, from));
         } else {
@@ -389,12 +491,15 @@ impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
                 x[i] = A::neg_mul_add(own, A::splat(l[j][i]), x[i]);
             }
         }
+        for (x, inverse) in x.iter_mut().zip(inverse) {
+            *x = *x * A::splat(-*inverse);
+        }
+        // Each unknown goes into all others at once: sums of their own would wait for one addition after another.
         for j in (0..N).rev() {
-            let mut own = x[j] * A::splat(-inverse[j]);
-            for i in j + 1..N {
-                own = A::neg_mul_add(x[i], A::splat(l[j][i]), own);
+            let own = x[j];
+            for i in 0..j {
+                x[i] = A::neg_mul_add(own, A::splat(l[i][j]), x[i]);
             }
-            x[j] = own;
         }
         for (column, x) in out.iter_mut().zip(&x) {
             put(x, column, from);

@@ -158,14 +158,14 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     }
 
     /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) while contacts do what `touches` says, with
-    /// gaps and rates of what is held decaying at `decay`, 1/s; `None` without [`ContactDerivatives`].
+    /// gaps and rates of what is held decaying by the gains of position and velocity, 1/s² and 1/s; `None` without [`ContactDerivatives`].
     fn held_derivatives(
         &self,
         _t: Self::Scalar,
         _state: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
         _u: &SVector<Self::Scalar, NU>,
         _touches: &[Touch; NK],
-        _decay: Self::Scalar,
+        _gains: [Self::Scalar; 2],
     ) -> Option<ByMotion<Self::Scalar, NV, NU>> {
         None
     }

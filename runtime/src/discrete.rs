@@ -34,7 +34,7 @@
 //! # }
 //! ```
 
-use crate::blocks::zeros;
+use crate::blocks::{NearlyIdentity, zeros};
 use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
 use crate::derivatives::{RheonomicDerivatives, column, entry};
 use crate::integrate::{
@@ -53,6 +53,7 @@ mod projected;
 mod projection;
 mod second;
 
+pub use explicit::semi_implicit_into;
 pub(crate) use implicit::eliminated;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
@@ -357,12 +358,43 @@ pub struct Transition<T, const NQ: usize, const NV: usize, const NU: usize> {
 /// How the configuration of a step follows from its velocity: `δq⁺ = by_q δq + h by_displacement δv⁺`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chained<T, const NV: usize> {
+    period: T,
+    by_q: SMatrix<T, NV, NV>,
+    by_displacement: SMatrix<T, NV, NV>,
+    /// Which columns of either are not those of the identity, from one up to another.
+    others: [(usize, usize); 2],
+}
+
+impl<T: Real, const NV: usize> Chained<T, NV> {
+    /// How the configuration follows from the velocity by these derivatives.
+    pub fn new(period: T, by_q: SMatrix<T, NV, NV>, by_displacement: SMatrix<T, NV, NV>) -> Self {
+        let others = [&by_q, &by_displacement].map(|matrix| NearlyIdentity::of(matrix).others());
+        Self { period, by_q, by_displacement, others }
+    }
+
     /// The period `h`, s.
-    pub period: T,
+    pub fn period(&self) -> T {
+        self.period
+    }
+
     /// How `q ⊕ h v⁺` moves with `q`: the identity but for ball and free joints.
-    pub by_q: SMatrix<T, NV, NV>,
+    pub fn by_q(&self) -> &SMatrix<T, NV, NV> {
+        &self.by_q
+    }
+
     /// How it moves with the displacement `h v⁺`: the identity but for ball and free joints.
-    pub by_displacement: SMatrix<T, NV, NV>,
+    pub fn by_displacement(&self) -> &SMatrix<T, NV, NV> {
+        &self.by_displacement
+    }
+
+    /// As matrices that are nearly the identity.
+    pub(crate) fn nearly(&self) -> [NearlyIdentity<'_, T, NV>; 2] {
+        let [of_q, of_displacement] = self.others;
+        [
+            NearlyIdentity::known(&self.by_q, of_q),
+            NearlyIdentity::known(&self.by_displacement, of_displacement),
+        ]
+    }
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {

@@ -6,7 +6,7 @@ pub(crate) use column::{part, put};
 mod inverse;
 mod kernels;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod tile;

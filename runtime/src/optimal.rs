@@ -53,7 +53,7 @@
 //! ```
 
 use crate::blocks::{
-    NearlyIdentity, add_multiple, add_product, add_with_transpose, factors, product, solve, solved_rows,
+    add_multiple, add_product, add_with_transpose, factors, product, scale, solve, solve_rows_into, sum_into,
     symmetric_into, transpose_into, transposed, zeros,
 };
 use crate::derivatives::entry;
@@ -148,6 +148,41 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
             vu: mixed,
             uu: SMatrix::zeros(),
         }
+    }
+
+    /// Adds the costs `½ weight |r|²` of a residual `r` with its derivatives by configuration, velocity and inputs, without its curvature
+    /// (Gauss and Newton): of what is to be met, such as a place for a hand, or forces of contacts in their cone.
+    pub fn add_squares<const R: usize>(
+        &mut self,
+        weight: T,
+        residual: &SVector<T, R>,
+        (by_q, by_v, by_u): (&SMatrix<T, R, NV>, &SMatrix<T, R, NV>, &SMatrix<T, R, NU>),
+    ) {
+        self.add_squares_of_configuration(weight, residual, by_q);
+        let (mut q_rows, mut v_rows, mut u_rows) = (transposed(by_q), transposed(by_v), transposed(by_u));
+        scale(&mut q_rows, weight);
+        scale(&mut v_rows, weight);
+        scale(&mut u_rows, weight);
+        add_product(&mut self.v, &v_rows, residual);
+        add_product(&mut self.u, &u_rows, residual);
+        add_product(&mut self.qv, &q_rows, by_v);
+        add_product(&mut self.vv, &v_rows, by_v);
+        add_product(&mut self.qu, &q_rows, by_u);
+        add_product(&mut self.vu, &v_rows, by_u);
+        add_product(&mut self.uu, &u_rows, by_u);
+    }
+
+    /// [`add_squares`](Self::add_squares) of a residual of the configuration alone.
+    pub fn add_squares_of_configuration<const R: usize>(
+        &mut self,
+        weight: T,
+        residual: &SVector<T, R>,
+        by_q: &SMatrix<T, R, NV>,
+    ) {
+        let mut rows = transposed(by_q);
+        scale(&mut rows, weight);
+        add_product(&mut self.q, &rows, residual);
+        add_product(&mut self.qq, &rows, by_q);
     }
 
     /// With the curvature of the step besides ([`second_order`](crate::discrete::second_order), with the gradient of the costs to
@@ -299,72 +334,72 @@ fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     chain: &Chained<T, NV>,
 ) {
     let (by_q, by_v, by_u) = (&step.v_by_q, &step.v_by_v, &step.v_by_u);
-    let (q_rows, v_rows, u_rows) = (transposed(by_q), transposed(by_v), transposed(by_u));
-    let Link { z, w, back: [of_q, gradient] } = Link::of::<NQ>(&mut before.qq, after, chain);
+    let (mut q_rows, mut v_rows, mut u_rows) = (zeros(), zeros(), zeros());
+    transpose_into(by_q, &mut q_rows);
+    transpose_into(by_v, &mut v_rows);
+    transpose_into(by_u, &mut u_rows);
+    let (mut z, mut w) = (zeros(), after.vv);
+    let [of_q, gradient] = link::<T, NQ, NV>(&mut before.qq, &mut z, &mut w, after, chain);
     // With P = G_qᵀ W + Z the rows of q are P [G_v G_u], and by q twice Eᵀ S_qq E + ½ (P + Z) G_q with its transpose.
     let mut rows = z;
     add_product(&mut rows, &q_rows, &w);
     add_product(&mut before.qv, &rows, by_v);
     add_product(&mut before.qu, &rows, by_u);
     add_multiple(&mut rows, T::one(), &z);
-    add_with_transpose(&mut before.qq, constant(0.5), &product(&rows, by_q));
-    let rows = product(&v_rows, &w);
+    let mut twice = zeros();
+    add_product(&mut twice, &rows, by_q);
+    add_with_transpose(&mut before.qq, constant(0.5), &twice);
+    let mut rows = zeros();
+    add_product(&mut rows, &v_rows, &w);
     add_product(&mut before.vv, &rows, by_v);
     add_product(&mut before.vu, &rows, by_u);
-    add_product(&mut before.uu, &u_rows, &product(&w, by_u));
+    let mut columns = zeros();
+    add_product(&mut columns, &w, by_u);
+    add_product(&mut before.uu, &u_rows, &columns);
     add_multiple(&mut before.q, T::one(), &of_q);
     add_product(&mut before.q, &q_rows, &gradient);
     add_product(&mut before.v, &v_rows, &gradient);
     add_product(&mut before.u, &u_rows, &gradient);
 }
 
-/// The costs to go by the configuration before a step and by the velocity after it, which the configuration after it follows.
-struct Link<T, const NV: usize> {
-    /// `Eᵀ (h S_qq D + S_qv)`.
-    z: SMatrix<T, NV, NV>,
-    /// `Hᵀ S H`.
-    w: SMatrix<T, NV, NV>,
-    /// `Eᵀ s_q` and `Hᵀ s`.
-    back: [SVector<T, NV>; 2],
-}
-
-impl<T: Real, const NV: usize> Link<T, NV> {
-    /// Adds `Eᵀ S_qq E` to the costs by configuration.
-    fn of<const NQ: usize>(
-        qq: &mut SMatrix<T, NV, NV>,
-        after: &Value<T, NV>,
-        chain: &Chained<T, NV>,
-    ) -> Self {
-        let h = chain.period;
-        // With X = Dᵀ (S_qv + ½ h S_qq D), W is S_vv + h (X + Xᵀ).
-        let (mut z, mut half, mut w) = (after.qv, after.qv, after.vv);
-        if NQ == NV {
-            add_multiple(qq, T::one(), &after.qq);
-            add_multiple(&mut z, h, &after.qq);
-            add_multiple(&mut half, h * constant(0.5), &after.qq);
-            add_with_transpose(&mut w, h, &half);
-            return Self { z, w, back: [after.q, after.v + after.q * h] };
-        }
-        let (e, d) = (NearlyIdentity::of(&chain.by_q), NearlyIdentity::of(&chain.by_displacement));
-        let mut moved = after.qq;
-        d.follow(&mut moved);
-        add_multiple(&mut z, h, &moved);
-        add_multiple(&mut half, h * constant(0.5), &moved);
-        let (mut of_d, mut of_e) = (zeros(), zeros());
-        let back_by_d = d.transposed(&mut of_d);
-        back_by_d.lead(&mut half);
-        add_with_transpose(&mut w, h, &half);
-        let back_by_e = e.transposed(&mut of_e);
-        let mut own = after.qq;
-        e.follow(&mut own);
-        back_by_e.lead(&mut own);
-        add_multiple(qq, T::one(), &own);
-        back_by_e.lead(&mut z);
-        let (mut of_q, mut of_dv) = (after.q, after.q);
-        back_by_e.lead(&mut of_q);
-        back_by_d.lead(&mut of_dv);
-        Self { z, w, back: [of_q, after.v + of_dv * h] }
+/// The costs to go by the configuration before a step and by the velocity after it, which the configuration after it follows: makes
+/// `z` of nothing `Eᵀ (h S_qq D + S_qv)` and `w` of `S_vv` `Hᵀ S H`, adds `Eᵀ S_qq E` to the costs by configuration, and returns `Eᵀ s_q`
+/// and `Hᵀ s`.
+fn link<T: Real, const NQ: usize, const NV: usize>(
+    qq: &mut SMatrix<T, NV, NV>,
+    z: &mut SMatrix<T, NV, NV>,
+    w: &mut SMatrix<T, NV, NV>,
+    after: &Value<T, NV>,
+    chain: &Chained<T, NV>,
+) -> [SVector<T, NV>; 2] {
+    let h = chain.period();
+    // With X = Dᵀ (S_qv + ½ h S_qq D), W is S_vv + h (X + Xᵀ).
+    let mut half = zeros();
+    if NQ == NV {
+        add_multiple(qq, T::one(), &after.qq);
+        sum_into(&after.qv, h, &after.qq, z);
+        sum_into(&after.qv, h * constant(0.5), &after.qq, &mut half);
+        add_with_transpose(w, h, &half);
+        return [after.q, after.v + after.q * h];
     }
+    let [e, d] = chain.nearly();
+    let mut moved = after.qq;
+    d.follow(&mut moved);
+    sum_into(&after.qv, h, &moved, z);
+    sum_into(&after.qv, h * constant(0.5), &moved, &mut half);
+    let (mut of_d, mut of_e) = (zeros(), zeros());
+    let (back_by_d, back_by_e) = (d.transposed(&mut of_d), e.transposed(&mut of_e));
+    back_by_d.lead(&mut half);
+    add_with_transpose(w, h, &half);
+    back_by_e.lead(z);
+    moved = after.qq;
+    e.follow(&mut moved);
+    back_by_e.lead(&mut moved);
+    add_multiple(qq, T::one(), &moved);
+    let (mut of_q, mut of_dv) = (after.q, after.q);
+    back_by_e.lead(&mut of_q);
+    back_by_d.lead(&mut of_dv);
+    [of_q, after.v + of_dv * h]
 }
 
 /// The best change of the inputs, and what the costs then are.
@@ -379,7 +414,9 @@ fn minimised<T: Real, const NV: usize, const NU: usize>(
     let Policy { change, by_q, by_v, expected } = policy;
     *change = *u;
     solve(&factor, &pivots, change);
-    let (of_q, of_v) = (solved_rows(&factor, &pivots, qu), solved_rows(&factor, &pivots, vu));
+    let (mut of_q, mut of_v) = (zeros(), zeros());
+    solve_rows_into(&factor, &pivots, qu, &mut of_q);
+    solve_rows_into(&factor, &pivots, vu, &mut of_v);
     transpose_into(&of_q, by_q);
     transpose_into(&of_v, by_v);
     let linear = u.dot(change);

@@ -33,6 +33,16 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         Self { matrix, first, end }
     }
 
+    /// One whose columns that are not those of the identity are known.
+    pub fn known(matrix: &'a SMatrix<T, N, N>, (first, end): (usize, usize)) -> Self {
+        Self { matrix, first, end }
+    }
+
+    /// The columns that are not those of the identity, from one up to another.
+    pub fn others(&self) -> (usize, usize) {
+        (self.first, self.end)
+    }
+
     /// `Dᵀ`, whose columns that are not those of the identity go into a matrix.
     pub fn transposed<'b>(&self, into: &'b mut SMatrix<T, N, N>) -> NearlyIdentity<'b, T, N> {
         let some = self.first..self.end;
@@ -47,7 +57,16 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
 
     /// `A D` in the place of `A`.
     pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
-        let mut sums = zeros::<T, R, N>();
+        if self.end - self.first.min(self.end) > 8 {
+            self.follow_by::<R, N>(a)
+        } else {
+            self.follow_by::<R, 8>(a)
+        }
+    }
+
+    /// With room for so many columns.
+    fn follow_by<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
+        let mut sums = zeros::<T, R, C>();
         let some = self.first..self.end;
         let from = a.data.0.get(some.clone()).unwrap_or(&[]);
         let factors = self.matrix.data.0.get(some.clone()).unwrap_or(&[]);

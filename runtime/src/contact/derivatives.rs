@@ -4,10 +4,9 @@ use super::held::held;
 use super::layout::Layout;
 use super::problem::{Problem, entry};
 use super::{Contacts, Touch};
-use crate::blocks::{add_product, product, transposed, zeros};
+use crate::blocks::{add_multiple, add_product, product, transposed, zeros};
 use crate::constraint::ConstraintError;
 use crate::derivatives::{ByMotion, LinearMotion, under_inputs};
-use crate::private::constant;
 use crate::{Real, RheonomicDerivatives};
 use core::ops::Range;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
@@ -165,7 +164,7 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    derivatives(mechanism, t, (q, v), tau, touches, T::zero())
+    derivatives(mechanism, t, (q, v), tau, touches, [T::zero(); 2])
 }
 
 /// [`Contacts::held_derivatives`] of mechanisms with derivatives.
@@ -183,14 +182,14 @@ pub fn held_derivatives<
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     u: &SVector<T, NU>,
     touches: &[Touch; NK],
-    decay: T,
+    gains: [T; 2],
 ) -> Option<ByMotion<T, NV, NU>>
 where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let tau = mechanism.generalized_forces(t, q, v, u);
-    let found = derivatives(mechanism, t, (q, v), &tau, touches, decay).ok()?;
+    let found = derivatives(mechanism, t, (q, v), &tau, touches, gains).ok()?;
     let by_force = (found.by_q, found.by_v, found.by_tau);
     Some(under_inputs(by_force, &mechanism.generalized_forces_derivatives(t, q, v, u)))
 }
@@ -210,77 +209,81 @@ pub(super) fn derivatives<
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     tau: &SVector<T, NV>,
     touches: &[Touch; NK],
-    decay: T,
+    gains: [T; 2],
 ) -> Result<HeldDerivatives<T, NV, NR>, ConstraintError>
 where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let along = mechanism.contact_rates(t, q, v);
-    let (held, responses) = held(mechanism, t, (q, v), tau, touches, (&along, decay))?;
+    let (held, responses) = held(mechanism, t, (q, v), tau, touches, (&along, gains))?;
     let jacobian = mechanism.contact_jacobian(t, q);
     let acting = tau + jacobian.tr_mul(&held.forces);
-    let (by_q, by_v, by_tau) = mechanism.forward_dynamics_derivatives(t, q, v, &acting);
     let mut found = HeldDerivatives {
         a: held.a,
         forces: held.forces,
-        by_q,
-        by_v,
-        by_tau,
-        forces_by_q: SMatrix::zeros(),
-        forces_by_v: SMatrix::zeros(),
-        forces_by_tau: SMatrix::zeros(),
+        by_q: zeros(),
+        by_v: zeros(),
+        by_tau: zeros(),
+        forces_by_q: zeros(),
+        forces_by_v: zeros(),
+        forces_by_tau: zeros(),
     };
+    let HeldDerivatives { by_q, by_v, by_tau, .. } = &mut found;
+    mechanism.forward_dynamics_derivatives_into(t, q, v, &acting, by_q, by_v, by_tau);
     let Some(responses) = responses else { return Ok(found) };
     let laws = mechanism.contact_laws();
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
-    if decay != T::zero() {
-        let twice = decay * constant(2.0);
-        parts.accelerations_by_q += parts.rates_by_q * twice;
-        parts.accelerations_by_v += jacobian * twice;
+    let [position, velocity] = gains;
+    if velocity != T::zero() {
+        add_multiple(&mut parts.accelerations_by_q, velocity, &parts.rates_by_q);
+        add_multiple(&mut parts.accelerations_by_v, velocity, &jacobian);
+    }
+    if position != T::zero() {
         for (_, first) in layout.gaps() {
             for (change, by_q) in parts.accelerations_by_q.data.0.iter_mut().zip(&jacobian.data.0) {
                 if let (Some(change), Some(by_q)) = (change.get_mut(first), by_q.get(first)) {
-                    *change += *by_q * decay * decay;
+                    *change += *by_q * position;
                 }
             }
         }
     }
     // How friction turns with the slip while the normal forces stay.
-    let mut turned = [SMatrix::<T, NR, NV>::zeros(); 2];
-    for (k, (touch, law)) in touches.iter().zip(&laws).enumerate() {
-        if *touch == Touch::Slips {
+    let slips = touches.contains(&Touch::Slips);
+    let mut turned = [zeros::<T, NR, NV>(); 2];
+    if slips {
+        for (k, law) in laws.iter().enumerate().filter(|(k, _)| touches.get(*k) == Some(&Touch::Slips)) {
             let normal = law.friction * entry(&held.forces, layout.pressing(k).1);
             for (turned, rates) in turned.iter_mut().zip([&parts.rates_by_q, &jacobian]) {
                 turn(turned, layout.tangents(k), normal, &along, rates);
             }
         }
+        let across = transposed(&jacobian);
+        add_product(&mut parts.forces_by_q, &across, &turned[0]);
+        add_product(&mut found.by_v, &found.by_tau, &product(&across, &turned[1]));
     }
-    let [turned_by_q, turned_by_v] = turned;
-    let across = transposed(&jacobian);
-    add_product(&mut parts.forces_by_q, &across, &turned_by_q);
-    add_product(&mut found.by_q, &by_tau, &parts.forces_by_q);
-    if touches.contains(&Touch::Slips) {
-        add_product(&mut found.by_v, &by_tau, &product(&across, &turned_by_v));
-    }
+    add_product(&mut found.by_q, &found.by_tau, &parts.forces_by_q);
     let closed = touches.map(|touch| touch != Touch::Open);
     let mut problem = Problem::new(layout, &laws, |k| closed.get(k) == Some(&true), &SVector::zeros());
     problem.weigh(&responses.rates);
     // How the forces answer to the rates, which all of the derivatives share.
     let answer = problem.answers(touches, &along);
-    let changes = |accelerations: &SMatrix<T, NR, NV>, motion: &SMatrix<T, NV, NV>| {
-        let mut gaps = *accelerations;
-        add_product(&mut gaps, &jacobian, motion);
-        product(&answer, &gaps)
-    };
-    let (by_q, by_v) =
-        (changes(&parts.accelerations_by_q, &found.by_q), changes(&parts.accelerations_by_v, &found.by_v));
-    found.forces_by_tau = changes(&zeros(), &found.by_tau);
-    add_product(&mut found.by_q, &responses.velocities, &by_q);
-    add_product(&mut found.by_v, &responses.velocities, &by_v);
+    add_product(&mut parts.accelerations_by_q, &jacobian, &found.by_q);
+    add_product(&mut parts.accelerations_by_v, &jacobian, &found.by_v);
+    // What forces do to the rates is what impulses at the contacts do to the velocities, unless forces depend on the motion.
+    let pushed =
+        if M::FEEDBACK { product(&jacobian, &found.by_tau) } else { transposed(&responses.velocities) };
+    found.forces_by_q = product(&answer, &parts.accelerations_by_q);
+    found.forces_by_v = product(&answer, &parts.accelerations_by_v);
+    found.forces_by_tau = product(&answer, &pushed);
+    add_product(&mut found.by_q, &responses.velocities, &found.forces_by_q);
+    add_product(&mut found.by_v, &responses.velocities, &found.forces_by_v);
     add_product(&mut found.by_tau, &responses.velocities, &found.forces_by_tau);
-    (found.forces_by_q, found.forces_by_v) = (by_q + turned_by_q, by_v + turned_by_v);
+    if slips {
+        add_multiple(&mut found.forces_by_q, T::one(), &turned[0]);
+        add_multiple(&mut found.forces_by_v, T::one(), &turned[1]);
+    }
     Ok(found)
 }
 

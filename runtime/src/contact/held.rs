@@ -5,7 +5,6 @@ use super::problem::{Problem, entry, put};
 use super::{Contacts, Responses, Touch};
 use crate::Real;
 use crate::constraint::ConstraintError;
-use crate::private::constant;
 use nalgebra::SVector;
 
 /// Accelerations and forces of contacts.
@@ -80,11 +79,11 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let rates = mechanism.contact_rates(t, q, v);
-    held(mechanism, t, (q, v), tau, touches, (&rates, T::zero())).map(|(held, _)| held)
+    held(mechanism, t, (q, v), tau, touches, (&rates, [T::zero(); 2])).map(|(held, _)| held)
 }
 
 /// [`forward_dynamics`] with the rates `along` which slip is braked; and what impulses do, if any contact is closed. Gaps and rates of
-/// what is held decay by `decay`, 1/s, critically damped: `G v̇ + b = −2 α u − α² g`.
+/// what is held decay by the gains `kₚ`, 1/s², and `kᵥ`, 1/s: `G v̇ + b = −kᵥ u − kₚ g`.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
 pub(super) fn held<
     M,
@@ -100,7 +99,7 @@ pub(super) fn held<
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     tau: &SVector<T, NV>,
     touches: &[Touch; NK],
-    (along, decay): (&SVector<T, NR>, T),
+    (along, [position, velocity]): (&SVector<T, NR>, [T; 2]),
 ) -> Result<(Held<T, NV, NR>, Option<Responses<T, NV, NR>>), ConstraintError>
 where
     T: Real,
@@ -114,12 +113,14 @@ where
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
     let mut free = moved + mechanism.contact_bias(t, q, v);
-    if decay != T::zero() {
-        free += mechanism.contact_rates(t, q, v) * (decay * constant(2.0));
+    if velocity != T::zero() {
+        free += mechanism.contact_rates(t, q, v) * velocity;
+    }
+    if position != T::zero() {
         let gaps = mechanism.contact_gaps(t, q);
         for (k, first) in layout.gaps() {
             let rate = entry(&free, first);
-            put(&mut free, first, rate + entry(&gaps, k) * decay * decay);
+            put(&mut free, first, rate + entry(&gaps, k) * position);
         }
     }
     if free.iter().any(|rate| !rate.is_finite()) {

@@ -1,7 +1,7 @@
 //! A mechanism whose contacts do what they are told to.
 
-use super::derivatives::{ContactDerivatives, derivatives};
-use super::held::held;
+use super::derivatives::{ContactDerivatives, HeldDerivatives, derivatives};
+use super::held::{Held, held};
 use super::{Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
 use crate::derivatives::{ByMotion, RheonomicDerivatives, unknown};
@@ -15,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 pub struct Holding<'m, M, T, const NK: usize, const NR: usize> {
     mechanism: &'m M,
     touches: [Touch; NK],
-    decay: T,
+    gains: [T; 2],
 }
 
 // A reference is copied, whether the mechanism can be or not.
@@ -76,7 +76,7 @@ pub fn hold<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usiz
 where
     M: Contacts<NQ, NV, NU, NK, NR>,
 {
-    Holding { mechanism, touches, decay: constant(0.0) }
+    Holding { mechanism, touches, gains: [constant(0.0); 2] }
 }
 
 impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
@@ -84,7 +84,54 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     /// constraints and integrals of motion in dynamical systems*, 1972): a few times the fastest rate of the motion.
     #[must_use]
     pub fn stabilized(self, rate: T) -> Self {
-        Self { decay: rate, ..self }
+        self.with_gains(rate * rate, rate * constant(2.0))
+    }
+
+    /// The mechanism with accelerations of what is held that answer to its gaps `g` and its rates `u` by gains of their own, 1/s² and
+    /// 1/s: `G v̇ + b = −position g − velocity u`, with the gaps along normals alone. With 0 and 50 a foot that lands comes to rest where
+    /// it has landed, as those of Crocoddyl's examples do (its `ContactModel3D` with gains `[0, 50]`).
+    #[must_use]
+    pub fn with_gains(self, position: T, velocity: T) -> Self {
+        Self { gains: [position, velocity], ..self }
+    }
+
+    /// The accelerations and the forces of the contacts under the generalized forces `tau`: those of
+    /// [`forward_dynamics`](super::forward_dynamics), with the gains of what is held.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`forward_dynamics`](super::forward_dynamics).
+    pub fn held<const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> Result<Held<T, NV, NR>, ConstraintError>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let rates = self.mechanism.contact_rates(t, q, v);
+        held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains)).map(|(held, _)| held)
+    }
+
+    /// [`held`](Self::held) with first derivatives: what costs and limits of contact forces need beside the step, which
+    /// [`discrete::semi_implicit_into`](crate::discrete::semi_implicit_into) makes of the same accelerations.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`forward_dynamics`](super::forward_dynamics).
+    pub fn held_derivatives<const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+    ) -> Result<HeldDerivatives<T, NV, NR>, ConstraintError>
+    where
+        M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
     }
 }
 
@@ -130,7 +177,7 @@ where
         tau: &SVector<T, NV>,
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let rates = self.mechanism.contact_rates(t, q, v);
-        held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.decay)).map(|(held, _)| held.a)
+        held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains)).map(|(held, _)| held.a)
     }
 
     /// Nothing is brought onto contacts or constraints.
@@ -155,7 +202,7 @@ where
         let still = SVector::zeros();
         let tau = self.mechanism.bias_forces(t, q, &still) + p;
         let along = self.mechanism.contact_rates(t, q, v);
-        let found = held(self.mechanism, t, (q, &still), &tau, &self.touches, (&along, T::zero()));
+        let found = held(self.mechanism, t, (q, &still), &tau, &self.touches, (&along, [T::zero(); 2]));
         found.map_or_else(|_| SVector::repeat(constant(f64::NAN)), |(held, _)| held.a)
     }
 
@@ -170,7 +217,7 @@ where
         v: &SVector<T, NV>,
         u: &SVector<T, NU>,
     ) -> Option<ByMotion<T, NV, NU>> {
-        self.mechanism.held_derivatives(t, (q, v), u, &self.touches, self.decay)
+        self.mechanism.held_derivatives(t, (q, v), u, &self.touches, self.gains)
     }
 
     fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
@@ -217,7 +264,7 @@ where
         v: &SVector<T, NV>,
         tau: &SVector<T, NV>,
     ) -> ByMotion<T, NV, NV> {
-        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.decay) {
+        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => (found.by_q, found.by_v, found.by_tau),
             Err(_) => (unknown(), unknown(), unknown()),
         }
@@ -233,7 +280,7 @@ where
         by_v: &mut SMatrix<T, NV, NV>,
         by_tau: &mut SMatrix<T, NV, NV>,
     ) -> SVector<T, NV> {
-        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.decay) {
+        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => {
                 (*by_q, *by_v, *by_tau) = (found.by_q, found.by_v, found.by_tau);
                 found.a

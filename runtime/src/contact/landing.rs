@@ -7,6 +7,7 @@ use super::{Contacts, Solved, Touch};
 use crate::Real;
 use crate::blocks::{add_product, product};
 use crate::constraint::ConstraintError;
+use crate::discrete::Transition;
 use nalgebra::{SMatrix, SVector};
 
 /// Velocity and impulses after given contacts have closed at once, without restitution:
@@ -104,6 +105,18 @@ pub struct LandedDerivatives<T, const NV: usize, const NR: usize> {
     pub impulses_by_q: SMatrix<T, NR, NV>,
     /// `∂Λ/∂v`.
     pub impulses_by_v: SMatrix<T, NR, NV>,
+}
+
+impl<T: Real, const NV: usize, const NR: usize> LandedDerivatives<T, NV, NR> {
+    /// The touchdown at a configuration as a step of no duration, for [`optimal::backward`](crate::optimal::backward): nothing but the
+    /// velocity changes, and inputs do nothing.
+    pub fn transition<const NQ: usize, const NU: usize>(
+        &self,
+        q: &SVector<T, NQ>,
+    ) -> Transition<T, NQ, NV, NU> {
+        let q_by_q = SMatrix::identity();
+        Transition { q: *q, v: self.v, q_by_q, v_by_q: self.by_q, v_by_v: self.by_v, ..Transition::zeros() }
+    }
 }
 
 /// [`land`] with its first derivatives by configuration and velocity, through the constraints of the mechanism. A derivative by `q` is

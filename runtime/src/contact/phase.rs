@@ -277,7 +277,7 @@ where
         let Self { mechanism, phase } = self;
         let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
         let along = phase.braked(&mechanism.contact_rates(t, q, v), layout);
-        held(*mechanism, t, (q, v), tau, &phase.touches, (&along, T::zero())).map(|(held, _)| held.a)
+        held(*mechanism, t, (q, v), tau, &phase.touches, (&along, [T::zero(); 2])).map(|(held, _)| held.a)
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
@@ -313,7 +313,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
         let along = phase.braked(&rates, layout);
         let past = -T::one();
-        let along = (&along, T::zero());
+        let along = (&along, [T::zero(); 2]);
         let Ok((held, _)) = held(*mechanism, t, (q, v), tau, &phase.touches, along) else { return past };
         let bent = || {
             let driven = mechanism.contact_rates(t, q, &SVector::zeros());

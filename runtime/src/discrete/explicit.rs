@@ -2,7 +2,7 @@
 
 use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
 use crate::Real;
-use crate::blocks::{NearlyIdentity, add_multiple, add_product, multiple_into, product, scale, zeros};
+use crate::blocks::{add_multiple, add_product, multiple_into, product, scale, zeros};
 use crate::constraint::ConstrainedDerivatives;
 use crate::derivatives::{RheonomicDerivatives, accelerated_into};
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -147,6 +147,68 @@ where
     }
 }
 
+/// A step of [`SemiImplicitEuler`] of `h` seconds by accelerations and their derivatives by configuration, velocity and inputs, which are
+/// known: those of contacts that are held come with the derivatives of their forces
+/// ([`Holding::held_derivatives`](crate::contact::Holding::held_derivatives)), which costs ask for and a step alone does not give.
+///
+/// Nothing is brought onto constraints.
+pub fn semi_implicit_into<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    h: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    acceleration: &SVector<T, NV>,
+    (by_q, by_v, by_u): (&SMatrix<T, NV, NV>, &SMatrix<T, NV, NV>, &SMatrix<T, NV, NU>),
+    into: &mut Transition<T, NQ, NV, NU>,
+) where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    multiple_into(h, by_q, &mut into.v_by_q);
+    multiple_into(h, by_v, &mut into.v_by_v);
+    multiple_into(h, by_u, &mut into.v_by_u);
+    chain(mechanism, h, (q, v), acceleration, into);
+}
+
+/// Makes a step of changes of velocity, whose derivatives stand in it.
+fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    mechanism: &M,
+    h: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    acceleration: &SVector<T, NV>,
+    step: &mut Transition<T, NQ, NV, NU>,
+) where
+    T: Real,
+    M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
+{
+    let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, .. } = &mut *step;
+    for (j, column) in v_by_v.data.0.iter_mut().enumerate() {
+        column.iter_mut().skip(j).take(1).for_each(|x| *x += T::one());
+    }
+    multiple_into(h, v_by_q, q_by_q);
+    multiple_into(h, v_by_v, q_by_v);
+    multiple_into(h, v_by_u, q_by_u);
+    step.v = v + acceleration * h;
+    let displacement = step.v * h;
+    step.q = mechanism.integrate(q, &displacement);
+    // q ⊕ h v⁺; in plain coordinates a displacement is added.
+    let is_plain = NQ == NV && !M::SPEEDS;
+    let (by_q, by_displacement) = match is_plain {
+        true => (SMatrix::identity(), SMatrix::identity()),
+        false => mechanism.integrate_derivatives_at(q, &displacement),
+    };
+    let chain = step.chained.insert(match is_plain {
+        true => Chained { period: h, by_q, by_displacement, others: [(0, 0); 2] },
+        false => Chained::new(h, by_q, by_displacement),
+    });
+    if !is_plain {
+        let [_, d] = chain.nearly();
+        d.lead(&mut step.q_by_q);
+        d.lead(&mut step.q_by_v);
+        d.lead(&mut step.q_by_u);
+    }
+    add_multiple(&mut step.q_by_q, T::one(), &chain.by_q);
+}
+
 impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     const IN_MOMENTA: [bool; 2] = [false, true];
 
@@ -179,32 +241,13 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let h = self.length();
-        let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, .. } = &mut *step;
+        let Transition { v_by_q, v_by_v, v_by_u, .. } = &mut *step;
         (*v_by_q, *v_by_v) = (zeros(), zeros());
         let acceleration = accelerated_into(mechanism, t, (q, v), u, (v_by_q, v_by_v, v_by_u));
         scale(v_by_q, h);
         scale(v_by_v, h);
         scale(v_by_u, h);
-        for (j, column) in v_by_v.data.0.iter_mut().enumerate() {
-            column.iter_mut().skip(j).take(1).for_each(|x| *x += T::one());
-        }
-        multiple_into(h, v_by_q, q_by_q);
-        multiple_into(h, v_by_v, q_by_v);
-        multiple_into(h, v_by_u, q_by_u);
-        step.v = v + acceleration * h;
-        let displacement = step.v * h;
-        step.q = mechanism.integrate(q, &displacement);
-        let (by_q, by_displacement) = (SMatrix::identity(), SMatrix::identity());
-        let chain = step.chained.insert(Chained { period: h, by_q, by_displacement });
-        // q ⊕ h v⁺; in plain coordinates a displacement is added.
-        if NQ != NV || M::SPEEDS {
-            (chain.by_q, chain.by_displacement) = mechanism.integrate_derivatives_at(q, &displacement);
-            let d = NearlyIdentity::of(&chain.by_displacement);
-            d.lead(&mut step.q_by_q);
-            d.lead(&mut step.q_by_v);
-            d.lead(&mut step.q_by_u);
-        }
-        add_multiple(&mut step.q_by_q, T::one(), &chain.by_q);
+        chain(mechanism, h, (q, v), &acceleration, step);
         Ok(())
     }
 

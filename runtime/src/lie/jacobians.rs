@@ -12,9 +12,16 @@ use crate::private::constant;
 /// A square block, column by column.
 type Block<T, const N: usize> = [[T; N]; N];
 
-/// The unit vectors.
-fn units<T: Real, const N: usize>() -> Block<T, N> {
-    core::array::from_fn(|j| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }))
+/// The columns that a linear function makes of the unit vectors. No `map` of the standard library, which is not always inlined.
+#[inline(always)]
+fn columns<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N> {
+    let mut all = [[T::zero(); N]; N];
+    for (j, column) in all.iter_mut().enumerate() {
+        let mut unit = [T::zero(); N];
+        unit.iter_mut().skip(j).take(1).for_each(|x| *x = T::one());
+        *column = f(unit);
+    }
+    all
 }
 
 /// How the result of `q ⊕ dv` of a ball joint moves, in its body axes, with `q` moved in body axes and with `dv`:
@@ -27,7 +34,7 @@ pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T,
         let first = cross(dv, e);
         add(add(e, scale(first, -a)), scale(cross(dv, first), b))
     };
-    (units().map(|e| rotated(back, e)), units().map(right))
+    (columns(|e| rotated(back, e)), columns(right))
 }
 
 /// How `tangent_rate(dv, v)` of a ball joint changes with `dv` and with `v`.
@@ -44,7 +51,7 @@ pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T
         let factor = constant::<T>(-2.0) * slope * dot(dv, e);
         add(add(scale(changed, constant(0.5)), scale(brackets, second)), scale(twice, factor))
     };
-    (units().map(by_dv), units().map(|e| ball_tangent_rate(dv, e)))
+    (columns(by_dv), columns(|e| ball_tangent_rate(dv, e)))
 }
 
 /// Factors of `ad`, `ad²`, `ad³` and `ad⁴` in the left Jacobian of SE(3), `Σ adᵏ / (k + 1)!`, of `θ²`: `ad` has the minimal
@@ -109,7 +116,7 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
         let third = bracket(dv, second);
         plus(plus(plus(plus(e, -c1, first), c2, second), -c3, third), c4, bracket(dv, third))
     };
-    (units().map(carried), units().map(right))
+    (columns(carried), columns(right))
 }
 
 /// Derivatives by `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3).
@@ -158,7 +165,7 @@ pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T
         let changed = plus(plus(plus(zero, constant(0.5), c1), second, c2), fourth, c4);
         plus(plus(changed, second_slope * along, b2), fourth_slope * along, b4)
     };
-    (units().map(by_dv), units().map(|e| free_tangent_rate(dv, e)))
+    (columns(by_dv), columns(|e| free_tangent_rate(dv, e)))
 }
 
 #[cfg(test)]

@@ -94,8 +94,8 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         let (u, square) = (s.vector(s.nu), s.shape(Shape::Square(nv)));
         let _ = writeln!(
             out,
-            "#[inline]\nfn held_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, touches: &[::linkwork::contact::Touch; {count}], decay: {scalar}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
-                ::linkwork::__private::held_derivatives(self, t, state, u, touches, decay)
+            "#[inline]\nfn held_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, touches: &[::linkwork::contact::Touch; {count}], gains: [{scalar}; 2]) -> ::core::option::Option<({square}, {square}, {inputs})> {{
+                ::linkwork::__private::held_derivatives(self, t, state, u, touches, gains)
             }}",
             inputs = s.shape(Shape::Matrix(nv, s.nu)),
         );

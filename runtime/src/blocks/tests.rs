@@ -1,0 +1,48 @@
+//! Products and solutions against nalgebra's, for all widths of registers and whatever their last rows leave of one.
+
+use super::*;
+use crate::multiplication::testing::numbers;
+
+/// A product of `R` rows, added to what is there, and solutions of as many right-hand sides.
+fn check<A: Arithmetic, const R: usize, const C: usize>() {
+    let (a, b, start) = (numbers::<R, 5>(0.0), numbers::<5, C>(1.0), numbers::<R, C>(2.0));
+    let mut found = start;
+    Product { a: &a, b: &b }.evaluate::<A>(&mut found);
+    assert!((found - (start + a * b)).amax() < 1e-13, "{R} rows, {C} columns");
+
+    let half = numbers::<5, 5>(3.0);
+    let matrix = half * half.transpose() + SMatrix::identity();
+    let (l, inverse) = factors(&matrix, 0.25).expect("it is positive definite");
+    let mut solved = zeros();
+    Solve { l: &l, inverse: &inverse, b: &a }.evaluate::<A>(&mut solved);
+    let left = solved * (matrix + SMatrix::identity() * 0.25) + a;
+    assert!(left.amax() < 1e-12, "{R} right-hand sides: {left}");
+}
+
+fn all_rows<A: Arithmetic>() {
+    macro_rules! each {
+        ($($rows:literal)*) => {
+            $(check::<A, $rows, 4>(); check::<A, $rows, 7>(); check::<A, $rows, 18>();)*
+        };
+    }
+    each!(1 2 3 4 5 6 7 8 9 10 11 12 13 15 16 17 18 20 21 23 24 25 28 29 32 35 36 40 41);
+}
+
+#[test]
+fn products_and_solutions_are_nalgebras() {
+    all_rows::<Compiled>();
+    #[cfg(all(
+        feature = "std",
+        target_arch = "x86_64",
+        not(all(target_feature = "avx2", target_feature = "fma"))
+    ))]
+    {
+        use crate::lanes::x86::{avx2, avx512};
+        if avx2::is_available() {
+            all_rows::<avx2::Avx2>();
+        }
+        if avx512::is_available() {
+            all_rows::<avx512::Avx512>();
+        }
+    }
+}
