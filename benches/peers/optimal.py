@@ -16,6 +16,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import crocoddyl
 import numpy as np
 import pinocchio as pin
+from crocoddyl.utils.quadruped import SimpleQuadrupedalGaitProblem
 
 NODES, PERIOD, ITERATIONS = 100, 0.01, 8
 PARTS = ["linearise", "backward", "rollout"]
@@ -57,18 +58,45 @@ def problem(model, own, gravity):
     return crocoddyl.ShootingProblem(start, [running] * NODES, terminal)
 
 
-def least(function, repeats):
+def trot(folder, own):
+    """The trot of Crocoddyl's example (`crocoddyl.utils.quadruped`): its models of swing and touchdown, with Linkwork's gait."""
+    model = solo(folder)
+    model.damping[:] = 0
+    model.friction[:] = 0
+    start = np.array(own["start"])
+    model.referenceConfigurations["standing"] = start
+    feet = ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"]
+    gait = SimpleQuadrupedalGaitProblem(model, *feet)
+    ids = [model.getFrameId(name) for name in feet]
+
+    def node(phase):
+        held = [ids[k] for k in range(4) if phase["holds"][k]]
+        aims = [(ids[k], np.array(aim)) for k, aim in enumerate(phase["feet"]) if aim]
+        task = [[foot, pin.SE3(np.eye(3), aim)] for foot, aim in aims] or None
+        if phase["lands"]:
+            return gait.createImpulseModel(held, task)
+        centre = phase["centre"] and np.array(phase["centre"])
+        action = gait.createSwingFootModel(PERIOD, held, centre, task)
+        # The file has no limits that a state comes near.
+        action.differential.costs.removeCost("stateBounds")
+        return action
+
+    nodes = [node(phase) for phase in own["phases"]]
+    return crocoddyl.ShootingProblem(np.concatenate([start, np.zeros(model.nv)]), nodes[:-1], nodes[-1])
+
+
+def least(function, repeats, nodes):
     best = float("inf")
     for _ in range(repeats):
         begin = time.process_time_ns()
         function()
         best = min(best, time.process_time_ns() - begin)
-    return best / NODES
+    return best / nodes
 
 
 def measure(shooting, own, repeats):
     shooting.nthreads = 1
-    us = [np.array(u) for u in own["inputs"]]
+    us = [np.array(u[: model.nu]) for u, model in zip(own["inputs"], shooting.runningModels)]
     xs = shooting.rollout(us)
     solver = crocoddyl.SolverDDP(shooting)
     logger = crocoddyl.CallbackLogger()
@@ -81,9 +109,9 @@ def measure(shooting, own, repeats):
     xs, us = list(solver.xs), list(solver.us)
     solver.setCandidate(xs, us, True)
     solver.computeDirection(True)
-    found["linearise"] = least(lambda: (shooting.calc(xs, us), shooting.calcDiff(xs, us)), repeats)
-    found["backward"] = least(solver.backwardPass, repeats)
-    found["rollout"] = least(lambda: solver.forwardPass(1.0), repeats)
+    found["linearise"] = least(lambda: (shooting.calc(xs, us), shooting.calcDiff(xs, us)), repeats, len(us))
+    found["backward"] = least(solver.backwardPass, repeats, len(us))
+    found["rollout"] = least(lambda: solver.forwardPass(1.0), repeats, len(us))
     return found
 
 
@@ -93,9 +121,14 @@ def main():
     own = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
     print("| problem | | linearise | backward | rollout | iteration |")
     print("| --- | --- | ---: | ---: | ---: | ---: |")
-    for name, model, gravity in [("panda", panda(folder), True), ("solo", solo(folder), False)]:
+    problems = {
+        "panda": problem(panda(folder), own["panda"], True),
+        "solo": problem(solo(folder), own["solo"], False),
+        "trot": trot(folder, own["trot"]),
+    }
+    for name, shooting in problems.items():
         mine = own[name]
-        peer = measure(problem(model, mine, gravity), mine, repeats)
+        peer = measure(shooting, mine, repeats)
         # Ours linearises and goes backwards in one pass, which keeps no matrices but those of the policies.
         peer["iteration"] = sum(peer[part] for part in PARTS)
         mine["iteration"] = mine["sweep"] + mine["rollout"]

@@ -1,4 +1,4 @@
-//! Iterations of an iterative linear-quadratic regulator (iLQR) on an arm and on a free quadruped: nanoseconds a node of their
+//! Iterations of an iterative linear-quadratic regulator (iLQR) on an arm, on a quadruped that flies and on one that trots: nanoseconds a node of their
 //! parts, and the costs of the iterates, as JSON for `benches/peers/optimal.py`, which has the same problems for Crocoddyl.
 
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -7,6 +7,8 @@ use linkwork::prelude::*;
 use linkwork::{RheonomicDerivatives, discrete};
 use rustix::time::{ClockId, clock_gettime};
 use std::hint::black_box;
+
+mod trot;
 
 #[mechanism(
     urdf = "../models/urdf/panda.urdf",
@@ -30,7 +32,7 @@ const RUNNING: [f64; 2] = [PERIOD, 0.1 * PERIOD];
 const EFFORT: f64 = 1e-2 * PERIOD;
 
 /// Nanoseconds of the process in one call of a function a node: the least of many.
-fn least(mut f: impl FnMut()) -> f64 {
+fn least(nodes: usize, mut f: impl FnMut()) -> f64 {
     let now = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
         time.tv_sec as f64 * 1e9 + time.tv_nsec as f64
@@ -40,7 +42,7 @@ fn least(mut f: impl FnMut()) -> f64 {
         f();
         now() - begin
     });
-    times.fold(f64::INFINITY, f64::min) / NODES as f64
+    times.fold(f64::INFINITY, f64::min) / nodes as f64
 }
 
 type State<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>);
@@ -201,7 +203,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
             costs.push(self.rollout(&all, &mut next));
             (all.states, all.inputs) = next.clone();
         }
-        let linearise = least(|| {
+        let linearise = least(NODES, || {
             self.each(&all.states, &all.inputs, |_, node| {
                 black_box(node);
             });
@@ -209,14 +211,14 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         let mut kept = Vec::new();
         self.each(&all.states, &all.inputs, |_, node| kept.push(*node));
         let last = self.last(&all.states[NODES]);
-        let backwards = least(|| {
+        let backwards = least(NODES, || {
             let mut to_go = last;
             for (k, (step, cost)) in (0..NODES).rev().zip(&kept) {
                 backward_into(step, cost, 0.0, &mut all.policies[k], &mut to_go).expect("it is convex");
             }
         });
-        let sweep = least(|| self.sweep(&mut all));
-        let rollout = least(|| {
+        let sweep = least(NODES, || self.sweep(&mut all));
+        let rollout = least(NODES, || {
             black_box(self.rollout(&all, &mut next));
         });
         format!(
@@ -245,5 +247,5 @@ fn main() {
         flying(0.1),
         vec![SVector::zeros(); NODES],
     );
-    println!("{{{panda}, {solo}}}");
+    println!("{{{panda}, {solo}, {}}}", trot::measure());
 }

@@ -1,0 +1,407 @@
+//! A trot whose contacts are known: phases in which feet are held, and touchdowns between them. The gait and its costs are those of
+//! Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
+
+use super::{ITERATIONS, State, least};
+use linkwork::contact::{self, Held, Touch};
+use linkwork::nalgebra::{DMatrix, SMatrix, SVector};
+use linkwork::optimal::{Policy, Quadratic, Value, backward_into};
+use linkwork::prelude::*;
+use linkwork::{ConstraintError, discrete};
+use std::hint::black_box;
+
+#[mechanism(
+    urdf = "../models/urdf/solo12.urdf",
+    base = free,
+    gravity = -9.81 * z,
+    passive = ignore,
+    limits = ignore,
+    derivatives,
+    centroidal
+)]
+struct Walker {
+    #[contact(FL_FOOT, ground.plane(z), friction = 0.7)]
+    front_left: Contact,
+    #[contact(FR_FOOT, ground.plane(z), friction = 0.7)]
+    front_right: Contact,
+    #[contact(HL_FOOT, ground.plane(z), friction = 0.7)]
+    hind_left: Contact,
+    #[contact(HR_FOOT, ground.plane(z), friction = 0.7)]
+    hind_right: Contact,
+    #[output(r(FL_FOOT / ground))]
+    front_left_foot: Vector,
+    #[output(r(FR_FOOT / ground))]
+    front_right_foot: Vector,
+    #[output(r(HL_FOOT / ground))]
+    hind_left_foot: Vector,
+    #[output(r(HR_FOOT / ground))]
+    hind_right_foot: Vector,
+}
+
+type Place = SVector<f64, 3>;
+type Configuration = SVector<f64, 19>;
+type Motion = SVector<f64, 18>;
+type Inputs = SVector<f64, 12>;
+type Transition = discrete::Transition<f64, 19, 18, 12>;
+type Cost = Quadratic<f64, 18, 12>;
+
+const PERIOD: f64 = 0.01;
+/// Nodes of a swing, and of standing on four feet before it.
+const SWING: usize = 25;
+const STAND: usize = 2;
+/// Metres that a foot is set forward, and lifted.
+const REACH: f64 = 0.1;
+const LIFT: f64 = 0.05;
+const FRICTION: f64 = 0.7;
+/// What velocities of feet that are held decay with, 1/s.
+const DAMPING: f64 = 50.0;
+/// What the centre of mass costs that is off, and feet in the air and at touchdown.
+const OF_CENTRE: f64 = 1e6;
+const OF_FEET: f64 = 1e6;
+const OF_LANDINGS: f64 = 1e7;
+/// What forces cost outside of their cones, states, and inputs.
+const OF_CONES: f64 = 1e1;
+const OF_STATES: f64 = 1e1;
+const OF_INPUTS: f64 = 1e-1;
+
+/// A node of the gait.
+struct Phase {
+    touches: [Touch; 4],
+    /// Where the centre of mass is to be.
+    centre: Option<Place>,
+    /// Where feet are to be.
+    feet: [Option<Place>; 4],
+    /// Whether it is a touchdown.
+    lands: bool,
+}
+
+/// The position of a foot, and how it moves.
+fn foot(k: usize, q: &Configuration) -> Place {
+    let m = Walker {};
+    match k {
+        0 => m.front_left_foot(q),
+        1 => m.front_right_foot(q),
+        2 => m.hind_left_foot(q),
+        _ => m.hind_right_foot(q),
+    }
+}
+
+fn foot_jacobian(k: usize, q: &Configuration) -> SMatrix<f64, 3, 18> {
+    let m = Walker {};
+    match k {
+        0 => m.front_left_foot_jacobian(q),
+        1 => m.front_right_foot_jacobian(q),
+        2 => m.hind_left_foot_jacobian(q),
+        _ => m.hind_right_foot_jacobian(q),
+    }
+}
+
+/// Two steps of diagonal pairs of feet, the first half as long.
+fn gait(start: &Configuration) -> Vec<Phase> {
+    let mut feet: [Place; 4] = std::array::from_fn(|k| foot(k, start));
+    let mut centre: Place = feet.iter().sum::<Place>() / 4.0;
+    centre.z = Walker {}.center_of_mass(start).z;
+    let stands = || Phase { touches: [Touch::Sticks; 4], centre: None, feet: [None; 4], lands: false };
+    let mut all = Vec::new();
+    for (pair, reach) in [([1, 2], REACH / 2.0), ([0, 3], REACH)] {
+        all.extend((0..STAND).map(|_| stands()));
+        let held: [bool; 4] = std::array::from_fn(|k| !pair.contains(&k));
+        let touches = |held: [bool; 4]| held.map(|held| if held { Touch::Sticks } else { Touch::Open });
+        let mut aimed = [None; 4];
+        for k in 0..SWING {
+            let (half, part) = (SWING as f64 / 2.0, (k + 1) as f64 / SWING as f64);
+            let height = LIFT * if k as f64 <= half { k as f64 / half } else { 2.0 - k as f64 / half };
+            let forward = Place::new(reach * part, 0.0, height);
+            pair.iter().for_each(|foot| aimed[*foot] = Some(feet[*foot] + forward));
+            let centre = Some(centre + Place::new(reach * part / 2.0, 0.0, 0.0));
+            all.push(Phase { touches: touches(held), centre, feet: aimed, lands: false });
+        }
+        all.push(Phase { touches: touches(held.map(|held| !held)), centre: None, feet: aimed, lands: true });
+        centre.x += reach / 2.0;
+        pair.iter().for_each(|foot| feet[*foot].x += reach);
+    }
+    all.push(stands());
+    all
+}
+
+/// The inputs that hold the robot still on its feet, but for what two of them cannot.
+fn quasi_static(q: &Configuration, phase: &Phase) -> Inputs {
+    let m = Walker {};
+    let bias = m.bias_forces(q, &Motion::zeros());
+    let jacobian = m.contact_jacobian(q);
+    let rows: Vec<usize> = (0..12).filter(|row| phase.touches[row / 3] != Touch::Open).collect();
+    let base = DMatrix::from_fn(6, rows.len(), |i, j| jacobian[(rows[j], i)]);
+    let wrench = DMatrix::from_fn(6, 1, |i, _| bias[i]);
+    let forces = base.svd(true, true).solve(&wrench, 1e-6).expect("both sides were asked for");
+    Inputs::from_fn(|i, _| {
+        let held: f64 =
+            rows.iter().enumerate().map(|(k, row)| jacobian[(*row, 6 + i)] * forces[(k, 0)]).sum();
+        bias[6 + i] - held
+    })
+}
+
+/// Rows of the friction cone as factors of the normal force and those along tangents, and how far a force is outside of each.
+fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
+    let sides = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| [-FRICTION, x, y]);
+    let [normal, x, y] = force;
+    let past = sides.into_iter().map(move |row| (row, row[0] * normal + row[1] * x + row[2] * y));
+    let pulls = ([1.0, 0.0, 0.0], normal.min(0.0));
+    past.filter(|(_, off)| *off > 0.0).chain(Some(pulls).filter(|(_, off)| *off < 0.0))
+}
+
+/// The factors of squares of the state in a phase: by configuration and by velocity.
+fn weights(phase: &Phase) -> [Motion; 2] {
+    let list = |base: [f64; 2], joints: f64| {
+        Motion::from_fn(|k, _| OF_STATES * if k < 6 { base[k / 3] } else { joints }.powi(2))
+    };
+    match phase.lands {
+        true => [list([1.0, 1.0], 10.0), list([10.0, 10.0], 10.0)],
+        false => [list([0.0, 500.0], 0.01), list([10.0, 10.0], 1.0)],
+    }
+}
+
+/// The gait from a start, whose posture is also what states are drawn to.
+struct Trot {
+    start: Configuration,
+    phases: Vec<Phase>,
+    weights: Vec<[Motion; 2]>,
+}
+
+/// A trajectory and the policies that lead it.
+struct Plan {
+    states: Vec<State<19, 18>>,
+    inputs: Vec<Inputs>,
+    policies: Vec<Policy<f64, 18, 12>>,
+}
+
+impl Trot {
+    /// What a state costs in a node, and forces of contacts.
+    fn costs(&self, k: usize, (q, v): &State<19, 18>, forces: Option<&SVector<f64, 12>>) -> f64 {
+        let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
+        let off = Walker {}.difference(&self.start, q);
+        let mut sum = off.component_mul(&off).dot(of_q) + v.component_mul(v).dot(of_v);
+        if let Some(centre) = phase.centre {
+            sum += OF_CENTRE * (Walker {}.center_of_mass(q) - centre).norm_squared();
+        }
+        let of_feet = if phase.lands { OF_LANDINGS } else { OF_FEET };
+        for (k, aim) in phase.feet.iter().enumerate() {
+            sum += aim.map_or(0.0, |aim| of_feet * (foot(k, q) - aim).norm_squared());
+        }
+        for force in forces.map_or(&[][..], |all| all.as_slice().as_chunks::<3>().0) {
+            sum += outside(*force).map(|(_, off)| OF_CONES * off * off).sum::<f64>();
+        }
+        sum / 2.0
+    }
+
+    /// Gradients and Hessians of these by the state, times a factor.
+    fn model(&self, k: usize, (q, v): &State<19, 18>, factor: f64, cost: &mut Cost) {
+        let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
+        let off = Walker {}.difference(&self.start, q);
+        let (of_q, of_v) = (of_q * factor, of_v * factor);
+        (cost.q, cost.v) = (off.component_mul(&of_q), v.component_mul(&of_v));
+        cost.qq.set_diagonal(&of_q);
+        cost.vv.set_diagonal(&of_v);
+        // How the difference changes: as its coordinates do, but for the base.
+        let (_, changes) = Walker {}.tangent_rate_derivatives(&off, v);
+        let base = changes.fixed_view::<6, 6>(0, 0).into_owned();
+        let weighed = SMatrix::<f64, 6, 6>::from_fn(|i, j| of_q[i] * base[(i, j)]);
+        cost.qq.fixed_view_mut::<6, 6>(0, 0).copy_from(&base.tr_mul(&weighed));
+        let gradient = base.tr_mul(&cost.q.fixed_rows::<6>(0));
+        cost.q.fixed_rows_mut::<6>(0).copy_from(&gradient);
+        if let Some(centre) = phase.centre {
+            let by_q = Walker {}.centroidal_momentum_matrix(q).fixed_rows::<3>(0) / Walker {}.total_mass();
+            let off = Walker {}.center_of_mass(q) - centre;
+            cost.add_squares_of_configuration(OF_CENTRE * factor, &off, &by_q);
+        }
+        let of_feet = factor * if phase.lands { OF_LANDINGS } else { OF_FEET };
+        for (k, aim) in phase.feet.iter().enumerate() {
+            if let Some(aim) = aim {
+                let off = foot(k, q) - aim;
+                cost.add_squares_of_configuration(of_feet, &off, &foot_jacobian(k, q));
+            }
+        }
+    }
+
+    /// A node to first order, with its costs to second.
+    fn node(
+        &self,
+        k: usize,
+        state: &State<19, 18>,
+        u: &Inputs,
+        step: &mut Transition,
+        cost: &mut Cost,
+    ) -> Result<(), ConstraintError> {
+        let ((q, v), phase) = (state, &self.phases[k]);
+        *cost = Quadratic::zeros();
+        if phase.lands {
+            *step = contact::land_derivatives(&Walker {}, 0.0, q, v, &phase.touches)?.transition(q);
+            self.model(k, state, 1.0, cost);
+            // Inputs do nothing: those that cost are zero.
+            cost.uu.fill_diagonal(1.0);
+            return Ok(());
+        }
+        self.model(k, state, PERIOD, cost);
+        let held = contact::hold(&Walker {}, phase.touches).with_gains(0.0, DAMPING);
+        let found = held.held_derivatives(0.0, q, v, &Walker {}.generalized_forces(q, u))?;
+        let driven = |rows: &SMatrix<f64, 12, 18>| rows.fixed_columns::<12>(6).into_owned();
+        let by_u = found.by_tau.fixed_columns::<12>(6).into_owned();
+        discrete::semi_implicit_into(
+            &held,
+            PERIOD,
+            (q, v),
+            &found.a,
+            (&found.by_q, &found.by_v, &by_u),
+            step,
+        );
+        cost.u = u * (OF_INPUTS * PERIOD);
+        cost.uu.fill_diagonal(OF_INPUTS * PERIOD);
+        for (k, force) in found.forces.as_slice().as_chunks::<3>().0.iter().enumerate() {
+            for (row, off) in outside(*force) {
+                let mut all = SMatrix::<f64, 1, 12>::zeros();
+                all.fixed_columns_mut::<3>(3 * k).copy_from_slice(&row);
+                let by =
+                    (all * found.forces_by_q, all * found.forces_by_v, all * driven(&found.forces_by_tau));
+                cost.add_squares(OF_CONES * PERIOD, &SVector::from([off]), (&by.0, &by.1, &by.2));
+            }
+        }
+        Ok(())
+    }
+
+    /// The costs of the last state.
+    fn last(&self, state: &State<19, 18>) -> Value<f64, 18> {
+        let mut cost = Quadratic::zeros();
+        self.model(self.phases.len() - 1, state, 1.0, &mut cost);
+        let Quadratic { q, v, qq, qv, vv, .. } = cost;
+        Value { q, v, qq, qv, vv }
+    }
+
+    /// Linearises and goes backwards; what the change of inputs is expected to add to the costs.
+    fn sweep(&self, plan: &mut Plan) -> [f64; 2] {
+        let (mut step, mut cost) = (Transition::zeros(), Quadratic::zeros());
+        let mut to_go = self.last(&plan.states[plan.inputs.len()]);
+        let mut expected = [0.0; 2];
+        for (k, policy) in plan.policies.iter_mut().enumerate().rev() {
+            self.node(k, &plan.states[k], &plan.inputs[k], &mut step, &mut cost).expect("feet hold");
+            backward_into(&step, &cost, 0.0, policy, &mut to_go).expect("it is convex");
+            expected.iter_mut().zip(policy.expected).for_each(|(sum, more)| *sum += more);
+        }
+        expected
+    }
+
+    /// The motion with the policies and its costs.
+    fn rollout(&self, plan: &Plan, length: f64, next: &mut (Vec<State<19, 18>>, Vec<Inputs>)) -> f64 {
+        let (m, mut state, mut sum) = (Walker {}, plan.states[0], 0.0);
+        next.0.clear();
+        next.1.clear();
+        for (k, policy) in plan.policies.iter().enumerate() {
+            let (old, phase) = (&plan.states[k], &self.phases[k]);
+            let off = m.difference(&old.0, &state.0);
+            let u = plan.inputs[k] + policy.inputs(length, &off, &(state.1 - old.1));
+            next.0.push(state);
+            next.1.push(u);
+            let (q, v) = &state;
+            if phase.lands {
+                sum += self.costs(k, &state, None);
+                let landed = contact::land(&m, 0.0, q, v, &phase.touches).expect("feet hold");
+                state.1 = landed.v;
+                continue;
+            }
+            let held = contact::hold(&m, phase.touches).with_gains(0.0, DAMPING);
+            let Held { a, forces } = held.held(0.0, q, v, &m.generalized_forces(q, &u)).expect("feet hold");
+            sum += (self.costs(k, &state, Some(&forces)) + OF_INPUTS * u.norm_squared() / 2.0) * PERIOD;
+            let v = v + a * PERIOD;
+            state = (m.integrate(q, &(v * PERIOD)), v);
+        }
+        next.0.push(state);
+        sum + self.costs(plan.inputs.len(), &state, None)
+    }
+
+    /// The gait for a program that has the same costs.
+    fn written(&self) -> String {
+        let list = |place: &Option<Place>| {
+            place.map_or("null".to_owned(), |place| format!("{:?}", place.as_slice()))
+        };
+        let phases = self.phases.iter().map(|phase| {
+            let feet = phase.feet.each_ref().map(list).join(", ");
+            let holds = phase.touches.map(|touch| touch != Touch::Open);
+            format!(
+                "{{\"holds\": {holds:?}, \"centre\": {}, \"feet\": [{feet}], \"lands\": {}}}",
+                list(&phase.centre),
+                phase.lands
+            )
+        });
+        format!("[{}]", phases.collect::<Vec<_>>().join(", "))
+    }
+}
+
+/// Iterations from what holds the robot still, with the line search of Crocoddyl's `SolverDDP`; the figures as JSON.
+pub fn measure() -> String {
+    let mut start = Walker {}.neutral();
+    start[2] = 0.235;
+    for (k, angles) in
+        [(0, [0.1, 0.8, -1.6]), (1, [-0.1, 0.8, -1.6]), (2, [0.1, -0.8, 1.6]), (3, [-0.1, -0.8, 1.6])]
+    {
+        start.fixed_rows_mut::<3>(7 + 3 * k).copy_from_slice(&angles);
+    }
+    let phases = gait(&start);
+    let trot = Trot { start, weights: phases.iter().map(weights).collect(), phases };
+    let nodes = trot.phases.len() - 1;
+    let mut plan = Plan {
+        states: vec![(start, Motion::zeros()); nodes + 1],
+        inputs: trot.phases[..nodes]
+            .iter()
+            .map(|phase| match phase.lands {
+                true => Inputs::zeros(),
+                false => quasi_static(&start, phase),
+            })
+            .collect(),
+        policies: vec![Policy::zeros(); nodes],
+    };
+    let inputs: Vec<_> = plan.inputs.iter().map(|u| u.as_slice().to_vec()).collect();
+    let mut next = (Vec::with_capacity(nodes + 1), Vec::with_capacity(nodes));
+    let mut cost = trot.rollout(&plan, 1.0, &mut next);
+    (plan.states, plan.inputs) = next.clone();
+    let mut costs = Vec::new();
+    for _ in 0..ITERATIONS {
+        let [linear, quadratic] = trot.sweep(&mut plan);
+        let lengths = (0..10).map(|k| 0.5_f64.powi(k));
+        let shorter = lengths.map(|length| (length, trot.rollout(&plan, length, &mut next)));
+        let mut shorter = shorter.collect::<Vec<_>>().into_iter();
+        let found = shorter
+            .find(|(length, found)| cost - found > -0.1 * (length * linear + length * length * quadratic));
+        let Some((length, found)) = found else { break };
+        cost = trot.rollout(&plan, length, &mut next);
+        assert_eq!(cost, found);
+        costs.push(cost);
+        (plan.states, plan.inputs) = next.clone();
+    }
+    let (mut step, mut local) = (Transition::zeros(), Quadratic::zeros());
+    let linearise = least(nodes, || {
+        for k in 0..nodes {
+            trot.node(k, &plan.states[k], &plan.inputs[k], &mut step, &mut local).expect("feet hold");
+            black_box((&step, &local));
+        }
+    });
+    let mut kept = Vec::new();
+    for k in 0..nodes {
+        trot.node(k, &plan.states[k], &plan.inputs[k], &mut step, &mut local).expect("feet hold");
+        kept.push((step, local));
+    }
+    let last = trot.last(&plan.states[nodes]);
+    let backwards = least(nodes, || {
+        let mut to_go = last;
+        for (policy, (step, cost)) in plan.policies.iter_mut().zip(&kept).rev() {
+            backward_into(step, cost, 0.0, policy, &mut to_go).expect("it is convex");
+        }
+    });
+    let sweep = least(nodes, || {
+        black_box(trot.sweep(&mut plan));
+    });
+    let rollout = least(nodes, || {
+        black_box(trot.rollout(&plan, 1.0, &mut next));
+    });
+    format!(
+        "\"trot\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": {rollout}, \"costs\": {costs:?}, \"start\": {:?}, \"inputs\": {inputs:?}, \"phases\": {}}}",
+        start.as_slice(),
+        trot.written()
+    )
+}
