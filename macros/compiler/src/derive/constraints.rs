@@ -1,8 +1,10 @@
 //! What constraints say of a state, as outputs of programs.
 
-use crate::expr::Expr;
+use crate::expr::diff::gradient;
+use crate::expr::{Expr, Symbol};
+use crate::kinematics::motion_rates;
+use crate::mechanics::constraints;
 use crate::mechanics::derivatives::symbolic;
-use crate::mechanics::{self, constraints};
 use crate::mechanism::{Model, Quantity};
 
 pub(super) use crate::mechanics::constraints::{biases, rates, residuals};
@@ -29,7 +31,7 @@ pub(super) fn contact_gaps<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// What the rates of contacts gain beside what accelerations add to them.
 pub(super) fn contact_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    model.contacts.iter().flat_map(|contact| contact.biases.clone()).collect()
+    motion_rates(model.space(), &model.contact_rates(), false)
 }
 
 /// Friction and restitution of each contact.
@@ -40,23 +42,19 @@ pub(super) fn contact_laws<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 /// What contacts add to the motion to first order, at given accelerations `a` and forces `f`: derivatives of `Gᵀ f` by `q`, of
 /// `G a + b` by `q` and by `v`, and of the rates by `q`, each column by column.
 pub(super) fn contact_first_order<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    let (rows, a) = (contact_rows(model), mechanics::accelerations(model));
-    let zero = model.graph.zero();
-    let force = |k: usize| {
-        let terms = rows.iter().enumerate();
-        terms.fold(zero, |sum, (i, row)| sum + row[k] * Quantity::ContactForce(i).expr(model.graph))
-    };
-    let forces: Vec<Expr<'g>> = (0..model.nv()).map(force).collect();
-    let along = |row: &Vec<Expr<'g>>| row.iter().zip(&a).fold(zero, |sum, (g, a)| sum + *g * *a);
-    let biases = model.contacts.iter().flat_map(|contact| &contact.biases);
-    let accelerations: Vec<Expr<'g>> =
-        rows.iter().zip(biases).map(|(row, bias)| along(row) + *bias).collect();
+    let (g, rates) = (model.graph, model.contact_rates());
+    // The power of the forces, differentiated backwards: each goes to the axes of what it moves once.
+    let powers = rates.iter().enumerate().map(|(i, rate)| *rate * Quantity::ContactForce(i).expr(g));
+    let power = powers.reduce(|sum, power| sum + power).unwrap_or(g.zero());
+    let velocities: Vec<Symbol> = (0..model.nv()).map(|k| Quantity::Velocity(k).symbol()).collect();
+    let forces = gradient(power, &velocities);
+    let accelerations = motion_rates(model.space(), &rates, true);
     let accelerations = symbolic::derivatives(model, &accelerations);
     let parts = [
         symbolic::by_configuration(model, &forces),
         accelerations.by_q,
         accelerations.by_v,
-        symbolic::by_configuration(model, &model.contact_rates()),
+        symbolic::by_configuration(model, &rates),
     ];
     parts.iter().flat_map(|rows| by_columns(model, rows)).collect()
 }

@@ -2,9 +2,43 @@
 
 use super::node::{Extreme, Function, Id, Node, Symbol};
 use super::{Expr, Graph, Memo, air};
+use std::collections::BTreeMap;
 
 /// Added to a length before it divides: too small to matter, large enough for `f32`.
 pub const TINY: f64 = 1e-37;
+
+/// The derivatives of an expression by symbols, backwards: from the expression to its operands, each of which is met once, with all that
+/// the expression makes of it. Best where symbols are many and stand far from the result.
+pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
+    let g = e.graph();
+    let mut found = vec![g.zero(); symbols.len()];
+    // Operands have smaller numbers than what is made of them, so that the largest is complete.
+    let mut open = BTreeMap::from([(e.id(), g.one())]);
+    while let Some((id, by)) = open.pop_last() {
+        let node = g.node(id);
+        if let Node::Symbol(s) = node {
+            for (found, _) in found.iter_mut().zip(symbols).filter(|(_, symbol)| **symbol == s) {
+                *found = by;
+            }
+        }
+        let mut operands = Vec::new();
+        node.operands(|a| {
+            if !operands.contains(&a) {
+                operands.push(a);
+            }
+        });
+        for a in operands {
+            // The derivative of the node by this operand, all others kept.
+            let by_operand = Derivative::by_node(a, g);
+            let step = by_operand.rule(id);
+            if !step.is_zero() {
+                let sum = open.entry(a).or_insert(g.zero());
+                *sum += by * step;
+            }
+        }
+    }
+    found
+}
 
 /// Derivatives of expressions of one graph along one direction; what was computed once is kept.
 pub struct Derivative<'g> {
@@ -24,6 +58,13 @@ impl<'g> Derivative<'g> {
     /// Derivatives where the symbols change with the given rates, all others not at all.
     pub fn along(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
         Derivative { graph, rates, known: Memo::new(graph) }
+    }
+
+    /// Derivatives of what a node is an operand of, where all others stay.
+    fn by_node(id: Id, graph: &'g Graph) -> Derivative<'g> {
+        let mut derivative = Derivative::along(Vec::new(), graph);
+        derivative.known.set(id, graph.one().id());
+        derivative
     }
 
     /// The derivative of `e`.
@@ -124,6 +165,29 @@ impl<'g> Derivative<'g> {
             Function::IsaTemperature => x.call(Function::IsaLapseRate),
             // The hydrostatic equation.
             Function::IsaPressure => -(y / x.call(Function::IsaTemperature) * air::FALL_OVER_GAS),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::eval::eval_one;
+
+    /// Backwards and forwards a derivative is the same number, whatever stands between.
+    #[test]
+    fn gradients_are_derivatives() {
+        let g = Graph::new();
+        let symbols = [0, 1, 2].map(Symbol);
+        let [x, y, z] = symbols.map(|s| g.symbol(s));
+        let shared = (x * y + z).sin();
+        let e = shared * shared / (y.square() + z.call(Function::Exp)) + x.atan2(shared)
+            - (z - x * shared).sqrt() * y.pow(x);
+        let found = gradient(e, &symbols);
+        let at = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);
+        for (symbol, found) in symbols.into_iter().zip(found) {
+            let expected = at(Derivative::with_respect_to(symbol, &g).of(e));
+            assert!((at(found) - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{symbol:?}");
         }
     }
 }

@@ -26,6 +26,21 @@ pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
     rate_by(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).of(e))
 }
 
+/// Rates of expressions of `q`, `v` and `t` along the motion, whose velocities change with accelerations or stay. All symbols change at
+/// once: what expressions have in common is differentiated once, not by each of its symbols.
+pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool) -> Vec<Expr<'g>> {
+    let g = space.graph;
+    let rate = |symbol: Symbol| match Quantity::of(symbol) {
+        Quantity::Configuration(k) => Some(configuration_rate(space, k)),
+        Quantity::Velocity(k) if accelerated => Some(Quantity::Acceleration(k).expr(g)),
+        Quantity::Time => Some(g.one()),
+        _ => None,
+    };
+    let seeds = symbols_in(e).into_iter().filter_map(|symbol| rate(symbol).map(|rate| (symbol, rate)));
+    let mut along = Derivative::along(seeds.collect(), g);
+    e.iter().map(|e| along.of(*e)).collect()
+}
+
 /// Derivatives by single symbols, kept from one expression to the next: places of a chain have all in common that stands before
 /// them, and differentiating each of them by each coordinate would take the cube of its length.
 #[derive(Default)]

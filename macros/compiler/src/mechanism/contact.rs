@@ -16,8 +16,6 @@ pub struct Contact<'g> {
     pub pressed_by: Option<usize>,
     /// The rate of the gap, then those of the slip along one or two tangents if there is friction; linear in the velocities.
     pub rates: Vec<Expr<'g>>,
-    /// Their derivatives at zero accelerations.
-    pub biases: Vec<Expr<'g>>,
     /// Coefficient of friction; of a moment of friction the largest by the normal force.
     pub friction: Expr<'g>,
     /// Coefficient of restitution.

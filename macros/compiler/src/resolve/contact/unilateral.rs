@@ -240,17 +240,7 @@ impl<'g> Builder<'_, 'g> {
         rates: Vec<Expr<'g>>,
         (friction, restitution): (Expr<'g>, Expr<'g>),
     ) {
-        let biases = rates.iter().map(|rate| time_derivative(self.model.space(), *rate)).collect();
-        self.model.contacts.push(Contact {
-            name,
-            gap,
-            turns,
-            pressed_by,
-            rates,
-            biases,
-            friction,
-            restitution,
-        });
+        self.model.contacts.push(Contact { name, gap, turns, pressed_by, rates, friction, restitution });
     }
 
     /// The coefficients of a contact; `None` after a mistake.
