@@ -27,6 +27,7 @@
 //! with friction can give more energy than there was (Kane's paradox), or have no solution; where it would, all coefficients of
 //! restitution are lowered together until it does not.
 
+use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
 use crate::derivatives::ByMotion;
 use crate::integrate::{
@@ -199,10 +200,12 @@ impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
     /// From all entries, column by column. As generated code calls it.
     #[doc(hidden)]
     pub fn from_list<const N: usize>(list: &[T; N]) -> Self {
-        let mut velocities = SMatrix::<T, NV, NR>::zeros();
-        let mut rates = SMatrix::<T, NR, NR>::zeros();
-        let entries = velocities.iter_mut().chain(rates.iter_mut());
-        entries.zip(list).for_each(|(entry, value)| *entry = *value);
+        let (mut velocities, mut rates) = (zeros::<T, NV, NR>(), zeros::<T, NR, NR>());
+        // Two loops over lists alone become copies of whole matrices.
+        let first = velocities.data.0.as_flattened_mut().iter_mut();
+        first.zip(list).for_each(|(entry, value)| *entry = *value);
+        let (entries, rest) = (rates.data.0.as_flattened_mut(), list.get(NV * NR..).unwrap_or(&[]));
+        entries.iter_mut().zip(rest).for_each(|(entry, value)| *entry = *value);
         Self { velocities, rates }
     }
 }

@@ -4,7 +4,7 @@ use super::held::held;
 use super::layout::Layout;
 use super::problem::{Problem, entry};
 use super::{Contacts, Touch};
-use crate::blocks::{add_multiple, add_product, product, transposed, zeros};
+use crate::blocks::{add_multiple, add_product, product, transpose_into, transposed, zeros};
 use crate::constraint::ConstraintError;
 use crate::derivatives::{ByMotion, LinearMotion, under_inputs};
 use crate::{Real, RheonomicDerivatives};
@@ -94,6 +94,22 @@ pub struct HeldDerivatives<T, const NV: usize, const NR: usize> {
     pub forces_by_v: SMatrix<T, NR, NV>,
     /// `∂f/∂τ`.
     pub forces_by_tau: SMatrix<T, NR, NV>,
+}
+
+impl<T: Real, const NV: usize, const NR: usize> HeldDerivatives<T, NV, NR> {
+    /// Nothing but zeros, for [`Holding::held_derivatives_into`](super::Holding::held_derivatives_into).
+    pub fn zeros() -> Self {
+        Self {
+            a: zeros(),
+            forces: zeros(),
+            by_q: zeros(),
+            by_v: zeros(),
+            by_tau: zeros(),
+            forces_by_q: zeros(),
+            forces_by_v: zeros(),
+            forces_by_tau: zeros(),
+        }
+    }
 }
 
 /// The accelerations and contact forces of [`forward_dynamics`](super::forward_dynamics) with given contacts closed, and their
@@ -215,23 +231,46 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
+    let mut found = HeldDerivatives::zeros();
+    derivatives_into(mechanism, t, (q, v), tau, touches, gains, &mut found)?;
+    Ok(found)
+}
+
+/// [`derivatives`] into what is there, whatever is in it.
+#[allow(clippy::too_many_arguments, reason = "a state, what acts, and what is told of contacts")]
+pub(super) fn derivatives_into<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    tau: &SVector<T, NV>,
+    touches: &[Touch; NK],
+    gains: [T; 2],
+    found: &mut HeldDerivatives<T, NV, NR>,
+) -> Result<(), ConstraintError>
+where
+    T: Real,
+    M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+{
     let along = mechanism.contact_rates(t, q, v);
     let (held, responses) = held(mechanism, t, (q, v), tau, touches, (&along, gains))?;
     let jacobian = mechanism.contact_jacobian(t, q);
     let acting = tau + jacobian.tr_mul(&held.forces);
-    let mut found = HeldDerivatives {
-        a: held.a,
-        forces: held.forces,
-        by_q: zeros(),
-        by_v: zeros(),
-        by_tau: zeros(),
-        forces_by_q: zeros(),
-        forces_by_v: zeros(),
-        forces_by_tau: zeros(),
-    };
-    let HeldDerivatives { by_q, by_v, by_tau, .. } = &mut found;
+    (found.a, found.forces) = (held.a, held.forces);
+    (found.by_q, found.by_v, found.by_tau) = (zeros(), zeros(), zeros());
+    let HeldDerivatives { by_q, by_v, by_tau, .. } = &mut *found;
     mechanism.forward_dynamics_derivatives_into(t, q, v, &acting, by_q, by_v, by_tau);
-    let Some(responses) = responses else { return Ok(found) };
+    let Some(responses) = responses else {
+        (found.forces_by_q, found.forces_by_v, found.forces_by_tau) = (zeros(), zeros(), zeros());
+        return Ok(());
+    };
     let laws = mechanism.contact_laws();
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
@@ -272,11 +311,15 @@ where
     add_product(&mut parts.accelerations_by_q, &jacobian, &found.by_q);
     add_product(&mut parts.accelerations_by_v, &jacobian, &found.by_v);
     // What forces do to the rates is what impulses at the contacts do to the velocities, unless forces depend on the motion.
-    let pushed =
-        if M::FEEDBACK { product(&jacobian, &found.by_tau) } else { transposed(&responses.velocities) };
-    found.forces_by_q = product(&answer, &parts.accelerations_by_q);
-    found.forces_by_v = product(&answer, &parts.accelerations_by_v);
-    found.forces_by_tau = product(&answer, &pushed);
+    let mut pushed = zeros();
+    match M::FEEDBACK {
+        true => add_product(&mut pushed, &jacobian, &found.by_tau),
+        false => transpose_into(&responses.velocities, &mut pushed),
+    }
+    (found.forces_by_q, found.forces_by_v, found.forces_by_tau) = (zeros(), zeros(), zeros());
+    add_product(&mut found.forces_by_q, &answer, &parts.accelerations_by_q);
+    add_product(&mut found.forces_by_v, &answer, &parts.accelerations_by_v);
+    add_product(&mut found.forces_by_tau, &answer, &pushed);
     add_product(&mut found.by_q, &responses.velocities, &found.forces_by_q);
     add_product(&mut found.by_v, &responses.velocities, &found.forces_by_v);
     add_product(&mut found.by_tau, &responses.velocities, &found.forces_by_tau);
@@ -284,7 +327,7 @@ where
         add_multiple(&mut found.forces_by_q, T::one(), &turned[0]);
         add_multiple(&mut found.forces_by_v, T::one(), &turned[1]);
     }
-    Ok(found)
+    Ok(())
 }
 
 /// Puts in the change of friction of a contact that slips along `rates`, under a normal force times its coefficient: that of

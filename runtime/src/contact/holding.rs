@@ -1,6 +1,6 @@
 //! A mechanism whose contacts do what they are told to.
 
-use super::derivatives::{ContactDerivatives, HeldDerivatives, derivatives};
+use super::derivatives::{ContactDerivatives, HeldDerivatives, derivatives, derivatives_into};
 use super::held::{Held, held};
 use super::{Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
@@ -35,7 +35,8 @@ impl<M, T: Copy, const NK: usize, const NR: usize> Clone for Holding<'_, M, T, N
 /// for errors of the method; [`Holding::stabilized`] lets them decay. Where a held leg straightens, these errors are large unless
 /// steps are short: a quadruped that collapses on four held feet, without torques, lifts them by 0.1 mm in 0.4 s with steps of `Rk4`
 /// of 1 ms, by 0.2 m with 10 ms, and by 2 µm with 0.1 ms. A velocity that fulfils the contacts is that after they
-/// [`land`](super::land).
+/// [`land`](super::land). Second derivatives there are none: optimisers model costs by Gauss and Newton
+/// ([`Quadratic::add_squares`](crate::optimal::Quadratic::add_squares)), or have feet that stay in place as joints or constraints.
 ///
 /// ```
 /// use linkwork::contact::{self, Touch};
@@ -132,6 +133,25 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
+    }
+
+    /// [`held_derivatives`](Self::held_derivatives) into what is there, whatever is in it: the matrices are long to copy.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`forward_dynamics`](super::forward_dynamics); what is there then means nothing.
+    pub fn held_derivatives_into<const NQ: usize, const NV: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        v: &SVector<T, NV>,
+        tau: &SVector<T, NV>,
+        into: &mut HeldDerivatives<T, NV, NR>,
+    ) -> Result<(), ConstraintError>
+    where
+        M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        derivatives_into(self.mechanism, t, (q, v), tau, &self.touches, self.gains, into)
     }
 }
 

@@ -2,7 +2,7 @@
 //! Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
 
 use super::{ITERATIONS, State, least};
-use linkwork::contact::{self, Held, Touch};
+use linkwork::contact::{self, Held, HeldDerivatives, Touch};
 use linkwork::nalgebra::{DMatrix, SMatrix, SVector};
 use linkwork::optimal::{Policy, Quadratic, Value, backward_into};
 use linkwork::prelude::*;
@@ -159,6 +159,22 @@ fn weights(phase: &Phase) -> [Motion; 2] {
     }
 }
 
+/// A node of a trajectory to second order, with room for what it is made of.
+struct Node {
+    step: Transition,
+    cost: Cost,
+    held: HeldDerivatives<f64, 18, 12>,
+    /// Whether the costs depend on more than one of configuration, velocity and inputs at once.
+    is_mixed: bool,
+}
+
+impl Node {
+    fn zeros() -> Self {
+        let (step, cost, held) = (Transition::zeros(), Quadratic::zeros(), HeldDerivatives::zeros());
+        Self { step, cost, held, is_mixed: false }
+    }
+}
+
 /// The gait from a start, whose posture is also what states are drawn to.
 struct Trot {
     start: Configuration,
@@ -227,11 +243,14 @@ impl Trot {
         k: usize,
         state: &State<19, 18>,
         u: &Inputs,
-        step: &mut Transition,
-        cost: &mut Cost,
+        node: &mut Node,
     ) -> Result<(), ConstraintError> {
         let ((q, v), phase) = (state, &self.phases[k]);
-        *cost = Quadratic::zeros();
+        let Node { step, cost, held: found, is_mixed } = node;
+        (cost.qq, cost.vv, cost.uu, cost.u) = Default::default();
+        if *is_mixed {
+            (cost.qv, cost.qu, cost.vu, *is_mixed) = Default::default();
+        }
         if phase.lands {
             *step = contact::land_derivatives(&Walker {}, 0.0, q, v, &phase.touches)?.transition(q);
             self.model(k, state, 1.0, cost);
@@ -241,26 +260,20 @@ impl Trot {
         }
         self.model(k, state, PERIOD, cost);
         let held = contact::hold(&Walker {}, phase.touches).with_gains(0.0, DAMPING);
-        let found = held.held_derivatives(0.0, q, v, &Walker {}.generalized_forces(q, u))?;
-        let driven = |rows: &SMatrix<f64, 12, 18>| rows.fixed_columns::<12>(6).into_owned();
+        held.held_derivatives_into(0.0, q, v, &Walker {}.generalized_forces(q, u), found)?;
         let by_u = found.by_tau.fixed_columns::<12>(6).into_owned();
-        discrete::semi_implicit_into(
-            &held,
-            PERIOD,
-            (q, v),
-            &found.a,
-            (&found.by_q, &found.by_v, &by_u),
-            step,
-        );
+        let by = (&found.by_q, &found.by_v, &by_u);
+        discrete::semi_implicit_into(&held, PERIOD, (q, v), &found.a, by, step);
         cost.u = u * (OF_INPUTS * PERIOD);
         cost.uu.fill_diagonal(OF_INPUTS * PERIOD);
         for (k, force) in found.forces.as_slice().as_chunks::<3>().0.iter().enumerate() {
             for (row, off) in outside(*force) {
+                *is_mixed = true;
                 let mut all = SMatrix::<f64, 1, 12>::zeros();
                 all.fixed_columns_mut::<3>(3 * k).copy_from_slice(&row);
-                let by =
-                    (all * found.forces_by_q, all * found.forces_by_v, all * driven(&found.forces_by_tau));
-                cost.add_squares(OF_CONES * PERIOD, &SVector::from([off]), (&by.0, &by.1, &by.2));
+                let by_u = all * found.forces_by_tau.fixed_columns::<12>(6);
+                let by = (&(all * found.forces_by_q), &(all * found.forces_by_v), &by_u);
+                cost.add_squares(OF_CONES * PERIOD, &SVector::from([off]), by);
             }
         }
         Ok(())
@@ -276,12 +289,12 @@ impl Trot {
 
     /// Linearises and goes backwards; what the change of inputs is expected to add to the costs.
     fn sweep(&self, plan: &mut Plan) -> [f64; 2] {
-        let (mut step, mut cost) = (Transition::zeros(), Quadratic::zeros());
+        let mut node = Node::zeros();
         let mut to_go = self.last(&plan.states[plan.inputs.len()]);
         let mut expected = [0.0; 2];
         for (k, policy) in plan.policies.iter_mut().enumerate().rev() {
-            self.node(k, &plan.states[k], &plan.inputs[k], &mut step, &mut cost).expect("feet hold");
-            backward_into(&step, &cost, 0.0, policy, &mut to_go).expect("it is convex");
+            self.node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+            backward_into(&node.step, &node.cost, 0.0, policy, &mut to_go).expect("it is convex");
             expected.iter_mut().zip(policy.expected).for_each(|(sum, more)| *sum += more);
         }
         expected
@@ -374,17 +387,17 @@ pub fn measure() -> String {
         costs.push(cost);
         (plan.states, plan.inputs) = next.clone();
     }
-    let (mut step, mut local) = (Transition::zeros(), Quadratic::zeros());
+    let mut node = Node::zeros();
     let linearise = least(nodes, || {
         for k in 0..nodes {
-            trot.node(k, &plan.states[k], &plan.inputs[k], &mut step, &mut local).expect("feet hold");
-            black_box((&step, &local));
+            trot.node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+            black_box(&node);
         }
     });
     let mut kept = Vec::new();
     for k in 0..nodes {
-        trot.node(k, &plan.states[k], &plan.inputs[k], &mut step, &mut local).expect("feet hold");
-        kept.push((step, local));
+        trot.node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+        kept.push((node.step, node.cost));
     }
     let last = trot.last(&plan.states[nodes]);
     let backwards = least(nodes, || {

@@ -98,8 +98,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         rates: &SVector<T, NR>,
     ) -> Result<List<T, NR>, usize> {
         let slips = self.slipping(touches);
-        let mut forces =
-            if slips.contains(&true) { List::repeat(T::zero()) } else { self.together(|_| true) };
+        let mut forces = List::repeat(T::zero());
+        if !slips.contains(&true) {
+            forces = self.together(|_| true);
+            let (accelerations, most) = (self.rates(&forces), self.rounding(&forces));
+            if accelerations.iter().take(self.size).all(|left| left.abs() <= most) {
+                return Ok(forces);
+            }
+        }
         let system = self.held_system(&slips, rates);
         // What is left of the equations.
         let left = |forces: &List<T, NR>| {
