@@ -1,0 +1,16 @@
+use linkwork::index;
+use linkwork::prelude::*;
+
+#[mechanism]
+struct Pendulum {
+    #[body(mass = 1, com = -y)]
+    arm: Body,
+    #[joint(ground -> arm, about = z)]
+    hinge: Pin,
+}
+
+const HINGE: usize = index!(Pendulum::CONFIGURATION, "hinges");
+
+fn main() {
+    let _ = Pendulum.neutral()[HINGE];
+}
