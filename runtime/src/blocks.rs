@@ -6,14 +6,16 @@ use crate::arithmetic::dispatch::{Evaluate, dispatch};
 use crate::arithmetic::{Arithmetic, Compiled, Vector};
 use crate::multiplication::{part, put, registers_of_eight, registers_of_four};
 use core::array::{from_mut, from_ref};
-use nalgebra::{ArrayStorage, SMatrix, SVector};
+use nalgebra::{ArrayStorage, SMatrix};
 
 mod nearly;
 mod small;
+mod solve;
 #[cfg(test)]
 mod tests;
 
 pub use nearly::NearlyIdentity;
+pub use solve::{factors, solve, solve_rows_into};
 
 /// `C += A B`. A function of its own for each size: a few dozen products written out one after another are longer than the
 /// instruction cache.
@@ -385,124 +387,5 @@ pub fn symmetric_into<T: Real, const N: usize>(m: &SMatrix<T, N, N>, into: &mut 
     transpose_into(m, into);
     for (entry, x) in into.data.0.as_flattened_mut().iter_mut().zip(m.data.0.as_flattened()) {
         *entry = (*entry + *x) * half;
-    }
-}
-
-/// `L` below the diagonal and `1/D` of `H + r = L D Lᵀ`, with ones on the diagonal of `L`; which pivot is not positive
-/// otherwise.
-pub fn factors<T: Real, const N: usize>(
-    matrix: &SMatrix<T, N, N>,
-    regularisation: T,
-) -> Result<(SMatrix<T, N, N>, SVector<T, N>), usize> {
-    let (mut l, mut inverse) = (matrix.data.0, [T::zero(); N]);
-    for j in 0..N {
-        let column = l[j];
-        let pivot = column[j] + regularisation;
-        if !(pivot > T::zero() && pivot.is_finite()) {
-            return Err(j);
-        }
-        inverse[j] = T::one() / pivot;
-        let mut scaled = column;
-        scaled.iter_mut().for_each(|x| *x *= inverse[j]);
-        // Whole columns: what stands above the diagonal is read by nothing.
-        for k in j + 1..N {
-            for (entry, x) in l[k].iter_mut().zip(&column) {
-                *entry = Compiled::neg_mul_add(*x, scaled[k], *entry);
-            }
-        }
-        l[j] = scaled;
-    }
-    let storage = |x| SMatrix::from_array_storage(ArrayStorage(x));
-    Ok((storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
-}
-
-/// Puts `−(L D Lᵀ)⁻¹ B` in the place of `B`.
-pub fn solve<T: Real, const N: usize, const C: usize>(
-    l: &SMatrix<T, N, N>,
-    inverse: &SVector<T, N>,
-    b: &mut SMatrix<T, N, C>,
-) {
-    *b = transposed(&solved_rows(l, inverse, &transposed(b)));
-}
-
-/// `−B (L D Lᵀ)⁻¹`.
-#[inline]
-pub fn solved_rows<T: Real, const N: usize, const R: usize>(
-    l: &SMatrix<T, N, N>,
-    inverse: &SVector<T, N>,
-    b: &SMatrix<T, R, N>,
-) -> SMatrix<T, R, N> {
-    let mut solved = zeros();
-    solve_rows_into(l, inverse, b, &mut solved);
-    solved
-}
-
-/// Puts `−B (L D Lᵀ)⁻¹` into a matrix.
-#[inline(never)]
-pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
-    l: &SMatrix<T, N, N>,
-    inverse: &SVector<T, N>,
-    b: &SMatrix<T, R, N>,
-    into: &mut SMatrix<T, R, N>,
-) {
-    dispatch::<1, T, _, _>(&Solve { l, inverse, b }, into);
-}
-
-/// What is solved.
-struct Solve<'a, T, const N: usize, const R: usize> {
-    l: &'a SMatrix<T, N, N>,
-    inverse: &'a SVector<T, N>,
-    b: &'a SMatrix<T, R, N>,
-}
-
-impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>> for Solve<'_, T, N, R> {
-    type Output = ();
-
-    #[inline(always)]
-    fn evaluate<A: Arithmetic>(&self, out: &mut SMatrix<T, R, N>) {
-        let out = &mut out.data.0;
-        // The last rows begin as much earlier as they would be too long, and are solved twice.
-        if A::WIDE && R >= 8 {
-            let eights = registers_of_eight(R, true);
-            (0..eights).for_each(|k| self.some::<A, 8>(out, 8 * k));
-            if registers_of_four(R, true) > 0 {
-                self.some::<A, 4>(out, 8 * eights);
-            }
-        } else if R >= 4 {
-            (0..R).step_by(4).for_each(|from| self.some::<A, 4>(out, from));
-        } else {
-            (0..R).for_each(|from| self.some::<A, 1>(out, from));
-        }
-    }
-}
-
-impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
-    /// Solves for one register of right-hand sides, from a given one on.
-    #[inline(always)]
-    fn some<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {
-        let (l, inverse) = (&self.l.data.0, &self.inverse.data.0[0]);
-        let mut x = [A::splat(T::zero()); N];
-        for (x, column) in x.iter_mut().zip(&self.b.data.0) {
-            *x = part::<A, T, W>(column, from);
-        }
-        for j in 0..N {
-            let own = x[j];
-            for i in j + 1..N {
-                x[i] = A::neg_mul_add(own, A::splat(l[j][i]), x[i]);
-            }
-        }
-        for (x, inverse) in x.iter_mut().zip(inverse) {
-            *x = *x * A::splat(-*inverse);
-        }
-        // Each unknown goes into all others at once: sums of their own would wait for one addition after another.
-        for j in (0..N).rev() {
-            let own = x[j];
-            for i in 0..j {
-                x[i] = A::neg_mul_add(own, A::splat(l[i][j]), x[i]);
-            }
-        }
-        for (column, x) in out.iter_mut().zip(&x) {
-            put(x, column, from);
-        }
     }
 }

@@ -1,5 +1,6 @@
 //! Products and solutions against nalgebra's, for all widths of registers and whatever their last rows leave of one.
 
+use super::solve::Solve;
 use super::*;
 use crate::multiplication::testing::numbers;
 

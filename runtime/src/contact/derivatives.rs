@@ -274,20 +274,7 @@ where
     let laws = mechanism.contact_laws();
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
-    let [position, velocity] = gains;
-    if velocity != T::zero() {
-        add_multiple(&mut parts.accelerations_by_q, velocity, &parts.rates_by_q);
-        add_multiple(&mut parts.accelerations_by_v, velocity, &jacobian);
-    }
-    if position != T::zero() {
-        for (_, first) in layout.gaps() {
-            for (change, by_q) in parts.accelerations_by_q.data.0.iter_mut().zip(&jacobian.data.0) {
-                if let (Some(change), Some(by_q)) = (change.get_mut(first), by_q.get(first)) {
-                    *change += *by_q * position;
-                }
-            }
-        }
-    }
+    damp(&mut parts, &jacobian, layout, gains);
     // How friction turns with the slip while the normal forces stay.
     let slips = touches.contains(&Touch::Slips);
     let mut turned = [zeros::<T, NR, NV>(); 2];
@@ -328,6 +315,28 @@ where
         add_multiple(&mut found.forces_by_v, T::one(), &turned[1]);
     }
     Ok(())
+}
+
+/// Adds what the accelerations of contacts that are held are to make of gaps and rates.
+fn damp<T: Real, const NV: usize, const NK: usize, const NR: usize>(
+    parts: &mut FirstOrder<T, NV, NR>,
+    jacobian: &SMatrix<T, NR, NV>,
+    layout: Layout<NK>,
+    [position, velocity]: [T; 2],
+) {
+    if velocity != T::zero() {
+        add_multiple(&mut parts.accelerations_by_q, velocity, &parts.rates_by_q);
+        add_multiple(&mut parts.accelerations_by_v, velocity, jacobian);
+    }
+    if position != T::zero() {
+        for (_, first) in layout.gaps() {
+            for (change, by_q) in parts.accelerations_by_q.data.0.iter_mut().zip(&jacobian.data.0) {
+                if let (Some(change), Some(by_q)) = (change.get_mut(first), by_q.get(first)) {
+                    *change += *by_q * position;
+                }
+            }
+        }
+    }
 }
 
 /// Puts in the change of friction of a contact that slips along `rates`, under a normal force times its coefficient: that of

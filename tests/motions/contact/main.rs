@@ -8,6 +8,7 @@ mod events;
 mod files;
 mod forces;
 mod fuzz;
+mod gains;
 mod gallery;
 mod laws;
 mod mechanisms;
