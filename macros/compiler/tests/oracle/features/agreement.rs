@@ -147,19 +147,17 @@ impl Case<'_, '_> {
         assert!(rest.is_empty(), "{what} has more than derivatives, {}", self.name);
     }
 
-    /// The values with one entry changed: where speeds are declared, a displacement is measured in them.
+    /// The values with one entry changed: where speeds are declared, a displacement is measured in them, as they are at the start.
     fn changer(&self) -> impl Fn(&Values, By, usize, f64) -> Values + use<> {
         let charts = self.model.charts.clone();
-        let (function, nv) = (self.function("__rate_matrix").map(|f| f.program.clone()), self.values.v.len());
-        move |values, by, k, h| match (by, &function) {
-            (By::Q, Some(matrix)) => {
-                let columns = values.run_alone(matrix);
-                let step: Vec<f64> = columns[k * nv..(k + 1) * nv].iter().map(|x| h * x).collect();
-                values.displaced(&charts, &step)
-            }
-            (By::Q, None) => {
-                let step: Vec<f64> = (0..nv).map(|j| if j == k { h } else { 0.0 }).collect();
-                values.displaced(&charts, &step)
+        let (columns, nv) = (self.here("__rate_matrix"), self.values.v.len());
+        move |values, by, k, h| match by {
+            By::Q => {
+                let along = |j: usize| match columns.get(k * nv + j) {
+                    Some(entry) => h * entry,
+                    None => f64::from(u8::from(j == k)) * h,
+                };
+                values.displaced(&charts, &(0..nv).map(along).collect::<Vec<_>>())
             }
             _ => values.changed(by, k, h),
         }

@@ -115,7 +115,7 @@ impl Values {
     }
 
     /// A result of a program that calls nothing.
-    pub fn run_alone(&self, program: &Program) -> Vec<f64> {
+    fn run_alone(&self, program: &Program) -> Vec<f64> {
         program.run(&|s| self.at(Quantity::of(s), &[]))
     }
 
