@@ -9,7 +9,7 @@ pub mod jacobians;
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
-use crate::private::{constant, epsilon};
+use crate::private::constant;
 use core::cmp::Ordering;
 
 /// `|B₂ₖ| / (2k)!` for k = 1, 2, …: `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
@@ -89,14 +89,30 @@ fn choose<T: Real, const K: usize>(
     values
 }
 
+/// Below this `θ²` six terms of the series of sine and cosine are exact to rounding, and a step is no farther as a rule.
+const SMALL_TURN: f64 = 0.05;
+/// Below this `tan²(θ/2)` seven terms of the series of the arc tangent are exact to rounding.
+const SMALL_TANGENT: f64 = 0.0025;
+
+/// `1/d₀ − x/d₁ + x²/d₂ − …`
+fn polynomial<T: Real, const N: usize>(x: T, divisors: [f64; N]) -> T {
+    divisors.iter().rev().fold(T::zero(), |sum, d| constant::<T>(1.0 / d) - x * sum)
+}
+
 /// The unit quaternion of the rotation vector `dv`: `(dv sin(θ/2)/θ, cos(θ/2))`.
 pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
     let square = dot(dv, dv);
     let [factor, w] = choose(
         square,
-        epsilon(),
-        // The first neglected terms, θ⁴/3840 and θ⁴/384, are far below rounding.
-        |square| [constant::<T>(0.5) - square / constant(48.0), T::one() - square / constant(8.0)],
+        constant(SMALL_TURN),
+        // The first neglected terms are of (θ/2)¹².
+        |square| {
+            let half = square * constant(0.25);
+            [
+                polynomial(half, [1.0, 6.0, 120.0, 5040.0, 362880.0, 39916800.0]) * constant(0.5),
+                polynomial(half, [1.0, 2.0, 24.0, 720.0, 40320.0, 3628800.0]),
+            ]
+        },
         |square| {
             let angle = square.sqrt();
             let (sin, cos) = Compiled::sin_cos(angle * constant(0.5));
@@ -114,8 +130,13 @@ pub(crate) fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
     let w = w * sign;
     let [factor] = choose(
         dot(u, u),
-        epsilon::<T>() * w * w,
-        |square| [constant::<T>(2.0) / w - constant::<T>(2.0 / 3.0) * square / (w * w * w)],
+        w * w * constant(SMALL_TANGENT),
+        // The first neglected term is of tan¹⁴.
+        |square| {
+            let inverse = T::one() / w;
+            let tangent = square * inverse * inverse;
+            [polynomial(tangent, [1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0]) * inverse * constant(2.0)]
+        },
         |square| {
             let sin = square.sqrt();
             [constant::<T>(2.0) * sin.atan2(w) / sin]
@@ -189,14 +210,11 @@ fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5
 pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
-        constant(0.05),
+        constant(SMALL_TURN),
         |square| {
-            let polynomial = |terms: [f64; 6]| {
-                terms.iter().rev().fold(T::zero(), |s, d| constant::<T>(1.0 / d) - square * s)
-            };
             [
-                polynomial([2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
-                polynomial([6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
+                polynomial(square, [2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
+                polynomial(square, [6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
             ]
         },
         |square| {
@@ -285,8 +303,8 @@ pub fn ball_carry<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
 pub fn free_carry<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let [x, y, z, wx, wy, wz] = v;
-    let [x, y, z] = ball_carry([rx, ry, rz], [x, y, z]);
-    let [wx, wy, wz] = ball_carry([rx, ry, rz], [wx, wy, wz]);
+    let back = conjugate(exponential([rx, ry, rz]));
+    let ([x, y, z], [wx, wy, wz]) = (rotated(back, [x, y, z]), rotated(back, [wx, wy, wz]));
     [x, y, z, wx, wy, wz]
 }
 

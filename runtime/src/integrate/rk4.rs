@@ -43,20 +43,21 @@ fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 }
 
 /// What leads through a step of `h` seconds, and the change of the velocity, with the acceleration `before` at its start and a
-/// one that is added everywhere, and keeps its direction as seen from outside.
+/// one that is added everywhere, if any, and keeps its direction as seen from outside.
 pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     h: T,
     before: SVector<T, NV>,
-    added: &SVector<T, NV>,
+    added: Option<&SVector<T, NV>>,
 ) -> Rates<T, NV> {
     let half = h * constant(0.5);
     let mut stage = |h: T, mean: &Rates<T, NV>| {
         let (displacement, acceleration) = rates(system, start, h, mean);
-        (displacement, acceleration + system.carry(start.t, &start.q, &(mean.0 * h), added))
+        let added = added.map(|added| system.carry(start.t, &start.q, &(mean.0 * h), added));
+        (displacement, added.map_or(acceleration, |added| acceleration + added))
     };
-    let k1 = (start.v, before + added);
+    let k1 = (start.v, added.map_or(before, |added| before + added));
     let k2 = stage(half, &k1);
     let k3 = stage(half, &k2);
     let k4 = stage(h, &k3);
@@ -94,7 +95,7 @@ impl<T: Real> Method<T> for Rk4<T> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let known = memory.take();
         let before = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
-        let (displacement, change) = through(system, start, h, before, &SVector::zeros());
+        let (displacement, change) = through(system, start, h, before, None);
         let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
         let end = settled(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);

@@ -148,7 +148,9 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     h: T,
     t: T,
 ) -> (State<T, NQ, NV>, SVector<T, NV>) {
-    let (displacement, change) = through(system, start, h, *before, rate);
+    let still = SVector::zeros();
+    let added = (*rate != still).then_some(rate);
+    let (displacement, change) = through(system, start, h, *before, added);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
-    (end, system.carry(start.t, &start.q, &displacement, &(*rate * h)))
+    (end, added.map_or(still, |rate| system.carry(start.t, &start.q, &displacement, &(*rate * h))))
 }
