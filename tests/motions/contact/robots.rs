@@ -1,6 +1,8 @@
 //! A robot on its feet.
 
-use linkwork::contact;
+use super::laws::Random;
+use linkwork::contact::{self, Contacts};
+use linkwork::nalgebra::DMatrix;
 use linkwork::prelude::*;
 
 #[mechanism(
@@ -58,4 +60,65 @@ fn a_quadruped_stands() {
     assert!((normal - weight * m.slope.cos()).abs() < 1e-6 * weight, "{normal} {weight}");
     let along: [f64; 2] = [1, 2].map(|c| (0..4).map(|k| forces[3 * k + c]).sum());
     assert!((along[0].hypot(along[1]) - weight * m.slope.sin()).abs() < 1e-6 * weight, "{along:?}");
+}
+
+/// A trunk on four alike legs with two joints each, and with four alike arms.
+#[mechanism]
+struct Crab {
+    #[body(mass = 3, inertia = cuboid(3, 0.3, 0.2, 0.1))]
+    trunk: Body,
+    #[joint(ground -> trunk)]
+    pose: Free,
+    #[body(mass = 0.4, com = -0.1 * z, inertia = rod(0.4, 0.2, z))]
+    thigh: [Body; 4],
+    #[joint(trunk.at(0.1 * (i - 1.5) * x + 0.05 * y) -> thigh[i], about = x)]
+    hip: [Pin; 4],
+    #[body(mass = 0.2, com = -0.1 * z, inertia = rod(0.2, 0.2, z))]
+    shin: [Body; 4],
+    #[joint(thigh[i].at(-0.2 * z) -> shin[i], about = y)]
+    knee: [Pin; 4],
+    #[body(mass = 0.1, com = 0.1 * z, inertia = rod(0.1, 0.2, z))]
+    arm: [Body; 4],
+    #[joint(trunk.at(0.1 * (i - 1.5) * x - 0.05 * y) -> arm[i], about = y)]
+    shoulder: [Pin; 4],
+    #[contact(shin[i].at(-0.2 * z), ground.plane(z), friction = 0.5)]
+    foot: [Contact; 4],
+    #[contact(arm[i].at(0.2 * z).sphere(0.01), ground.at(z).plane(-z), friction = 0.5)]
+    hand: [Contact; 4],
+}
+
+/// Differences of `M⁻¹ Gᵀ` and `G M⁻¹ Gᵀ` from those by a general factorisation, as a part of their largest entries.
+fn response_errors<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+) -> [f64; 2]
+where
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = f64>,
+{
+    let found = m.contact_responses(0.0, q, &[true; NK]);
+    let jacobian = m.contact_jacobian(0.0, q);
+    let mass = DMatrix::from_column_slice(NV, NV, m.mass_matrix(0.0, q).as_slice());
+    let rows = DMatrix::from_column_slice(NR, NV, jacobian.as_slice());
+    let velocities = mass.lu().solve(&rows.transpose()).unwrap();
+    let rates = &rows * &velocities;
+    let error = |found: &[f64], expected: &DMatrix<f64>| {
+        let difference = found.iter().zip(expected.iter()).map(|(a, b)| (a - b).abs());
+        difference.fold(0.0, f64::max) / expected.amax()
+    };
+    [error(found.velocities.as_slice(), &velocities), error(found.rates.as_slice(), &rates)]
+}
+
+/// With limbs as lanes, legs that carry and arms that are carried along, and contacts of two groups of limbs.
+#[test]
+fn responses_of_limbs_are_those_of_the_mass_matrix() {
+    let mut random = Random(11);
+    for _ in 0..20 {
+        let m = Solo { slope: 0.1 };
+        let q = m.integrate(&m.neutral(), &random.vector(1.0));
+        let errors = response_errors(&m, &q);
+        assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
+        let q = Crab {}.integrate(&Crab {}.neutral(), &random.vector(1.0));
+        let errors = response_errors(&Crab {}, &q);
+        assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
+    }
 }

@@ -9,7 +9,7 @@ use crate::lower::Program;
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
 use crate::mechanics::derivatives::Factor;
 use crate::mechanics::speeds::{InSpeeds, Role};
-use crate::mechanics::{self, crba, energy, frames, momentum};
+use crate::mechanics::{self, crba, energy, frames, limb_responses, momentum};
 use crate::mechanism::Model;
 use crate::passes::Passes;
 use std::rc::Rc;
@@ -155,10 +155,12 @@ impl<'g> Dynamics<'g> {
     /// What impulses along given rates do to the velocities and to these rates.
     pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
         self.of_best(|variants| {
-            variants.cheapest(Role::Responses(rows.len()), |model| {
+            let plain = variants.cheapest(Role::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
                 Factor::of(&mass, &variants.joints).responses(rows)
-            })
+            });
+            let limbs = variants.plain_limbs().filter_map(|limbs| limb_responses::responses(limbs, rows));
+            plain.or_in_lanes(in_lanes_of(self.specialisation, limbs))
         })
     }
 

@@ -188,8 +188,9 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
 
 /// Which functions evaluate limbs or joints as the lanes of vectors, and which coordinates those limbs have.
 fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
+    let shown = output.functions.iter().filter(|f| !f.name.starts_with("__"));
     let in_lanes: Vec<(&str, &Program)> =
-        output.functions.iter().filter_map(|f| Some((f.name.as_str(), f.program.simd.as_deref()?))).collect();
+        shown.filter_map(|f| Some((f.name.as_str(), f.program.simd.as_deref()?))).collect();
     let Some((_, most)) = in_lanes.iter().max_by_key(|(_, program)| program.gathers.len()) else { return };
     let names: Vec<String> = in_lanes.iter().map(|(name, _)| format!("`{name}`")).collect();
     let _ = writeln!(

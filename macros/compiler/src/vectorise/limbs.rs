@@ -22,6 +22,17 @@ pub struct Limbs<'g> {
     passive_forces: Vec<Expr<'g>>,
 }
 
+/// A limb among alike ones.
+#[derive(Clone, Copy, Debug)]
+pub struct LimbLane {
+    /// The first velocity of the group.
+    pub group: usize,
+    /// Its lane.
+    pub lane: usize,
+    /// How many lanes there are.
+    pub width: usize,
+}
+
 impl<'g> Limbs<'g> {
     /// The mechanism with its alike limbs as lanes. `passive_forces` gives those of the mechanism, by velocity. `None` if
     /// there are no groups, or limbs are alike in shape alone.
@@ -129,6 +140,77 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(gather).collect()
     }
 
+    /// By velocity here: the group of limbs that it belongs to, as the first velocity of these; none for those of trunks.
+    pub fn groups(&self) -> Vec<Option<usize>> {
+        let mut groups = vec![None; self.velocities.len()];
+        let mut of_links: Vec<Option<usize>> = Vec::new();
+        for joint in &self.joints {
+            let above = joint.parent.and_then(|p| of_links[p.0]);
+            let first = || joint.dofs.first().map(|dof| dof.index);
+            let group = above.or_else(|| if joint.limbs > 1 { first() } else { None });
+            joint.dofs.iter().for_each(|dof| groups[dof.index] = group);
+            of_links.push(group);
+        }
+        groups
+    }
+
+    /// How many lanes a velocity has.
+    pub fn width(&self, index: usize) -> usize {
+        self.velocities[index].lanes.len()
+    }
+
+    /// The one limb whose velocities a row has, numbered by the whole mechanism, if it has those of one. Limbs that stand in several
+    /// lanes have none.
+    pub fn lane_of(&self, row: &[Expr<'g>], groups: &[Option<usize>]) -> Option<LimbLane> {
+        let entries = row.iter().zip(&self.places).filter(|(entry, _)| !entry.is_zero());
+        let mut found: Option<LimbLane> = None;
+        for (_, place) in entries {
+            let (Some(group), Some(lane)) = (groups[place.index], place.lane) else { continue };
+            let lanes = &self.velocities[place.index].lanes;
+            if (1..lanes.len()).any(|k| lanes[..k].contains(&lanes[k])) {
+                return None;
+            }
+            let here = LimbLane { group, lane, width: lanes.len() };
+            if found.is_some_and(|known| (known.group, known.lane) != (group, lane)) {
+                return None;
+            }
+            found = Some(here);
+        }
+        found
+    }
+
+    /// Rows of the whole mechanism that belong to the limbs of a group, one of each, as one in lanes.
+    pub fn side_by_side(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
+        let g = self.model.graph;
+        let merge = &mut Merge::new(g);
+        let entry = |velocity: &Velocity| {
+            // What stands alone is the trunk's, and of other limbs there is nothing.
+            let is_alone = velocity.lanes.len() == 1;
+            let of = |(lane, row): (usize, &&[Expr<'g>])| match velocity.lanes.get(if is_alone {
+                0
+            } else {
+                lane
+            }) {
+                Some(k) => row[*k],
+                None => g.zero(),
+            };
+            let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(of).collect();
+            let all = merge.lanes(&lanes).unwrap_or_else(|| joined(&lanes));
+            if is_alone { all } else { g.lane_constants(&velocity.signs) * all }
+        };
+        self.velocities.iter().map(entry).collect()
+    }
+
+    /// One expression for each velocity of the whole mechanism, from what `of` makes of its index here and its lane.
+    pub fn scattered_from(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
+        let g = self.model.graph;
+        let scatter = |place: &Location| match place.lane {
+            Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * of(place.index, k)).lane(k),
+            None => of(place.index, 0),
+        };
+        self.places.iter().map(scatter).collect()
+    }
+
     /// Forces of springs, dashpots and the like.
     pub fn passive_forces(&self) -> &[Expr<'g>] {
         &self.passive_forces
@@ -167,6 +249,14 @@ impl<'g> Limbs<'g> {
             }
         }
         whole
+    }
+}
+
+/// Expressions side by side; their number is a power of two.
+pub fn joined<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
+    match lanes.split_at(lanes.len() / 2) {
+        ([], _) => lanes[0],
+        (a, b) => joined(a).joined(a.len(), joined(b)),
     }
 }
 

@@ -1,0 +1,178 @@
+//! What impulses at contacts do where alike limbs touch: their rates are side by side in lanes, as the limbs are.
+
+use super::crba::{Matrix, mass_matrix};
+use super::ldl::elimination_order;
+use crate::expr::Expr;
+use crate::vectorise::{LimbLane, Limbs, joined};
+use std::collections::BTreeMap;
+
+/// Rates at contacts of the limbs of one group.
+struct Family<'g> {
+    /// The velocity that the group's limbs begin with.
+    group: usize,
+    /// How many limbs there are.
+    width: usize,
+    rows: Vec<Row<'g>>,
+}
+
+/// A rate of each limb.
+struct Row<'g> {
+    /// `L⁻ᵀ g` by velocities of [`Limbs`], in lanes.
+    reduced: Vec<Expr<'g>>,
+    /// Those of `M⁻¹ g` of the trunk and of the limb that the rate is of.
+    own: Vec<Expr<'g>>,
+}
+
+/// Where a rate is found: which family, row and lane.
+#[derive(Clone, Copy)]
+struct Place {
+    family: usize,
+    row: usize,
+    lane: usize,
+}
+
+/// `M = Lᵀ D L`, with limbs as lanes.
+struct Factor<'g> {
+    /// Velocities from the leaves to the root.
+    order: Vec<usize>,
+    /// By velocity: the entries of its row of `L`, without the diagonal.
+    rows: Vec<Vec<(usize, Expr<'g>)>>,
+    /// Diagonal of `D⁻¹`.
+    inverse: Vec<Expr<'g>>,
+    /// By velocity: the group of limbs that it belongs to.
+    groups: Vec<Option<usize>>,
+}
+
+/// `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. `None` unless each row moves one limb of several alike ones,
+/// and each of these as many.
+pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
+    let groups = limbs.groups();
+    let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
+    for (i, row) in rows.iter().enumerate() {
+        let LimbLane { group, lane, width } = limbs.lane_of(row, &groups)?;
+        found.entry(group).or_insert_with(|| vec![Vec::new(); width])[lane].push(i);
+    }
+    let factor = Factor::of(limbs, groups);
+    let (mut families, mut places) = (Vec::new(), BTreeMap::new());
+    for (group, lanes) in found {
+        let count = lanes.first()?.len();
+        if lanes.iter().any(|rows| rows.len() != count) {
+            return None;
+        }
+        for (lane, numbers) in lanes.iter().enumerate() {
+            for (row, i) in numbers.iter().enumerate() {
+                places.insert(*i, Place { family: families.len(), row, lane });
+            }
+        }
+        let all = (0..count).map(|row| {
+            let alike: Vec<&[Expr<'g>]> = lanes.iter().map(|numbers| rows[numbers[row]].as_slice()).collect();
+            factor.row(limbs.side_by_side(&alike), group)
+        });
+        families.push(Family { group, width: lanes.len(), rows: all.collect() });
+    }
+    let places: Vec<Place> = places.into_values().collect();
+    let mut out = Vec::new();
+    for place in &places {
+        out.extend(limbs.scattered_from(|index, lane| factor.velocity(&families, *place, index, lane)));
+    }
+    for i in 0..places.len() {
+        out.extend((0..places.len()).map(|j| factor.weight(&families, places[i.min(j)], places[i.max(j)])));
+    }
+    Some(out)
+}
+
+/// Of `n` lanes each that which is `by` farther.
+fn turned(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
+    let lanes: Vec<Expr<'_>> = (0..n).map(|k| e.lane((k + by) % n)).collect();
+    joined(&lanes)
+}
+
+impl<'g> Factor<'g> {
+    fn of(limbs: &Limbs<'g>, groups: Vec<Option<usize>>) -> Factor<'g> {
+        let mut m: Matrix<'g> = mass_matrix(&limbs.model, &limbs.joints);
+        let order = elimination_order(&limbs.joints, m.len());
+        let (mut rows, mut inverse) = (vec![Vec::new(); m.len()], Vec::new());
+        inverse.extend((0..m.len()).map(|k| m[k][k]));
+        for (step, &k) in order.iter().enumerate() {
+            inverse[k] = m[k][k].num(1.0) / m[k][k];
+            let rest: Vec<usize> =
+                order[step + 1..].iter().copied().filter(|&i| !m[k][i].is_zero()).collect();
+            for &i in &rest {
+                let factor = m[k][i] * inverse[k];
+                for &j in rest.iter().filter(|&&j| j <= i) {
+                    let taken = factor * m[k][j];
+                    let hangs = groups[k].is_some() && groups[i].is_none() && groups[j].is_none();
+                    let taken = if hangs { taken.lane_sum(limbs.width(k)) } else { taken };
+                    m[i][j] -= taken;
+                    m[j][i] = m[i][j];
+                }
+                rows[k].push((i, factor));
+            }
+        }
+        Factor { order, rows, inverse, groups }
+    }
+
+    /// A rate of each limb of a group, with its entries `g` in lanes.
+    fn row(&self, g: Vec<Expr<'g>>, group: usize) -> Row<'g> {
+        let mut reduced = g;
+        for &k in &self.order {
+            for (i, factor) in &self.rows[k] {
+                reduced[*i] = reduced[*i] - *factor * reduced[k];
+            }
+        }
+        let mut own: Vec<Expr<'g>> = reduced.iter().map(|r| r.zero()).collect();
+        for &k in self.order.iter().rev().filter(|k| self.groups[**k].is_none_or(|of| of == group)) {
+            let start = reduced[k] * self.inverse[k];
+            own[k] = self.rows[k].iter().fold(start, |x, (i, factor)| x - *factor * own[*i]);
+        }
+        Row { reduced, own }
+    }
+
+    /// What a unit impulse along a rate adds to a velocity, in the lane that this has.
+    fn velocity(&self, families: &[Family<'g>], at: Place, index: usize, lane: usize) -> Expr<'g> {
+        let Family { group, width, rows } = &families[at.family];
+        let own = &rows[at.row].own;
+        match self.groups[index] {
+            None => own[index].lane(at.lane),
+            Some(of) if of == *group && lane == at.lane => own[index],
+            Some(of) if of == *group => {
+                self.carried(index, &|k| turned(own[k], *width, width + at.lane - lane))
+            }
+            Some(_) => self.carried(index, &|k| own[k].lane(at.lane)),
+        }
+    }
+
+    /// The velocity of a limb that trunks carry along.
+    fn carried(&self, index: usize, trunk: &dyn Fn(usize) -> Expr<'g>) -> Expr<'g> {
+        self.rows[index].iter().fold(self.inverse[index].zero(), |x, (i, factor)| {
+            let value = if self.groups[*i].is_none() { trunk(*i) } else { self.carried(*i, trunk) };
+            x - *factor * value
+        })
+    }
+
+    /// What a unit impulse along one rate adds to another.
+    fn weight(&self, families: &[Family<'g>], a: Place, b: Place) -> Expr<'g> {
+        let (first, second) = (&families[a.family], &families[b.family]);
+        let (x, y) = (&first.rows[a.row].reduced, &second.rows[b.row].reduced);
+        let sum = |is_in: &dyn Fn(usize) -> bool, of: &dyn Fn(usize) -> [Expr<'g>; 2]| {
+            let terms = (0..x.len()).filter(|k| is_in(*k)).map(|k| {
+                let [x, y] = of(k);
+                x * (y * self.inverse[k])
+            });
+            terms.reduce(|a, b| a + b).unwrap_or_else(|| self.inverse[0].zero())
+        };
+        let trunk = |k: usize| self.groups[k].is_none();
+        if a.family != b.family {
+            return sum(&trunk, &|k| [x[k].lane(a.lane), y[k].lane(b.lane)]);
+        }
+        let n = first.width;
+        let by = (n + b.lane - a.lane) % n;
+        if 2 * by > n || (2 * by == n && a.row > b.row) || (by == 0 && a.row > b.row) {
+            return self.weight(families, b, a);
+        }
+        match by {
+            0 => sum(&|k| trunk(k) || self.groups[k] == Some(first.group), &|k| [x[k], y[k]]).lane(a.lane),
+            _ => sum(&trunk, &|k| [x[k], turned(y[k], n, by)]).lane(a.lane),
+        }
+    }
+}
