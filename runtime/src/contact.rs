@@ -18,10 +18,11 @@
 //! ```
 //!
 //! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato, *Numerical Methods for
-//! Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding, by Newton's method for their natural map (Alart and
-//! Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991) between projected gradient steps with momentum (Nesterov; Mazhar et al.,
-//! *Using Nesterov's method to accelerate multibody dynamics with friction and contact*, ACM Trans. Graph. 34, 2015): at most 900 of
-//! these, and 8000 of Newton's. All contacts take each step at once, so that the order in which they are declared decides nothing.
+//! Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding: where all contacts
+//! stick that approach there is a linear system, else Newton's method for their natural map (Alart and Curnier, Comput. Methods Appl.
+//! Mech. Eng. 92, 1991) begins there, or with the impulses of the step before, and takes two or three steps as a rule; where it finds
+//! nothing, it goes on between projected gradient steps with momentum (Nesterov; Mazhar et al., *Using Nesterov's method to accelerate
+//! multibody dynamics with friction and contact*, ACM Trans. Graph. 34, 2015): at most 900 of these, and 8000 of Newton's. All contacts take each step at once, so that the order in which they are declared decides nothing.
 //! Without friction an active set that takes in contact after contact comes first. Impulses that are shared by more contacts than the
 //! motion can tell apart (a table on four legs) are those of least norm where all of them hold. Newton's law of restitution together
 //! with friction can give more energy than there was (Kane's paradox), or have no solution; where it would, all coefficients of
@@ -63,7 +64,7 @@ pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;
 #[doc(hidden)]
 pub use stepping::step;
-use stepping::{Came, closed, rates_at_end};
+use stepping::{Came, closed};
 use total::Total;
 
 /// Which of the rates of all contacts are those of one: that of its gap first, then those of slip. Those of a moment of friction
@@ -300,7 +301,7 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     match closed(mechanism, t, q, free, None)? {
-        Some(closed) => act(mechanism, t, (q, free), &closed, before, &mut Acted::nothing()),
+        Some(closed) => act(mechanism, t, (q, free), &closed, (|| *before, None), &mut Acted::nothing()),
         None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
     }
 }
@@ -333,13 +334,14 @@ where
     let rate = holding(&mut system, &start, &at_start, h).map_err(reported)?;
     let (free, given) = guided(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = settled(&system, free, t)?;
-    let before = rates_at_end(mechanism, t + h, (q, v), &free.q);
-    let came = Came { q: &start.q, rates: &before, h, held: given * (h * constant(0.5)) };
-    let v = free.v - given;
-    let Some(closed) = closed(mechanism, t + h, &free.q, &v, Some(&came)).map_err(reported)? else {
+    let came = Came::from((q, v), h, given * (h * constant(0.5)));
+    let end = free.v - given;
+    let Some(closed) = closed(mechanism, t + h, &free.q, &end, Some(&came)).map_err(reported)? else {
         return Ok(SVector::zeros());
     };
-    let solved = act(mechanism, t + h, (&free.q, &v), &closed, &before, &mut Acted::nothing());
+    let before = || *came.rates(mechanism, t + h, &free.q);
+    let solved =
+        act(mechanism, t + h, (&free.q, &end), &closed, (before, Some(&given)), &mut Acted::nothing());
     Ok(solved.map_err(reported)?.impulses / h)
 }
 
@@ -399,29 +401,24 @@ where
 struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
     problem: Problem<T, NK, NR>,
     impulses: Total<T, NR>,
-    responses: SMatrix<T, NV, NR>,
-    /// Whether anything has acted.
-    is_any: bool,
+    /// None if nothing has acted.
+    responses: Option<Responses<T, NV, NR>>,
 }
 
 impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK, NR> {
     fn nothing() -> Self {
-        Self {
-            problem: Problem::none(),
-            impulses: Total::repeat(T::zero()),
-            responses: SMatrix::zeros(),
-            is_any: false,
-        }
+        Self { problem: Problem::none(), impulses: Total::repeat(T::zero()), responses: None }
     }
 }
 
-/// [`solve`] for the contacts that are `closed`, and what `acted`, if anything has.
+/// [`solve`] for the contacts that are `closed`, and what `acted`, if anything has. The rates `before` are asked for where
+/// they matter; impulses are about those that add `given` to the velocity, if they are known.
 fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     closed: &[bool; NK],
-    before: &SVector<T, NR>,
+    (before, given): (impl Fn() -> SVector<T, NR>, Option<&SVector<T, NV>>),
     acted: &mut Acted<T, NV, NK, NR>,
 ) -> Result<Solved<T, NV, NR>, ConstraintError>
 where
@@ -438,13 +435,17 @@ where
         |k| closed.get(k) == Some(&true),
         &after,
     );
-    if !problem.is_loaded(before) {
+    let is_loaded = problem.is_loaded();
+    let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
+        true => SVector::zeros(),
+        false => before(),
+    };
+    if !is_loaded && !problem.was_loaded(&before) {
         return Ok(solved);
     }
-    let responses = mechanism.contact_responses(t, q, closed);
+    let responses = acted.responses.insert(mechanism.contact_responses(t, q, closed));
     problem.weigh(&responses.rates);
-    acted.responses = responses.velocities;
-    problem.aim(&laws, before, T::one());
+    problem.aim(&laws, &before, T::one());
     let failed = |contact: usize| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
     };
@@ -453,14 +454,16 @@ where
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
         driven.iter().all(|rate| *rate == T::zero())
     };
-    let impulses = match problem.solve() {
+    let given = given.filter(|given| **given != SVector::<T, NV>::zeros());
+    let given = || given.map(|given| mechanism.contact_rates(t, q, &(free + given)) - after);
+    let impulses = match problem.solve_from(&given) {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
         Err(contact) if !problem.rebounds() => return Err(failed(contact)),
-        _ => tempered(problem, &laws, before, may_gain).map_err(failed)?,
+        _ => tempered(problem, &laws, &before, may_gain).map_err(failed)?,
     };
     solved.impulses = problem.spread(&impulses);
-    solved.v += acted.responses * solved.impulses;
-    (acted.impulses, acted.is_any) = (impulses, true);
+    solved.v += responses.velocities * solved.impulses;
+    acted.impulses = impulses;
     Ok(solved)
 }
 

@@ -155,24 +155,30 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         all
     }
 
-    /// Whether surfaces approach each other, without impulses or before.
-    pub(super) fn is_loaded(&self, before: &SVector<T, NR>) -> bool {
-        (0..self.count).filter(|k| self.is_gap(*k)).any(|k| {
-            self.free[self.rows[k].first] < T::zero() || entry(before, self.contacts[k].1.first) < T::zero()
-        })
+    /// Whether surfaces approach each other without impulses.
+    pub(super) fn is_loaded(&self) -> bool {
+        (0..self.count).filter(|k| self.is_gap(*k)).any(|k| self.free[self.rows[k].first] < T::zero())
+    }
+
+    /// Whether surfaces approached each other.
+    pub(super) fn was_loaded(&self, before: &SVector<T, NR>) -> bool {
+        (0..self.count)
+            .filter(|k| self.is_gap(*k))
+            .any(|k| entry(before, self.contacts[k].1.first) < T::zero())
     }
 
     /// Takes `W = G M⁻¹ Gᵀ` of all contacts.
     pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
         let places = self.places();
-        let weight = |i: usize, j: usize| weights.get((i, j)).copied().unwrap_or(T::zero());
-        let mut reach = T::zero();
-        for (row, i) in self.weights.iter_mut().zip(places.iter()).take(self.size) {
-            for (entry, j) in row.iter_mut().zip(places.iter()).take(self.size) {
-                *entry = weight(*i, *j);
+        let none = T::zero();
+        for (j, place) in places.iter().enumerate().take(self.size) {
+            let Some(column) = weights.data.0.get(*place) else { continue };
+            for (row, i) in self.weights.iter_mut().zip(places.iter()).take(self.size) {
+                row[j] = column.get(*i).copied().unwrap_or(none);
             }
-            reach = reach.max(weight(*i, *i));
         }
+        let diagonal = self.weights.iter().enumerate().take(self.size);
+        let reach = diagonal.fold(none, |reach, (i, row)| reach.max(row[i]));
         for k in 0..self.count {
             let trace = self.all_of(k).fold(T::zero(), |sum, i| sum + self.weights[i][i]);
             // What constraints hold moves by rounding alone.
@@ -337,8 +343,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Whether no more is left of the laws than rounding of the impulses makes; impulses without bounds solve nothing.
     fn is_solved(&self, impulses: &List<T, NR>) -> bool {
-        let most = self.speed() * epsilon::<T>().sqrt();
-        self.residual(impulses).0 <= self.rounding(impulses).min(most)
+        let left = self.residual(impulses).0;
+        left <= self.speed() * epsilon::<T>().sqrt() && left <= self.rounding(impulses)
+    }
+
+    /// Distances that are worth no displacement.
+    fn enough(near: T) -> T {
+        (near * constant(1e-2)).max(epsilon::<T>() * constant(16.0))
+    }
+
+    /// Whether all distances are so small that [`close`](Self::close) has nothing to do.
+    pub(super) fn is_shut(&self, gaps: &SVector<T, NK>, near: T) -> bool {
+        let enough = Self::enough(near);
+        (0..self.count).filter(|k| self.is_gap(*k)).all(|k| entry(gaps, self.contacts[k].0).abs() <= enough)
     }
 
     /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together and are apart by no more
@@ -355,7 +372,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let rest = self.rounding(impulses).max(self.residual(impulses).0) * constant(ROUNDINGS);
         let mut kept = Self::none();
         let (mut overlap, mut distance) = (T::zero(), T::zero());
-        let enough = (near * constant(1e-4)).max(epsilon::<T>() * constant(16.0));
+        let enough = Self::enough(near);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let n = self.rows[k].first;
             let (contact, Rows { first, .. }) = self.contacts[k];

@@ -7,6 +7,7 @@ use super::{Acted, Contacts, Rows, Touched, act, near};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, epsilon};
+use core::cell::OnceCell;
 use nalgebra::SVector;
 
 /// How often the part of a displacement that the energy allows is found anew.
@@ -16,14 +17,34 @@ const PARTS_OF_RESTITUTION: usize = 12;
 
 /// Where a step has come from.
 pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
-    /// The configuration.
-    pub(super) q: &'a SVector<T, NQ>,
-    /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]).
-    pub(super) rates: &'a SVector<T, NR>,
+    /// The configuration and the velocity.
+    start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
+    /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]), once they are asked for.
+    rates: OnceCell<SVector<T, NR>>,
     /// How long it has taken.
-    pub(super) h: T,
+    h: T,
     /// By how much contacts have been taken to move it.
-    pub(super) held: SVector<T, NV>,
+    held: SVector<T, NV>,
+}
+
+impl<'a, T: Real, const NQ: usize, const NV: usize, const NR: usize> Came<'a, T, NQ, NV, NR> {
+    /// From a state in `h` seconds, in which contacts have been taken to move it by `held`.
+    pub(super) fn from(start: (&'a SVector<T, NQ>, &'a SVector<T, NV>), h: T, held: SVector<T, NV>) -> Self {
+        Self { start, rates: OnceCell::new(), h, held }
+    }
+
+    /// The rates at the contacts that the velocity has where the step ends, in the configuration `q`.
+    pub(super) fn rates<M, const NU: usize, const NK: usize>(
+        &self,
+        mechanism: &M,
+        t: T,
+        q: &SVector<T, NQ>,
+    ) -> &SVector<T, NR>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        self.rates.get_or_init(|| rates_at_end(mechanism, t, self.start, q))
+    }
 }
 
 /// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity `free`: those whose gap is
@@ -54,16 +75,21 @@ where
     }
     let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
     let open = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
-    if let Some(Came { q: start, rates, h, held }) = came.filter(|came| came.h > T::zero() && open(&closed)) {
+    if let Some(came) = came.filter(|came| came.h > T::zero() && open(&closed)) {
+        let (h, held, still) = (&came.h, &came.held, SVector::<T, NV>::zeros());
+        let starts = mechanism.contact_gaps(t - *h, came.start.0);
+        let is_held = *held != still;
+        let touched = closed.iter().zip(&starts).any(|(is_closed, start)| !is_closed && *start <= near());
+        if !is_held && !touched {
+            return Ok(closed.contains(&true).then_some(closed));
+        }
         let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
-        let still = SVector::<T, NV>::zeros();
-        let apart = match *held == still {
-            true => SVector::zeros(),
+        let apart = match is_held {
+            false => SVector::zeros(),
             // What is driven moves by itself.
-            false => mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still),
+            true => mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still),
         };
-        let starts = mechanism.contact_gaps(t - *h, start);
-        let after = mechanism.contact_rates(t, q, free);
+        let (rates, after) = (came.rates(mechanism, t, q), mechanism.contact_rates(t, q, free));
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
             let (by, place) = layout.pressing(k);
             let of = |vector: &SVector<T, NR>| entry(vector, place);
@@ -81,15 +107,7 @@ where
 
 /// The rates at contacts that the velocity `v` at the configuration `start` would have where a step has led to the configuration `q`:
 /// there impulses act, and restitution and their work are about the same directions as they are.
-pub(super) fn rates_at_end<
-    M,
-    T,
-    const NQ: usize,
-    const NV: usize,
-    const NU: usize,
-    const NK: usize,
-    const NR: usize,
->(
+fn rates_at_end<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
@@ -122,26 +140,25 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let half = h * constant(0.5);
-    // Where nothing is closed its matrices are not made.
-    let mut acted = None;
-    let mut after = *free;
-    // `act` needs them anyway where something is closed.
-    let before = rates_at_end(mechanism, t, (start, v), q);
-    let came = Came { q: start, rates: &before, h, held: given * half };
-    if let Some(closed) = closed(mechanism, t, q, free, Some(&came))? {
-        let acted = acted.insert(Acted::nothing());
-        after = act(mechanism, t, (q, free), &closed, &before, acted)?.v;
-    }
-    if h == T::zero() {
-        return Ok(Touched { q: *q, v: after });
-    }
+    let came = Came::from((start, v), h, given * half);
     // What impulses do to the velocity they do in the mean of the step.
     let led = |after: &SVector<T, NV>| {
         let moved = (after - free - given) * half;
         Touched { q: mechanism.integrate(q, &moved), v: mechanism.carry(t, q, &moved, after) }
     };
+    let Some(closed) = closed(mechanism, t, q, free, Some(&came))? else {
+        let is_led = h != T::zero() && *given != SVector::<T, NV>::zeros();
+        return Ok(if is_led { led(free) } else { Touched { q: *q, v: *free } });
+    };
+    let mut acted = Acted::nothing();
+    let before = || *came.rates(mechanism, t, q);
+    let after = act(mechanism, t, (q, free), &closed, (before, Some(given)), &mut acted)?.v;
+    if h == T::zero() {
+        return Ok(Touched { q: *q, v: after });
+    }
     let mut touched = led(&after);
-    let Some(mut acted) = acted.filter(|acted| acted.is_any) else { return Ok(touched) };
+    let Acted { problem, impulses, responses: Some(responses) } = &mut acted else { return Ok(touched) };
+    let responses = &responses.velocities;
     // The energy without what contacts have done: they have worked along the mean of the velocities.
     let most = || {
         let carried = mechanism.carry(t, start, &mechanism.difference(start, q), v);
@@ -149,16 +166,21 @@ where
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
         energy(mechanism, t, &Touched { q: *q, v: free + given }) - work
     };
-    if acted.problem.rebounds() {
-        let led = |impulses: &SVector<T, NR>| led(&(free + acted.responses * impulses));
-        if let Some(less) = tempered(mechanism, t, &mut acted.problem, &before, &led, (&touched, most())) {
-            (touched, acted.impulses) = less;
+    if problem.rebounds() {
+        let led = |impulses: &SVector<T, NR>| led(&(free + responses * impulses));
+        let before = came.rates(mechanism, t, q);
+        if let Some(less) = tempered(mechanism, t, problem, before, &led, (&touched, most())) {
+            (touched, *impulses) = less;
         }
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
-    let speed = before.iter().fold(acted.problem.speed(), |most, rate| most.max(rate.abs()));
-    match acted.problem.close(&acted.impulses, &gaps, (near(), near::<T>() + speed * h)) {
-        Some(pushes) => Ok(pushed(mechanism, t, &touched, &(acted.responses * pushes), most())),
+    if problem.is_shut(&gaps, near()) {
+        return Ok(touched);
+    }
+    let before = came.rates(mechanism, t, q);
+    let speed = before.iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
+    match problem.close(impulses, &gaps, (near(), near::<T>() + speed * h)) {
+        Some(pushes) => Ok(pushed(mechanism, t, &touched, &(responses * pushes), most)),
         None => Ok(touched),
     }
 }
@@ -216,21 +238,21 @@ where
     mechanism.kinetic_energy(t, q, v) + mechanism.potential_energy(t, q)
 }
 
-/// The state after a displacement, or the part of it after which the energy is no more than `most`, or than before.
+/// The state after a displacement, or the part of it after which the energy is no more than `most`, which is asked for where it grows, or
+/// than before.
 fn pushed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     from: &Touched<T, NQ, NV>,
     push: &SVector<T, NV>,
-    most: T,
+    most: impl Fn() -> T,
 ) -> Touched<T, NQ, NV>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let before = energy(mechanism, t, from);
-    let most = most.max(before);
-    let mut part = T::one();
+    let (mut part, mut allowed) = (T::one(), None);
     for _ in 0..PARTS {
         let push = push * part;
         let to = Touched {
@@ -238,8 +260,15 @@ where
             v: mechanism.carry(t, &from.q, &push, &from.v),
         };
         let after = energy(mechanism, t, &to);
+        if after <= before + rounding(before) {
+            return to;
+        }
+        let most = *allowed.get_or_insert_with(&most);
         if after <= most + rounding(before) {
             return to;
+        }
+        if most <= before {
+            break;
         }
         // The energy is about linear.
         part *= (most - before) / (after - before) * constant(0.98);

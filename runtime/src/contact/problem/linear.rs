@@ -5,6 +5,7 @@ use super::super::total::Total;
 use super::{List, Problem, ROUNDINGS, Square, entry};
 use crate::Real;
 use crate::private::{constant, epsilon};
+use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 /// Rows that are lighter than this part of the heaviest are told apart by a little of their own, so that it stays little beside them.
@@ -28,7 +29,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        let mut system = square();
+        let mut system = self.weights;
         self.among(&held, size, &mut system);
         let mut impulses = List::repeat(T::zero());
         if factorise(&mut system, size, false) {
@@ -57,6 +58,20 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         impulses
     }
 
+    /// The impulses that add these rates, if the motion tells all of them apart.
+    pub(super) fn answering(&self, rates: &SVector<T, NR>) -> Option<List<T, NR>> {
+        let mut system = self.weights;
+        if !factorise(&mut system, self.size, false) {
+            return None;
+        }
+        let mut impulses = List::repeat(T::zero());
+        for (impulse, place) in impulses.iter_mut().zip(self.places().iter()).take(self.size) {
+            *impulse = entry(rates, *place);
+        }
+        substitute(&system, self.size, &mut impulses);
+        Some(impulses)
+    }
+
     /// Whether the motion cannot tell the impulses of these contacts apart; of those that slip it matters for the normal ones.
     pub(in super::super) fn is_redundant(&self, touches: &[Touch; NK]) -> bool {
         let touches = Total::new(*touches, Touch::Open);
@@ -72,13 +87,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        let mut system = square();
+        let mut system = self.weights;
         self.among(&held, size, &mut system);
         !factorise(&mut system, size, false)
     }
 
     /// Makes `system` `W` among `size` rates.
     fn among(&self, held: &List<usize, NR>, size: usize, system: &mut Square<T, NR>) {
+        if size == self.size {
+            // All of them.
+            *system = self.weights;
+            return;
+        }
         for (row, i) in system.iter_mut().zip(held.iter()).take(size) {
             for (entry, j) in row.iter_mut().zip(held.iter()).take(size) {
                 *entry = self.weights[*i][*j];
@@ -273,9 +293,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 if factor == T::zero() {
                     continue;
                 }
-                for (entry, pivot) in system[row].iter_mut().zip(pivots.iter()).take(size).skip(column + 1) {
-                    *entry -= factor * *pivot;
-                }
+                take(&mut system[row], factor, &pivots, column + 1..size);
                 subtract(&mut right[row], factor, &value);
             }
         }
@@ -301,55 +319,57 @@ fn lift<T: Real>(weight: T, reach: T) -> T {
     own.max(reach * epsilon::<T>() * constant(ROUNDINGS))
 }
 
-/// Makes `A` into columns of the factor `L` of `A = L Lᵀ` (Cholesky), with the reciprocals of its diagonal; false where rows
-/// depend on each other, unless they are told apart by a little.
-fn factorise<T: Real, const NR: usize>(l: &mut Square<T, NR>, size: usize, is_lifted: bool) -> bool {
+/// Makes `A` into rows of `U` of `A = Uᵀ D U` (Cholesky without roots), each times its entry of `D`, with the reciprocals of `D` on
+/// the diagonal; false where rows depend on each other, unless they are told apart by a little.
+fn factorise<T: Real, const NR: usize>(u: &mut Square<T, NR>, size: usize, is_lifted: bool) -> bool {
     let mut given = List::<T, NR>::repeat(T::zero());
-    given.iter_mut().zip(l.iter().enumerate()).for_each(|(given, (j, row))| *given = row[j]);
+    given.iter_mut().zip(u.iter().enumerate()).for_each(|(given, (j, row))| *given = row[j]);
     let reach = given.iter().take(size).fold(T::zero(), |most, weight| most.max(*weight));
     let part = independent::<T>();
     for j in 0..size {
         // What others took is gone from it already.
         let (pivot, least) = match is_lifted {
-            true => (l[j][j] + lift(given[j], reach), T::zero()),
-            false => (l[j][j], given[j] * part),
+            true => (u[j][j] + lift(given[j], reach), T::zero()),
+            false => (u[j][j], given[j] * part),
         };
         let is_independent = pivot > least;
         if !is_independent {
             return false;
         }
-        let reciprocal = T::one() / pivot.sqrt();
-        l[j][j] = reciprocal;
-        for entry in l[j].iter_mut().take(size).skip(j + 1) {
-            *entry *= reciprocal;
-        }
-        let column = l[j];
+        let reciprocal = T::one() / pivot;
+        u[j][j] = reciprocal;
+        let row = u[j];
         for i in j + 1..size {
-            let part = column[i];
-            if part != T::zero() {
-                for (entry, other) in l[i].iter_mut().zip(column.iter()).take(size).skip(i) {
-                    *entry -= part * *other;
-                }
+            if row[i] != T::zero() {
+                take(&mut u[i], row[i] * reciprocal, &row, i..size);
             }
         }
     }
     true
 }
 
-/// `x` of `L Lᵀ x = p`, with columns of `L`.
-fn substitute<T: Real, const NR: usize>(l: &Square<T, NR>, size: usize, x: &mut List<T, NR>) {
+/// `x` of `Uᵀ D U x = p`, with the rows that [`factorise`] makes.
+fn substitute<T: Real, const NR: usize>(u: &Square<T, NR>, size: usize, x: &mut List<T, NR>) {
     for j in 0..size {
-        let value = x[j] * l[j][j];
+        let value = x[j] * u[j][j];
+        take(x, value, &u[j], j + 1..size);
         x[j] = value;
-        for (entry, part) in x.iter_mut().zip(l[j].iter()).take(size).skip(j + 1) {
-            *entry -= value * *part;
-        }
     }
     for j in (0..size).rev() {
-        let terms = x.iter().zip(l[j].iter()).take(size).skip(j + 1);
-        let sum = terms.fold(x[j], |sum, (other, part)| sum - *other * *part);
-        x[j] = sum * l[j][j];
+        let (row, rest) = (&u[j], j + 1..size);
+        let terms = x.get(rest.clone()).unwrap_or_default().iter().zip(row.get(rest).unwrap_or_default());
+        let sum = terms.fold(T::zero(), |sum, (other, part)| sum + *other * *part);
+        x[j] -= sum * row[j];
     }
+}
+
+/// Takes a part of a multiple of a row from another.
+fn take<T: Real, const N: usize>(from: &mut List<T, N>, factor: T, row: &List<T, N>, part: Range<usize>) {
+    let entries = from.get_mut(part.clone()).unwrap_or_default();
+    entries
+        .iter_mut()
+        .zip(row.get(part).unwrap_or_default())
+        .for_each(|(from, entry)| *from -= factor * *entry);
 }
 
 /// Takes a multiple of a row from another.

@@ -4,7 +4,7 @@ use super::super::total::Total;
 use super::linear::{identify, square};
 use super::{List, Mode, Problem, Square, component};
 use crate::Real;
-use crate::private::constant;
+use crate::private::{constant, epsilon};
 
 /// Steps of Newton's method in a round.
 const NEWTON: usize = 12;
@@ -43,10 +43,30 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.newton_twice(next)
     }
 
-    fn newton(&self, start: List<T, NR>, lift: T) -> List<T, NR> {
+    /// Impulses that fulfil the laws as far as rounding of the fastest rate goes, after one more step if the slowest that press need it.
+    pub(super) fn refined(&self, impulses: List<T, NR>, lift: T) -> List<T, NR> {
+        let left = self.residual(&impulses).0;
+        let half = epsilon::<T>().sqrt();
+        let little = half * half.sqrt();
+        let pressed = (0..self.count).filter(|k| self.is_gap(*k) && impulses[self.of(*k).0] > T::zero());
+        if pressed.map(|k| self.free[self.of(k).0].abs() * little).all(|most| left <= most) {
+            return impulses;
+        }
+        let mut system = self.weights;
+        let mut right = self.linearise(&impulses, &self.friction, lift, &mut system).each(|change| [change]);
+        self.eliminate(&mut system, &mut right);
+        let mut next = impulses;
+        next.iter_mut().zip(right.iter()).for_each(|(next, [change])| *next += *change);
+        if self.size_of_map(&next) < self.size_of_map(&impulses) { next } else { impulses }
+    }
+
+    pub(super) fn newton(&self, start: List<T, NR>, lift: T) -> List<T, NR> {
         let mut impulses = start;
         let mut left = self.size_of_map(&impulses);
         let mut system = square();
+        // With more left of the map they are no solution.
+        let (speed, parts) = (self.speed(), (0..self.count).fold(T::zero(), |sum, _| sum + constant(3.0)));
+        let most = speed * speed * epsilon() * parts;
         for _ in 0..NEWTON {
             let mut right =
                 self.linearise(&impulses, &self.friction, lift, &mut system).each(|change| [change]);
@@ -67,7 +87,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             };
             let Some(next) = next else { break };
             impulses = next;
-            if self.is_solved(&impulses) {
+            if left <= most && self.is_solved(&impulses) {
                 break;
             }
         }
@@ -107,33 +127,33 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
             if self.is_gap(k) {
                 right[n] = -(step * (rates[n] - self.least[k]));
-                for j in 0..self.size {
-                    system[n][j] = step * self.weights[n][j];
-                }
+                system[n] = self.weights[n].each(|weight| step * weight);
                 system[n][n] += lift;
             }
             for (c, i) in tangents.clone().enumerate() {
                 let Mode::Slip { size, direction } = mode else {
                     right[i] = -(step * rates[i]);
-                    for j in 0..self.size {
-                        system[i][j] = step * self.weights[i][j];
-                    }
+                    system[i] = self.weights[i].each(|weight| step * weight);
                     system[i][i] += lift;
                     continue;
                 };
                 let radius = friction * normal;
                 right[i] = -(impulses[i] - radius * component(&direction, c));
-                let turn = radius / size;
-                let unit = |a: usize, b: usize| if a == b { T::one() } else { T::zero() };
-                for j in 0..self.size {
-                    let of_normal = unit(n, j) - press * self.weights[n][j];
-                    let mut entry = unit(i, j) - friction * component(&direction, c) * of_normal;
-                    for (d, other) in tangents.clone().enumerate() {
-                        let across = unit(c, d) - component(&direction, c) * component(&direction, d);
-                        entry -= turn * across * (unit(other, j) - step * self.weights[other][j]);
-                    }
-                    system[i][j] = entry;
+                // The row of `Λ − μ d (Λₙ − r uₙ) − (μ Λₙ / |·|) (1 − d dᵀ) (Λₜ − r uₜ)`.
+                let (turn, along) = (radius / size, friction * component(&direction, c));
+                let mut row = self.weights[n].each(|weight| along * press * weight);
+                row[i] += T::one();
+                row[n] -= along;
+                for (d, other) in tangents.clone().enumerate() {
+                    let unit = if c == d { T::one() } else { T::zero() };
+                    let across = turn * (unit - component(&direction, c) * component(&direction, d));
+                    let part = across * step;
+                    row.iter_mut()
+                        .zip(self.weights[other].iter())
+                        .for_each(|(x, weight)| *x += part * *weight);
+                    row[other] -= across;
                 }
+                system[i] = row;
             }
         }
         right

@@ -5,6 +5,7 @@ use super::{List, Problem};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
+use nalgebra::SVector;
 
 /// Rounds of sweeps, each followed by Newton's method.
 const ROUNDS: usize = 12;
@@ -38,7 +39,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// The contact of the mechanism whose law is fulfilled least, where more is left than half of the digits.
     pub(in super::super) fn solve(&mut self) -> Result<List<T, NR>, usize> {
-        let mut impulses = self.search().map_err(|k| self.contacts[k].0)?;
+        self.solve_from(&|| None)
+    }
+
+    /// [`solve`](Self::solve), where the impulses are about those that give the rates `given`, which are asked for if not all stick.
+    pub(in super::super) fn solve_from(
+        &mut self,
+        given: &dyn Fn() -> Option<SVector<T, NR>>,
+    ) -> Result<List<T, NR>, usize> {
+        let mut impulses = self.search(given).map_err(|k| self.contacts[k].0)?;
         // Rounding may have left them beside their cones.
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
@@ -52,11 +61,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Ok(impulses)
     }
 
-    fn search(&mut self) -> Result<List<T, NR>, usize> {
+    fn search(&mut self, given: &dyn Fn() -> Option<SVector<T, NR>>) -> Result<List<T, NR>, usize> {
         // Where all stick that approach, there is nothing to search for.
         let mut impulses = self.together(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
         if self.is_solved(&impulses) {
             return Ok(impulses);
+        }
+        // Mostly few slip or part, or do what they did before.
+        let start = given().and_then(|rates| self.answering(&rates));
+        let found = self.newton(start.unwrap_or(impulses), self.lift());
+        if self.is_solved(&found) {
+            // Beside fast slip little is left of what presses slowly.
+            return Ok(self.refined(found, self.lift()));
         }
         if self.is_smooth() {
             impulses = self.press_in_turn();
