@@ -82,6 +82,13 @@ pub enum ConstraintError {
         /// The contact whose law is fulfilled least.
         constraint: &'static str,
     },
+    /// Surfaces overlap that were to be apart.
+    Overlap {
+        /// The contact whose surfaces overlap most.
+        constraint: &'static str,
+        /// By how much, m or rad.
+        depth: f64,
+    },
     /// An index of a velocity to be held is none: `held` counts the velocities from zero.
     Held {
         /// The index.
@@ -106,6 +113,9 @@ impl fmt::Display for ConstraintError {
             Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
             Self::Contact { constraint } => {
                 write!(f, "no impulses at the contact `{constraint}` keep its surfaces apart")
+            }
+            Self::Overlap { constraint, depth } => {
+                write!(f, "the surfaces of the contact `{constraint}` overlap by {depth}")
             }
             Self::Held { index, velocities } => {
                 write!(f, "the velocity {index} cannot be held: expected an index below {velocities}")

@@ -44,6 +44,7 @@ mod held;
 mod holding;
 mod landing;
 mod layout;
+mod overlap;
 mod phase;
 mod problem;
 mod response;
@@ -60,6 +61,7 @@ pub use held::{Held, forward_dynamics};
 pub use holding::{Holding, hold};
 pub use landing::{LandedDerivatives, land, land_derivatives};
 use layout::Layout;
+pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;
 #[doc(hidden)]

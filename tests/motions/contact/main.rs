@@ -16,5 +16,6 @@ mod orders;
 mod piles;
 mod robots;
 mod soft;
+mod starts;
 mod terrain;
 mod turning;

@@ -1,0 +1,130 @@
+//! Surfaces that overlap where a motion is to begin.
+
+use linkwork::contact;
+use linkwork::prelude::*;
+
+/// Two balls of different masses in a channel of width `gap`.
+#[mechanism]
+struct Channel {
+    gap: f64,
+    #[body(mass = 1, inertia = sphere(1, 0.1))]
+    light: Body,
+    #[joint(ground -> light)]
+    light_pose: Free,
+    #[body(mass = 3, inertia = sphere(3, 0.1))]
+    heavy: Body,
+    #[joint(ground -> heavy)]
+    heavy_pose: Free,
+    #[contact(light.sphere(0.1), heavy.sphere(0.1), friction = 0.5)]
+    touch: Contact,
+    #[contact(light.sphere(0.1), ground.at(-gap / 2 * z).plane(z), friction = 0.5)]
+    low: Contact,
+    #[contact(light.sphere(0.1), ground.at(gap / 2 * z).plane(-z), friction = 0.5)]
+    high: Contact,
+}
+
+/// Balls that overlap by `d` part by `d m₂ / (m₁ + m₂)` and `d m₁ / (m₁ + m₂)` along the line of their centres: their centre of mass
+/// stays where it is.
+#[test]
+fn balls_part_in_proportion_to_their_masses() {
+    let m = Channel { gap: 1.0 };
+    let mut q = m.neutral();
+    (q[7], q[8]) = (0.12, 0.09);
+    let refused = contact::check(&m, 0.0, &q).unwrap_err();
+    let depth = 0.2 - 0.15;
+    assert!(
+        matches!(refused, ConstraintError::Overlap { constraint: "touch", depth: d } if (d - depth).abs() < 1e-15)
+    );
+    let apart = contact::project(&m, 0.0, &q).unwrap();
+    let line = [0.8, 0.6];
+    for (c, part) in line.iter().enumerate() {
+        assert!((apart[c] + 0.75 * depth * part).abs() < 1e-10, "{apart}");
+        assert!((apart[7 + c] - q[7 + c] - 0.25 * depth * part).abs() < 1e-10, "{apart}");
+    }
+    contact::check(&m, 0.0, &apart).unwrap();
+    assert_eq!(contact::project(&m, 0.0, &apart).unwrap(), apart);
+}
+
+/// Where the walls are nearer than the ball is wide no place is free: the error names a wall.
+#[test]
+fn what_has_no_room_is_refused() {
+    let m = Channel { gap: 0.18 };
+    let mut q = m.neutral();
+    (q[2], q[7]) = (0.003, 1.0);
+    let refused = contact::project(&m, 0.0, &q).unwrap_err();
+    assert!(matches!(refused, ConstraintError::Overlap { constraint: "low" | "high", .. }), "{refused}");
+    let text = contact::check(&m, 0.0, &q).unwrap_err().to_string();
+    assert!(text.starts_with("the surfaces of the contact `high` overlap by 0.013"), "{text}");
+}
+
+/// A slider-crank whose slide may not pass a stop.
+#[mechanism]
+struct Crank {
+    #[body(mass = 1, com = 0.05 * x, inertia = rod(1, 0.1, x))]
+    crank: Body,
+    #[joint(ground -> crank, about = z)]
+    shaft: Pin,
+    #[body(mass = 1, com = 0.15 * x, inertia = rod(1, 0.3, x))]
+    rod: Body,
+    #[joint(crank.at(0.1 * x) -> rod, about = z)]
+    wrist: Pin,
+    #[body(mass = 2, inertia = cuboid(2, 0.1, 0.1, 0.1))]
+    slide: Body,
+    #[joint(ground -> slide, along = x)]
+    way: Sleeve,
+    #[joint(rod.at(0.3 * x) -> slide, about = z)]
+    bolt: Pin,
+    #[contact(slide.at(0.05 * x), ground.at(0.42 * x).plane(-x))]
+    stop: Contact,
+}
+
+/// The slide is taken back to the stop, and the loop stays closed: of the crank's angle `cos θ` follows from the law of cosines.
+#[test]
+fn loops_stay_closed() {
+    let m = Crank {};
+    let at = |angle: f64| {
+        let rod = -(angle.sin() / 3.0).asin();
+        SVector::from([angle, rod - angle, 0.1 * angle.cos() + 0.3 * rod.cos()])
+    };
+    let q = contact::project(&m, 0.0, &at(0.3)).unwrap();
+    assert!(contact::check(&m, 0.0, &at(0.3)).is_err());
+    assert!(m.constraint_residuals(&q).amax() < 1e-12, "{}", m.constraint_residuals(&q));
+    assert!((q[2] - 0.37).abs() < 1e-10, "{q}");
+    let cosine: f64 = (0.37 * 0.37 + 0.01 - 0.09) / (2.0 * 0.37 * 0.1);
+    assert!((q[0] - cosine.acos()).abs() < 1e-8, "{q}");
+}
+
+/// A box that is turned and sunk in a corner of three planes comes to rest on them without overlaps, and a motion from there begins
+/// without a jump.
+#[mechanism(gravity = -9.81 * z)]
+struct Corner {
+    #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+    block: Body,
+    #[joint(ground -> block)]
+    pose: Free,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = 0.5)]
+    floor: Contact,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(x), friction = 0.5)]
+    wall: Contact,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(y), friction = 0.5)]
+    side: Contact,
+}
+
+#[test]
+fn a_box_leaves_a_corner() {
+    let m = Corner {};
+    let mut q = m.neutral();
+    (q[0], q[1], q[2]) = (0.13, 0.08, 0.03);
+    let turn = SVector::from([0.0, 0.0, 0.0, 0.1, -0.2, 0.3]);
+    let q = m.integrate(&q, &turn);
+    assert!(m.contact_gaps(&q).min() < -0.03);
+    let apart = contact::project(&m, 0.0, &q).unwrap();
+    let gaps = m.contact_gaps(&apart);
+    assert!(gaps.min() > -1.1e-10, "{}", gaps.min());
+    // It touches each plane.
+    for plane in 0..3 {
+        assert!(gaps.fixed_rows::<8>(8 * plane).min() < 1e-3, "{gaps}");
+    }
+    let end = simulate(&m).from(apart, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(2e-3);
+    assert!(end.finish().unwrap().v.amax() < 0.2);
+}
