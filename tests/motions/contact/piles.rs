@@ -120,6 +120,58 @@ fn cards_lean_on_each_other() {
     assert!(moved(1.02, 0.98) > 1e-3, "{:e}", moved(1.02, 0.98));
 }
 
+/// A house of seven cards: two pairs that lean on each other carry a roof, on which a third pair stands.
+#[mechanism(gravity = -9.81 * y)]
+struct House {
+    friction: f64,
+    #[body(mass = 0.01, inertia = rod(0.01, 0.1, y))]
+    left: [Body; 3],
+    #[body(mass = 0.01, inertia = rod(0.01, 0.1, y))]
+    right: [Body; 3],
+    #[body(mass = 0.02, inertia = rod(0.02, 0.2, x))]
+    roof: Body,
+    #[joint(ground -> left[i], about = z)]
+    left_pose: [Planar; 3],
+    #[joint(ground -> right[i], about = z)]
+    right_pose: [Planar; 3],
+    #[joint(ground -> roof, about = z)]
+    roof_pose: Planar,
+    #[contact(left[i].at(-0.05 * y), ground.plane(y), friction = friction)]
+    left_foot: [Contact; 2],
+    #[contact(right[i].at(-0.05 * y), ground.plane(y), friction = friction)]
+    right_foot: [Contact; 2],
+    #[contact(left[i].at(0.05 * y), right[i].plane(-x), friction = friction)]
+    edge: [Contact; 3],
+    #[contact(right[i].at(0.05 * y), roof.plane(-y), friction = friction)]
+    ridge: [Contact; 2],
+    #[contact(left[2].at(-0.05 * y), roof.plane(y), friction = friction)]
+    left_sill: Contact,
+    #[contact(right[2].at(-0.05 * y), roof.plane(y), friction = friction)]
+    right_sill: Contact,
+}
+
+/// Eleven contacts with 22 forces on 21 velocities. Of the ten millinewtons that the upper pair and the roof press with none moves a
+/// card by a nanometre where friction is strong; where it is weak the house falls.
+#[test]
+fn a_house_of_cards_stands() {
+    let lean = 0.35_f64;
+    let (sine, cosine) = lean.sin_cos();
+    let mut q = SVector::<f64, 21>::zeros();
+    for (k, (x, y)) in [(-0.05, 0.0), (0.05, 0.0), (0.0, 0.1 * cosine)].into_iter().enumerate() {
+        q.fixed_rows_mut::<3>(3 * k).copy_from_slice(&[x - 0.05 * sine, y + 0.05 * cosine, -lean]);
+        q.fixed_rows_mut::<3>(9 + 3 * k).copy_from_slice(&[x + 0.05 * sine, y + 0.05 * cosine, lean]);
+    }
+    q[19] = 0.1 * cosine;
+    let moved = |friction: f64| {
+        let m = House { friction };
+        assert!(m.contact_gaps(&q).amax() < 1e-15, "{}", m.contact_gaps(&q));
+        let run = simulate(&m).from(q, [0.0; 21]).method(TimeStepping::step(1e-3)).duration(1.0);
+        (run.finish().unwrap().q - q).amax()
+    };
+    assert!(moved(1.0) < 1e-9, "{:e}", moved(1.0));
+    assert!(moved(0.1) > 1e-2, "{:e}", moved(0.1));
+}
+
 /// Newton's cradle: balls on threads of one length.
 #[mechanism(gravity = -9.81 * y)]
 struct Cradle {
