@@ -82,6 +82,13 @@ pub enum ConstraintError {
         /// The contact whose law is fulfilled least.
         constraint: &'static str,
     },
+    /// A coefficient of friction is negative or not finite, or one of restitution not between zero and one.
+    Coefficient {
+        /// The contact.
+        constraint: &'static str,
+        /// What the parameters make of it.
+        value: f64,
+    },
     /// Surfaces overlap that were to be apart.
     Overlap {
         /// The contact whose surfaces overlap most.
@@ -114,6 +121,10 @@ impl fmt::Display for ConstraintError {
             Self::Contact { constraint } => {
                 write!(f, "no impulses at the contact `{constraint}` keep its surfaces apart")
             }
+            Self::Coefficient { constraint, value } => write!(
+                f,
+                "a coefficient of the contact `{constraint}` is {value}: friction is zero or more, restitution between 0 and 1"
+            ),
             Self::Overlap { constraint, depth } => {
                 write!(f, "the surfaces of the contact `{constraint}` overlap by {depth}")
             }

@@ -43,6 +43,7 @@ mod derivatives;
 mod held;
 mod holding;
 mod landing;
+mod lawful;
 mod layout;
 mod overlap;
 mod phase;
@@ -60,6 +61,7 @@ pub use derivatives::{
 pub use held::{Held, forward_dynamics};
 pub use holding::{Holding, hold};
 pub use landing::{LandedDerivatives, land, land_derivatives};
+use lawful::lawful;
 use layout::Layout;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
@@ -268,7 +270,7 @@ fn near<T: Real>() -> T {
 /// # Errors
 ///
 /// [`ConstraintError::Contact`] where no impulses are found: where constraints, or what is driven in time, hold surfaces that
-/// approach each other.
+/// approach each other; [`ConstraintError::Coefficient`] where parameters make a coefficient what it cannot be.
 pub fn impact<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -389,8 +391,7 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let mut problem =
-        Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+    let mut problem = Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
     problem.weigh(&mechanism.contact_responses(t, q, &closed).rates);
     let impulses = problem.solve().map_err(|contact| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
@@ -429,7 +430,7 @@ where
 {
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let after = mechanism.contact_rates(t, q, free);
-    let laws = mechanism.contact_laws();
+    let laws = lawful(mechanism)?;
     let problem = &mut acted.problem;
     problem.select(
         Layout::new(M::CONTACT_ROWS, M::PRESSED_BY),

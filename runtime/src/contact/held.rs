@@ -1,5 +1,6 @@
 //! Motion while given contacts stay closed, whatever that takes.
 
+use super::lawful::lawful;
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
 use super::{Contacts, Responses, Touch};
@@ -127,8 +128,7 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let responses = mechanism.contact_responses(t, q, &closed);
-    let mut problem =
-        Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+    let mut problem = Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
     problem.weigh(&responses.rates);
     let forces = problem.hold(touches, along).map_err(|k| ConstraintError::Contact {
         constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),

@@ -1,6 +1,7 @@
 //! Impacts after which given contacts are closed, whatever that takes.
 
 use super::derivatives::ContactDerivatives;
+use super::lawful::lawful;
 use super::layout::Layout;
 use super::problem::Problem;
 use super::{Contacts, Solved, Touch};
@@ -78,8 +79,7 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
-    let mut problem =
-        Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+    let mut problem = Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
     let responses = mechanism.contact_responses(t, q, &closed);
     problem.weigh(&responses.rates);
     let impulses = problem.hold(touches, &SVector::zeros()).map_err(|k| ConstraintError::Contact {

@@ -1,6 +1,7 @@
 //! What contacts do between events: which of them hold, how the mechanism moves meanwhile, and how far the next event is.
 
 use super::held::held;
+use super::lawful::lawful;
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
 use super::{Contacts, Law, Touch, impact, near};
@@ -141,7 +142,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
                 return Err(ConstraintError::NotFinite);
             }
             let mut problem =
-                Problem::new(layout, &mechanism.contact_laws(), |k| closed.get(k) == Some(&true), &free);
+                Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
             let responses = mechanism.contact_responses(t, q, &closed);
             problem.weigh(&responses.rates);
             let forces = problem.solve().map_err(|k| ConstraintError::Contact {

@@ -1,4 +1,4 @@
-//! Surfaces that overlap where a motion is to begin.
+//! Surfaces that overlap where a motion is to begin, and coefficients that are none.
 
 use linkwork::contact;
 use linkwork::prelude::*;
@@ -127,4 +127,46 @@ fn a_box_leaves_a_corner() {
     }
     let end = simulate(&m).from(apart, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(2e-3);
     assert!(end.finish().unwrap().v.amax() < 0.2);
+}
+
+/// A ball on a floor whose coefficients are parameters.
+#[mechanism(gravity = -9.81 * z)]
+struct Ball {
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.1), ground.plane(z), friction = friction, restitution = restitution)]
+    floor: Contact,
+}
+
+/// Friction that is negative or endless, and restitution that takes or gives too much, are named by everything that contacts act in.
+#[test]
+fn coefficients_that_are_none_are_named() {
+    let wrong = [(-0.1, 0.0, -0.1), (f64::INFINITY, 0.0, f64::INFINITY), (0.5, -0.2, -0.2), (0.5, 1.1, 1.1)];
+    for (friction, restitution, value) in wrong {
+        let m = Ball { friction, restitution };
+        let mut q = m.neutral();
+        q[2] = 0.1;
+        let (v, tau) = ([1.0, 0.0, -1.0, 0.0, 0.0, 0.0].into(), SVector::zeros());
+        let expected = ConstraintError::Coefficient { constraint: "floor", value };
+        assert_eq!(contact::impact(&m, 0.0, &q, &v).unwrap_err(), expected);
+        assert_eq!(contact::acting(&m, 0.0, &q, &v, &[].into()).unwrap_err(), expected);
+        let touches = [contact::Touch::Sticks];
+        assert_eq!(contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap_err(), expected);
+        assert_eq!(contact::land(&m, 0.0, &q, &v, &touches).unwrap_err(), expected);
+        let run = simulate(&m).from(q, v).method(TimeStepping::step(1e-3)).duration(0.1).finish();
+        assert!(matches!(run.unwrap_err(), Error::Constraint { reason, .. } if reason == expected));
+        for v in [v, SVector::zeros()] {
+            let run = simulate(&m).from(q, v).method(EventDriven::new()).duration(0.1).finish();
+            assert!(matches!(run.unwrap_err(), Error::Constraint { reason, .. } if reason == expected));
+        }
+    }
+    let m = Ball { friction: f64::NAN, restitution: 0.0 };
+    let mut q = m.neutral();
+    q[2] = 0.1;
+    let found = contact::impact(&m, 0.0, &q, &[0.0, 0.0, -1.0, 0.0, 0.0, 0.0].into()).unwrap_err();
+    assert!(matches!(found, ConstraintError::Coefficient { constraint: "floor", value } if value.is_nan()));
 }
