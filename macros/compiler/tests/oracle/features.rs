@@ -2,6 +2,7 @@
 //! as one of the compiler's own, every value that generated code names is there, and what it computes agrees with itself.
 
 mod agreement;
+mod constrained;
 mod source;
 mod values;
 

@@ -15,7 +15,7 @@ use std::path::Path;
 /// Largest difference of what passes change alone, relative to the result's largest entry.
 const SAME: f64 = 1e-9;
 /// Largest difference from differences, relative to the largest of both and of what they are differences of.
-const TOLERANCE: f64 = 1e-7;
+pub(super) const TOLERANCE: f64 = 1e-7;
 /// Step of differences of differences.
 const WIDE: f64 = 8e-3;
 const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
@@ -52,48 +52,49 @@ pub fn check(seed: u64) -> usize {
     compared
 }
 
-struct Case<'a, 'g> {
-    model: &'a Model<'g>,
-    output: &'a Output,
-    values: Values,
-    name: String,
+/// A compiled mechanism in some state.
+pub(super) struct Case<'a, 'g> {
+    pub(super) model: &'a Model<'g>,
+    pub(super) output: &'a Output,
+    pub(super) values: Values,
+    pub(super) name: String,
     compared: usize,
 }
 
-fn size(list: &[f64]) -> f64 {
+pub(super) fn size(list: &[f64]) -> f64 {
     list.iter().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The product of a matrix, column by column, and a vector.
-fn product(columns: &[f64], vector: &[f64]) -> Vec<f64> {
+pub(super) fn product(columns: &[f64], vector: &[f64]) -> Vec<f64> {
     let rows = columns.len() / vector.len().max(1);
     (0..rows).map(|i| vector.iter().enumerate().map(|(j, x)| columns[j * rows + i] * x).sum()).collect()
 }
 
-fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+pub(super) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
 impl Case<'_, '_> {
-    fn function(&self, name: &str) -> Option<&Function> {
+    pub(super) fn function(&self, name: &str) -> Option<&Function> {
         self.output.functions.iter().find(|f| f.name == name)
     }
 
     /// A function's result; nothing of a function that the mechanism does not have.
-    fn run(&self, name: &str, values: &Values) -> Vec<f64> {
+    pub(super) fn run(&self, name: &str, values: &Values) -> Vec<f64> {
         self.function(name).map_or_else(Vec::new, |f| values.run(self.output, f))
     }
 
-    fn here(&self, name: &str) -> Vec<f64> {
+    pub(super) fn here(&self, name: &str) -> Vec<f64> {
         self.run(name, &self.values)
     }
 
     /// Compares lists; `more` is what may be doubtful of them. Where mechanisms have no value, both have none.
-    fn close(&mut self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
+    pub(super) fn close(&mut self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
         assert_eq!(found.len(), expected.len(), "{what} of {}", self.name);
         self.compared += 1;
         for (k, (a, b)) in found.iter().zip(expected).enumerate() {
@@ -107,7 +108,7 @@ impl Case<'_, '_> {
     }
 
     /// Compares a list with the derivative of another along some motion, unless that is at a kink.
-    fn compare(&mut self, what: &str, found: &[f64], of: &dyn Fn(f64) -> Vec<f64>) {
+    pub(super) fn compare(&mut self, what: &str, found: &[f64], of: &dyn Fn(f64) -> Vec<f64>) {
         let (expected, doubt) = slope(of);
         let scale = 1.0 + size(found) + size(&expected) + size(&of(0.0));
         if doubt < 1e-4 * scale {
@@ -116,7 +117,13 @@ impl Case<'_, '_> {
     }
 
     /// Compares columns with the derivatives of a function.
-    fn compare_columns(&mut self, what: &str, found: &[f64], by: By, of: &dyn Fn(&Values) -> Vec<f64>) {
+    pub(super) fn compare_columns(
+        &mut self,
+        what: &str,
+        found: &[f64],
+        by: By,
+        of: &dyn Fn(&Values) -> Vec<f64>,
+    ) {
         let n = self.values.size(by);
         let rows = of(&self.values).len();
         assert_eq!(found.len(), n * rows, "{what} by {by:?} of {}", self.name);
@@ -130,7 +137,7 @@ impl Case<'_, '_> {
     }
 
     /// The functions that contain derivatives of another one after another.
-    fn check_columns(&mut self, what: &str, base: &str, by: &[By]) {
+    pub(super) fn check_columns(&mut self, what: &str, base: &str, by: &[By]) {
         let found = self.here(what);
         if found.is_empty() || self.function(base).is_none() {
             return;
@@ -164,7 +171,7 @@ impl Case<'_, '_> {
     }
 
     /// The derivative of a function along the motion.
-    fn along<F: Fn(&Values) -> Vec<f64>>(&self, of: F) -> impl Fn(f64) -> Vec<f64> + use<F> {
+    pub(super) fn along<F: Fn(&Values) -> Vec<f64>>(&self, of: F) -> impl Fn(f64) -> Vec<f64> + use<F> {
         let (values, charts) = (self.values.clone(), self.model.charts.clone());
         // With declared speeds the joints have other velocities.
         let joints = match self.function("rates_of_speeds") {
@@ -261,99 +268,6 @@ impl Case<'_, '_> {
         }
     }
 
-    fn check_constraints(&mut self) {
-        let (Some(rates), Some(residuals)) =
-            (self.function("constraint_rates").cloned(), self.function("constraint_residuals").cloned())
-        else {
-            return;
-        };
-        let output = self.output;
-        self.check_columns("constraint_jacobian", "constraint_rates", &[By::V]);
-        let along = self.along(|x| x.run(output, &residuals));
-        let holonomic = self.here("constraint_residuals").len();
-        self.compare("residuals", &self.here("constraint_rates")[..holonomic], &along);
-        let jacobian = self.here("constraint_jacobian");
-        let change = sum(&product(&jacobian, &self.values.a), &self.here("constraint_bias"));
-        let along = self.along(|x| x.run(output, &rates));
-        self.compare("rates of constraints", &change, &along);
-        self.check_constrained_dynamics(&jacobian);
-    }
-
-    /// What elimination finds, where it says that it is to be trusted: it fulfils the equations of motion and the constraints.
-    fn check_constrained_dynamics(&mut self, jacobian: &[f64]) {
-        use catalogue::{Record, Shape};
-        let Some(function) = self.function("__constrained_dynamics").cloned() else { return };
-        let Shape::Record(Record::Elimination(nv, nc)) = function.shape else { return };
-        let found = self.values.run(self.output, &function);
-        let (a, rest) = found.split_at(nv);
-        let (multipliers, rest) = rest.split_at(nc);
-        let (pivots, before) = rest.split_at(nc);
-        if !pivots.iter().zip(before).all(|(pivot, before)| *pivot > 1e-3 * before) {
-            return;
-        }
-        let there = Values { a: a.to_vec(), ..self.values.clone() };
-        let balance: Vec<f64> =
-            (0..nv).map(|j| dot(&jacobian[j * nc..(j + 1) * nc], multipliers) + self.values.tau[j]).collect();
-        let forces = self.run("inverse_dynamics", &there);
-        let scale = 1.0 + size(&balance) + size(jacobian) * size(multipliers) + size(&forces);
-        self.close("constrained dynamics", &forces, &balance, 1e-4 * TOLERANCE * scale);
-        let change = sum(&product(jacobian, a), &self.here("constraint_bias"));
-        let scale = 1.0 + size(jacobian) * size(a) + size(&self.here("constraint_bias"));
-        self.close("constrained accelerations", &change, &vec![0.0; nc], 1e-4 * TOLERANCE * scale);
-    }
-
-    fn check_contacts(&mut self) {
-        let Some(gaps) = self.function("contact_gaps").cloned() else { return };
-        self.check_contact_derivatives();
-        let output = self.output;
-        self.check_columns("contact_jacobian", "contact_rates", &[By::V]);
-        let rates = self.here("contact_rates");
-        let (mut first, mut approach, mut of) = (0, Vec::new(), Vec::new());
-        for (k, contact) in self.model.contacts.iter().enumerate() {
-            if contact.pressed_by.is_none() {
-                approach.push(rates[first]);
-                of.push(k);
-            }
-            first += contact.rates.len();
-        }
-        // Of the rim of a cylinder those points count that are there at the moment: their gaps are not followed.
-        if self.name.contains(source::RIMS) {
-            return;
-        }
-        let along = self.along(move |x| {
-            let gaps = x.run(output, &gaps);
-            of.iter().map(|k| gaps[*k]).collect()
-        });
-        self.compare("gaps", &approach, &along);
-    }
-
-    /// `Gᵀ f`, `G a + b` and the rates `G v + …`.
-    fn check_contact_derivatives(&mut self) {
-        let found = self.here("__contact_derivatives");
-        let get = |name: &str| self.function(name).cloned();
-        let (Some(jacobian), Some(bias), Some(rates)) =
-            (get("contact_jacobian"), get("contact_bias"), get("contact_rates"))
-        else {
-            return;
-        };
-        if found.is_empty() {
-            return;
-        }
-        let (output, nv, nr) = (self.output, self.values.v.len(), self.values.contact_forces.len());
-        let forces = |x: &Values| {
-            let columns = x.run(output, &jacobian);
-            (0..nv).map(|j| dot(&columns[j * nr..(j + 1) * nr], &x.contact_forces)).collect()
-        };
-        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
-        let (first, rest) = found.split_at(nv * nv);
-        let (second, rest) = rest.split_at(nr * nv);
-        let (third, rest) = rest.split_at(nr * nv);
-        self.compare_columns("forces at contacts", first, By::Q, &forces);
-        self.compare_columns("changes at contacts", second, By::Q, &change);
-        self.compare_columns("changes at contacts", third, By::V, &change);
-        self.compare_columns("rates at contacts", rest, By::Q, &|x| x.run(output, &rates));
-    }
-
     fn check_derivatives(&mut self) {
         let output = self.output;
         self.check_columns("inverse_dynamics_derivatives", "inverse_dynamics", &[By::Q, By::V]);
@@ -375,40 +289,6 @@ impl Case<'_, '_> {
         self.check_motion_derivatives();
         self.check_forward_derivatives();
         self.check_second_derivatives();
-    }
-
-    /// `M a + h − Jᵀ λ`, `J a + b` and the rates.
-    fn check_motion_derivatives(&mut self) {
-        let found = self.here("__motion_derivatives");
-        let get = |name: &str| self.function(name).cloned();
-        let (Some(inverse), Some(jacobian), Some(bias), Some(rates)) = (
-            get("inverse_dynamics"),
-            get("constraint_jacobian"),
-            get("constraint_bias"),
-            get("constraint_rates"),
-        ) else {
-            return;
-        };
-        if found.is_empty() {
-            return;
-        }
-        let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
-        let balance = |x: &Values| {
-            let (columns, forces) = (x.run(output, &jacobian), x.run(output, &inverse));
-            (0..nv).map(|j| forces[j] - dot(&columns[j * nc..(j + 1) * nc], &x.given[..nc])).collect()
-        };
-        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
-        let mut rest = &found[..];
-        let mut part = |n: usize| {
-            let (part, after) = rest.split_at(n);
-            rest = after;
-            part
-        };
-        self.compare_columns("forces with multipliers", part(nv * nv), By::Q, &balance);
-        self.compare_columns("forces with multipliers", part(nv * nv), By::V, &balance);
-        self.compare_columns("changes of rates", part(nc * nv), By::Q, &change);
-        self.compare_columns("changes of rates", part(nc * nv), By::V, &change);
-        self.compare_columns("rates", part(nc * nv), By::Q, &|x| x.run(output, &rates));
     }
 
     /// Columns of forward dynamics that are known, and those of the forces that are multiplied by the inverse.

@@ -1,0 +1,134 @@
+//! What must agree of constraints and contacts.
+
+use super::agreement::{Case, TOLERANCE, dot, product, size, sum};
+use super::source;
+use super::values::{By, Values};
+use linkwork_compiler::catalogue::{Record, Shape};
+
+impl Case<'_, '_> {
+    pub(super) fn check_constraints(&mut self) {
+        let (Some(rates), Some(residuals)) =
+            (self.function("constraint_rates").cloned(), self.function("constraint_residuals").cloned())
+        else {
+            return;
+        };
+        let output = self.output;
+        self.check_columns("constraint_jacobian", "constraint_rates", &[By::V]);
+        let along = self.along(|x| x.run(output, &residuals));
+        let holonomic = self.here("constraint_residuals").len();
+        self.compare("residuals", &self.here("constraint_rates")[..holonomic], &along);
+        let jacobian = self.here("constraint_jacobian");
+        let change = sum(&product(&jacobian, &self.values.a), &self.here("constraint_bias"));
+        let along = self.along(|x| x.run(output, &rates));
+        self.compare("rates of constraints", &change, &along);
+        self.check_constrained_dynamics(&jacobian);
+    }
+
+    /// What elimination finds, where it says that it is to be trusted: it fulfils the equations of motion and the constraints.
+    fn check_constrained_dynamics(&mut self, jacobian: &[f64]) {
+        let Some(function) = self.function("__constrained_dynamics").cloned() else { return };
+        let Shape::Record(Record::Elimination(nv, nc)) = function.shape else { return };
+        let found = self.values.run(self.output, &function);
+        let (a, rest) = found.split_at(nv);
+        let (multipliers, rest) = rest.split_at(nc);
+        let (pivots, before) = rest.split_at(nc);
+        if !pivots.iter().zip(before).all(|(pivot, before)| *pivot > 1e-3 * before) {
+            return;
+        }
+        let there = Values { a: a.to_vec(), ..self.values.clone() };
+        let balance: Vec<f64> =
+            (0..nv).map(|j| dot(&jacobian[j * nc..(j + 1) * nc], multipliers) + self.values.tau[j]).collect();
+        let forces = self.run("inverse_dynamics", &there);
+        let scale = 1.0 + size(&balance) + size(jacobian) * size(multipliers) + size(&forces);
+        self.close("constrained dynamics", &forces, &balance, 1e-4 * TOLERANCE * scale);
+        let change = sum(&product(jacobian, a), &self.here("constraint_bias"));
+        let scale = 1.0 + size(jacobian) * size(a) + size(&self.here("constraint_bias"));
+        self.close("constrained accelerations", &change, &vec![0.0; nc], 1e-4 * TOLERANCE * scale);
+    }
+
+    pub(super) fn check_contacts(&mut self) {
+        let Some(gaps) = self.function("contact_gaps").cloned() else { return };
+        self.check_contact_derivatives();
+        let output = self.output;
+        self.check_columns("contact_jacobian", "contact_rates", &[By::V]);
+        let rates = self.here("contact_rates");
+        let (mut first, mut approach, mut of) = (0, Vec::new(), Vec::new());
+        for (k, contact) in self.model.contacts.iter().enumerate() {
+            if contact.pressed_by.is_none() {
+                approach.push(rates[first]);
+                of.push(k);
+            }
+            first += contact.rates.len();
+        }
+        // Of the rim of a cylinder those points count that are there at the moment: their gaps are not followed.
+        if self.name.contains(source::RIMS) {
+            return;
+        }
+        let along = self.along(move |x| {
+            let gaps = x.run(output, &gaps);
+            of.iter().map(|k| gaps[*k]).collect()
+        });
+        self.compare("gaps", &approach, &along);
+    }
+
+    /// `Gᵀ f`, `G a + b` and the rates `G v + …`.
+    fn check_contact_derivatives(&mut self) {
+        let found = self.here("__contact_derivatives");
+        let get = |name: &str| self.function(name).cloned();
+        let (Some(jacobian), Some(bias), Some(rates)) =
+            (get("contact_jacobian"), get("contact_bias"), get("contact_rates"))
+        else {
+            return;
+        };
+        if found.is_empty() {
+            return;
+        }
+        let (output, nv, nr) = (self.output, self.values.v.len(), self.values.contact_forces.len());
+        let forces = |x: &Values| {
+            let columns = x.run(output, &jacobian);
+            (0..nv).map(|j| dot(&columns[j * nr..(j + 1) * nr], &x.contact_forces)).collect()
+        };
+        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
+        let (first, rest) = found.split_at(nv * nv);
+        let (second, rest) = rest.split_at(nr * nv);
+        let (third, rest) = rest.split_at(nr * nv);
+        self.compare_columns("forces at contacts", first, By::Q, &forces);
+        self.compare_columns("changes at contacts", second, By::Q, &change);
+        self.compare_columns("changes at contacts", third, By::V, &change);
+        self.compare_columns("rates at contacts", rest, By::Q, &|x| x.run(output, &rates));
+    }
+
+    /// `M a + h − Jᵀ λ`, `J a + b` and the rates.
+    pub(super) fn check_motion_derivatives(&mut self) {
+        let found = self.here("__motion_derivatives");
+        let get = |name: &str| self.function(name).cloned();
+        let (Some(inverse), Some(jacobian), Some(bias), Some(rates)) = (
+            get("inverse_dynamics"),
+            get("constraint_jacobian"),
+            get("constraint_bias"),
+            get("constraint_rates"),
+        ) else {
+            return;
+        };
+        if found.is_empty() {
+            return;
+        }
+        let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
+        let balance = |x: &Values| {
+            let (columns, forces) = (x.run(output, &jacobian), x.run(output, &inverse));
+            (0..nv).map(|j| forces[j] - dot(&columns[j * nc..(j + 1) * nc], &x.given[..nc])).collect()
+        };
+        let change = |x: &Values| sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
+        let mut rest = &found[..];
+        let mut part = |n: usize| {
+            let (part, after) = rest.split_at(n);
+            rest = after;
+            part
+        };
+        self.compare_columns("forces with multipliers", part(nv * nv), By::Q, &balance);
+        self.compare_columns("forces with multipliers", part(nv * nv), By::V, &balance);
+        self.compare_columns("changes of rates", part(nc * nv), By::Q, &change);
+        self.compare_columns("changes of rates", part(nc * nv), By::V, &change);
+        self.compare_columns("rates", part(nc * nv), By::Q, &|x| x.run(output, &rates));
+    }
+}
