@@ -1,5 +1,7 @@
 //! What `linkwork export c` writes, compiled by the C compiler of the system, against the same functions in Rust.
 
+mod casadi;
+#[path = "../mechanisms/mod.rs"]
 mod mechanisms;
 
 use linkwork::prelude::*;
@@ -512,75 +514,4 @@ fn in_single_precision() {
     let flags = ["-O2", "-Wdouble-promotion", "-Wfloat-conversion"];
     let found = printed(compiler, &folder, "single", &program(&case, "float"), &flags);
     compare(&case, &found, 2e-3);
-}
-
-/// A Python that has CasADi: that of `LINKWORK_PYTHON`, or the system's.
-fn python() -> Option<String> {
-    let python = std::env::var("LINKWORK_PYTHON").unwrap_or_else(|_| "python3".to_string());
-    let has =
-        Command::new(&python).args(["-c", "import casadi, numpy"]).output().is_ok_and(|o| o.status.success());
-    has.then_some(python)
-}
-
-/// What CasADi loads has the values of the functions and their slopes; acados' functions fit together. Without CasADi it is compiled
-/// without a warning.
-#[test]
-fn casadi_loads_functions_with_their_jacobians() {
-    let Some(compiler) = compilers().into_iter().next() else {
-        println!("skipped: there is no C compiler");
-        return;
-    };
-    let folder = folder("casadi");
-    let fixed = ["cart_mass=1.2", "pole_mass=0.3", "pole_length=0.8", "rail_damping=0.4"];
-    let set: Vec<&str> = fixed.iter().flat_map(|value| ["--set", value]).collect();
-    export(
-        &folder,
-        &[&["../../models/src/cart_pole.rs", "--prefix", "fixed", "--casadi"], &set[..]].concat(),
-    );
-    export(
-        &folder,
-        &["../../models/src/cart_pole.rs", "--prefix", "open", "--casadi", "--set", "cart_mass=1.2"],
-    );
-    export(&folder, &["tests/mechanisms/mod.rs", "--struct", "Balloon", "--prefix", "timed", "--casadi"]);
-    for prefix in ["fixed", "open", "timed"] {
-        let done = Command::new(compiler)
-            .current_dir(&folder)
-            .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "-fPIC", "-shared", "-o"])
-            .args([
-                format!("lib{prefix}.so"),
-                format!("{prefix}.c"),
-                format!("{prefix}_casadi.c"),
-                "-lm".to_string(),
-            ])
-            .output()
-            .expect("the compiler starts");
-        assert!(done.status.success(), "{prefix}: {}", String::from_utf8_lossy(&done.stderr));
-    }
-    let Some(python) = python() else {
-        println!("skipped: there is no CasADi (LINKWORK_PYTHON names a Python that has it)");
-        return;
-    };
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/casadi.py");
-    let run = Command::new(python).arg(script).current_dir(&folder).output().expect("Python starts");
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-}
-
-/// What cannot be fixed, and numbers that CasADi does not have, are told.
-#[test]
-fn what_casadi_cannot_have_is_told() {
-    for (arguments, part) in [
-        (["--set", "mass=1"], "there is no parameter `mass` to be fixed"),
-        (["--scalar", "float"], "CasADi has no functions of single precision"),
-        (["--set", "cart_mass"], "expected NAME=VALUE"),
-    ] {
-        let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
-            .args(["export", "c", "../../models/src/cart_pole.rs", "--casadi"])
-            .args(arguments)
-            .arg("--out")
-            .arg(folder("refused"))
-            .output()
-            .expect("the command starts");
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(!output.status.success() && told.contains(part), "{told}");
-    }
 }
