@@ -184,6 +184,41 @@ struct Flyer {
     rotor: Force,
 }
 
+/// A body on Cardan's angles, in its angular velocity along its own axes, which contains no parameter, with a slider.
+#[mechanism(gravity = -g * z, derivatives, sensitivities)]
+#[derive(Clone, Copy)]
+struct Gimbal {
+    g: f64,
+    m: f64,
+    l: f64,
+    #[body(mass = 0, inertia = 0)]
+    first: Body,
+    #[body(mass = 0, inertia = 0)]
+    second: Body,
+    #[body(mass = m, com = l / 2 * z, inertia = cuboid(m, l, 0.7 * l, 0.2 * l))]
+    top: Body,
+    #[joint(ground -> first, about = z)]
+    psi: Pin,
+    #[joint(first -> second, about = y)]
+    theta: Pin,
+    #[joint(second -> top, about = x)]
+    phi: Pin,
+    #[particle(mass = m / 5)]
+    bead: Particle,
+    #[joint(top.at(l / 9 * x) -> bead, along = z)]
+    rail: Sleeve,
+    #[acts(on = rail, stiffness = 40)]
+    spring: Spring,
+    #[acts(on = top.at(l * x), along = top.z)]
+    push: Force,
+    #[speed(dot(omega(top / ground), top.x))]
+    wx: Speed,
+    #[speed(dot(omega(top / ground), top.y))]
+    wy: Speed,
+    #[speed(dot(omega(top / ground), top.z))]
+    wz: Speed,
+}
+
 /// Derivatives of a step against differences, along displacements of its end.
 fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     what: &str,
@@ -219,6 +254,10 @@ fn steps() {
     let of_hoop: [fn(&mut Hoop) -> &mut f64; 4] =
         [|m| &mut m.g, |m| &mut m.m, |m| &mut m.radius, |m| &mut m.spin];
     check_step("hoop, Rk4", hoop, &Rk4::step(0.05), of_hoop);
+    let gimbal = Gimbal { g: 9.7, m: 1.3, l: 0.6 };
+    let of_gimbal: [fn(&mut Gimbal) -> &mut f64; 3] = [|m| &mut m.g, |m| &mut m.m, |m| &mut m.l];
+    check_step("gimbal, Rk4", gimbal, &Rk4::step(0.02), of_gimbal);
+    check_step("gimbal, Euler", gimbal, &SemiImplicitEuler::step(0.02), of_gimbal);
 }
 
 #[test]
