@@ -18,13 +18,13 @@ pub struct Held<T, const NV: usize, const NR: usize> {
     pub forces: SVector<T, NR>,
 }
 
-/// Forward dynamics with given contacts closed: the accelerations under the generalized forces `tau`, and the forces of the contacts,
+/// Forward dynamics with given contacts closed: accelerations under the generalized forces `tau`, and the forces of the contacts.
 ///
 /// ```text
 /// M v̇ + h = τ + Gᵀ f + Jᵀ λ,   G v̇ + b = 0 where surfaces stick, and along the normals where they slip with fₜ = −μ fₙ uₜ / |uₜ|
 /// ```
 ///
-/// as controllers of legged robots and estimators that know their contacts need it (Featherstone, *Rigid Body Dynamics Algorithms*,
+/// Controllers of legged robots and estimators that know their contacts need it (Featherstone, *Rigid Body Dynamics Algorithms*,
 /// 2008, ch. 11). Gaps are not looked at; forces may pull, and leave the cone of friction: who chooses contacts checks what it
 /// takes to hold them. [`acting`](super::acting) finds out itself which of them hold. Forces that are shared by more contacts than
 /// the motion can tell apart are those of least norm where no surfaces slip.

@@ -11,13 +11,13 @@ use crate::constraint::ConstraintError;
 use crate::discrete::Transition;
 use nalgebra::{SMatrix, SVector};
 
-/// Velocity and impulses after given contacts have closed at once, without restitution:
+/// Velocity and impulses after given contacts have closed at once, without restitution.
 ///
 /// ```text
 /// M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   G v⁺ = 0
 /// ```
 ///
-/// where surfaces stick; along the normals alone, and without friction, where they slip. This is the touchdown between two phases of a
+/// Both hold where surfaces stick; where they slip, along the normals alone and without friction. This is the touchdown between two phases of a
 /// gait whose contacts are known ([`hold`](super::hold)). Gaps are not looked at, and impulses may pull: [`impact`](super::impact)
 /// finds out itself which contacts act.
 ///
