@@ -302,8 +302,8 @@ impl Source {
     /// A body, or a frame.
     fn axes(&mut self) -> String {
         let n = self.random.below(self.bodies.len() + self.frames.len() + 1);
-        let all = self.bodies.iter().chain(&self.frames);
-        all.cloned().nth(n).unwrap_or_else(|| "ground".to_string())
+        let named = self.bodies.iter().chain(&self.frames).nth(n);
+        named.cloned().unwrap_or_else(|| "ground".to_string())
     }
 
     fn value(&mut self) -> String {
