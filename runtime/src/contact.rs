@@ -343,7 +343,7 @@ where
     let Some(closed) = closed(mechanism, t + h, &free.q, &end, Some(&came)).map_err(reported)? else {
         return Ok(SVector::zeros());
     };
-    let before = || *came.rates(mechanism, t + h, &free.q);
+    let before = || came.rates(mechanism, t + h, &free.q);
     let solved =
         act(mechanism, t + h, (&free.q, &end), &closed, (before, Some(&given)), &mut Acted::nothing());
     Ok(solved.map_err(reported)?.impulses / h)

@@ -7,7 +7,7 @@ use super::{Acted, Contacts, Rows, Touched, act, near};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, epsilon};
-use core::cell::OnceCell;
+use core::cell::Cell;
 use nalgebra::SVector;
 
 /// How often the part of a displacement that the energy allows is found anew.
@@ -20,7 +20,7 @@ pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize>
     /// The configuration and the velocity.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]), once they are asked for.
-    rates: OnceCell<SVector<T, NR>>,
+    rates: Cell<Option<SVector<T, NR>>>,
     /// How long it has taken.
     h: T,
     /// By how much contacts have been taken to move it.
@@ -30,7 +30,7 @@ pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize>
 impl<'a, T: Real, const NQ: usize, const NV: usize, const NR: usize> Came<'a, T, NQ, NV, NR> {
     /// From a state in `h` seconds, in which contacts have been taken to move it by `held`.
     pub(super) fn from(start: (&'a SVector<T, NQ>, &'a SVector<T, NV>), h: T, held: SVector<T, NV>) -> Self {
-        Self { start, rates: OnceCell::new(), h, held }
+        Self { start, rates: Cell::new(None), h, held }
     }
 
     /// The rates at the contacts that the velocity has where the step ends, in the configuration `q`.
@@ -39,11 +39,16 @@ impl<'a, T: Real, const NQ: usize, const NV: usize, const NR: usize> Came<'a, T,
         mechanism: &M,
         t: T,
         q: &SVector<T, NQ>,
-    ) -> &SVector<T, NR>
+    ) -> SVector<T, NR>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        self.rates.get_or_init(|| rates_at_end(mechanism, t, self.start, q))
+        if let Some(rates) = self.rates.get() {
+            return rates;
+        }
+        let rates = rates_at_end(mechanism, t, self.start, q);
+        self.rates.set(Some(rates));
+        rates
     }
 }
 
@@ -93,11 +98,12 @@ where
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
             let (by, place) = layout.pressing(k);
             let of = |vector: &SVector<T, NR>| entry(vector, place);
-            let parts = (of(rates) * *h).max(T::zero());
+            let parts = (of(&rates) * *h).max(T::zero());
             // Where faces and edges take turns a contact may be at another place than before.
             let Rows { first, count } = layout.rows(by);
-            let ways = (first..first + count)
-                .fold(of(&apart).abs(), |sum, i| sum + (entry(rates, i).abs() + entry(&after, i).abs()) * *h);
+            let ways = (first..first + count).fold(of(&apart).abs(), |sum, i| {
+                sum + (entry(&rates, i).abs() + entry(&after, i).abs()) * *h
+            });
             let stays = *start + parts <= near() && *gap <= near::<T>() + ways;
             *closed |= *gap - of(&apart) <= near() || stays;
         }
@@ -151,7 +157,7 @@ where
         return Ok(if is_led { led(free) } else { Touched { q: *q, v: *free } });
     };
     let mut acted = Acted::nothing();
-    let before = || *came.rates(mechanism, t, q);
+    let before = || came.rates(mechanism, t, q);
     let after = act(mechanism, t, (q, free), &closed, (before, Some(given)), &mut acted)?.v;
     if h == T::zero() {
         return Ok(Touched { q: *q, v: after });
@@ -169,7 +175,7 @@ where
     if problem.rebounds() {
         let led = |impulses: &SVector<T, NR>| led(&(free + responses * impulses));
         let before = came.rates(mechanism, t, q);
-        if let Some(less) = tempered(mechanism, t, problem, before, &led, (&touched, most())) {
+        if let Some(less) = tempered(mechanism, t, problem, &before, &led, (&touched, most())) {
             (touched, *impulses) = less;
         }
     }
