@@ -19,7 +19,7 @@ struct Load {
     accelerometer: Vector,
 }
 
-/// The same with a compass.
+/// The load with its sensors and a compass.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Guided {
     #[body(mass = 1.5, com = -0.8 * z, inertia = diagonal(0.02, 0.03, 0.01))]

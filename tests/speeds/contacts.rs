@@ -28,7 +28,7 @@ struct Tripod {
     wind: Force,
 }
 
-/// The same in the velocity of the hull's origin and its angular velocity along the axes of the ground.
+/// The tripod in the velocity of its hull's origin and its angular velocity along the axes of the ground.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct TripodInSpeeds {
     #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
@@ -72,7 +72,7 @@ struct Leg {
     stop: Limit,
 }
 
-/// The same in the angular velocity of its shank, times a length, and the speed of its foot across the thigh.
+/// The leg in the angular velocity of its shank, times a length, and the speed of its foot across the thigh.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct LegInSpeeds {
     #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]

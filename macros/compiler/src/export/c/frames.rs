@@ -260,52 +260,7 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
         body.push_str("    }\n");
     }
     if is_jacobian {
-        let _ = write!(
-            body,
-            "    double placement[12];
-    placement_on_link(frame, {own}p, placement);
-    for (int k = 0; k < 6 * {}; ++k) {{
-        result[k] = 0.0;
-    }}
-",
-            o.nv
-        );
-        if has_links {
-            let _ = write!(
-                body,
-                "    for (int k = 0; k < count; ++k) {{
-        double columns[{}] = {{0.0}};
-        link_columns(path[k], {own}{time}q, placements + 12 * k, placement + 9, columns);
-        for (int c = first_column[path[k]]; c < first_column[path[k] + 1]; ++c) {{
-            for (int i = 0; i < 6; ++i) {{
-                result[6 * column_of[c] + i] += columns[6 * (c - first_column[path[k]]) + i];
-            }}
-        }}
-    }}
-",
-                6 * most.unwrap_or(0).max(1)
-            );
-        }
-        if o.speeds {
-            let call = o.timeless_call("rate_matrix", &["q", "z"]);
-            let _ = write!(
-                body,
-                "    double joints[6 * {0}], z[{0} * {0}];
-    {call};
-    memcpy(joints, result, sizeof joints);
-    for (int j = 0; j < {0}; ++j) {{
-        for (int i = 0; i < 6; ++i) {{
-            double sum = 0.0;
-            for (int k = 0; k < {0}; ++k) {{
-                sum += joints[6 * k + i] * z[j * {0} + k];
-            }}
-            result[6 * j + i] = sum;
-        }}
-    }}
-",
-                o.nv.max(1)
-            );
-        }
+        write_jacobian(&mut body, o, most);
     } else {
         let _ = match access.name {
             // Steps have rotations row by row.
@@ -324,4 +279,56 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     }
     body.push_str("    return 0;\n");
     body
+}
+
+/// What sums the columns of the links on the way to a frame into its Jacobian, in declared speeds where there are some.
+fn write_jacobian(body: &mut String, o: &Outline<'_>, most: Option<usize>) {
+    let own = if o.has_own() { "self, " } else { "" };
+    let time = if o.time { "t, " } else { "" };
+    let _ = write!(
+        body,
+        "    double placement[12];
+    placement_on_link(frame, {own}p, placement);
+    for (int k = 0; k < 6 * {}; ++k) {{
+        result[k] = 0.0;
+    }}
+",
+        o.nv
+    );
+    if let Some(most) = most {
+        let _ = write!(
+            body,
+            "    for (int k = 0; k < count; ++k) {{
+        double columns[{}] = {{0.0}};
+        link_columns(path[k], {own}{time}q, placements + 12 * k, placement + 9, columns);
+        for (int c = first_column[path[k]]; c < first_column[path[k] + 1]; ++c) {{
+            for (int i = 0; i < 6; ++i) {{
+                result[6 * column_of[c] + i] += columns[6 * (c - first_column[path[k]]) + i];
+            }}
+        }}
+    }}
+",
+            6 * most.max(1)
+        );
+    }
+    if o.speeds {
+        let call = o.timeless_call("rate_matrix", &["q", "z"]);
+        let _ = write!(
+            body,
+            "    double joints[6 * {0}], z[{0} * {0}];
+    {call};
+    memcpy(joints, result, sizeof joints);
+    for (int j = 0; j < {0}; ++j) {{
+        for (int i = 0; i < 6; ++i) {{
+            double sum = 0.0;
+            for (int k = 0; k < {0}; ++k) {{
+                sum += joints[6 * k + i] * z[j * {0} + k];
+            }}
+            result[6 * j + i] = sum;
+        }}
+    }}
+",
+            o.nv.max(1)
+        );
+    }
 }

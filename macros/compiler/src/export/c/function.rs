@@ -130,7 +130,7 @@ impl Outline<'_> {
         format!("{}_{name}({})", self.prefix, list.join(", "))
     }
 
-    /// The same of a function that takes no time.
+    /// A call of a function that takes no time.
     pub fn timeless_call(&self, name: &str, arguments: &[&str]) -> String {
         let own = self.has_own().then_some("self");
         let list: Vec<&str> = own.into_iter().chain(arguments.iter().copied()).collect();
