@@ -186,7 +186,7 @@
 //! | 5 | frames along curves (Frenet and Serret), curvature, torsion | `#[frame(ground, frenet(curve, s))]`, `curvature(curve, s)`, `torsion(curve, s)` | `textbook/curves.rs`: `a_helix_has_constant_curvature_and_torsion`, `cubics_and_ellipses_bend_as_geometry_says` |
 //! | 5 | a coordinate along a curve of any form | a `Coordinate`, `at = expression` | `beads_on_wires` |
 //! | 6 | reactions of joints, equilibrium of each free body | `reaction_force`, `reaction_torque` | `constraints/reactions.rs`: `reactions_balance_every_free_body` |
-//! | 6 | free-body diagrams: all that acts on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams.rs`: `what_acts_on_a_body_changes_its_momenta` |
+//! | 6 | free-body diagrams: all that acts on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams/main.rs`: `what_acts_on_a_body_changes_its_momenta` |
 //! | 6 | forces along lines, ropes by way of pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length`, `cables_take_the_shortest_way_around`, `cables_have_exact_derivatives` |
 //! | 6 | equilibria with held coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
 //! | 6 | a chain's catenary, an unstable column, three legs, a platform on six | `linkwork_design::steady` | `a_chain_hangs_in_its_catenary`, `a_column_buckles_at_eulers_load`, `three_legs_share_what_stands_on_a_table`, `six_legs_hold_a_platform` of design |
