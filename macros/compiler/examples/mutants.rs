@@ -1,0 +1,236 @@
+//! Writes all mutants of a copy of this crate into it at once: each behind a question that an environment variable answers, so that
+//! one build serves them all. `.ci/mutate` makes the copy, builds it and has the tests look at the mutants one by one.
+//!
+//! ```sh
+//! cargo run -p linkwork-compiler --example mutants -- COPY-OF-THE-CRATE [NUMBER-OF-A-MUTANT-TO-LEAVE-OUT …]
+//! ```
+//!
+//! Prints a line for each mutant: its number, the file and line of the original, what stood there and what stands there now.
+//! Expressions of constants are left alone, and what stands in macros.
+use proc_macro2::Span;
+use quote::{ToTokens, quote};
+use std::path::{Path, PathBuf};
+use syn::visit_mut::{self, VisitMut};
+use syn::{Arm, BinOp, Block, Expr, Lit, Pat, PatGuard, parse_quote, spanned::Spanned};
+
+/// What is mutated: what hands arms, offsets and sizes on.
+const ROOMS: [&str; 4] = ["src/catalogue", "src/derive", "src/derive.rs", "src/emit"];
+
+/// The module of the copy that knows which mutant is asked for.
+const CHOICE: &str = "//! The mutant that is asked for.
+use std::sync::OnceLock;
+static CHOSEN: OnceLock<usize> = OnceLock::new();
+/// Whether it is this one.
+pub fn is(mutant: usize) -> bool {
+    *CHOSEN.get_or_init(|| std::env::var(\"LINKWORK_MUTANT\").ok().and_then(|text| text.parse().ok()).unwrap_or(usize::MAX)) == mutant
+}
+";
+
+/// Walks through a file's expressions and gives each place that can change a number.
+struct Mutator<'a> {
+    file: PathBuf,
+    next: usize,
+    left_out: &'a [usize],
+}
+
+impl Mutator<'_> {
+    /// `original` or `instead`, by the mutant's number; `None` where this mutant is left out.
+    fn choice(&mut self, at: Span, shown: &dyn ToTokens, original: &Expr, instead: &Expr) -> Option<Expr> {
+        let number = self.next;
+        self.next += 1;
+        if self.left_out.contains(&number) {
+            return None;
+        }
+        let (line, before, after) = (at.start().line, short(shown), short(instead));
+        println!("{number}\t{}:{line}\t{before}\t{after}", self.file.display());
+        Some(parse_quote!((if crate::mutant::is(#number) { #instead } else { #original })))
+    }
+
+    /// What an expression may become, before anything in it is changed.
+    fn changed(expr: &Expr) -> Option<Expr> {
+        let mut instead = expr.clone();
+        match &mut instead {
+            Expr::Binary(binary) => {
+                binary.op = match binary.op {
+                    BinOp::Add(_) => parse_quote!(-),
+                    BinOp::Sub(_) | BinOp::Mul(_) => parse_quote!(+),
+                    BinOp::Eq(_) => parse_quote!(!=),
+                    BinOp::Ne(_) => parse_quote!(==),
+                    BinOp::Lt(_) => parse_quote!(<=),
+                    BinOp::Le(_) => parse_quote!(<),
+                    BinOp::Gt(_) => parse_quote!(>=),
+                    BinOp::Ge(_) => parse_quote!(>),
+                    BinOp::And(_) if !has_let(expr) => parse_quote!(||),
+                    BinOp::Or(_) => parse_quote!(&&),
+                    _ => return None,
+                }
+            }
+            Expr::Lit(literal) => {
+                let Lit::Int(number) = &literal.lit else { return None };
+                let next = number.base10_parse::<u64>().ok()? + 1;
+                literal.lit =
+                    Lit::Int(syn::LitInt::new(&format!("{next}{}", number.suffix()), number.span()));
+            }
+            Expr::MethodCall(call) if call.method == "skip" && call.args.len() == 1 => {
+                return Some((*call.receiver).clone());
+            }
+            Expr::MethodCall(call) => {
+                call.method = syn::Ident::new(other(&call.method.to_string())?, call.method.span())
+            }
+            Expr::Field(field) => {
+                let syn::Member::Named(name) = &mut field.member else { return None };
+                *name = syn::Ident::new(other(&name.to_string())?, name.span());
+            }
+            Expr::Path(path) => {
+                let name = path.path.get_ident()?;
+                path.path = syn::Ident::new(other(&name.to_string())?, name.span()).into();
+            }
+            _ => return None,
+        }
+        Some(instead)
+    }
+}
+
+/// What a name is taken for by mistake.
+fn other(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "nq" => "nv",
+        "nv" => "nq",
+        "any" => "all",
+        "all" => "any",
+        "rows" => "columns",
+        "columns" => "rows",
+        "first" => "last",
+        "last" => "first",
+        "min" => "max",
+        "max" => "min",
+        _ => return None,
+    })
+}
+
+fn has_let(expr: &Expr) -> bool {
+    match expr {
+        Expr::Let(_) => true,
+        Expr::Binary(binary) => has_let(&binary.left) || has_let(&binary.right),
+        Expr::Paren(inner) => has_let(&inner.expr),
+        _ => false,
+    }
+}
+
+/// Tokens on a line, not all of a long one.
+fn short(tokens: &dyn ToTokens) -> String {
+    let text = tokens.to_token_stream().to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    text.chars().take(100).collect()
+}
+
+impl VisitMut for Mutator<'_> {
+    fn visit_expr_mut(&mut self, expr: &mut Expr) {
+        let (original, instead) = (expr.clone(), Self::changed(expr));
+        match expr {
+            // A place that is written to, or a function that is called, stays what it is; so does a condition with `let`.
+            Expr::Call(call) => call.args.iter_mut().for_each(|argument| self.visit_expr_mut(argument)),
+            Expr::Assign(assign) => self.visit_expr_mut(&mut assign.right),
+            Expr::Reference(reference) if reference.mutability.is_some() => return,
+            _ => visit_mut::visit_expr_mut(self, expr),
+        }
+        if let Some(instead) = instead
+            && let Some(both) = self.choice(original.span(), &original, expr, &instead)
+        {
+            *expr = both;
+        }
+    }
+
+    /// An arm that does what the next one does.
+    fn visit_expr_match_mut(&mut self, matched: &mut syn::ExprMatch) {
+        self.visit_expr_mut(&mut matched.expr);
+        let bodies: Vec<Expr> = matched.arms.iter().map(|arm| (*arm.body).clone()).collect();
+        for (k, arm) in matched.arms.iter_mut().enumerate() {
+            let Arm { body, pat, .. } = arm;
+            if let Pat::Guard(PatGuard { guard, .. }) = pat {
+                self.visit_expr_mut(guard);
+            }
+            self.visit_expr_mut(body);
+            let next = bodies.get(k + 1).filter(|next| short(*next) != short(&bodies[k]));
+            if let Some(next) = next
+                && let Some(both) = self.choice(pat.span(), &quote!(#pat =>), body, next)
+            {
+                **body = both;
+            }
+        }
+    }
+
+    fn visit_item_mut(&mut self, item: &mut syn::Item) {
+        let attributes = match item {
+            syn::Item::Const(_) | syn::Item::Static(_) | syn::Item::Macro(_) => return,
+            syn::Item::Fn(function) if function.sig.constness.is_some() => return,
+            syn::Item::Mod(module) => &module.attrs,
+            syn::Item::Fn(function) => &function.attrs,
+            _ => return visit_mut::visit_item_mut(self, item),
+        };
+        if !attributes.iter().any(|attribute| attribute.path().is_ident("cfg")) {
+            visit_mut::visit_item_mut(self, item);
+        }
+    }
+
+    fn visit_impl_item_mut(&mut self, item: &mut syn::ImplItem) {
+        match item {
+            syn::ImplItem::Const(_) => {}
+            syn::ImplItem::Fn(function) if function.sig.constness.is_some() => {}
+            _ => visit_mut::visit_impl_item_mut(self, item),
+        }
+    }
+
+    fn visit_block_mut(&mut self, block: &mut Block) {
+        block.stmts.retain(|statement| !matches!(statement, syn::Stmt::Macro(call) if call.mac.path.is_ident("debug_assert")));
+        visit_mut::visit_block_mut(self, block);
+    }
+
+    fn visit_type_mut(&mut self, _: &mut syn::Type) {}
+    fn visit_pat_mut(&mut self, _: &mut syn::Pat) {}
+    fn visit_path_mut(&mut self, _: &mut syn::Path) {}
+    fn visit_attribute_mut(&mut self, _: &mut syn::Attribute) {}
+    /// The length of an array is a constant.
+    fn visit_expr_repeat_mut(&mut self, repeat: &mut syn::ExprRepeat) {
+        self.visit_expr_mut(&mut repeat.expr);
+    }
+}
+
+/// All files of Rust at a path, in order.
+fn sources(path: &Path, found: &mut Vec<PathBuf>) {
+    if path.is_file() {
+        found.push(path.to_path_buf());
+        return;
+    }
+    let mut entries: Vec<PathBuf> =
+        std::fs::read_dir(path).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+    entries.sort();
+    entries
+        .iter()
+        .filter(|entry| entry.is_dir() || entry.extension().is_some_and(|end| end == "rs"))
+        .for_each(|entry| sources(entry, found));
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let copy = PathBuf::from(arguments.next().expect("the copy to write into"));
+    let left_out: Vec<usize> = arguments.map(|number| number.parse().expect("a number")).collect();
+    let mut files = Vec::new();
+    ROOMS.iter().for_each(|room| sources(&copy.join(room), &mut files));
+    let mut next = 0;
+    for path in files {
+        let text = std::fs::read_to_string(&path).expect("a file of Rust");
+        let mut parsed = syn::parse_file(&text).expect("Rust");
+        let file = path.strip_prefix(&copy).expect("a file of the copy").to_path_buf();
+        let mut mutator = Mutator { file, next, left_out: &left_out };
+        mutator.visit_file_mut(&mut parsed);
+        next = mutator.next;
+        std::fs::write(&path, prettyplease::unparse(&parsed)).expect("written");
+    }
+    std::fs::write(copy.join("src/mutant.rs"), CHOICE).expect("written");
+    let library = copy.join("src/lib.rs");
+    let text = std::fs::read_to_string(&library).expect("the library");
+    let module = "\nmod mutant;\n";
+    if !text.contains(module) {
+        std::fs::write(&library, text + module).expect("written");
+    }
+}
