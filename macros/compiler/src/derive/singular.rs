@@ -28,17 +28,10 @@ pub fn check<'g>(
         report_nothing(model, singular[0], cx);
         return false;
     }
-    if let Some(bare) = bare_base(model, &singular) {
+    if let Some((bare, rest)) = bare_base(model, joints, &singular) {
         // Only what would remain with a base that has mass is another mistake.
-        let mut with_mass = model.clone();
-        with_mass.links[bare].inertia = unit(model.graph);
-        let mass = crba::mass_matrix(&with_mass, joints);
-        let loaded = massless::loaded_mass(&with_mass, joints, mass);
-        let rest = regularity::singular_velocities(&with_mass, joints, &loaded);
-        if rest.len() < singular.len() {
-            report_base(model, bare, cx);
-            singular = rest;
-        }
+        report_base(model, bare, cx);
+        singular = rest;
     }
     if !singular.is_empty() {
         report_velocities(model, &singular, cx);
@@ -72,13 +65,17 @@ fn unit(graph: &Graph) -> Inertia<'_> {
     Inertia::of_body(graph.one(), Vec3::zero(graph), Sym3::scalar(graph.one()))
 }
 
-/// A link that moves freely and has no mass, or no moment of inertia about some axis.
-fn bare_base(model: &Model<'_>, singular: &[usize]) -> Option<usize> {
-    model.links.iter().position(|link| match link.motion {
-        Motion::Free { v, .. } => {
-            link.inertia.mass.is_zero() || singular.iter().any(|k| (v..v + 6).contains(k))
-        }
-        _ => false,
+/// A link that moves freely and lacks mass, or a moment of inertia about some axis: with more of them fewer velocities move
+/// nothing, which are told as well.
+fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) -> Option<(usize, Vec<usize>)> {
+    let free = |link: &usize| matches!(model.links[*link].motion, Motion::Free { .. });
+    (0..model.links.len()).filter(free).find_map(|bare| {
+        let mut with_mass = model.clone();
+        with_mass.links[bare].inertia = unit(model.graph);
+        let mass = crba::mass_matrix(&with_mass, joints);
+        let loaded = massless::loaded_mass(&with_mass, joints, mass);
+        let rest = regularity::singular_velocities(&with_mass, joints, &loaded);
+        (rest.len() < singular.len()).then_some((bare, rest))
     })
 }
 

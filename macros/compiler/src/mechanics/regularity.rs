@@ -6,10 +6,10 @@ use crate::expr::eval::eval;
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
-/// Pivots below this part of their diagonal entry's first value, times the number of velocities, count as zero. Elimination
-/// of a positive definite matrix leaves no more than a few units of rounding for each row (Higham, *Accuracy and Stability
-/// of Numerical Algorithms*, 2002, theorem 10.3), and a light body that carries a heavy one keeps a pivot of their ratio:
-/// masses may lie twelve powers of ten apart.
+/// A pivot is `zᵀ M z` of a motion `z` in which one velocity is 1 and those before it are what leaves the least energy. If
+/// every entry of `M` is off by a part `ε` of itself, the pivot is by up to `ε |z|ᵀ |M| |z|` (Higham, *Accuracy and Stability of
+/// Numerical Algorithms*, 2002, § 10.1), however small it is beside the diagonal of `M`: pivots below this part of that bound are zero.
+/// Masses may lie twelve powers of ten apart.
 const TOLERANCE: f64 = 32.0 * f64::EPSILON;
 
 /// The entries of `v` at which the factorisation fails, from the root on. None if it does not fail in every one of several
@@ -44,12 +44,12 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
             order.push(index);
         }
     }
-    let scale: Vec<f64> = (0..n).map(|k| m[k][k]).collect();
-    let smallest = TOLERANCE * n as f64;
+    let whole = m.clone();
     let mut failing = Vec::new();
+    let mut eliminated = Vec::new();
     for (step, &k) in order.iter().enumerate() {
         // Parameters at random may make an inertia that no body has: then a pivot is negative, and not zero all the same.
-        if m[k][k].abs() <= smallest * scale[k].abs() || scale[k] == 0.0 {
+        if m[k][k].abs() <= TOLERANCE * rounding(&whole, &m, &eliminated, k) {
             failing.push(k);
             continue;
         }
@@ -59,6 +59,17 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
                 m[i][j] -= factor * m[k][j];
             }
         }
+        eliminated.push(k);
     }
     failing
+}
+
+/// `|z|ᵀ |M| |z|` of the motion `z` whose velocity `k` is 1, with what elimination has left of `M`.
+fn rounding(whole: &[Vec<f64>], left: &[Vec<f64>], eliminated: &[usize], k: usize) -> f64 {
+    let mut z = vec![(k, 1.0)];
+    for &i in eliminated.iter().rev() {
+        let others: f64 = z.iter().map(|(j, value)| left[i][*j] * value).sum();
+        z.push((i, -others / left[i][i]));
+    }
+    z.iter().flat_map(|(i, a)| z.iter().map(move |(j, b)| (a * whole[*i][*j] * b).abs())).sum()
 }
