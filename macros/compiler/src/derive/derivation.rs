@@ -263,8 +263,8 @@ fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     for chart in &model.charts {
         match chart {
             Chart::Plain(..) => {}
-            Chart::Ball(k, _) => q[*k + 3] = g.one(),
-            Chart::Free(k, _) => q[*k + 6] = g.one(),
+            Chart::Ball(k, _) => q[k.0 + 3] = g.one(),
+            Chart::Free(k, _) => q[k.0 + 6] = g.one(),
         }
     }
     q

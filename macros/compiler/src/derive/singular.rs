@@ -92,7 +92,7 @@ fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
 /// Reports a free base without mass or moments of inertia.
 fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
     let Motion::Free { v, .. } = model.links[link].motion else { return };
-    let place = &model.velocities[v].1;
+    let place = &model.velocities[v.0].1;
     let body = model.frames.iter().find(|frame| frame.massive && frame.link == Some(LinkId(link)));
     let name = body.map_or("the base", |body| body.name.as_str());
     let what = match model.links[link].inertia.mass.is_zero() {

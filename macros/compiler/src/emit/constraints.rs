@@ -4,7 +4,7 @@
 use super::signature::Signature;
 use crate::catalogue::{Argument, Id, Shape};
 use crate::derive::Function;
-use crate::mechanism::Model;
+use crate::mechanism::{Freedom, Model};
 use std::fmt::Write;
 
 /// The scalar constraints of a mechanism.
@@ -19,7 +19,7 @@ pub struct Constraints {
     /// Rows of joints that are left out because they follow from these.
     pub redundant: Vec<String>,
     /// Independent coordinates and velocities.
-    pub freedom: [usize; 2],
+    pub freedom: Freedom,
     /// Those whose multipliers are normal forces of friction.
     pub slipping: Vec<usize>,
     /// Those that determine coordinates which may have no inertia.
@@ -38,7 +38,7 @@ impl Constraints {
             holonomic: 1,
             groups: vec![0],
             redundant: Vec::new(),
-            freedom: [0; 2],
+            freedom: Freedom::default(),
             slipping: slips.then_some(0).into_iter().collect(),
             determining: Vec::new(),
             overdetermined: false,
@@ -115,8 +115,8 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
         c.holonomic,
         c.names.len(),
         c.names,
-        c.freedom[0],
-        c.freedom[1],
+        c.freedom.coordinates,
+        c.freedom.velocities,
     );
 }
 
@@ -210,7 +210,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         correction = solution(c, false, &format!("careful_response(self, &Self::__STRUCTURE, {any}, q, force, bias)")),
         groups = c.groups,
         determining = c.determining,
-        rank = s.nv.saturating_sub(c.freedom[1]),
+        rank = s.nv.saturating_sub(c.freedom.velocities),
         solve = if c.slipping.is_empty() { held_dynamics(c, s) } else { slipping_dynamics(c, s) },
     );
     if functions.iter().any(|f| f.id == Id::MotionDerivatives) {
@@ -277,7 +277,7 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
 fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, t, pass, .. } = Words::new(c, s);
     let (scalar, nv, nc, nu, nh) = (s.scalar.name(), s.nv, c.names.len(), s.nu, c.holonomic);
-    let [np, ns] = c.freedom;
+    let Freedom { coordinates: np, velocities: ns } = c.freedom;
     let square = s.shape(Shape::Square(nv));
     let solve = if c.slipping.is_empty() {
         format!(

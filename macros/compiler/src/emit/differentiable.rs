@@ -201,7 +201,7 @@ fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
             Chart::Free(_, v) => ("free", v, 6),
         };
         let entries = |of: &&str| {
-            let list: Vec<String> = (v..v + n).map(|k| format!("{of}.data.0[0][{k}]")).collect();
+            let list: Vec<String> = v.and_next(n).map(|k| format!("{of}.data.0[0][{k}]")).collect();
             format!("[{}]", list.join(", "))
         };
         let arguments: Vec<String> = of.iter().map(entries).collect();

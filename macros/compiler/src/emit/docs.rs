@@ -7,7 +7,7 @@ use crate::derive::{Function, Output};
 use crate::equations::Written;
 use crate::expr::Symbol;
 use crate::lower::Program;
-use crate::mechanism::Quantity;
+use crate::mechanism::{Freedom, Quantity};
 use crate::syntax::Printed;
 use std::fmt::Write;
 
@@ -161,7 +161,7 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let [coordinates, speeds] = c.freedom;
+    let Freedom { coordinates, velocities: speeds } = c.freedom;
     let _ = writeln!(
         text,
         "\n# Constraints\n\nThe coordinates are not independent: `NC` = {}, of which `NH` = {} are on configurations. Degrees of freedom: `NP` = {coordinates} of configurations, `NS` = {speeds} of velocities.\n",

@@ -29,8 +29,8 @@ impl Limited {
                 Some(found)
             });
             let names = model.speeds.as_ref().map_or(&model.velocities, |speeds| &speeds.velocities);
-            let name = names.get(limit.v).map_or(String::new(), |(name, _)| name.clone());
-            Limited { q: limit.q, v: limit.v, name, bounds }
+            let name = names.get(limit.v.0).map_or(String::new(), |(name, _)| name.clone());
+            Limited { q: limit.q.0, v: limit.v.0, name, bounds }
         };
         model.limits.iter().map(&mut place).collect()
     }

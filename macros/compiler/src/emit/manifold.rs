@@ -104,8 +104,8 @@ impl ManifoldFunction {
                     };
                     continue;
                 }
-                Chart::Ball(q, v) => ("ball", (q, 4), (v, 3)),
-                Chart::Free(q, v) => ("free", (q, 7), (v, 6)),
+                Chart::Ball(q, v) => ("ball", (q.0, 4), (v.0, 3)),
+                Chart::Free(q, v) => ("free", (q.0, 7), (v.0, 6)),
             };
             // What the result and the two arguments are made of: configurations or velocities.
             let (on_q, on_v) = ((q, nq), (v, nv));

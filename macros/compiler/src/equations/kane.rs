@@ -72,7 +72,7 @@ pub fn kane<'g>(
     let rows = constraints::jacobian(own);
     let dependent = match &model.dependent {
         Some(pivots) if speeds.is_none() && pivots.len() == rows.len() => {
-            pivots.iter().map(|(_, v)| *v).collect()
+            pivots.iter().map(|pivot| pivot.velocity.0).collect()
         }
         _ => chosen(own, &rows).ok_or(Without::Choice)?,
     };

@@ -43,14 +43,9 @@ fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
         |n: usize| -> Vec<f64> { (0..n).map(|_| r.below(2000) as f64 / 1000.0 - 1.0).collect() };
     let parameters: Vec<f64> = numbers(model.parameters.len()).iter().map(|p| p + 1.5).collect();
     let mut q = numbers(model.nq());
-    for chart in &model.charts {
-        let first = match chart {
-            Chart::Ball(first, _) => *first,
-            Chart::Free(first, _) => first + 3,
-            Chart::Plain(..) => continue,
-        };
-        let norm = q[first..first + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
-        q[first..first + 4].iter_mut().for_each(|x| *x /= norm);
+    for first in model.charts.iter().filter_map(Chart::quaternion) {
+        let norm = q[first.and_next(4)].iter().map(|x| x * x).sum::<f64>().sqrt();
+        q[first.and_next(4)].iter_mut().for_each(|x| *x /= norm);
     }
     let (v, a, u) = (numbers(model.nv()), numbers(model.nv()), numbers(model.nu()));
     let multipliers = numbers(model.constraints.len());

@@ -206,7 +206,7 @@ pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
     let mut rates = vec![false; model.nv()];
     for chart in &model.charts {
         if let Chart::Plain(q, v) = chart {
-            rates[*v] = model.configuration[*q] == model.velocities[*v].0;
+            rates[v.0] = model.configuration[q.0] == model.velocities[v.0].0;
         }
     }
     rates
@@ -216,7 +216,7 @@ pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
 pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
     let name = model.speeds.as_ref().map_or("", |speeds| &speeds.velocities[k].0);
     let is_rate = model.charts.iter().any(|chart| match chart {
-        Chart::Plain(q, v) => *v == k && model.configuration[*q] == name,
+        Chart::Plain(q, v) => v.0 == k && model.configuration[q.0] == name,
         _ => false,
     });
     (name.to_string(), u8::from(is_rate))
@@ -253,7 +253,7 @@ fn legend(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String
         }
     };
     let speeds = model.speeds.as_ref().map(|speeds| {
-        let names: Vec<String> = speeds.replaced.iter().map(|k| model.velocities[*k].0.clone()).collect();
+        let names: Vec<String> = speeds.replaced.iter().map(|k| model.velocities[k.0].0.clone()).collect();
         match names.as_slice() {
             [one] => {
                 format!("{one} is a generalized speed, from which a rate follows; its equation is Kane's.")

@@ -6,7 +6,7 @@ use super::rates::{Partials, position_in, symbols_in};
 use super::spatial::{Spatial, map_spatial};
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
-use crate::mechanism::{Coordinate, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
+use crate::mechanism::{Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
 
 /// One degree of freedom of a joint: a column of its motion subspace, in link axes. It is constant there but for links
 /// that are placed by expressions.
@@ -142,9 +142,9 @@ pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
 pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
     let g = space.graph;
     let zero = Vec3::zero(g);
-    let q = |k: usize| Quantity::Configuration(k).expr(g);
+    let components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
     let single = |c: &Coordinate, linear, angular| {
-        vec![Dof { index: c.v, ratio: c.ratio, subspace: Spatial { linear, angular } }]
+        vec![Dof { index: c.v.0, ratio: c.ratio, subspace: Spatial { linear, angular } }]
     };
     let (motion, shift, dofs) = match &link.motion {
         Motion::Turn { axis, coordinate } => {
@@ -158,18 +158,18 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<
             let shift = *axis * (*pitch * angle);
             (Rotation::eigenaxis(*axis, angle), shift, single(coordinate, *axis * *pitch, *axis))
         }
-        Motion::Ball { q: first, v } => {
-            let rotation = Rotation::quaternion([q(*first), q(first + 1), q(first + 2), q(first + 3)]);
-            let dofs = (0..3).map(|k| unit_dof(g, v + k, None, Some(k))).collect();
+        Motion::Ball { q, v } => {
+            let rotation = Rotation::quaternion(components(*q));
+            let dofs = (0..3).map(|k| unit_dof(g, v.0 + k, None, Some(k))).collect();
             (rotation, zero, dofs)
         }
-        Motion::Free { q: first, v } => {
-            let rotation = Rotation::quaternion([q(first + 3), q(first + 4), q(first + 5), q(first + 6)]);
+        Motion::Free { q, v } => {
+            let rotation = Rotation::quaternion(components(*q + 3));
             let dofs = (0..6).map(|k| match k {
-                0..3 => unit_dof(g, v + k, Some(k), None),
-                _ => unit_dof(g, v + k, None, Some(k - 3)),
+                0..3 => unit_dof(g, v.0 + k, Some(k), None),
+                _ => unit_dof(g, v.0 + k, None, Some(k - 3)),
             });
-            (rotation, Vec3([q(*first), q(first + 1), q(first + 2)]), dofs.collect())
+            (rotation, Vec3([0, 1, 2].map(|k| (*q + k).expr(g))), dofs.collect())
         }
         Motion::Placed => return placed_joint(space, link, partials),
     };

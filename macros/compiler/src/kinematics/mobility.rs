@@ -7,7 +7,7 @@ use super::redundancy::Basis;
 use super::rows::{Rows, random_configuration};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
-use crate::mechanism::{Chart, Model, Quantity};
+use crate::mechanism::{Chart, Freedom, InV, Model, Pivot, Quantity};
 
 /// Random starts of the search; a third of them where the parameters are samples and may not fit each other.
 const STARTS: u64 = 24;
@@ -71,7 +71,7 @@ pub fn degrees_of_freedom(
     rows: &Rows<'_>,
     samples: &[Sample],
     cx: &mut Diagnostics,
-) -> [usize; 2] {
+) -> Freedom {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let free = |(q, seed): &Sample, count: usize| {
         let mut basis = Basis::default();
@@ -81,8 +81,8 @@ pub fn degrees_of_freedom(
     // The first that can move: others may be locked.
     let sample = samples.iter().find(|w| free(w, nc) > 0).or(samples.first());
     let count = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free(w, rank));
-    let freedom = [count(model.holonomic()), count(nc)];
-    if freedom[1] == 0 && !samples.is_empty() {
+    let freedom = Freedom { coordinates: count(model.holonomic()), velocities: count(nc) };
+    if freedom.velocities == 0 && !samples.is_empty() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.error(place.clone(), "this mechanism cannot move").help(format!(
             "its {nv} coordinates are held by {nc} constraints: remove a joint or a constraint"
@@ -91,20 +91,20 @@ pub fn degrees_of_freedom(
     freedom
 }
 
-/// A pivot for each constraint, constraint and velocity, among the velocities that need not be independent, in the order of
+/// A pivot for each constraint among the velocities that need not be independent, in the order of
 /// an elimination that is well conditioned at a sample. `None` if some constraint has none.
 pub fn dependent(
     model: &Model<'_>,
     rows: &Rows<'_>,
     samples: &[Sample],
     independent: &[usize],
-) -> Option<Vec<(usize, usize)>> {
+) -> Option<Vec<Pivot>> {
     let (q, seed) = samples.first()?;
     let mut rows = rows.jacobian(q, *seed);
     let largest = rows.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
-    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    let mut pivots: Vec<Pivot> = Vec::new();
     while pivots.len() < rows.len() {
-        let open = (0..rows.len()).filter(|i| pivots.iter().all(|(row, _)| row != i));
+        let open = (0..rows.len()).filter(|i| pivots.iter().all(|pivot| pivot.constraint != *i));
         let all = open.flat_map(|i| (0..model.nv()).map(move |j| (i, j)));
         let allowed = all.filter(|(_, j)| !independent.contains(j));
         let (row, column) = allowed.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))?;
@@ -112,7 +112,7 @@ pub fn dependent(
         if pivot.abs() <= SMALL_PIVOT * largest {
             return None;
         }
-        pivots.push((row, column));
+        pivots.push(Pivot { constraint: row, velocity: InV(column) });
         let own = rows[row].clone();
         for (i, other) in rows.iter_mut().enumerate() {
             if i != row {
@@ -130,7 +130,7 @@ fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Ve
     let mut q = random_configuration(model, seed);
     for chart in &model.charts {
         if let Chart::Plain(k, _) = chart {
-            q[*k] *= spread;
+            q[k.0] *= spread;
         }
     }
     let size = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
@@ -188,12 +188,12 @@ fn moved(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
     let mut out = q.to_vec();
     for chart in &model.charts {
         match *chart {
-            Chart::Plain(k, v) => out[k] += dv[v],
-            Chart::Ball(k, v) => turn(&mut out[k..k + 4], &dv[v..v + 3]),
+            Chart::Plain(k, v) => out[k.0] += dv[v.0],
+            Chart::Ball(k, v) => turn(&mut out[k.and_next(4)], &dv[v.and_next(3)]),
             Chart::Free(k, v) => {
-                let shift = rotated(&q[k + 3..k + 7], &dv[v..v + 3]);
-                (0..3).for_each(|i| out[k + i] += shift[i]);
-                turn(&mut out[k + 3..k + 7], &dv[v + 3..v + 6]);
+                let shift = rotated(&q[(k + 3).and_next(4)], &dv[v.and_next(3)]);
+                out[k.and_next(3)].iter_mut().zip(shift).for_each(|(x, by)| *x += by);
+                turn(&mut out[(k + 3).and_next(4)], &dv[(v + 3).and_next(3)]);
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::expr::diff::Derivative;
 use crate::expr::eval::needed;
 use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
-use crate::mechanism::{Chart, Coordinate, Gradient, Model, Quantity, Space};
+use crate::mechanism::{Chart, Coordinate, Gradient, InQ, InV, Model, Quantity, Space};
 use std::collections::BTreeMap;
 
 /// Value of a coordinate as an expression of `q`.
@@ -13,12 +13,12 @@ pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
 
 /// Value of a coordinate as an expression of `q`.
 pub fn position_in<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
-    Quantity::Configuration(c.q).expr(g) * g.num(c.ratio) + g.num(c.offset)
+    c.q.expr(g) * g.num(c.ratio) + g.num(c.offset)
 }
 
 /// Rate of a coordinate as an expression of `v`.
 pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
-    Quantity::Velocity(c.v).expr(model.graph) * model.graph.num(c.ratio)
+    c.v.expr(model.graph) * model.graph.num(c.ratio)
 }
 
 /// Rate of an expression of `q`, `v` and `t` along the motion, at constant `v`.
@@ -90,28 +90,24 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
 /// declared, these velocities are `Z(q)` times what the entries of `v` are.
 pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
-    let q = |k: usize| Quantity::Configuration(k).expr(g);
-    let v = |k: usize| match space.speeds {
-        None => Quantity::Velocity(k).expr(g),
-        Some(speeds) => speeds.rate(g, k),
+    let v = |index: InV| match space.speeds {
+        None => index.expr(g),
+        Some(speeds) => speeds.rate(g, index),
     };
+    let components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
+    let three = |first: InV| [0, 1, 2].map(|k| v(first + k));
     for chart in space.charts {
         match *chart {
-            Chart::Plain(a, b) if a == k => return v(b),
-            Chart::Ball(a, b) if (a..a + 4).contains(&k) => {
-                return quaternion_rate(
-                    [q(a), q(a + 1), q(a + 2), q(a + 3)],
-                    [v(b), v(b + 1), v(b + 2)],
-                    k - a,
-                );
+            Chart::Plain(a, b) if a.0 == k => return v(b),
+            Chart::Ball(a, b) if a.and_next(4).contains(&k) => {
+                return quaternion_rate(components(a), three(b), k - a.0);
             }
-            Chart::Free(a, b) if (a..a + 7).contains(&k) => {
-                let quaternion = [q(a + 3), q(a + 4), q(a + 5), q(a + 6)];
-                if k < a + 3 {
-                    let linear = Vec3([v(b), v(b + 1), v(b + 2)]);
-                    return Rotation::quaternion(quaternion).to_parent(linear)[k - a];
-                }
-                return quaternion_rate(quaternion, [v(b + 3), v(b + 4), v(b + 5)], k - a - 3);
+            Chart::Free(a, b) if a.and_next(7).contains(&k) => {
+                let quaternion = components(a + 3);
+                return match k - a.0 {
+                    position @ 0..3 => Rotation::quaternion(quaternion).to_parent(Vec3(three(b)))[position],
+                    component => quaternion_rate(quaternion, three(b + 3), component - 3),
+                };
             }
             _ => {}
         }

@@ -77,10 +77,9 @@ pub fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
 pub fn random_configuration(model: &Model<'_>, seed: u64) -> Vec<f64> {
     let mut q: Vec<f64> =
         (0..model.nq()).map(|k| 2.0 * sample(Quantity::Configuration(k).symbol(), seed) - 2.0).collect();
-    for link in &model.links {
-        let Some(first) = link.motion.quaternion() else { continue };
-        let norm = q[first..first + 4].iter().map(|c| c * c).sum::<f64>().sqrt();
-        for c in &mut q[first..first + 4] {
+    for first in model.links.iter().filter_map(|link| link.motion.quaternion()) {
+        let norm = q[first.and_next(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
+        for c in &mut q[first.and_next(4)] {
             *c /= norm;
         }
     }

@@ -164,10 +164,6 @@ fn short_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
 
 /// The components of all unit quaternions.
 pub fn quaternions(model: &Model<'_>) -> Vec<[Symbol; 4]> {
-    let firsts = model.charts.iter().filter_map(|chart| match chart {
-        Chart::Ball(q, _) => Some(*q),
-        Chart::Free(q, _) => Some(q + 3),
-        Chart::Plain(..) => None,
-    });
-    firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q + k).symbol())).collect()
+    let firsts = model.charts.iter().filter_map(Chart::quaternion);
+    firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q.0 + k).symbol())).collect()
 }

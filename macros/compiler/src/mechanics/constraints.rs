@@ -14,7 +14,7 @@ use super::friction;
 use super::ldl::{self, Solution, solve_in};
 use crate::expr::{Expr, Function};
 use crate::kinematics::{Joint, velocity_gradients};
-use crate::mechanism::{Model, Quantity};
+use crate::mechanism::{Model, Pivot, Quantity};
 
 /// `J`: a row for each constraint, a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
@@ -140,15 +140,16 @@ pub fn solve_by_speeds<'g>(
     mass: &Matrix<'g>,
     force: &[Expr<'g>],
     bias: Vec<Expr<'g>>,
-    pivots: &[(usize, usize)],
+    pivots: &[Pivot],
 ) -> Vec<Expr<'g>> {
     let (g, nv) = (model.graph, model.nv());
+    let pivots: Vec<(usize, usize)> = pivots.iter().map(|p| (p.constraint, p.velocity.0)).collect();
     let rows = jacobian(model);
     let free: Vec<usize> = (0..nv).filter(|k| pivots.iter().all(|(_, column)| column != k)).collect();
     // Columns of N, and a₀ as the last.
     let mut right: Matrix<'g> = rows.iter().map(|row| free.iter().map(|k| -row[*k]).collect()).collect();
     right.iter_mut().zip(bias).for_each(|(row, b)| row.push(-b));
-    let (solved, sizes) = eliminate(rows.clone(), right, pivots);
+    let (solved, sizes) = eliminate(rows.clone(), right, &pivots);
     let column = |c: usize| -> Vec<Expr<'g>> {
         let own = |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
         let of = |k: usize| pivots.iter().find(|(_, j)| *j == k).map_or(own(k), |(row, _)| solved[*row][c]);
@@ -181,7 +182,7 @@ pub fn solve_by_speeds<'g>(
     out
 }
 
-/// Gauss–Jordan elimination of the rows with given pivots, applied to right sides: those, solved, and the pivots by row.
+/// Gauss–Jordan elimination of the rows with given pivots, row and column, applied to right sides: those, solved, and the pivots by row.
 fn eliminate<'g>(
     mut rows: Matrix<'g>,
     mut right: Matrix<'g>,

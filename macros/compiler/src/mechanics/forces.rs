@@ -14,10 +14,10 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
         let u = Quantity::Input(k).expr(g);
         match input {
             Input::Named => {}
-            Input::Coordinate(c) => tau[c.v] += u * g.num(c.ratio),
+            Input::Coordinate(c) => tau[c.v.0] += u * g.num(c.ratio),
             Input::Sum(terms, _) => {
                 for c in terms {
-                    tau[c.v] += u * g.num(c.ratio);
+                    tau[c.v.0] += u * g.num(c.ratio);
                 }
             }
             Input::Force { link, point, along } => {

@@ -12,7 +12,7 @@ use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{Joint, configuration_rate, position};
 use crate::mechanics::passive::passive_forces;
-use crate::mechanism::{Chart, Model, Quantity};
+use crate::mechanism::{Chart, InV, Model, Quantity};
 
 /// The Lagrangian and what follows from it.
 pub struct Lagrange<'g> {
@@ -90,8 +90,8 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
     for chart in &model.charts {
         match *chart {
             Chart::Plain(..) => {}
-            Chart::Ball(_, k) => add(k, three(v, k).cross(three(p, k))),
-            Chart::Free(_, k) => {
+            Chart::Ball(_, InV(k)) => add(k, three(v, k).cross(three(p, k))),
+            Chart::Free(_, InV(k)) => {
                 let (linear, w) = (three(v, k), three(v, k + 3));
                 add(k, w.cross(three(p, k)));
                 add(k + 3, w.cross(three(p, k + 3)) + linear.cross(three(p, k)));

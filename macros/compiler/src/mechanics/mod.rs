@@ -49,7 +49,7 @@ pub fn is_plain_tree(model: &Model<'_>) -> bool {
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| {
-            let mut own = |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v], true);
+            let mut own = |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v.0], true);
             !matches!(link.motion, Motion::Placed) && link.motion.coordinate().is_none_or(&mut own)
         })
 }

@@ -15,7 +15,7 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
     let mut h = vec![g.zero(); model.nv()];
     for spring in &model.springs {
         let stretch = position(model, &spring.on) - spring.free;
-        h[spring.on.v] += spring.stiffness * stretch * g.num(spring.on.ratio);
+        h[spring.on.v.0] += spring.stiffness * stretch * g.num(spring.on.ratio);
     }
     for energy in &model.potentials {
         // ∂U/∂q along the velocities, at a given time: time itself does no work on the coordinates.
@@ -25,11 +25,11 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
     }
     if with_velocity {
         for dashpot in &model.dashpots {
-            h[dashpot.on.v] += dashpot.damping * rate(model, &dashpot.on) * g.num(dashpot.on.ratio);
+            h[dashpot.on.v.0] += dashpot.damping * rate(model, &dashpot.on) * g.num(dashpot.on.ratio);
         }
         for dry in &model.frictions {
             let slip = (rate(model, &dry.on) / model.friction_speed).call(Function::Tanh);
-            h[dry.on.v] += dry.friction * slip * g.num(dry.on.ratio);
+            h[dry.on.v.0] += dry.friction * slip * g.num(dry.on.ratio);
         }
         for function in &model.dissipations {
             for (k, d) in known_gradient(model, *function) {

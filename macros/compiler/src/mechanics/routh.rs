@@ -37,7 +37,7 @@ pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
         .charts
         .iter()
         .filter_map(|chart| match chart {
-            Chart::Plain(_, v) => Some(*v),
+            Chart::Plain(_, v) => Some(v.0),
             Chart::Ball(..) | Chart::Free(..) => None,
         })
         .collect();

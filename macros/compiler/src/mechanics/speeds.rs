@@ -14,7 +14,7 @@ use super::{accelerations, constraints, velocities};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::time_derivative;
-use crate::mechanism::{Chart, Gradients, Model, Quantity, Speeds};
+use crate::mechanism::{Chart, Gradients, InV, Model, Quantity, Speeds};
 use std::rc::Rc;
 
 /// What results of functions are, and so how they change with the velocities that are chosen.
@@ -66,7 +66,7 @@ impl<'g> InSpeeds<'g> {
         let g = model.graph;
         let native = Model { speeds: None, velocities: speeds.velocities.clone(), ..model.clone() };
         let n = model.nv();
-        let rates: Vec<Expr<'g>> = (0..n).map(|k| speeds.rate(g, k)).collect();
+        let rates: Vec<Expr<'g>> = (0..n).map(|k| speeds.rate(g, InV(k))).collect();
         let change: Vec<Expr<'g>> = rates.iter().map(|rate| time_derivative(model.space(), *rate)).collect();
         let a = accelerations(model);
         let accelerations = times(&speeds.rates, &a).iter().zip(&change).map(|(a, c)| *a + *c).collect();
@@ -260,7 +260,7 @@ impl<'g> InSpeeds<'g> {
 
     /// The velocities of joints that speeds replace, by index.
     pub fn replaced(&self) -> Vec<usize> {
-        self.speeds.replaced.clone()
+        self.speeds.replaced.iter().map(|v| v.0).collect()
     }
 
     /// `Y`, by which speeds follow from the velocities of the joints.
@@ -308,8 +308,8 @@ pub fn commutators<'g>(model: &Model<'g>) -> Matrix<'g> {
     for chart in &model.charts {
         match *chart {
             Chart::Plain(..) => {}
-            Chart::Ball(_, b) => block(b, b, b),
-            Chart::Free(_, b) => {
+            Chart::Ball(_, InV(b)) => block(b, b, b),
+            Chart::Free(_, InV(b)) => {
                 block(b, b, b + 3);
                 block(b + 3, b + 3, b + 3);
                 block(b, b + 3, b);

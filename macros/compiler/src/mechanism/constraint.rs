@@ -1,5 +1,6 @@
 //! Constraints as scalar rows.
 
+use super::index::InV;
 use crate::diag::Place;
 use crate::expr::{Expr, Vec3};
 
@@ -68,4 +69,22 @@ pub struct SolvedSide<'g> {
     pub turns: bool,
     /// Its axis.
     pub axis: Vec3<'g>,
+}
+
+/// Which velocity follows from a constraint where speeds are independent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pivot {
+    /// The constraint, by number.
+    pub constraint: usize,
+    /// The velocity.
+    pub velocity: InV,
+}
+
+/// Degrees of freedom.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Freedom {
+    /// How many coordinates are independent.
+    pub coordinates: usize,
+    /// How many velocities are independent.
+    pub velocities: usize,
 }

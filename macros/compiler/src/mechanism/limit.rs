@@ -1,14 +1,15 @@
 //! Limits of coordinates.
 
+use super::index::{InQ, InV};
 use crate::expr::Expr;
 
 /// What an entry of `v` and the coordinate whose rate it is stay within; nothing where there is no bound.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit<'g> {
     /// Index of the coordinate in `q`.
-    pub q: usize,
+    pub q: InQ,
     /// Index of its rate in `v`.
-    pub v: usize,
+    pub v: InV,
     /// Least value of the coordinate.
     pub lower: Option<Expr<'g>>,
     /// Largest value of the coordinate.

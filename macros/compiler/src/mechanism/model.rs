@@ -1,11 +1,12 @@
 //! The mechanism as a whole.
 
-use super::constraint::{Constraint, SolvedSide};
+use super::constraint::{Constraint, Freedom, Pivot, SolvedSide};
 use super::contact::Contact;
 use super::drawing::Piece;
 use super::element::{AccelerationForce, CoulombFriction, Dashpot, Inertance, Input, Load, Spring};
 use super::equilibrium::Equilibrium;
 use super::gradients::Gradients;
+use super::index::{InQ, InV};
 use super::inertia::Inertia;
 use super::limit::Limit;
 use super::link::{Link, NamedFrame, Space};
@@ -90,13 +91,12 @@ pub struct Model<'g> {
     pub constraints: Vec<Constraint<'g>>,
     /// Names of rows of joints and constraints that follow from the others everywhere.
     pub redundant: Vec<String>,
-    /// The pivots by which dependent velocities are solved for, constraint and velocity, where independent speeds are to
-    /// be used.
-    pub dependent: Option<Vec<(usize, usize)>>,
+    /// The pivots by which dependent velocities are solved for, in their order, where independent speeds are to be used.
+    pub dependent: Option<Vec<Pivot>>,
     /// The joints that loops are solved for in closed form, two for each.
     pub solved: Vec<SolvedSide<'g>>,
-    /// Degrees of freedom: independent coordinates and independent velocities.
-    pub freedom: [usize; 2],
+    /// Degrees of freedom.
+    pub freedom: Freedom,
     /// Outputs.
     pub outputs: Vec<OutputValue<'g>>,
     /// The mechanism with the joints released whose reactions outputs name: six coordinates for each, after all others.
@@ -180,6 +180,11 @@ impl<'g> Model<'g> {
         self.velocities.len()
     }
 
+    /// The places of a coordinate that is to come after those that are there, and of its rate.
+    pub fn next_coordinate(&self) -> (InQ, InV) {
+        (InQ(self.nq()), InV(self.nv()))
+    }
+
     /// Number of entries of `u`.
     pub fn nu(&self) -> usize {
         self.inputs.len()
@@ -214,6 +219,6 @@ impl<'g> Model<'g> {
     /// in Bricard's linkage.
     pub fn is_overdetermined(&self) -> bool {
         let plain = self.constraints.iter().all(|c| c.friction.is_empty() && !c.determines);
-        plain && self.constraints.len() + self.freedom[1] > self.nv()
+        plain && self.constraints.len() + self.freedom.velocities > self.nv()
     }
 }

@@ -1,5 +1,6 @@
 //! Elementary motions of links, with what they occupy of `q` and `v`.
 
+use super::index::{InQ, InV};
 use crate::expr::{Expr, Vec3};
 use std::ops::Range;
 
@@ -7,9 +8,9 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coordinate {
     /// Index in `q`.
-    pub q: usize,
+    pub q: InQ,
     /// Index in `v`.
-    pub v: usize,
+    pub v: InV,
     /// Factor.
     pub ratio: f64,
     /// Offset.
@@ -45,16 +46,16 @@ pub enum Motion<'g> {
     /// All rotations: a quaternion from `q`, three angular velocities in link axes from `v`.
     Ball {
         /// First of four entries of `q`.
-        q: usize,
+        q: InQ,
         /// First of three entries of `v`.
-        v: usize,
+        v: InV,
     },
     /// All motions: position and quaternion from `q`, linear and angular velocity in link axes from `v`.
     Free {
         /// First of seven entries of `q`.
-        q: usize,
+        q: InQ,
         /// First of six entries of `v`.
-        v: usize,
+        v: InV,
     },
     /// The link's placement is itself an expression of coordinates and time.
     Placed,
@@ -76,24 +77,24 @@ impl Motion<'_> {
         match self {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }
-            | Motion::Helix { coordinate, .. } => coordinate.q..coordinate.q + 1,
-            Motion::Ball { q, .. } => *q..q + 4,
-            Motion::Free { q, .. } => *q..q + 7,
+            | Motion::Helix { coordinate, .. } => coordinate.q.and_next(1),
+            Motion::Ball { q, .. } => q.and_next(4),
+            Motion::Free { q, .. } => q.and_next(7),
             Motion::Placed => 0..0,
         }
     }
 
     /// The first of the entries of `q` that are a unit quaternion, if it has one.
-    pub fn quaternion(&self) -> Option<usize> {
+    pub fn quaternion(&self) -> Option<InQ> {
         match self {
             Motion::Ball { q, .. } => Some(*q),
-            Motion::Free { q, .. } => Some(q + 3),
+            Motion::Free { q, .. } => Some(*q + 3),
             Motion::Turn { .. } | Motion::Slide { .. } | Motion::Helix { .. } | Motion::Placed => None,
         }
     }
 
     /// Gives its entries of `v` other places: `place` says where the first goes.
-    pub fn place_velocities(&mut self, place: impl Fn(usize) -> usize) {
+    pub fn place_velocities(&mut self, place: impl Fn(InV) -> InV) {
         match self {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }
@@ -119,9 +120,20 @@ impl Motion<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chart {
     /// A plain coordinate.
-    Plain(usize, usize),
+    Plain(InQ, InV),
     /// A ball's quaternion.
-    Ball(usize, usize),
+    Ball(InQ, InV),
     /// A free joint's position and quaternion.
-    Free(usize, usize),
+    Free(InQ, InV),
+}
+
+impl Chart {
+    /// The first of the entries of `q` that are a unit quaternion, if it has one.
+    pub fn quaternion(&self) -> Option<InQ> {
+        match self {
+            Chart::Plain(..) => None,
+            Chart::Ball(q, _) => Some(*q),
+            Chart::Free(q, _) => Some(*q + 3),
+        }
+    }
 }

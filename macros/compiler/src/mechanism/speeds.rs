@@ -1,5 +1,6 @@
 //! Generalized speeds of the user's choice in place of velocities of joints.
 
+use super::index::InV;
 use super::quantity::Quantity;
 use crate::diag::Place;
 use crate::expr::{Expr, Graph};
@@ -14,15 +15,15 @@ pub struct Speeds<'g> {
     /// `Z`, row by row.
     pub rates: Vec<Vec<Expr<'g>>>,
     /// Indices of the velocities that speeds replace.
-    pub replaced: Vec<usize>,
+    pub replaced: Vec<InV>,
     /// The names of all velocities without speeds, and where the joints stand.
     pub velocities: Vec<(String, Place)>,
 }
 
 impl<'g> Speeds<'g> {
-    /// The velocity of index `k` that a joint has, in the speeds, which are the entries of `v` then.
-    pub fn rate(&self, graph: &'g Graph, k: usize) -> Expr<'g> {
-        let terms = self.rates[k].iter().enumerate().filter(|(_, z)| !z.is_zero());
+    /// A velocity that a joint has, in the speeds, which are the entries of `v` then.
+    pub fn rate(&self, graph: &'g Graph, velocity: InV) -> Expr<'g> {
+        let terms = self.rates[velocity.0].iter().enumerate().filter(|(_, z)| !z.is_zero());
         terms.fold(graph.zero(), |sum, (j, z)| sum + *z * Quantity::Velocity(j).expr(graph))
     }
 }

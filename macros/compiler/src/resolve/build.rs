@@ -8,7 +8,7 @@ use super::{drive, reaction, units};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::Partials;
-use crate::mechanism::{Constraint, Gradients, Inertia, Model, Released, Rule, Units};
+use crate::mechanism::{Constraint, Freedom, Gradients, Inertia, Model, Released, Rule, Units};
 use crate::syntax::{Description, GROUND, Inertias, Name, ScalarType};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -158,7 +158,7 @@ fn empty_model<'g>(
         redundant: Vec::new(),
         dependent: None,
         solved: Vec::new(),
-        freedom: [0; 2],
+        freedom: Freedom::default(),
         loads: Vec::new(),
         acceleration_forces: Vec::new(),
         passive: None,

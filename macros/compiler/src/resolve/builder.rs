@@ -6,16 +6,18 @@ use super::scope::{MassProperties, Placed, PlacedKind, Scope, Terms};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{self, Rotation, Vec3};
 use crate::kinematics::{Partials, joint, symbols_in};
-use crate::mechanism::{Constraint, Coordinate, Inertia, Link, LinkId, Model, Motion, Pose, Quantity, Rule};
+use crate::mechanism::{
+    Constraint, Coordinate, InQ, InV, Inertia, Link, LinkId, Model, Motion, Pose, Quantity, Rule,
+};
 use crate::syntax::{Description, Endpoint, Expr, ExprKind, GROUND, Name};
 use std::collections::BTreeMap;
 
 /// What is known of a joint once its coordinates are numbered.
 pub struct JointCoordinates {
     /// First index in `q`.
-    pub q: usize,
+    pub q: InQ,
     /// First index in `v`.
-    pub v: usize,
+    pub v: InV,
     /// The coordinates that force elements can act on: name, coordinate, whether an angle.
     pub plain: Vec<(String, Coordinate, bool)>,
 }

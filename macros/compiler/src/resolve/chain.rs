@@ -72,7 +72,7 @@ impl<'g> Builder<'_, 'g> {
         for (k, motion) in motions.iter().enumerate() {
             let own = &self.coordinates[j];
             let coordinate = own.plain.get(k).map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
-            let (motion, aligned) = motion.motion(graph, coordinate, [own.q, own.v]);
+            let (motion, aligned) = motion.motion(graph, coordinate, (own.q, own.v));
             let placement = Pose { rotation: pose.rotation.then(&aligned), translation: pose.translation };
             link =
                 Some(self.add_link(Link { parent: link, placement, motion, inertia: Inertia::zero(graph) }));

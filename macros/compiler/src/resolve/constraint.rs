@@ -13,7 +13,7 @@ use crate::expr::replace::replace;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{AXES, symbols_in, time_derivative, velocity_gradient};
-use crate::mechanism::{Measure, Pose, Quantity};
+use crate::mechanism::{Freedom, Measure, Pose, Quantity};
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 
 /// Most scalar constraints of a mechanism, twice as many as velocities: half of them may be redundant.
@@ -57,7 +57,7 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         self.model.constraints.sort_by_key(|c| c.residual.is_none());
-        self.model.freedom = [self.model.nv(); 2];
+        self.model.freedom = Freedom { coordinates: self.model.nv(), velocities: self.model.nv() };
         if let (Formulation::Speeds(_, place), true) =
             (&self.description.formulation, self.model.constraints.is_empty())
         {

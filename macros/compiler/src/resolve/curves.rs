@@ -136,7 +136,7 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<([Vec3<'g>; 3], Option<LinkId>)> {
         let c = self.named_coordinate(text, along, cx)?;
-        let symbol = Quantity::Configuration(c.q).symbol();
+        let symbol = Quantity::Configuration(c.q.0).symbol();
         let terms = in_links(self.vector(curve, cx)?);
         let kinematics = self.kinematics.borrow();
         let zero = Vec3::zero(self.graph);

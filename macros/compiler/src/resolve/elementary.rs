@@ -2,7 +2,7 @@
 
 use super::axis::align;
 use crate::expr::{Expr, Graph, Rotation, Vec3};
-use crate::mechanism::{Coordinate, Motion};
+use crate::mechanism::{Coordinate, InQ, InV, Motion};
 
 /// One motion of a joint.
 pub enum Elementary<'g> {
@@ -41,7 +41,7 @@ impl<'g> Elementary<'g> {
         &self,
         graph: &'g Graph,
         coordinate: Coordinate,
-        [q, v]: [usize; 2],
+        (q, v): (InQ, InV),
     ) -> (Motion<'g>, Rotation<'g>) {
         let none = Rotation::identity(graph);
         match self {

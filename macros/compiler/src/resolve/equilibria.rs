@@ -4,7 +4,7 @@
 use super::builder::Builder;
 use crate::diag::Diagnostics;
 use crate::expr::Expr as Value;
-use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, RestingState};
+use crate::mechanism::{DRY_FRICTION, Equilibrium, RestingState};
 use crate::resolve::scope::{Allowed, Context};
 use crate::syntax::{self, Action, ActionKind, Expr, RATE_OF_STATE};
 use std::collections::BTreeSet;
@@ -49,9 +49,8 @@ impl<'g> Builder<'_, 'g> {
             states: self.resting_states(),
         };
         for chart in &self.model.charts {
-            if let Chart::Ball(q, _) | Chart::Free(q, _) = chart {
-                let last = if matches!(chart, Chart::Ball(..)) { q + 3 } else { q + 6 };
-                found.configuration[last] = g.one();
+            if let Some(first) = chart.quaternion() {
+                found.configuration[first.0 + 3] = g.one();
             }
         }
         let before = cx.len();

@@ -51,7 +51,7 @@ impl<'g> Builder<'_, 'g> {
                 }
             }
         }
-        let free = self.model.freedom[1];
+        let free = self.model.freedom.velocities;
         if !independent.is_empty() && independent.len() != free {
             cx.error(
                 place.clone(),

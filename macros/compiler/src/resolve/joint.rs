@@ -8,7 +8,7 @@ use crate::expr::eval::eval_one;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::in_plane;
-use crate::mechanism::{Chart, Coordinate, PieceKind};
+use crate::mechanism::{Chart, Coordinate, InQ, InV, PieceKind};
 use crate::syntax::{self, Joint, JointKind};
 
 /// Names of the entries of `q` and `v` of a joint; empty for the joint's own name.
@@ -30,7 +30,7 @@ pub fn coordinate_names(kind: JointKind, along: usize) -> (&'static [&'static st
 }
 
 /// The charts of a joint whose coordinates begin at `q` and `v`.
-pub fn charts(kind: JointKind, q: usize, v: usize, along: usize) -> Vec<Chart> {
+pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     match kind {
         JointKind::Ball => vec![Chart::Ball(q, v)],
         JointKind::Free => vec![Chart::Free(q, v)],
@@ -283,6 +283,6 @@ fn either<'g>(
 }
 
 /// A coordinate of its own.
-pub fn own_coordinate(q: usize, v: usize) -> Coordinate {
+pub fn own_coordinate(q: InQ, v: InV) -> Coordinate {
     Coordinate { q, v, ratio: 1.0, offset: 0.0 }
 }

@@ -100,7 +100,7 @@ impl<'g> Builder<'_, 'g> {
         };
         let leaves_room = |limit: &Limit<'_>| room(limit).is_none_or(|room| room > 0.0);
         if leaves_room(known) && leaves_room(&found) && !leaves_room(&both) {
-            let name = self.model.velocities.get(c.v).map_or("", |(name, _)| name.as_str());
+            let name = self.model.velocities.get(c.v.0).map_or("", |(name, _)| name.as_str());
             let place = if limit.on.place.file.is_some() { &limit.name.place } else { &limit.on.place };
             let error = cx.error(place.clone(), format!("the limits of `{name}` leave it no room"));
             match limit.name.text == name || limit.on.place.file.is_none() {

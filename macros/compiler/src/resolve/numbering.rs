@@ -16,10 +16,10 @@ impl<'g> Builder<'_, 'g> {
         self.solved_loops = closed_form::find(self.description, &closing, cx);
         for (j, joint) in self.description.joints.iter().enumerate() {
             self.number_free_coordinates(j);
-            let (q, v) = (self.model.nq(), self.model.nv());
+            let (q, v) = self.model.next_coordinate();
             let mut plain = Vec::new();
             if joint.mimic.is_none() && !closing[j] && self.solving_loop(j).is_none() {
-                self.model.charts.extend(charts(joint.kind, q, v, joint.along.len()));
+                self.model.charts.extend(charts(joint.kind, (q, v), joint.along.len()));
                 let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
                 for name in names_q {
                     self.model.configuration.push(full_name(&joint.name.text, name));
@@ -65,7 +65,7 @@ impl<'g> Builder<'_, 'g> {
     /// Free coordinates that are declared after the given number of joints.
     fn number_free_coordinates(&mut self, joints: usize) {
         for free in self.description.coordinates.iter().filter(|c| c.joints_before == joints) {
-            let (q, v) = (self.model.nq(), self.model.nv());
+            let (q, v) = self.model.next_coordinate();
             self.model.configuration.push(free.name.text.clone());
             self.model.velocities.push((free.name.text.clone(), free.name.place.clone()));
             self.model.charts.push(Chart::Plain(q, v));
@@ -79,7 +79,7 @@ impl<'g> Builder<'_, 'g> {
         for j in joints {
             let Some(name) = holders::name_of(self.description, *j) else { continue };
             for k in 0..RELEASED {
-                let (q, v) = (self.model.nq(), self.model.nv());
+                let (q, v) = self.model.next_coordinate();
                 self.model.charts.push(Chart::Plain(q, v));
                 self.model.configuration.push(format!("{}.open{k}", name.text));
                 self.model.velocities.push((format!("{}.open{k}", name.text), name.place.clone()));

@@ -5,7 +5,7 @@ use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::unit;
-use crate::mechanism::{LinkId, Pose, Quantity};
+use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, Name, words};
 
 impl<'g> Scope<'_, 'g> {
@@ -85,7 +85,7 @@ impl<'g> Scope<'_, 'g> {
         if !self.check_allowed(Allowed::Motion, &format!("the rate of `{name}`"), &function.place, cx) {
             return None;
         }
-        Some(Value::Scalar(Quantity::Velocity(c.v).expr(self.graph) * self.graph.num(c.ratio)))
+        Some(Value::Scalar(c.v.expr(self.graph) * self.graph.num(c.ratio)))
     }
 
     /// `angle(a, b)` in 0…π, or `angle(a, b, n)` directed about `n` in −π…π.

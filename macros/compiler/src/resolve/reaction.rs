@@ -9,7 +9,7 @@ use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Vec3};
 use crate::kinematics::symbols_in;
-use crate::mechanism::{Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
+use crate::mechanism::{InQ, InV, Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
 use crate::syntax::{self, ExprKind, Name};
 
 /// Coordinates of an released joint: three along axes, three about them.
@@ -51,7 +51,8 @@ impl<'g> Builder<'_, 'g> {
         mut pose: Pose<'g>,
     ) -> (Option<LinkId>, Pose<'g>) {
         let g = self.scope.graph;
-        let (q, v) = (self.model.nq() - RELEASED * (count - at), self.model.nv() - RELEASED * (count - at));
+        let after = RELEASED * (count - at);
+        let (q, v) = (InQ(self.model.nq() - after), InV(self.model.nv() - after));
         for k in 0..RELEASED {
             let (axis, coordinate) = (Vec3::axis(g, k % 3), own_coordinate(q + k, v + k));
             let motion = match k {

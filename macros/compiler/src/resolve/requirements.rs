@@ -28,7 +28,7 @@ impl Builder<'_, '_> {
     /// no other. One that is kept for the user's own use may be what it likes.
     pub fn gather_requirements(&mut self) {
         for limit in &self.model.limits {
-            let name = self.model.velocities.get(limit.v).map_or("", |(name, _)| name.as_str());
+            let name = self.model.velocities.get(limit.v.0).map_or("", |(name, _)| name.as_str());
             if let (Some(lower), Some(upper)) = (limit.lower, limit.upper) {
                 self.scope.require(Rule::Order, || format!("the range of `{name}`"), &[lower, upper]);
             }

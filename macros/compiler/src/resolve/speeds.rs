@@ -7,7 +7,7 @@ use crate::diag::{Diagnostics, all_of};
 use crate::expr::Expr;
 use crate::expr::replace::replace;
 use crate::kinematics::{speeds, symbols_in, velocity_gradient};
-use crate::mechanism::{Pose, Quantity, Speeds};
+use crate::mechanism::{InV, Pose, Quantity, Speeds};
 use crate::syntax::{self, ExprKind, Name};
 use std::rc::Rc;
 
@@ -123,7 +123,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             self.model.velocities[*k] = (speed.name.text.clone(), speed.name.place.clone());
         }
         let (of_rates, rates) = (whole(&block), whole(&inverse));
-        self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced: named, velocities }));
+        let replaced = named.into_iter().map(InV).collect();
+        self.model.speeds = Some(Rc::new(Speeds { of_rates, rates, replaced, velocities }));
     }
 
     /// Whether so many speeds can replace the velocities that they name.
@@ -165,7 +166,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let bounded = self.model.limits.iter().find_map(|limit| {
             let key = if limit.speed.is_some() { "max_speed" } else { "max_effort" };
             let bounds = limit.speed.or(limit.effort).is_some();
-            (bounds && named.contains(&limit.v)).then_some((limit.v, key))
+            (bounds && named.contains(&limit.v.0)).then_some((limit.v.0, key))
         });
         if let Some((k, key)) = bounded {
             let (rate, what) =

@@ -39,12 +39,7 @@ impl<'g> Builder<'_, 'g> {
     pub fn coordinate_stretch(&self, c: &Coordinate) -> Stretch<'g> {
         let g = self.scope.graph;
         let value = position_in(g, c);
-        Stretch {
-            value,
-            square: value.square(),
-            rate: Quantity::Velocity(c.v).expr(g) * g.num(c.ratio),
-            signed: false,
-        }
+        Stretch { value, square: value.square(), rate: c.v.expr(g) * g.num(c.ratio), signed: false }
     }
 
     /// A length or an angle given by an expression of the coordinates, such as that of a cable.

@@ -7,7 +7,7 @@ use super::merge::Merge;
 use super::velocities::{Location, Velocity, paired};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
-use crate::mechanism::{Inertia, Link, LinkId, Model, Quantity};
+use crate::mechanism::{InV, Inertia, Link, LinkId, Model, Quantity};
 
 /// A mechanism with one limb for each group of alike ones.
 pub struct Limbs<'g> {
@@ -111,7 +111,7 @@ impl<'g> Limbs<'g> {
         let first = *lanes.first()?;
         let inertias: Vec<Inertia<'g>> = lanes.iter().map(|l| l.inertia).collect();
         let mut motion = first.motion.clone();
-        motion.place_velocities(|v| self.places[v].index);
+        motion.place_velocities(|v| InV(self.places[v.0].index));
         Some(Link {
             parent,
             placement: first.placement.clone(),

@@ -91,7 +91,7 @@ fn on(link: Option<LinkId>) -> String {
 
 fn motion(link: &Link<'_>, model: &Model<'_>) -> String {
     let by = |c: &Coordinate| {
-        let name = &model.configuration[c.q];
+        let name = &model.configuration[c.q.0];
         match (c.ratio, c.offset) {
             (1.0, 0.0) => name.clone(),
             (ratio, offset) => format!("{ratio} {name} + {offset}"),

@@ -193,11 +193,7 @@ fn not_unit<'g>(model: &Model<'g>, rest: &Rest<'g>, normal: &mut Normal<'g>) -> 
 
 /// The first components of all quaternions.
 fn quaternions(model: &Model<'_>) -> impl Iterator<Item = usize> {
-    model.charts.iter().filter_map(|chart| match chart {
-        Chart::Ball(q, _) => Some(*q),
-        Chart::Free(q, _) => Some(q + 3),
-        Chart::Plain(..) => None,
-    })
+    model.charts.iter().filter_map(Chart::quaternion).map(|first| first.0)
 }
 
 /// Whether an expression of the parameters is always zero; otherwise what is left, as text.

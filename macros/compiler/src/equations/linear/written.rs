@@ -74,11 +74,11 @@ fn deviations(model: &Model<'_>) -> Vec<String> {
     for chart in &model.charts {
         let (first, members): (usize, &[&str]) = match chart {
             Chart::Plain(q, v) => {
-                names[*v].clone_from(&model.configuration[*q]);
+                names[v.0].clone_from(&model.configuration[q.0]);
                 continue;
             }
-            Chart::Ball(_, v) => (*v, &["rx", "ry", "rz"]),
-            Chart::Free(_, v) => (*v, &["dx", "dy", "dz", "rx", "ry", "rz"]),
+            Chart::Ball(_, v) => (v.0, &["rx", "ry", "rz"]),
+            Chart::Free(_, v) => (v.0, &["dx", "dy", "dz", "rx", "ry", "rz"]),
         };
         let joint = joint(&names[first]);
         for (k, member) in members.iter().enumerate() {
@@ -243,8 +243,8 @@ fn legend(words: &Words<'_, '_>) -> String {
     for chart in &model.charts {
         let (v, count) = match chart {
             Chart::Plain(..) => continue,
-            Chart::Ball(_, v) => (*v, 3),
-            Chart::Free(_, v) => (*v, 6),
+            Chart::Ball(_, v) => (v.0, 3),
+            Chart::Free(_, v) => (v.0, 6),
         };
         let all = all_of(&words.deviations[v + count - 3..v + count]);
         sentences.push(format!("{all} are a small rotation about body axes."));

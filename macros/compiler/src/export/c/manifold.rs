@@ -45,8 +45,8 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
                     };
                     continue;
                 }
-                Chart::Ball(q, v) => ("ball", q, v),
-                Chart::Free(q, v) => ("free", q, v),
+                Chart::Ball(q, v) => ("ball", q.0, v.0),
+                Chart::Free(q, v) => ("free", q.0, v.0),
             };
             support.balls |= kind == "ball";
             support.motions |= kind == "free";
@@ -150,11 +150,11 @@ pub fn block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize
         Chart::Plain(..) => None,
         Chart::Ball(_, v) => {
             (support.balls, support.jacobians[0]) = (true, true);
-            Some(("ball", v, 3))
+            Some(("ball", v.0, 3))
         }
         Chart::Free(_, v) => {
             (support.motions, support.jacobians[1]) = (true, true);
-            Some(("free", v, 6))
+            Some(("free", v.0, 6))
         }
     }
 }

@@ -32,7 +32,7 @@ pub struct Known<'g> {
 pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
     let mut found = Known::default();
     let is_base = |base: usize| match model.links[base] {
-        Link { parent: None, motion: Motion::Free { q, v }, .. } => Some(Base { link: base, q, v }),
+        Link { parent: None, motion: Motion::Free { q, v }, .. } => Some(Base { link: base, q: q.0, v: v.0 }),
         _ => None,
     };
     let bases: Vec<Base> = (0..joints.len()).filter_map(is_base).collect();

@@ -171,8 +171,8 @@ pub fn symmetrise<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for chart in &model.charts {
         let block = match *chart {
             Chart::Plain(..) => continue,
-            Chart::Ball(_, v) => v..v + 3,
-            Chart::Free(_, v) => v..v + 6,
+            Chart::Ball(_, v) => v.and_next(3),
+            Chart::Free(_, v) => v.and_next(6),
         };
         for i in block.clone() {
             for j in block.start..i {

@@ -29,7 +29,7 @@ impl<'g> Builder<'_, 'g> {
         let in_link = self.scope.kinematics.borrow().resolve(&terms, frame.link, zero);
         let at = frame.pose.rotation.to_child(in_link);
         let own = |q: Quantity| match q {
-            Quantity::Configuration(k) => k == first.q || k == second.q,
+            Quantity::Configuration(k) => k == first.q.0 || k == second.q.0,
             q => matches!(q, Quantity::Parameter(_)),
         };
         if !symbols_in(&at.0).into_iter().all(|s| own(Quantity::of(s))) {
@@ -38,7 +38,8 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let along = |c: &Coordinate| {
-            let mut d = Derivative::with_respect_to(Quantity::Configuration(c.q).symbol(), self.scope.graph);
+            let mut d =
+                Derivative::with_respect_to(Quantity::Configuration(c.q.0).symbol(), self.scope.graph);
             at.map(|e| d.of(e))
         };
         let tangents = [along(&first), along(&second)];

@@ -216,7 +216,7 @@ impl<'g> Builder<'_, 'g> {
         let g = self.scope.graph;
         if !self.scope.is_moving(&limit.on) {
             let (c, angle) = self.coordinate(&limit.on, cx)?;
-            let (q, v) = (Quantity::Configuration(c.q).expr(g), Quantity::Velocity(c.v).expr(g));
+            let (q, v) = (c.q.expr(g), c.v.expr(g));
             let ratio = g.num(c.ratio);
             return Some((q * ratio + g.num(c.offset), v * ratio, angle == Some(true)));
         }

@@ -200,7 +200,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
             }
             Chart::Plain(k, _) => {
                 let angle = coordinates.iter().find(|(_, c, _)| c.q == k).is_some_and(|(.., angle)| *angle);
-                let (unit, rate) = match inference.names.get(model.configuration.get(k).map_or("", |n| n)) {
+                let (unit, rate) = match inference.names.get(model.configuration.get(k.0).map_or("", |n| n)) {
                     Some(Meaning::Moving(dimension)) if !angle => of_coordinate(dimension.clone(), inference),
                     _ => ("rad".to_string(), "rad/s".to_string()),
                 };
@@ -210,9 +210,9 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
         }
     }
     for k in model.speeds.iter().flat_map(|speeds| &speeds.replaced) {
-        let name = model.velocities.get(*k).map_or("", |(name, _)| name);
+        let name = model.velocities.get(k.0).map_or("", |(name, _)| name);
         if let (Some(Meaning::Named(v, _)), Some(unit)) =
-            (inference.names.get(name), units.velocities.get_mut(*k))
+            (inference.names.get(name), units.velocities.get_mut(k.0))
         {
             *unit = of_speed(*v, inference);
         }

@@ -159,11 +159,7 @@ impl Values {
 }
 
 fn quaternion(chart: Chart, q: &mut [f64]) -> Option<&mut [f64]> {
-    match chart {
-        Chart::Plain(..) => None,
-        Chart::Ball(first, _) => Some(&mut q[first..first + 4]),
-        Chart::Free(first, _) => Some(&mut q[first + 3..first + 7]),
-    }
+    chart.quaternion().map(|first| &mut q[first.and_next(4)])
 }
 
 fn normalise(q: &mut [f64]) {
@@ -180,15 +176,16 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 fn move_along(charts: &[Chart], q: &mut [f64], step: &[f64]) {
     for chart in charts {
         match *chart {
-            Chart::Plain(first, velocity) => q[first] += step[velocity],
-            Chart::Ball(first, velocity) => turn(&mut q[first..first + 4], &step[velocity..velocity + 3]),
+            Chart::Plain(first, velocity) => q[first.0] += step[velocity.0],
+            Chart::Ball(first, velocity) => turn(&mut q[first.and_next(4)], &step[velocity.and_next(3)]),
             Chart::Free(first, velocity) => {
-                let (position, quaternion) = q[first..first + 7].split_at_mut(3);
-                let (along, axis) = ([0, 1, 2].map(|k| step[velocity + k]), [0, 1, 2].map(|k| quaternion[k]));
+                let (position, quaternion) = q[first.and_next(7)].split_at_mut(3);
+                let (along, axis) =
+                    ([0, 1, 2].map(|k| step[velocity.0 + k]), [0, 1, 2].map(|k| quaternion[k]));
                 let once = cross(axis, along);
                 let twice = cross(axis, once);
                 (0..3).for_each(|k| position[k] += along[k] + 2.0 * (quaternion[3] * once[k] + twice[k]));
-                turn(quaternion, &step[velocity + 3..velocity + 6]);
+                turn(quaternion, &step[(velocity + 3).and_next(3)]);
             }
         }
     }
