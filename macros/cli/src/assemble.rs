@@ -32,18 +32,18 @@ impl Evaluated<'_, '_> {
     /// of its numbers is marked.
     pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
-        let mut mark = |entries: std::ops::Range<usize>, from: usize, count: usize| {
+        let mut mark = |entries: std::ops::Range<usize>, velocities: std::ops::Range<usize>| {
             if marks[entries].contains(&true) {
-                moving[from..from + count].fill(true);
+                moving[velocities].fill(true);
             }
         };
         for chart in &self.model.charts {
             match *chart {
-                Chart::Plain(at, from) => mark(at..at + 1, from, 1),
-                Chart::Ball(at, from) => mark(at..at + 4, from, 3),
+                Chart::Plain(at, from) => mark(at.and_next(1), from.and_next(1)),
+                Chart::Ball(at, from) => mark(at.and_next(4), from.and_next(3)),
                 Chart::Free(at, from) => {
-                    mark(at..at + 3, from, 3);
-                    mark(at + 3..at + 7, from + 3, 3);
+                    mark(at.and_next(3), from.and_next(3));
+                    mark((at + 3).and_next(4), (from + 3).and_next(3));
                 }
             }
         }

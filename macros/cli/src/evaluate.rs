@@ -9,7 +9,7 @@ use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Lookup, Symbol};
 use linkwork_compiler::lower::Program;
-use linkwork_compiler::mechanism::{Chart, Model, Quantity};
+use linkwork_compiler::mechanism::{Chart, InQ, InV, Model, Quantity};
 
 /// A mechanism with its parameters.
 pub struct Evaluated<'a, 'g> {
@@ -59,10 +59,8 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     pub fn neutral(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.model.nq()];
         for chart in &self.model.charts {
-            match *chart {
-                Chart::Plain(..) => {}
-                Chart::Ball(at, _) => q[at + 3] = 1.0,
-                Chart::Free(at, _) => q[at + 6] = 1.0,
+            if let Some(first) = chart.quaternion() {
+                q[first.0 + 3] = 1.0;
             }
         }
         q
@@ -70,18 +68,14 @@ impl<'a, 'g> Evaluated<'a, 'g> {
 
     /// Makes quaternions unit ones; tells which is none.
     pub fn normalise(&self, q: &mut [f64]) -> Result<(), Stop> {
-        for chart in &self.model.charts {
-            let at = match *chart {
-                Chart::Plain(..) => continue,
-                Chart::Ball(at, _) => at,
-                Chart::Free(at, _) => at + 3,
-            };
-            let size = q[at..at + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
+        for first in self.model.charts.iter().filter_map(Chart::quaternion) {
+            let quaternion = &mut q[first.and_next(4)];
+            let size = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
             if size < 1e-9 || !size.is_finite() {
-                let names = self.model.configuration[at..at + 4].join(", ");
+                let names = self.model.configuration[first.and_next(4)].join(", ");
                 return Err(Stop::Failure(format!("the quaternion {names} is zero")));
             }
-            q[at..at + 4].iter_mut().for_each(|x| *x /= size);
+            quaternion.iter_mut().for_each(|x| *x /= size);
         }
         Ok(())
     }
@@ -90,9 +84,9 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     pub fn rates(&self, q: &[f64], v: &[f64], rates: &mut [f64]) {
         for chart in &self.model.charts {
             match *chart {
-                Chart::Plain(at, from) => rates[at] = v[from],
-                Chart::Ball(at, from) => spin(&q[at..], &v[from..], &mut rates[at..]),
-                Chart::Free(at, from) => {
+                Chart::Plain(at, from) => rates[at.0] = v[from.0],
+                Chart::Ball(InQ(at), InV(from)) => spin(&q[at..], &v[from..], &mut rates[at..]),
+                Chart::Free(InQ(at), InV(from)) => {
                     let [x, y, z, w] = [q[at + 3], q[at + 4], q[at + 5], q[at + 6]];
                     let axis = Vector3::new(x, y, z);
                     let linear = Vector3::new(v[from], v[from + 1], v[from + 2]);

@@ -106,7 +106,7 @@ impl Shown<'_, '_> {
             "nv": m.nv(),
             "nu": m.nu(),
             "constraints": m.constraints.len(),
-            "degrees_of_freedom": m.freedom[1],
+            "degrees_of_freedom": m.freedom.velocities,
             "frames": m.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(),
             "joints": self.structure,
             "equations": self.output.equations.plain,
