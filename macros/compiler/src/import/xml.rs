@@ -9,9 +9,6 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
-/// Elements inside one another. URDF needs six, MJCF one for each link of a chain.
-const MAX_DEPTHS: [(FileFormat, usize); 3] =
-    [(FileFormat::Urdf, 64), (FileFormat::Mjcf, 256), (FileFormat::Sdf, 64)];
 /// Attributes of one element: the parser compares each with each.
 const MOST_ATTRIBUTES: usize = 64;
 /// Namespace declarations of a file: the parser hands each down the tree.
@@ -24,6 +21,14 @@ const READ: [&str; 12] = [
     "robot", "link", "joint", "inertial", "mass", "inertia", "origin", "axis", "parent", "child", "dynamics",
     "mimic",
 ];
+
+/// Most elements inside one another. URDF needs six, MJCF one for each link of a chain.
+fn max_depth(format: FileFormat) -> usize {
+    match format {
+        FileFormat::Urdf | FileFormat::Sdf => 64,
+        FileFormat::Mjcf => 256,
+    }
+}
 
 /// Blanks an XML declaration that stands after empty lines. It has no business there, but other readers of URDF take it; all
 /// else keeps its place.
@@ -138,7 +143,7 @@ fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
         return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
     }
-    let deepest = MAX_DEPTHS.iter().find(|(known, _)| *known == format).map_or(0, |(_, deepest)| *deepest);
+    let deepest = max_depth(format);
     let mut open = Vec::new();
     let (mut at, mut root) = (0, None);
     let (mut prefixes, mut known) = (Vec::new(), BTreeSet::new());
