@@ -8,8 +8,8 @@ use crate::written::{self, number, vector};
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::syntax::{
-    Body, ConstraintKind, Description, Drive, DriveLaw, Endpoint, Expr, GROUND, Inertias, Joint, JointKind,
-    Limit,
+    Body, ConstraintKind, Description, Drive, DriveLaw, DriveOn, Endpoint, Expr, GROUND, Inertias, Joint,
+    JointKind, Limit,
 };
 use std::fmt::Write;
 
@@ -185,14 +185,20 @@ impl<'a> Struct<'a> {
         }
         let geared = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
         for drive in self.description.drives.iter().filter(geared) {
-            if let [(joint, 1.0)] = drive.terms.as_slice() {
+            if let [(joint, 1.0)] = drive.on.terms() {
                 let on = self.joints.of(&joint.text);
                 let kind = push(self.kind(&joint.text));
                 self.element(&format!("#[acts(on = {on})]"), &drive.name.text, kind);
+            } else if let DriveOn::Length(length) = &drive.on {
+                let on = self.expression(length);
+                self.element(&format!("#[acts(on = {on})]"), &drive.name.text, "Force");
+            } else if let DriveOn::Wrench(_) = &drive.on {
+                self.notes
+                    .push(format!("`{}`, which acts at a point of a body, is left out", drive.name.text));
             } else {
                 let name = self.others.fresh(&drive.name.text, "input");
                 let _ = writeln!(self.fields, "    {name}: Input,");
-                for (joint, weight) in &drive.terms {
+                for (joint, weight) in drive.on.terms() {
                     let (on, kind) = (self.joints.of(&joint.text), push(self.kind(&joint.text)));
                     let attribute = format!("#[acts(on = {on}, value = {} * {name})]", number(*weight));
                     self.element(&attribute, &format!("{name}_on_{on}"), kind);
@@ -215,13 +221,24 @@ impl<'a> Struct<'a> {
             let term = |(joint, weight): &(linkwork_compiler::syntax::Name, f64)| {
                 (self.joints.of(&joint.text), number(*weight))
             };
-            drive.terms.iter().map(term).collect::<Vec<_>>()
+            drive.on.terms().iter().map(term).collect::<Vec<_>>()
         };
         let terms = sum();
         let name = drive.name.text.clone();
-        if let [(joint, w)] = drive.terms.as_slice() {
+        match &drive.on {
+            DriveOn::Sum(_) => {}
+            DriveOn::Length(length) => return self.on_length(&self.expression(length), &name, drive.law),
+            DriveOn::Wrench(_) => {
+                return self.notes.push(format!("`{name}`, which acts at a point of a body, is left out"));
+            }
+        }
+        if let [(joint, w)] = drive.on.terms() {
             let (on, w, kind) = (self.joints.of(&joint.text), *w, self.kind(&joint.text));
             let (figures, element) = match drive.law {
+                DriveLaw::Slack { stiffness, range } => {
+                    let range = range.map(|end| end / w);
+                    (slack(stiffness * w * w, if w < 0.0 { [range[1], range[0]] } else { range }), "Spring")
+                }
                 DriveLaw::Spring { stiffness, free } => {
                     let word = if kind == JointKind::Sleeve { "free_length" } else { "free_angle" };
                     let free = if free == 0.0 {
@@ -259,10 +276,26 @@ impl<'a> Struct<'a> {
                 self.element(&loss, &name, "Rayleigh");
             }
             DriveLaw::Input(_) => {}
-            DriveLaw::Friction(_) | DriveLaw::Inerter(_) | DriveLaw::Push(_) => {
+            DriveLaw::Slack { .. } | DriveLaw::Friction(_) | DriveLaw::Inerter(_) | DriveLaw::Push(_) => {
                 self.notes.push(format!("`{name}`, which acts on several joints, is left out"));
             }
         }
+    }
+
+    /// Springs and their kin on the length of a cable.
+    fn on_length(&mut self, on: &str, name: &str, law: DriveLaw) {
+        let (figures, element) = match law {
+            DriveLaw::Spring { stiffness, free } => {
+                (format!("stiffness = {}, free_length = {}", number(stiffness), number(free)), "Spring")
+            }
+            DriveLaw::Slack { stiffness, range } => (slack(stiffness, range), "Spring"),
+            DriveLaw::Damper(damping) => (format!("damping = {}", number(damping)), "Dashpot"),
+            DriveLaw::Friction(force) => (format!("coulomb = {}", number(force)), "Friction"),
+            DriveLaw::Inerter(inertance) => (format!("inertance = {}", number(inertance)), "Inerter"),
+            DriveLaw::Push(force) => (format!("value = {}", number(force)), "Force"),
+            DriveLaw::Input(_) => return,
+        };
+        self.element(&format!("#[acts(on = {on}, {figures})]"), name, element);
     }
 
     fn limit(&mut self, limit: &Limit) {
@@ -291,4 +324,10 @@ impl<'a> Struct<'a> {
 /// A motor's type.
 fn push(kind: JointKind) -> &'static str {
     if kind == JointKind::Sleeve { "Force" } else { "Torque" }
+}
+
+/// The energy of a spring that is free in a range.
+fn slack(stiffness: f64, [low, high]: [f64; 2]) -> String {
+    let (half, low, high) = (number(stiffness / 2.0), number(low), number(high));
+    format!("energy = {half} * (pow(min(stretch - {low}, 0), 2) + pow(max(stretch - {high}, 0), 2))")
 }

@@ -327,7 +327,7 @@ impl<'g> Builder<'_, 'g> {
         let drives = &self.description.drives;
         let found =
             drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
-        found.and_then(|drive| drive.terms.first()).map(|(joint, _)| joint.text.as_str())
+        found.and_then(|drive| drive.on.terms().first()).map(|(joint, _)| joint.text.as_str())
     }
 
     /// An arrow for an input, if it has one direction.

@@ -1,11 +1,13 @@
-//! Force elements and inputs of a file: each on a weighted sum of coordinates.
+//! Force elements and inputs of a file: on a weighted sum of coordinates, on a length, at a point of a body.
 
 use super::builder::Builder;
 use super::motion::Moving;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
+use crate::expr::{Extreme, Vec3};
+use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, CoulombFriction, Dashpot, Input, Spring};
-use crate::syntax::{Description, Drive, DriveLaw, Expr, Law};
+use crate::syntax::{Description, Drive, DriveLaw, DriveOn, Expr, Law, Wrench};
 
 /// Those that are inputs, in their order in `u`: after the driven joints, before all others.
 pub fn inputs(d: &Description) -> impl Iterator<Item = &Drive> {
@@ -21,10 +23,14 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_drive(&mut self, drive: &Drive, cx: &mut Diagnostics) {
+        let terms = drive.on.terms().iter();
         let terms: Vec<Coordinate> =
-            drive.terms.iter().filter_map(|(joint, weight)| self.weighted(&joint.text, *weight)).collect();
+            terms.filter_map(|(joint, weight)| self.weighted(&joint.text, *weight)).collect();
         if let DriveLaw::Input(unit) = drive.law {
             self.model.inputs.push((drive.name.text.clone(), Input::Sum(terms, unit)));
+            if let Some(stretch) = self.spatial_stretch(&drive.on, cx) {
+                self.add_input_load(&drive.name.text, stretch.rate);
+            }
             return;
         }
         if let [on] = terms.as_slice()
@@ -32,25 +38,71 @@ impl<'g> Builder<'_, 'g> {
         {
             return;
         }
-        let stretch = self.sum_stretch(&terms);
-        let place = &drive.name.place;
+        let stretch = match &drive.on {
+            DriveOn::Sum(_) => Some(self.sum_stretch(&terms)),
+            on => self.spatial_stretch(on, cx),
+        };
+        // Nothing has an effect on what stands still.
+        let Some(stretch) = stretch else { return };
+        let (place, g) = (&drive.name.place, self.scope.graph);
         let number = |value| Expr::number(value, place);
         match drive.law {
             DriveLaw::Spring { stiffness, free } => {
-                let free = self.scope.graph.num(free);
-                self.add_spring(stretch, &Law::Linear(number(stiffness)), free, cx);
+                self.add_spring(stretch, &Law::Linear(number(stiffness)), g.num(free), cx);
+            }
+            DriveLaw::Slack { stiffness, range: [low, high] } => {
+                let short = (stretch.value - g.num(low)).extreme(Extreme::Min, g.zero());
+                let long = (stretch.value - g.num(high)).extreme(Extreme::Max, g.zero());
+                self.model.potentials.push(g.num(stiffness) * 0.5 * (short.square() + long.square()));
             }
             DriveLaw::Damper(damping) => self.add_dashpot(&stretch, &Law::Linear(number(damping)), cx),
             DriveLaw::Friction(force) => {
                 self.add_friction(&stretch, [Some(&number(force)), None, None, None, None], place, cx);
             }
             DriveLaw::Inerter(inertance) => self.add_inerter(&stretch, &number(inertance), cx),
-            DriveLaw::Push(force) => {
-                let force = self.scope.graph.num(force);
-                self.add_value_load(stretch.rate, force, place, cx);
-            }
+            DriveLaw::Push(force) => self.add_value_load(stretch.rate, g.num(force), place, cx),
             DriveLaw::Input(_) => {}
         }
+    }
+
+    /// The stretch of what is no sum of coordinates; none of what stands still.
+    fn spatial_stretch(&self, on: &DriveOn, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
+        let stretch = match on {
+            DriveOn::Sum(_) => None,
+            DriveOn::Length(e) => self.stretch_of(e, cx),
+            DriveOn::Wrench(wrench) => self.wrench_stretch(wrench, cx),
+        };
+        stretch.filter(|stretch| !velocity_gradient(stretch.rate).is_empty())
+    }
+
+    /// The rate that a force and a torque work on: `f · v + t · ω` of the point, or of it relative to the one that the reaction is on.
+    fn wrench_stretch(&self, wrench: &Wrench, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
+        let g = self.scope.graph;
+        let on = self.scope.place(&wrench.on, cx)?;
+        let against = match &wrench.against {
+            Some(against) => Some(self.scope.place(against, cx)?),
+            None => None,
+        };
+        let axes = against.as_ref().unwrap_or(&on);
+        let [force, torque] = [wrench.force, wrench.torque]
+            .map(|vector| axes.pose.rotation.to_parent(Vec3::numbers(g, vector)));
+        let kinematics = self.scope.kinematics.borrow();
+        let rate = match &against {
+            None => {
+                let twist = kinematics.twists.get(on.link?.0)?;
+                let at = twist.linear + twist.angular.cross(on.pose.translation);
+                at.dot(force) + twist.angular.dot(torque)
+            }
+            Some(against) => {
+                let zero = Vec3::zero(g);
+                let between = kinematics.between(&on, against);
+                let path = kinematics.resolve(&between, against.link, zero).dot(force);
+                let turning = kinematics.turning_in(on.link, against.link, g);
+                let turning = kinematics.resolve(&turning, against.link, zero).dot(torque);
+                time_derivative(self.model.space(), path) + turning
+            }
+        };
+        Some(Stretch { value: g.zero(), rate, square: g.zero(), signed: false })
     }
 
     /// The coordinate of a joint with one, times a weight.

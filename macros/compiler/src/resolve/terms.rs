@@ -44,15 +44,20 @@ impl<'g> Builder<'_, 'g> {
 
     /// A length or an angle given by an expression of the coordinates, such as that of a cable.
     pub fn expression_stretch(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
-        let g = self.scope.graph;
-        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g))));
-        let value = self.scope.in_context(context, |scope| scope.scalar(e, cx))?;
-        let rate = time_derivative(self.model.space(), value);
-        if velocity_gradient(rate).is_empty() {
+        let stretch = self.stretch_of(e, cx)?;
+        if velocity_gradient(stretch.rate).is_empty() {
             cx.error(e.place.clone(), "this contains no coordinate: nothing that acts on it has an effect")
                 .help("an element acts on a length or an angle that changes with the motion, such as `norm(r(a / b))`");
             return None;
         }
+        Some(stretch)
+    }
+
+    /// The value and the rate of an expression of places, which may be one that nothing changes.
+    pub fn stretch_of(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
+        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(self.scope.graph))));
+        let value = self.scope.in_context(context, |scope| scope.scalar(e, cx))?;
+        let rate = time_derivative(self.model.space(), value);
         Some(Stretch { value, rate, square: value.square(), signed: false })
     }
 

@@ -1,6 +1,6 @@
 //! `<actuator>` → inputs, with the springs and dampers that servos are.
 //!
-//! An actuator has a length: a gear ratio times a coordinate or the length of a tendon. Its force is `gain · u + b₀ + b₁ length +
+//! An actuator has a length: a gear ratio times a coordinate or the length of a tendon, or zero on a site. Its force is `gain · u + b₀ + b₁ length +
 //! b₂ rate` (MuJoCo, *Computation*, "Actuation model", with neither activation nor muscles).
 
 use super::defaults::Element;
@@ -11,7 +11,7 @@ use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, elements, name, place};
 use crate::import::imported::Placed;
 use crate::import::robot::unused;
-use crate::syntax::{Drive, DriveLaw, InputOption, JointKind, Name};
+use crate::syntax::{Drive, DriveLaw, DriveOn, InputOption, JointKind, Name};
 use std::collections::BTreeSet;
 
 /// The shortcuts that are understood, and `general`.
@@ -121,49 +121,50 @@ impl<'a> Reader<'a> {
         check_attributes(node, &[], &ATTRIBUTES, cx);
         // What all actuators have may be said in the defaults of any.
         let any = self.defaults.element(node, &ALL, 0, cx);
-        let (Some((terms, turns)), Some(force)) =
-            (self.transmission(&any, tendons, cx), read_force(&any, cx))
-        else {
-            return;
-        };
-        let gear = any.some("gear", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], cx).map_or(1.0, |gear| gear.value[0]);
+        let Some(force) = read_force(&any, cx) else { return };
+        let Some((on, turns)) = self.transmission(&any, tendons, force.bias[1] != 0.0, cx) else { return };
         let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| {
-            let target = terms.first().map_or("motor", |(joint, _)| joint.text.as_str());
+            let joint = on.terms().first().map(|(joint, _)| joint.text.as_str());
+            let target = joint.or(any.text("site")).unwrap_or("motor");
             Name {
                 text: unused(&format!("{target}_{kind}"), |name| names.contains(name)),
                 place: place(node, cx),
             }
         });
         names.insert(named.text.clone());
-        self.bound(&any, &terms, gear, &force, cx);
+        self.bound(&any, on.terms(), &force, cx);
         self.refuse_losses(&any, cx);
-        let weighted = |factor: f64| -> Vec<(Name, f64)> {
-            terms.iter().map(|(joint, weight)| (joint.clone(), weight * factor)).collect()
-        };
         let unit = unit(kind, turns, &force);
-        let mut drive = |factor: f64, law: DriveLaw| {
-            self.robot.drives.push(Drive { name: named.clone(), terms: weighted(factor), law });
+        let mut drive = |on: DriveOn, law: DriveLaw| {
+            self.robot.drives.push(Drive { name: named.clone(), on, law });
         };
-        drive(gear * force.gain, DriveLaw::Input(unit));
+        drive(on.scaled(force.gain), DriveLaw::Input(unit));
         let [constant, stiffness, damping] = force.bias;
+        // What is at a point has the length zero.
+        let stiffness = if matches!(on, DriveOn::Wrench(_)) { 0.0 } else { stiffness };
         if stiffness != 0.0 {
-            drive(gear, DriveLaw::Spring { stiffness: -stiffness, free: constant / -stiffness });
+            drive(on.clone(), DriveLaw::Spring { stiffness: -stiffness, free: constant / -stiffness });
         } else if constant != 0.0 {
-            drive(gear, DriveLaw::Push(constant));
+            drive(on.clone(), DriveLaw::Push(constant));
         }
         if damping != 0.0 {
-            drive(gear, DriveLaw::Damper(-damping));
+            drive(on, DriveLaw::Damper(-damping));
         }
     }
 
-    /// What an actuator acts on, and whether that turns.
+    /// What an actuator acts on, with its gear ratio, and whether that turns.
     fn transmission(
         &self,
         element: &Element<'a>,
         tendons: &[Tendon],
+        servo: bool,
         cx: &mut Cx<'_>,
-    ) -> Option<(Vec<(Name, f64)>, bool)> {
+    ) -> Option<(DriveOn, bool)> {
+        if let Some(site) = element.name("site", cx) {
+            return self.site_transmission(&site, element, servo, cx);
+        }
+        let gear = element.some("gear", [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], cx).map_or(1.0, |gear| gear.value[0]);
         if let Some(joint) = element.name("joint", cx).or_else(|| element.name("jointinparent", cx)) {
             if !self.check_joint(&joint, "drive", cx) {
                 return None;
@@ -172,12 +173,12 @@ impl<'a> Reader<'a> {
                 known.name.text == joint.text && known.kind == JointKind::Pin
             };
             let turns = self.robot.joints.iter().any(turns);
-            return Some((vec![(joint, 1.0)], turns));
+            return Some((DriveOn::Sum(vec![(joint, gear)]), turns));
         }
         if let Some(tendon) = element.name("tendon", cx) {
-            return Some((Tendon::terms_of(&tendon, tendons, ("driven", OTHER_INPUTS), cx)?, false));
+            return Some((Tendon::on(&tendon, tendons, OTHER_INPUTS, cx)?.scaled(gear), false));
         }
-        let message = "an actuator on no joint and no tendon is not supported";
+        let message = "an actuator on no joint, tendon or site is not supported";
         cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));
         None
     }
@@ -197,17 +198,11 @@ impl<'a> Reader<'a> {
     }
 
     /// The largest effort of a joint that an actuator drives alone, in effect.
-    fn bound(
-        &mut self,
-        element: &Element<'a>,
-        terms: &[(Name, f64)],
-        gear: f64,
-        force: &Force,
-        cx: &mut Cx<'_>,
-    ) {
+    fn bound(&mut self, element: &Element<'a>, terms: &[(Name, f64)], force: &Force, cx: &mut Cx<'_>) {
+        let gear = terms.first().map_or(1.0, |(_, gear)| gear.abs());
         let of = |ends: [Placed<f64>; 2]| {
             let [low, high] = ends;
-            Placed { value: low.value.abs().max(high.value.abs()) * gear.abs(), place: low.place }
+            Placed { value: low.value.abs().max(high.value.abs()) * gear, place: low.place }
         };
         let by_force = self.range(element, "forcelimited", "forcerange", cx).map(of);
         let by_input = self.range(element, "ctrllimited", "ctrlrange", cx).map(of);
@@ -218,7 +213,7 @@ impl<'a> Reader<'a> {
             .map(|found| Placed { value: found.value * force.gain.abs(), ..found });
         let [(joint, _)] = terms else {
             self.count(
-                "limits of actuators on tendons",
+                "limits of actuators on tendons and sites",
                 usize::from(by_force.is_some() || by_input.is_some()),
             );
             return;

@@ -88,6 +88,7 @@ impl<'a> Reader<'a> {
             let inside = self.inside(node, class, cx);
             self.add_sites(&inside, GROUND, cx);
             self.add_planes(&inside.shapes, cx);
+            self.name_shapes(GROUND, &inside.shapes);
             open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| Open {
                 node,
                 parent: world.clone(),
@@ -176,6 +177,7 @@ impl<'a> Reader<'a> {
         }
         self.add_collisions(self.robot.links.len(), &inside.shapes, cx);
         self.add_visuals(self.robot.links.len(), &inside.shapes, cx);
+        self.name_shapes(&body.text, &inside.shapes);
         self.robot.links.push(link);
         self.masses.push(mass);
         self.poses.insert(body.text.clone(), world);
@@ -308,20 +310,16 @@ impl<'a> Reader<'a> {
     fn spread(&mut self, joint: &BodyJoint, damping: &Placed<f64>, carrier: &Name, child: &Name) {
         let at = &damping.place;
         let named = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
-        let binary = |op, a, b| Expr {
-            kind: ExprKind::Binary(op, Box::new(a), Box::new(b), at.clone()),
-            place: at.clone(),
-        };
         let half_square = |e: Expr| {
             let square = Expr::call("dot", vec![e.clone(), e], at);
-            binary(BinaryOp::Mul, Expr::number(damping.value / 2.0, at), square)
+            Expr::binary(BinaryOp::Mul, Expr::number(damping.value / 2.0, at), square)
         };
-        let slash = |a, b| binary(BinaryOp::Div, a, b);
+        let slash = |a, b| Expr::binary(BinaryOp::Div, a, b);
         let turning = Expr::call("omega", vec![slash(named(&child.text), named(&carrier.text))], at);
         let mut sum = half_square(turning);
         if joint.kind == JointKind::Free {
             let path = slash(slash(named(&child.text), named(GROUND)), named(GROUND));
-            sum = binary(BinaryOp::Add, sum, half_square(Expr::call("v", vec![path], at)));
+            sum = Expr::binary(BinaryOp::Add, sum, half_square(Expr::call("v", vec![path], at)));
         }
         let text = format!("{}_damping", joint.name.text);
         self.robot.dissipations.push((Name { text, place: at.clone() }, sum));

@@ -106,10 +106,6 @@ impl<'a> Reader<'a> {
     ) {
         let at = place(element.node, cx);
         let number = |x: f64| Expr::number(x, &at);
-        let binary = |op, a, b| Expr {
-            kind: ExprKind::Binary(op, Box::new(a), Box::new(b), at.clone()),
-            place: at.clone(),
-        };
         let sum = |terms: &[(Name, f64)]| {
             let zero: f64 = terms
                 .iter()
@@ -117,7 +113,7 @@ impl<'a> Reader<'a> {
                 .sum();
             terms.iter().fold(number(-zero), |sum, (joint, weight)| {
                 let coordinate = Expr { kind: ExprKind::Name(joint.text.clone()), place: at.clone() };
-                binary(BinaryOp::Add, sum, binary(BinaryOp::Mul, number(*weight), coordinate))
+                Expr::binary(BinaryOp::Add, sum, Expr::binary(BinaryOp::Mul, number(*weight), coordinate))
             })
         };
         let other = match second {
@@ -126,7 +122,11 @@ impl<'a> Reader<'a> {
                 let highest = polynomial.iter().rposition(|factor| *factor != 0.0).unwrap_or(0);
                 let start = number(polynomial.get(highest).copied().unwrap_or(0.0));
                 polynomial.iter().take(highest).rev().fold(start, |inner, factor| {
-                    binary(BinaryOp::Add, number(*factor), binary(BinaryOp::Mul, inner, d.clone()))
+                    Expr::binary(
+                        BinaryOp::Add,
+                        number(*factor),
+                        Expr::binary(BinaryOp::Mul, inner, d.clone()),
+                    )
                 })
             }
             None => number(polynomial[0]),
@@ -184,13 +184,8 @@ impl<'a> Reader<'a> {
         if element.node.has_attribute("site1") {
             let mut end = |attribute: &str| {
                 let site = name(element.node, attribute, cx)?;
-                let Some((body, pose)) = self.poses_of_sites.get(&site.text) else {
-                    let known = self.poses_of_sites.keys().map(String::as_str);
-                    let message = format!("unknown site {}", quote(&site.text));
-                    cx.error(&site.place, message, |d| d.suggest(&site.text, known));
-                    return None;
-                };
-                Some((Name { text: body.clone(), place: site.place }, *pose))
+                let found = self.find_site(&site, cx)?;
+                Some((Name { text: found.body, place: site.place }, found.pose))
             };
             return Some([end("site1")?, end("site2")?]);
         }
@@ -250,5 +245,5 @@ fn terms_of(
     cx: &mut Cx<'_>,
 ) -> Option<Vec<(Name, f64)>> {
     let tendon = name(element.node, attribute, cx)?;
-    Tendon::terms_of(&tendon, tendons, ("coupled", LEAVE_OUT), cx).filter(|terms| !terms.is_empty())
+    Tendon::terms_of(&tendon, tendons, LEAVE_OUT, cx).filter(|terms| !terms.is_empty())
 }

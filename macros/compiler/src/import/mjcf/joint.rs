@@ -7,7 +7,7 @@ use crate::import::element::{Node, check_attributes, name, place};
 use crate::import::imported::Placed;
 use crate::import::pose::{Vector, length, scale};
 use crate::import::robot::{FileLimits, unused};
-use crate::syntax::{Drive, DriveLaw, Expr, JointKind, Name};
+use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, JointKind, Name};
 
 /// MJCF's words for the joints.
 const TYPES: [(&str, JointKind); 4] = [
@@ -273,8 +273,8 @@ impl<'a> Reader<'a> {
     }
 
     fn drive(&mut self, joint: &BodyJoint, law: DriveLaw) {
-        let terms = vec![(joint.name.clone(), 1.0)];
-        self.robot.drives.push(Drive { name: joint.name.clone(), terms, law });
+        let on = DriveOn::Sum(vec![(joint.name.clone(), 1.0)]);
+        self.robot.drives.push(Drive { name: joint.name.clone(), on, law });
     }
 }
 

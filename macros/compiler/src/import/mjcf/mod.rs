@@ -9,7 +9,7 @@ use super::whole::imported;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, Order};
-use crate::syntax::{DriveLaw, Expr, FileFormat, FileOptions, GROUND, JointKind};
+use crate::syntax::{DriveLaw, DriveOn, Expr, FileFormat, FileOptions, GROUND, JointKind};
 use defaults::Defaults;
 use mesh::Meshes;
 use reader::Reader;
@@ -29,7 +29,10 @@ mod joint;
 mod law;
 mod mesh;
 mod reader;
+mod rest;
 mod settings;
+mod site;
+mod spatial;
 mod tendon;
 mod touch;
 mod visual;
@@ -163,12 +166,20 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
     for drive in &robot.drives {
         let law = match drive.law {
             DriveLaw::Spring { stiffness, free } => stiffness.is_finite() && free.is_finite(),
+            DriveLaw::Slack { stiffness, range } => {
+                stiffness.is_finite() && range.into_iter().all(f64::is_finite)
+            }
             DriveLaw::Damper(x) | DriveLaw::Friction(x) | DriveLaw::Inerter(x) | DriveLaw::Push(x) => {
                 x.is_finite()
             }
             DriveLaw::Input(_) => true,
         };
-        if !law || !drive.terms.iter().all(|(_, weight)| weight.is_finite()) {
+        let on = match &drive.on {
+            DriveOn::Sum(terms) => terms.iter().all(|(_, weight)| weight.is_finite()),
+            DriveOn::Length(e) => literals(e),
+            DriveOn::Wrench(wrench) => wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite),
+        };
+        if !law || !on {
             let message = format!("a force of {} is too large for numbers", quote(&drive.name.text));
             cx.error(&drive.name.place, message, |d| d);
         }

@@ -1,6 +1,6 @@
 //! What is read of a file, while it is read.
 
-use super::defaults::Defaults;
+use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
 use super::mesh::Meshes;
 use super::settings::Settings;
@@ -34,6 +34,8 @@ pub(super) struct Reader<'a> {
     pub(super) poses: BTreeMap<String, Pose>,
     /// The body of each site, and where on it the site is.
     pub(super) poses_of_sites: BTreeMap<String, (String, Pose)>,
+    /// The shapes with names: the body of each, and the pose of the frames in it that the shape stands in.
+    pub(super) named_shapes: BTreeMap<String, (String, Element<'a>, Pose)>,
     /// Bodies that programs move.
     pub(super) mocap: BTreeSet<String>,
     /// Mass properties by link.
@@ -71,6 +73,7 @@ impl<'a> Reader<'a> {
             counts: BTreeMap::new(),
             poses: BTreeMap::new(),
             poses_of_sites: BTreeMap::new(),
+            named_shapes: BTreeMap::new(),
             mocap: BTreeSet::new(),
             masses: vec![None],
             bodies: 0,

@@ -1,37 +1,72 @@
-//! `<tendon>`: fixed ones are weighted sums of coordinates. Those through space are left out where they only show or limit.
+//! `<tendon>`: fixed ones are weighted sums of coordinates, those through space are lengths.
 
+use super::defaults::Element;
 use super::joint::IGNORE_PASSIVE;
 use super::reader::Reader;
+use super::spatial::Refusal;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, elements, name, number, place, tag};
 use crate::import::robot::has_coordinate;
-use crate::syntax::{Drive, DriveLaw, Name};
+use crate::syntax::{Drive, DriveLaw, DriveOn, Name};
 
-/// A weighted sum of coordinates; nothing of a tendon through space.
+/// A tendon. What of one through space is not taken over matters where something acts on it.
 pub(super) struct Tendon {
     pub(super) name: Name,
-    pub(super) terms: Option<Vec<(Name, f64)>>,
+    path: Result<DriveOn, Refusal>,
 }
 
 impl Tendon {
-    /// The joints, with their weights, of a tendon that something `does` things to: none of those through space.
-    pub(super) fn terms_of(
-        name: &Name,
-        tendons: &[Tendon],
-        (does, help): (&str, &str),
-        cx: &mut Cx<'_>,
-    ) -> Option<Vec<(Name, f64)>> {
-        let Some(found) = tendons.iter().find(|known| known.name.text == name.text) else {
+    fn find<'t>(name: &Name, tendons: &'t [Tendon], cx: &mut Cx<'_>) -> Option<&'t Tendon> {
+        let found = tendons.iter().find(|known| known.name.text == name.text);
+        if found.is_none() {
             let known = tendons.iter().map(|known| known.name.text.as_str());
             let message = format!("unknown tendon {}", quote(&name.text));
             cx.error(&name.place, message, |d| d.suggest(&name.text, known));
-            return None;
-        };
-        if found.terms.is_none() {
-            let message = format!("tendon {} goes through space, where none is {does}", quote(&name.text));
-            cx.error(&name.place, message, |d| d.help(help));
         }
-        found.terms.clone()
+        found
+    }
+
+    /// The joints, with their weights, of a tendon that is coupled: none of those through space.
+    pub(super) fn terms_of(
+        name: &Name,
+        tendons: &[Tendon],
+        help: &'static str,
+        cx: &mut Cx<'_>,
+    ) -> Option<Vec<(Name, f64)>> {
+        match &Tendon::find(name, tendons, cx)?.path {
+            Ok(DriveOn::Sum(terms)) => Some(terms.clone()),
+            _ => {
+                let message =
+                    format!("tendon {} goes through space, where none is coupled", quote(&name.text));
+                cx.error(&name.place, message, |d| d.help(help));
+                None
+            }
+        }
+    }
+
+    /// What acts on a tendon acts on this.
+    pub(super) fn on(
+        name: &Name,
+        tendons: &[Tendon],
+        help: &'static str,
+        cx: &mut Cx<'_>,
+    ) -> Option<DriveOn> {
+        taken_over(&Tendon::find(name, tendons, cx)?.path, help, cx).cloned()
+    }
+}
+
+/// What acts on a tendon acts on this; reports one that is not taken over.
+fn taken_over<'t>(
+    path: &'t Result<DriveOn, Refusal>,
+    help: &'static str,
+    cx: &mut Cx<'_>,
+) -> Option<&'t DriveOn> {
+    match path {
+        Ok(on) => Some(on),
+        Err(refusal) => {
+            cx.error(&refusal.place, format!("{} is not supported", refusal.message), |d| d.help(help));
+            None
+        }
     }
 }
 
@@ -57,7 +92,16 @@ impl<'a> Reader<'a> {
         let element = self.defaults.element(node, &["tendon"], 0, cx);
         let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: place(node, cx) });
-        let terms = fixed.then(|| self.terms(node, cx));
+        let (path, rest) = if fixed {
+            let terms = self.terms(node, cx);
+            let at = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
+            let rest = terms.iter().map(|(joint, weight)| weight * at(joint)).sum();
+            (Ok(DriveOn::Sum(terms)), rest)
+        } else {
+            let path = self.read_path(node, cx)?;
+            let rest = path.as_ref().map_or(0.0, |path| path.length(&self.poses_at_rest()));
+            (path.map(|path| DriveOn::Length(path.expression())), rest)
+        };
         for (limited, range, what) in
             [("limited", "range", "limits"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
         {
@@ -65,62 +109,30 @@ impl<'a> Reader<'a> {
                 self.left_out.push(format!("the {what} of the tendon `{}`", named.text));
             }
         }
+        let mut laws = Vec::new();
         if let Some(found) = element.nonzero("armature", cx) {
-            match &terms {
-                Some(terms) => self.on_tendon(&named, terms, DriveLaw::Inerter(found.value)),
-                None => {
-                    let message = "`armature` of a tendon through space is not supported";
-                    cx.error(&found.place, message, |d| d);
-                }
-            }
+            laws.push((DriveLaw::Inerter(found.value), "write `armature=\"0\"` into the tendon"));
         }
-        if !self.passive {
-            return Some(Tendon { name: named, terms });
-        }
-        for which in ["stiffness", "damping", "frictionloss"] {
+        let passive = ["stiffness", "damping", "frictionloss"];
+        for which in passive.into_iter().filter(|_| self.passive) {
             if which == "frictionloss" && !self.settings.friction {
                 continue;
             }
             let Some(found) = element.nonzero(which, cx) else { continue };
-            let Some(terms) = &terms else {
-                let message = format!("`{which}` of a tendon through space is not supported");
-                cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
-                continue;
-            };
             let law = match which {
-                "stiffness" => {
-                    let Some(free) = self.rest(&element, terms, cx) else { continue };
-                    DriveLaw::Spring { stiffness: found.value, free }
-                }
+                "stiffness" => spring(found.value, &element, rest, cx),
                 "damping" => DriveLaw::Damper(found.value),
                 _ => DriveLaw::Friction(found.value),
             };
-            self.on_tendon(&named, terms, law);
+            laws.push((law, IGNORE_PASSIVE));
         }
-        Some(Tendon { name: named, terms })
-    }
-
-    fn on_tendon(&mut self, name: &Name, terms: &[(Name, f64)], law: DriveLaw) {
-        self.robot.drives.push(Drive { name: name.clone(), terms: terms.to_vec(), law });
-    }
-
-    /// Length at which the spring of a tendon is free: as it says, or while all joints stand where their own springs are free.
-    fn rest(
-        &self,
-        element: &super::defaults::Element<'a>,
-        terms: &[(Name, f64)],
-        cx: &mut Cx<'_>,
-    ) -> Option<f64> {
-        let [low, high] =
-            element.some("springlength", [f64::NAN; 2], cx).map_or([-1.0; 2], |found| found.value);
-        let high = if high.is_nan() { low } else { high };
-        if low != high {
-            let message = "`springlength` with a range is not supported";
-            cx.error(&element.place("springlength", cx), message, |d| d.help(IGNORE_PASSIVE));
-            return None;
+        if let Some((_, help)) = laws.first()
+            && let Some(on) = taken_over(&path, help, cx)
+        {
+            let drive = |law| Drive { name: named.clone(), on: on.clone(), law };
+            self.robot.drives.extend(laws.iter().map(|(law, _)| drive(*law)));
         }
-        let at = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
-        Some(if low < 0.0 { terms.iter().map(|(joint, weight)| weight * at(joint)).sum() } else { low })
+        Some(Tendon { name: named, path })
     }
 
     fn terms(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Vec<(Name, f64)> {
@@ -153,5 +165,14 @@ impl<'a> Reader<'a> {
             return false;
         }
         true
+    }
+}
+
+/// A spring of a tendon, which is free where the tendon says, or while all joints stand where their own springs are free.
+fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
+    let [low, high] = element.some("springlength", [f64::NAN; 2], cx).map_or([-1.0; 2], |found| found.value);
+    match high > low && low >= 0.0 {
+        true => DriveLaw::Slack { stiffness, range: [low, high] },
+        false => DriveLaw::Spring { stiffness, free: if low < 0.0 { rest } else { low } },
     }
 }

@@ -2,7 +2,7 @@
 
 use super::joint::FileJoint;
 use super::motion::Motion;
-use crate::syntax::{Drive, DriveLaw};
+use crate::syntax::{Drive, DriveLaw, DriveOn};
 use std::collections::BTreeMap;
 
 /// The elements on what still moves. An input on nothing stays: programs count on its entry.
@@ -20,16 +20,19 @@ pub(super) fn resolve(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]
 
 /// The element without the joints that stand still.
 fn without(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Drive> {
+    let DriveOn::Sum(terms) = &mut drive.on else { return Some(drive) };
     let mut offset = 0.0;
-    drive.terms.retain(|(joint, weight)| match frozen.get(joint.text.as_str()) {
+    terms.retain(|(joint, weight)| match frozen.get(joint.text.as_str()) {
         Some(at) => {
             offset += weight * at;
             false
         }
         None => true,
     });
-    if let DriveLaw::Spring { free, .. } = &mut drive.law {
-        *free -= offset;
+    match &mut drive.law {
+        DriveLaw::Spring { free, .. } => *free -= offset,
+        DriveLaw::Slack { range, .. } => range.iter_mut().for_each(|end| *end -= offset),
+        _ => {}
     }
-    (!drive.terms.is_empty() || matches!(drive.law, DriveLaw::Input(_))).then_some(drive)
+    (!terms.is_empty() || matches!(drive.law, DriveLaw::Input(_))).then_some(drive)
 }

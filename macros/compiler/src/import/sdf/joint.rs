@@ -10,7 +10,7 @@ use crate::import::pose::{Pose, Vector, apply, length};
 use crate::import::robot::{
     FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, bare_link, has_axis, has_coordinate,
 };
-use crate::syntax::{Drive, DriveLaw, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
+use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
 
 /// SDF's words for the joints, and how many axes they have.
 const TYPES: [(&str, JointKind, usize); 8] = [
@@ -247,7 +247,11 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
     if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.value != [0.0]) {
         let law =
             DriveLaw::Spring { stiffness: stiffness.value[0], free: free.map_or(0.0, |free| free.value[0]) };
-        robot.drives.push(Drive { name: joint.name.clone(), terms: vec![(joint.name.clone(), 1.0)], law });
+        robot.drives.push(Drive {
+            name: joint.name.clone(),
+            on: DriveOn::Sum(vec![(joint.name.clone(), 1.0)]),
+            law,
+        });
     }
 }
 

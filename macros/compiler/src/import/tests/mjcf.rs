@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn mjcf() -> FileOptions {
+pub(super) fn mjcf() -> FileOptions {
     FileOptions {
         format: FileFormat::Mjcf,
         path: name("r.xml"),
@@ -299,12 +299,13 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
   <default><joint damping=".1"/><default class="a"><geom type="box" size=".1 .2 .3"/></default></default>
   <worldbody><body name="b" childclass="a" pos="1 2 3" euler="1 0 0"><joint name="j" axis="0 1 1" ref=".1"/>
     <joint name="k" type="slide" range="0 1" stiffness="2"/><geom quat="1 1 0 0"/>
-    <frame pos="1 0 0"><body name="c"><joint name="l" type="ball" damping="1"/><site name="s"/>
+    <geom name="g" type="cylinder" size="1 1"/><site name="r"/><frame pos="1 0 0"><body name="c"><joint name="l" type="ball" damping="1"/><site name="s"/>
       <inertial pos="0 0 1" mass="1" fullinertia="1 1 1 0 0 0"/></body></frame></body></worldbody>
-  <tendon><fixed name="t" stiffness="1"><joint joint="j" coef="2"/><joint joint="k" coef="3"/></fixed></tendon>
+  <tendon><spatial name="u" damping="1"><site site="s"/><geom geom="g"/><site site="r"/><pulley divisor="2"/></spatial>
+    <fixed name="t" stiffness="1"><joint joint="j" coef="2"/><joint joint="k" coef="3"/></fixed></tendon>
   <equality><joint joint1="k" joint2="j" polycoef="1 2"/><tendon tendon1="t" polycoef="1 0 3"/>
     <joint joint1="j" joint2="k" polycoef="0 1 2 -1 .5"/></equality>
-  <actuator><motor joint="j" gear="3"/><position tendon="t" kp="2"/></actuator></mujoco>"#;
+  <actuator><motor joint="j" gear="3"/><position tendon="t" kp="2"/><motor site="s" refsite="r" gear="1 2"/></actuator></mujoco>"#;
 
 #[test]
 fn planes_are_touched() {

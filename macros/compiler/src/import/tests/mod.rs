@@ -3,8 +3,8 @@
 use super::{FileOptions, Imported, import};
 use crate::diag::Diagnostics;
 use crate::syntax::{
-    Base, BinaryOp, Body, Drive, DriveLaw, Endpoint, Expr, ExprKind, FileFormat, Inertias, InputOption,
-    Joint, LimitOption, Name,
+    Base, BinaryOp, Body, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, FileFormat, Inertias,
+    InputOption, Joint, LimitOption, Name,
 };
 use proc_macro2::Span;
 use std::fs;
@@ -19,6 +19,7 @@ mod malformed;
 mod mjcf;
 mod names;
 mod sdf;
+mod spatial;
 
 fn name(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }
@@ -166,17 +167,32 @@ fn render_joint(joint: &Joint) -> String {
 }
 
 fn render_drive(drive: &Drive) -> String {
-    let terms: Vec<String> =
-        drive.terms.iter().map(|(joint, weight)| format!("{weight} {}", joint.text)).collect();
+    let numbers = |vector: [f64; 3]| vector.map(|x| x.to_string()).join(" ");
+    let on = match &drive.on {
+        DriveOn::Sum(terms) => {
+            let terms: Vec<String> =
+                terms.iter().map(|(joint, weight)| format!("{weight} {}", joint.text)).collect();
+            terms.join(" + ")
+        }
+        DriveOn::Length(e) => render_expr(e),
+        DriveOn::Wrench(wrench) => {
+            let against = wrench.against.iter().map(|e| format!(" against {}", render_expr(e)));
+            let [force, torque] = [wrench.force, wrench.torque].map(numbers);
+            format!("{} by {force}, {torque}{}", render_expr(&wrench.on), against.collect::<String>())
+        }
+    };
     let law = match drive.law {
         DriveLaw::Spring { stiffness, free } => format!("spring {stiffness} from {free}"),
+        DriveLaw::Slack { stiffness, range: [low, high] } => {
+            format!("spring {stiffness} outside of {low} to {high}")
+        }
         DriveLaw::Damper(damping) => format!("damper {damping}"),
         DriveLaw::Friction(force) => format!("friction {force}"),
         DriveLaw::Inerter(inertance) => format!("inerter {inertance}"),
         DriveLaw::Push(force) => format!("push {force}"),
         DriveLaw::Input(unit) => format!("input in {unit}"),
     };
-    format!("{}: {law} on {}", drive.name.text, terms.join(" + "))
+    format!("{}: {law} on {on}", drive.name.text)
 }
 
 fn render_end(end: &Endpoint) -> String {
@@ -200,8 +216,14 @@ fn render_expr(expr: &Expr) -> String {
             format!("{}.{}({})", render_expr(object), method.text, render_list(arguments))
         }
         ExprKind::Name(name) => name.clone(),
+        ExprKind::Field(base, member) => format!("{}.{}", render_expr(base), member.text),
         ExprKind::Binary(op, a, b, _) => {
-            let sign = if *op == BinaryOp::Add { '+' } else { '*' };
+            let sign = match op {
+                BinaryOp::Add => '+',
+                BinaryOp::Sub => '-',
+                BinaryOp::Mul => '*',
+                BinaryOp::Div => '/',
+            };
             format!("({} {sign} {})", render_expr(a), render_expr(b))
         }
         other => unreachable!("{other:?}"),

@@ -104,6 +104,19 @@ impl Expr {
         Expr { kind: ExprKind::Call(name, arguments), place: place.clone() }
     }
 
+    /// Two expressions with an operator between them, at the place of the first.
+    pub fn binary(op: BinaryOp, a: Expr, b: Expr) -> Expr {
+        let place = a.place.clone();
+        Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b), place.clone()), place }
+    }
+
+    /// `of.word(arguments)` at the place of what it is of.
+    pub fn method(of: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
+        let place = of.place.clone();
+        let name = Name { text: word.to_string(), place: place.clone() };
+        Expr { kind: ExprKind::Method(Box::new(of), name, arguments), place }
+    }
+
     /// Three numbers as a vector `[a, b, c]` at a place.
     pub fn vector(values: [f64; 3], place: &Place) -> Expr {
         let items = values.iter().map(|v| Expr::number(*v, place)).collect();

@@ -1,6 +1,6 @@
 //! Force elements and inputs.
 
-use super::{Expr, Name};
+use super::{BinaryOp, Expr, Name};
 use crate::diag::Place;
 
 /// A force element or an input.
@@ -14,18 +14,70 @@ pub struct Action {
     pub on: Target,
 }
 
-/// What a file says of springs, dampers, rotors and motors: a force element on a weighted sum of coordinates.
+/// What a file says of springs, dampers, rotors and motors.
 #[derive(Clone, Debug)]
 pub struct Drive {
     /// Its name; an input's name is its entry in `INPUTS`.
     pub name: Name,
-    /// The joints with their weights; each has one coordinate.
-    pub terms: Vec<(Name, f64)>,
+    /// What it acts on.
+    pub on: DriveOn,
     /// What it does.
     pub law: DriveLaw,
 }
 
-/// How a force element of a file answers to the sum of coordinates that it is on.
+/// What a force element of a file acts on.
+#[derive(Clone, Debug)]
+pub enum DriveOn {
+    /// A weighted sum of coordinates: the joints with their weights; each has one coordinate.
+    Sum(Vec<(Name, f64)>),
+    /// A length that the coordinates give, such as that of a cable.
+    Length(Expr),
+    /// What a force at a point and a torque work on; it has a rate, and its value is zero.
+    Wrench(Wrench),
+}
+
+/// A force at a point of a body and a torque on it, for each newton of what drives them.
+#[derive(Clone, Debug)]
+pub struct Wrench {
+    /// The point, `body.at(vector)`.
+    pub on: Expr,
+    /// The force, in axes of the body, or of that which the reaction is on.
+    pub force: [f64; 3],
+    /// The torque, in the same axes.
+    pub torque: [f64; 3],
+    /// The point of a body that the reaction is on, if that is not the ground.
+    pub against: Option<Expr>,
+}
+
+impl DriveOn {
+    /// The same with all weights times a factor.
+    pub fn scaled(&self, factor: f64) -> DriveOn {
+        match self {
+            DriveOn::Sum(terms) => {
+                DriveOn::Sum(terms.iter().map(|(joint, weight)| (joint.clone(), weight * factor)).collect())
+            }
+            DriveOn::Length(e) if factor == 1.0 => DriveOn::Length(e.clone()),
+            DriveOn::Length(e) => {
+                DriveOn::Length(Expr::binary(BinaryOp::Mul, Expr::number(factor, &e.place), e.clone()))
+            }
+            DriveOn::Wrench(wrench) => DriveOn::Wrench(Wrench {
+                force: wrench.force.map(|x| x * factor),
+                torque: wrench.torque.map(|x| x * factor),
+                ..wrench.clone()
+            }),
+        }
+    }
+
+    /// The joints of a sum with their weights; none of anything else.
+    pub fn terms(&self) -> &[(Name, f64)] {
+        match self {
+            DriveOn::Sum(terms) => terms,
+            DriveOn::Length(_) | DriveOn::Wrench(_) => &[],
+        }
+    }
+}
+
+/// How a force element of a file answers to what it is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveLaw {
     /// With a force in proportion to what the sum differs from a free length.
@@ -34,6 +86,13 @@ pub enum DriveLaw {
         stiffness: f64,
         /// Where the force is zero.
         free: f64,
+    },
+    /// With a force in proportion to what the sum is outside of a range.
+    Slack {
+        /// Stiffness.
+        stiffness: f64,
+        /// The ends of the range.
+        range: [f64; 2],
     },
     /// With a force against its rate, in proportion to that.
     Damper(f64),

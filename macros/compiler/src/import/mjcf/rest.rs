@@ -1,0 +1,40 @@
+//! Where bodies are while the springs of all joints are free, which is where those of tendons are.
+
+use super::reader::Reader;
+use super::spatial::Poses;
+use crate::import::pose::{Pose, about, product, scale};
+use crate::import::robot::Origin;
+use crate::syntax::{GROUND, JointKind};
+
+impl Reader<'_> {
+    /// Poses of bodies in the world with each joint where its spring is free; ball and free joints as in the file.
+    pub(super) fn poses_at_rest(&self) -> Poses {
+        let mut poses = Poses::from([(GROUND.to_string(), Pose::ZERO)]);
+        // A joint stands behind the one that carries its parent.
+        for joint in &self.robot.joints {
+            let rest = self.rests.get(&joint.name.text).copied().unwrap_or(0.0);
+            let axis = joint.axis.value;
+            let motion = match joint.kind {
+                JointKind::Pin => Pose { axes: about(axis, rest), ..Pose::ZERO },
+                JointKind::Sleeve => Pose { at: scale(axis, rest), ..Pose::ZERO },
+                _ => Pose::ZERO,
+            };
+            let parent = poses.get(&joint.parent.text).copied().unwrap_or(Pose::ZERO);
+            let back = Pose { at: scale(joint.anchor, -1.0), ..Pose::ZERO };
+            let pose = match joint.kind {
+                JointKind::Free => self.poses.get(&joint.child.text).copied().unwrap_or(Pose::ZERO),
+                _ => parent.then(&pose_of(&joint.origin)).then(&motion).then(&back),
+            };
+            poses.insert(joint.child.text.clone(), pose);
+        }
+        poses
+    }
+}
+
+fn pose_of(origin: &Origin) -> Pose {
+    let [roll, pitch, yaw] = origin.rpy.value;
+    let turn = |axis, angle| about(axis, angle);
+    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let axes = product(&product(&turn(z, yaw), &turn(y, pitch)), &turn(x, roll));
+    Pose { at: origin.xyz.value, axes }
+}

@@ -1,0 +1,84 @@
+//! Actuators on sites: a force and a torque in the axes of a site, or in those of another one that feels the reaction.
+
+use super::defaults::Element;
+use super::law::OTHER_INPUTS;
+use super::reader::Reader;
+use super::spatial::Spot;
+use crate::import::context::{Cx, quote};
+use crate::import::pose::{Vector, apply};
+use crate::syntax::{BinaryOp, DriveOn, Expr, ExprKind, GROUND, Name, Wrench};
+
+impl<'a> Reader<'a> {
+    /// What an actuator on a site acts on, and whether that turns. Its length is zero without another site (MuJoCo, *Modeling*,
+    /// "general/refsite").
+    pub(super) fn site_transmission(
+        &self,
+        site: &Name,
+        element: &Element<'a>,
+        servo: bool,
+        cx: &mut Cx<'_>,
+    ) -> Option<(DriveOn, bool)> {
+        let spot = self.find_site(site, cx)?;
+        let usual = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let [x, y, z, a, b, c] = element.some("gear", usual, cx).map_or(usual, |gear| gear.value);
+        let (force, torque) = ([x, y, z], [a, b, c]);
+        let turns = force == [0.0; 3];
+        let at = &site.place;
+        let Some(other) = element.name("refsite", cx) else {
+            let in_body = |vector| apply(&spot.pose.axes, vector);
+            let (force, torque) = (in_body(force), in_body(torque));
+            let wrench = Wrench { on: spot.expression(at), force, torque, against: None };
+            return Some((DriveOn::Wrench(wrench), turns));
+        };
+        let against = self.find_site(&other, cx)?;
+        if !self.carries(&against.body, &spot.body) {
+            let message =
+                format!("a `refsite` that does not carry the site {} is not supported", quote(&site.text));
+            cx.error(&other.place, message, |d| d.help(OTHER_INPUTS));
+            return None;
+        }
+        if servo && torque != [0.0; 3] {
+            let message = "a servo on the orientation of a site is not supported";
+            cx.error(&element.place("gear", cx), message, |d| d.help(OTHER_INPUTS));
+            return None;
+        }
+        let in_body = |vector| apply(&against.pose.axes, vector);
+        let (force, torque) = (in_body(force), in_body(torque));
+        if torque == [0.0; 3] {
+            let path = Expr::binary(BinaryOp::Div, spot.expression(at), against.expression(at));
+            let path = Expr::call("r", vec![path], at);
+            return Some((
+                DriveOn::Length(Expr::call("dot", vec![path, against.along(force, at)], at)),
+                turns,
+            ));
+        }
+        let against = Some(against.expression(at));
+        Some((DriveOn::Wrench(Wrench { on: spot.expression(at), force, torque, against }), turns))
+    }
+
+    /// True if a body carries another one, or is it.
+    fn carries(&self, carrier: &str, carried: &str) -> bool {
+        let mut at = carried;
+        while at != carrier {
+            let Some(joint) = self.robot.joints.iter().find(|joint| joint.child.text == at) else {
+                return carrier == GROUND;
+            };
+            at = &joint.parent.text;
+        }
+        true
+    }
+}
+
+impl Spot {
+    /// A vector that is given in the axes of the body.
+    fn along(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
+        let axis = |k: usize| {
+            let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
+            let name = Name { text: ["x", "y", "z"][k].to_string(), place: at.clone() };
+            Expr { kind: ExprKind::Field(Box::new(body), name), place: at.clone() }
+        };
+        let terms = (0..3).filter(|k| vector[*k] != 0.0);
+        let terms = terms.map(|k| Expr::binary(BinaryOp::Mul, Expr::number(vector[k], at), axis(k)));
+        terms.reduce(|a, b| Expr::binary(BinaryOp::Add, a, b)).unwrap_or_else(|| Expr::vector([0.0; 3], at))
+    }
+}

@@ -1,0 +1,296 @@
+//! `<spatial>`: the path of a cable from site to site, around balls and cylinders → a length in the words of the language.
+//!
+//! The path is MuJoCo's (*Modeling*, "spatial"), which is that of a taut cable. A cable around a cylinder with a `sidesite` passes it
+//! on the side on which it passes in the pose of the file.
+
+use super::defaults::Element;
+use super::geometry::dimensions;
+use super::reader::Reader;
+use crate::diag::Place;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, check_attributes, elements, name, number, place, tag};
+use crate::import::pose::{Pose, Vector, add, apply, cross, dot, length, scale};
+use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// A frame on a body.
+#[derive(Clone)]
+pub(super) struct Spot {
+    pub(super) body: String,
+    pub(super) pose: Pose,
+}
+
+/// The way in which a cable runs around something.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// Around a ball: the shorter way.
+    Ball,
+    /// Around a cylinder: the shorter way.
+    Shorter,
+    /// Around a cylinder: about its axis or against it, from the first end to the second.
+    Turning(f64),
+}
+
+/// What a part of a path runs around.
+struct Around {
+    frame: Spot,
+    radius: f64,
+    way: Way,
+}
+
+/// A part of a path between two sites.
+struct Piece {
+    ends: [Spot; 2],
+    around: Option<Around>,
+    /// What it counts for: less behind a pulley.
+    share: f64,
+}
+
+/// What of a path is not taken over.
+#[derive(Clone)]
+pub(super) struct Refusal {
+    pub(super) place: Place,
+    pub(super) message: String,
+}
+
+/// The path of a cable.
+pub(super) struct Path {
+    pieces: Vec<Piece>,
+    place: Place,
+}
+
+/// Where bodies are in the world.
+pub(super) type Poses = BTreeMap<String, Pose>;
+
+impl<'a> Reader<'a> {
+    /// Reads the path of a tendon; nothing after a mistake in the file.
+    pub(super) fn read_path(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Path, Refusal>> {
+        let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<Spot>, None, 1.0);
+        let mut refused = None;
+        for child in elements(node) {
+            match child.tag_name().name() {
+                "site" => {
+                    check_attributes(child, &["site"], &[], cx);
+                    let next = self.find_site(&name(child, "site", cx)?, cx)?;
+                    if let Some(first) = last.replace(next.clone()) {
+                        pieces.push(Piece { ends: [first, next], around: pending.take(), share });
+                    }
+                }
+                "geom" => {
+                    check_attributes(child, &["geom"], &["sidesite"], cx);
+                    if last.is_none() || pending.is_some() {
+                        return unfinished(child, cx);
+                    }
+                    match self.surface(child, cx)? {
+                        Ok(around) => pending = Some(around),
+                        Err(refusal) => refused = refused.or(Some(refusal)),
+                    }
+                }
+                "pulley" => {
+                    check_attributes(child, &["divisor"], &[], cx);
+                    if pending.is_some() {
+                        return unfinished(child, cx);
+                    }
+                    let divisor = number(child, "divisor", cx)?;
+                    if divisor.value <= 0.0 {
+                        let message = format!("a pulley with the divisor {}", divisor.value);
+                        cx.error(&divisor.place, message, |d| d.help("expected a number above zero"));
+                        return None;
+                    }
+                    (share, last) = (1.0 / divisor.value, None);
+                }
+                _ => {
+                    let message = format!("unknown element {}", tag(child));
+                    let known = ["site", "geom", "pulley"];
+                    cx.error(&place(child, cx), message, |d| d.suggest(child.tag_name().name(), known));
+                    return None;
+                }
+            }
+        }
+        if pending.is_some() {
+            return unfinished(node, cx);
+        }
+        let mut path = Path { pieces, place: place(node, cx) };
+        for piece in &mut path.pieces {
+            refused = refused.or(self.choose_side(piece, &path.place));
+        }
+        Some(refused.map_or(Ok(path), Err))
+    }
+
+    /// A site by its name.
+    pub(super) fn find_site(&self, site: &Name, cx: &mut Cx<'_>) -> Option<Spot> {
+        let found = self.poses_of_sites.get(&site.text);
+        if found.is_none() {
+            let known = self.poses_of_sites.keys().map(String::as_str);
+            let message = format!("unknown site {}", quote(&site.text));
+            cx.error(&site.place, message, |d| d.suggest(&site.text, known));
+        }
+        found.map(|(body, pose)| Spot { body: body.clone(), pose: *pose })
+    }
+
+    /// The surface that a part of a path runs around. On which side of it is chosen later; until then a cylinder with a side has
+    /// the direction to that side.
+    fn surface(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Around, Refusal>> {
+        let said = name(node, "geom", cx)?;
+        let Some((body, shape, outer)) = self.named_shapes.get(&said.text) else {
+            let known = self.named_shapes.keys().map(String::as_str);
+            let message = format!("unknown geom {}", quote(&said.text));
+            cx.error(&said.place, message, |d| d.suggest(&said.text, known));
+            return None;
+        };
+        let kind = shape.text("type").unwrap_or("sphere");
+        if !["sphere", "cylinder"].contains(&kind) {
+            let message =
+                format!("a tendon runs around spheres and cylinders, but {} is none", quote(&said.text));
+            cx.error(&said.place, message, |d| d);
+            return None;
+        }
+        let (pose, [radius, ..]) = dimensions(kind, shape, &self.settings, cx)?;
+        let frame = Spot { body: body.clone(), pose: outer.then(&pose) };
+        let Some(side) = node.has_attribute("sidesite").then(|| name(node, "sidesite", cx)).flatten() else {
+            let way = if kind == "sphere" { Way::Ball } else { Way::Shorter };
+            return Some(Ok(Around { frame, radius, way }));
+        };
+        let spot = self.find_site(&side, cx)?;
+        let refusal = |message: String| Some(Err(Refusal { place: side.place.clone(), message }));
+        if kind == "sphere" {
+            return refusal(format!("the side on which a tendon passes the sphere {}", quote(&said.text)));
+        }
+        let [x, y, z] = self.seen_from(&frame, &spot);
+        if length([x, y, z]) < radius {
+            return refusal(format!("a tendon that runs inside of the cylinder {}", quote(&said.text)));
+        }
+        // The angle of the side, until the ends are known.
+        Some(Ok(Around { frame, radius, way: Way::Turning(y.atan2(x)) }))
+    }
+
+    /// Where a spot is seen from a frame, in the pose of the file.
+    fn seen_from(&self, frame: &Spot, spot: &Spot) -> Vector {
+        seen(&self.poses, frame, spot)
+    }
+
+    /// Says in which direction a part passes a cylinder with a side: the one whose middle is closer to the side, as MuJoCo chooses it.
+    fn choose_side(&self, piece: &mut Piece, place: &Place) -> Option<Refusal> {
+        let Some(Around { frame, radius, way: Way::Turning(side) }) = &mut piece.around else { return None };
+        let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));
+        let [far_a, far_b] = [a, b].map(|[x, y, _]| x.hypot(y));
+        if far_a < *radius || far_b < *radius {
+            let message = "a tendon that begins inside of a cylinder in the pose of the file".to_string();
+            return Some(Refusal { place: place.clone(), message });
+        }
+        let middle = |sign: f64| {
+            let first = a[1].atan2(a[0]) + sign * (*radius / far_a).acos();
+            let second = b[1].atan2(b[0]) - sign * (*radius / far_b).acos();
+            let (x, y) = (first.cos() + second.cos(), first.sin() + second.sin());
+            (x * side.cos() + y * side.sin()) / x.hypot(y)
+        };
+        *side = if middle(1.0) >= middle(-1.0) { 1.0 } else { -1.0 };
+        None
+    }
+
+    /// Notes the shapes of a body that have names.
+    pub(super) fn name_shapes(&mut self, body: &str, shapes: &[(Element<'a>, Pose)]) {
+        for (shape, outer) in shapes {
+            if let Some(name) = shape.node.attribute("name") {
+                self.named_shapes.insert(name.to_string(), (body.to_string(), shape.clone(), *outer));
+            }
+        }
+    }
+}
+
+/// Where a spot is seen from a frame.
+fn seen(poses: &Poses, frame: &Spot, spot: &Spot) -> Vector {
+    let world = |spot: &Spot| poses.get(&spot.body).map_or(spot.pose, |body| body.then(&spot.pose));
+    world(frame).back().then(&world(spot)).at
+}
+
+/// Reports a path with a surface that is not between two sites.
+fn unfinished<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
+    cx.error(&place(node, cx), "a tendon runs around a shape between two sites", |d| {
+        d.help("write `<site/>`, `<geom/>`, `<site/>`")
+    });
+    None
+}
+
+impl Path {
+    /// The length while bodies have these poses.
+    pub(super) fn length(&self, poses: &Poses) -> f64 {
+        self.pieces.iter().map(|piece| piece.share * piece.length(poses)).sum()
+    }
+
+    /// The length in the words of the language.
+    pub(super) fn expression(&self) -> Expr {
+        let at = &self.place;
+        let sum = self.pieces.iter().map(|piece| {
+            let whole = piece.expression(at);
+            let share = || Expr::number(piece.share, at);
+            if piece.share == 1.0 { whole } else { Expr::binary(BinaryOp::Mul, share(), whole) }
+        });
+        sum.reduce(|a, b| Expr::binary(BinaryOp::Add, a, b)).unwrap_or_else(|| Expr::number(0.0, at))
+    }
+}
+
+impl Piece {
+    fn length(&self, poses: &Poses) -> f64 {
+        let [a, b] = [&self.ends[0], &self.ends[1]];
+        match &self.around {
+            None => length(seen(poses, a, b)),
+            Some(around) => around.length([a, b].map(|end| seen(poses, &around.frame, end))),
+        }
+    }
+
+    fn expression(&self, at: &Place) -> Expr {
+        let [a, b] = [&self.ends[0], &self.ends[1]].map(|end| end.expression(at));
+        let ends = || Expr::binary(BinaryOp::Div, a.clone(), b.clone());
+        let Some(around) = &self.around else {
+            return Expr::call("norm", vec![Expr::call("r", vec![ends()], at)], at);
+        };
+        let cable = |word: &str, mut arguments: Vec<Expr>| {
+            arguments.insert(0, Expr::number(around.radius, at));
+            let surface = Expr::method(around.frame.expression(at), word, arguments);
+            Expr::call("cable", vec![ends(), surface], at)
+        };
+        let axis = |sign: f64| Expr::vector(apply(&around.frame.pose.axes, [0.0, 0.0, sign]), at);
+        match around.way {
+            Way::Ball => cable("sphere", Vec::new()),
+            Way::Turning(sign) => cable("cylinder", vec![axis(sign)]),
+            Way::Shorter => {
+                Expr::call("min", [1.0, -1.0].map(|sign| cable("cylinder", vec![axis(sign)])).into(), at)
+            }
+        }
+    }
+}
+
+impl Around {
+    /// The length of a taut cable between two points that are given in this frame: `Scope::cable` in numbers.
+    fn length(&self, [a, b]: [Vector; 2]) -> f64 {
+        let flat = |[x, y, _]: Vector| [x, y, 0.0];
+        let round = |a: Vector, b: Vector, angle: f64| {
+            let tangents = [a, b].map(|p| (dot(p, p) - self.radius * self.radius).max(0.0).sqrt());
+            let touched = tangents.iter().fold(angle, |angle, t| angle - t.atan2(self.radius));
+            let straight = length(add(a, scale(b, -1.0)));
+            if touched > 0.0 { tangents[0] + tangents[1] + self.radius * touched } else { straight }
+        };
+        let turning = |sign: f64| {
+            let angle = (-sign * cross(a, b)[2]).atan2(-dot(flat(a), flat(b))) + PI;
+            round(flat(a), flat(b), angle).hypot(a[2] - b[2])
+        };
+        match self.way {
+            Way::Ball => round(a, b, length(cross(a, b)).atan2(dot(a, b))),
+            Way::Turning(sign) => turning(sign),
+            Way::Shorter => turning(1.0).min(turning(-1.0)),
+        }
+    }
+}
+
+impl Spot {
+    /// `body.at(vector)`.
+    pub(super) fn expression(&self, at: &Place) -> Expr {
+        let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
+        if self.pose.at == [0.0; 3] {
+            return body;
+        }
+        Expr::method(body, "at", vec![Expr::vector(self.pose.at, at)])
+    }
+}

@@ -1,0 +1,132 @@
+//! Cables through space and actuators on sites.
+
+use super::mjcf::mjcf;
+use super::*;
+
+/// Two bodies with sites, a ball and a cylinder.
+fn model(tendon: &str, actuator: &str) -> String {
+    format!(
+        "<mujoco><compiler angle='radian'/><worldbody><site name='w' pos='0 0 1'/><body name='b' pos='0 0 2'>\
+         <joint name='j' axis='0 1 0' springref='1'/><site name='s' pos='3 0 0'/><site name='side' pos='0 0 9'/>\
+         <geom name='ball' size='.5' mass='0'/><geom name='drum' type='cylinder' size='.5 1' zaxis='0 1 0' mass='0'/>\
+         <geom name='box' type='box' size='1 1 1' mass='0'/></body></worldbody>\
+         <tendon>{tendon}</tendon><actuator>{actuator}</actuator></mujoco>"
+    )
+}
+
+/// The lines about forces, or the mistakes.
+fn drives(tendon: &str, actuator: &str) -> Vec<String> {
+    let text = run(&mjcf(), &model(tendon, actuator));
+    let kept = |line: &&str| line.contains(" on ") || line.contains("r.xml") || line.contains("help");
+    text.lines().filter(kept).map(|line| line.trim().to_string()).collect()
+}
+
+/// A cable from the wall to `s` that the motor pulls.
+fn cable(around: &str) -> Vec<String> {
+    let tendon = format!("<spatial name='t'><site site='w'/>{around}<site site='s'/></spatial>");
+    drives(&tendon, "<motor tendon='t' name='m'/>")
+}
+
+#[test]
+fn paths_are_lengths_of_cables() {
+    let ends = "ground.at([0, 0, 1]) / b.at([3, 0, 0])";
+    assert_eq!(cable(""), [format!("m: input in N on norm(r(({ends})))")]);
+    assert_eq!(cable("<geom geom='ball'/>"), [format!("m: input in N on cable(({ends}), b.sphere(0.5))")]);
+    let round = |sign: &str| format!("cable(({ends}), b.cylinder(0.5, [0, {sign}1, 0]))");
+    assert_eq!(
+        cable("<geom geom='drum'/>"),
+        [format!("m: input in N on min({}, {})", round(""), round("-"))]
+    );
+    // Seen along y, from below the drum to its right: over the side above, with the hands of a clock.
+    assert_eq!(cable("<geom geom='drum' sidesite='side'/>"), [format!("m: input in N on {}", round(""))]);
+}
+
+/// Behind a pulley less of a length counts, and a gear multiplies all.
+#[test]
+fn pulleys_and_gears_are_factors() {
+    let tendon = "<spatial name='t'><site site='w'/><site site='s'/><pulley divisor='4'/><site site='w'/><site site='side'/></spatial>";
+    let length = |end: &str| format!("norm(r((ground.at([0, 0, 1]) / b.at([{end}]))))");
+    assert_eq!(
+        drives(tendon, "<motor tendon='t' name='m' gear='3'/>"),
+        [format!("m: input in N on (3 * ({} + (0.25 * {})))", length("3, 0, 0"), length("0, 0, 9"))]
+    );
+}
+
+/// The free length is that of the pose in which the springs of joints are free: here `s` is turned by 1 about y.
+#[test]
+fn springs_are_free_at_rest() {
+    let spring = |more: &str| {
+        drives(
+            &format!("<spatial name='t' stiffness='5' {more}><site site='w'/><site site='s'/></spatial>"),
+            "",
+        )
+    };
+    let found = spring("");
+    let free: f64 = found[0].split(' ').nth(4).and_then(|text| text.parse().ok()).expect("a number");
+    let (sine, cosine) = 1.0_f64.sin_cos();
+    assert!((free - (3.0 * cosine).hypot(1.0 - 3.0 * sine)).abs() < 1e-14, "{found:?}");
+    assert!(spring("springlength='.2'")[0].starts_with("t: spring 5 from 0.2 on norm("));
+    assert!(spring("springlength='.2 .3'")[0].starts_with("t: spring 5 outside of 0.2 to 0.3 on norm("));
+    let all = spring("damping='2' frictionloss='3' armature='4' springlength='1'");
+    let laws: Vec<&str> = all.iter().filter_map(|line| line.split(" on ").next()).collect();
+    assert_eq!(laws, ["t: inerter 4", "t: spring 5 from 1", "t: damper 2", "t: friction 3"]);
+}
+
+#[test]
+fn sites_are_pushed_and_turned() {
+    let site = |words: &str| drives("", &format!("<motor name='m' site='s' {words}/>"));
+    assert_eq!(site("gear='1 2 0 0 0 3'"), ["m: input in N on b.at([3, 0, 0]) by 1 2 0, 0 0 3"]);
+    assert_eq!(
+        site("refsite='w' gear='1 0 -2'"),
+        [
+            "m: input in N on dot(r((b.at([3, 0, 0]) / ground.at([0, 0, 1]))), ((1 * ground.x) + (-2 * ground.z)))"
+        ]
+    );
+    assert_eq!(
+        site("refsite='w' gear='0 0 0 0 1 0'"),
+        ["m: input in N·m on b.at([3, 0, 0]) by 0 0 0, 0 1 0 against ground.at([0, 0, 1])"]
+    );
+    // The length of a site alone is zero: what is left of a servo's spring is its constant force.
+    assert_eq!(
+        drives("", "<general name='m' site='s' biastype='affine' biasprm='4 -5 -6'/>"),
+        [
+            "m: input in any on b.at([3, 0, 0]) by 1 0 0, 0 0 0",
+            "m: push 4 on b.at([3, 0, 0]) by 1 0 0, 0 0 0",
+            "m: damper 6 on b.at([3, 0, 0]) by 1 0 0, 0 0 0"
+        ]
+    );
+}
+
+/// What nothing acts on may be anything that MuJoCo knows.
+#[test]
+fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
+    let side =
+        "<spatial name='t'><site site='w'/><geom geom='ball' sidesite='side'/><site site='s'/></spatial>";
+    assert_eq!(drives(side, ""), Vec::<String>::new());
+    let last = |found: Vec<String>, message: &str| {
+        let found = found.join("\n");
+        assert!(found.contains(message), "{found}");
+    };
+    let inputs = "= help: to leave the actuators of the file out, write";
+    last(
+        drives(side, "<motor tendon='t'/>"),
+        "the side on which a tendon passes the sphere `ball` is not supported",
+    );
+    last(drives(side, "<motor tendon='t'/>"), inputs);
+    last(cable("<geom geom='box'/>"), "a tendon runs around spheres and cylinders, but `box` is none");
+    last(cable("<geom geom='bal'/>"), "unknown geom `bal`");
+    last(cable("<geom geom='ball'/><geom geom='drum'/>"), "a tendon runs around a shape between two sites");
+    last(cable("<site site='x'/>"), "unknown site `x`");
+    last(cable("<pulley divisor='0'/>"), "a pulley with the divisor 0");
+    last(cable("<wheel/>"), "unknown element `<wheel>`");
+    last(
+        drives("", "<motor site='w' refsite='s'/>"),
+        "a `refsite` that does not carry the site `w` is not supported",
+    );
+    last(
+        drives("", "<position site='s' refsite='w' kp='1' gear='0 0 0 1 0 0'/>"),
+        "a servo on the orientation of a site is not supported",
+    );
+    last(drives("", "<motor body='b'/>"), "an actuator on no joint, tendon or site is not supported");
+    last(drives("", "<muscle joint='j'/>"), "actuator `<muscle>` is not supported");
+}
