@@ -174,7 +174,7 @@ def friction(model, data):
 
 
 def difference(found, expected):
-    if found.shape != expected.shape:
+    if found.shape != expected.shape or not np.isfinite(found).all():
         return np.inf
     return np.abs(found - expected).max() / max(1.0, np.abs(expected).max()) if expected.size else 0.0
 

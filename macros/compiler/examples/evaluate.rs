@@ -59,17 +59,22 @@ fn run() -> Result<(), Failure> {
         let line = line?;
         let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
         let at = |k: usize| numbers.get(k).copied().unwrap_or(f64::NAN);
-        let symbol = |symbol: Symbol| match Quantity::of(symbol) {
-            Quantity::Configuration(k) => at(k),
-            Quantity::Velocity(k) => at(nq + k),
-            Quantity::Input(k) => at(nq + nv + k),
-            Quantity::Force(k) => at(nq + nv + nu + k),
-            _ => f64::NAN,
-        };
-        for name in FUNCTIONS {
+        let values = |name: &str, passive: &[f64]| {
+            let symbol = |symbol: Symbol| match Quantity::of(symbol) {
+                Quantity::Configuration(k) => at(k),
+                Quantity::Velocity(k) => at(nq + k),
+                Quantity::Input(k) => at(nq + nv + k),
+                Quantity::Force(k) => at(nq + nv + nu + k),
+                Quantity::PassiveForce(k) => passive.get(k).copied().unwrap_or(f64::NAN),
+                _ => f64::NAN,
+            };
             let found = derived.functions.iter().find(|function| function.name == name);
-            let values = found.map(|function| function.program.run(&symbol)).unwrap_or_default();
-            let text: Vec<String> = values.iter().map(|value| format!("{value:e}")).collect();
+            found.map(|function| function.program.run(&symbol)).unwrap_or_default()
+        };
+        // Where these are long, the others call them.
+        let passive = values("__passive_forces", &[]);
+        for name in FUNCTIONS {
+            let text: Vec<String> = values(name, &passive).iter().map(|value| format!("{value:e}")).collect();
             writeln!(out, "{}", text.join(" "))?;
         }
         out.flush()?;
