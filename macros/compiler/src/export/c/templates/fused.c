@@ -11,3 +11,8 @@
 #define mul_sub(a, b, c) ((a) * (b) - (c))
 #define neg_mul_add(a, b, c) ((c) - (a) * (b))
 #endif
+
+/* gcc puts the entries of results that stand side by side into vector registers one by one, which takes longer than to store them. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-tree-slp-vectorize")
+#endif
