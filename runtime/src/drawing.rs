@@ -101,6 +101,8 @@ pub enum Kind {
     Torque(usize),
     /// Acceleration, m/s², at the ground's origin.
     Gravity,
+    /// Axes; ground whose height along the third of them is that number of [`Drawn::drawing_heights`] at the place along the others.
+    Terrain(usize),
     /// Axes, scales along them; path of the file of triangles, as the robot's file writes it.
     Mesh(&'static str),
 }
@@ -126,6 +128,7 @@ impl Kind {
             Kind::Cylinder | Kind::Cone | Kind::Capsule | Kind::Torus => 8,
             Kind::Tube => 9,
             Kind::Inertia => 10,
+            Kind::Terrain(_) => 12,
             Kind::Cuboid | Kind::Ellipsoid | Kind::Mesh(_) => 15,
         }
     }
@@ -164,4 +167,11 @@ pub trait Drawn<const NQ: usize, const NV: usize>: Frames<NQ, NV> {
 
     /// Their numbers, for the parameters as they are.
     fn drawing_numbers(&self) -> impl AsRef<[Self::Scalar]>;
+
+    /// The heights of the pieces [`Kind::Terrain`] at a place along the first two of the axes of each, m, by their numbers; of a
+    /// table outside of its grid what the table says there.
+    fn drawing_heights(&self, _place: &[Self::Scalar; 2]) -> impl AsRef<[Self::Scalar]> {
+        let none: [Self::Scalar; 0] = [];
+        none
+    }
 }

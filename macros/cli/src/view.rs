@@ -1,6 +1,7 @@
 //! `linkwork view`: a page of HTML that shows a motion.
 
 use crate::Stop;
+use crate::evaluate::Values;
 use crate::input::{Compiled, Input};
 use crate::motion::Start;
 use crate::table::Table;
@@ -45,7 +46,12 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     }
     let times = states.iter().map(|(t, _)| *t).collect();
     let placements = states.iter().map(|(t, q)| start.mechanism.placements(*t, q)).collect();
-    let mut motion = Motion::from_placements("", figure, times, placements)?;
+    let heights = |number: usize, place: [f64; 2]| {
+        let heights =
+            start.mechanism.called("__drawing_heights", Values { given: &place, ..Values::default() })?;
+        heights.get(number).copied()
+    };
+    let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
     if states.len() > 1 && (1..=PLOTTED).contains(&model.nq()) {
         let curve = |k: usize| states.iter().map(|(_, q)| q[k]).collect();
         let curves = model.configuration.iter().enumerate().map(|(k, name)| (name.as_str(), curve(k)));
@@ -131,6 +137,7 @@ fn kind(kind: &PieceKind) -> Kind {
         PieceKind::Force(k) => Kind::Force(*k),
         PieceKind::Torque(k) => Kind::Torque(*k),
         PieceKind::Gravity => Kind::Gravity,
+        PieceKind::Terrain(k) => Kind::Terrain(*k),
         PieceKind::Mesh(path) => Kind::Mesh(path.clone().leak()),
     }
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Attribute, name and fields of mechanisms that have, between them, every function.
-const MECHANISMS: [(&str, &str, &str); 9] = [
+const MECHANISMS: [(&str, &str, &str); 10] = [
     (
         "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
         "Plain",
@@ -48,6 +48,13 @@ const MECHANISMS: [(&str, &str, &str); 9] = [
         #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
         #[joint(ground -> ball)] pose: Free,
         #[contact(ball.sphere(1), ground.plane(z), friction = mu)] floor: Contact,",
+    ),
+    (
+        "drawing",
+        "Hilly",
+        "#[body(mass = 1)] ball: Body,
+        #[joint(ground -> ball, along = z)] height: Sleeve,
+        #[contact(ball.sphere(1), ground.terrain(0.1 * u - 3))] hills: Contact,",
     ),
     (
         "second_derivatives, momentum_derivatives, batch",

@@ -82,9 +82,8 @@ impl Figure {
     /// Adds a surface to a frame, to the ground if there is no name: the places, m in the axes of the frame, that a function gives
     /// for `u` and `w` between these bounds.
     ///
-    /// Terrain and other surfaces that contacts touch are given by functions without an end. This draws a part of them: of
-    /// `ground.terrain(heights(u, w))` with a [`Table`](linkwork::Table) by `|u, w| [u, w, table.value(u, w)]`. Under a surface no floor
-    /// is drawn.
+    /// Surfaces that contacts touch may be given by functions without an end. This draws a part of them, or more of a terrain than
+    /// [`Motion::of`](crate::Motion::of) draws of its own accord. Under a surface no floor is drawn.
     ///
     /// # Errors
     ///
@@ -212,6 +211,7 @@ impl Shape {
             Kind::Cuboid => vec![(a, at(0), norm(12) / 2.0)],
             Kind::Ellipsoid => vec![(a, at(0), n[12].max(n[13]).max(n[14]))],
             Kind::Bar | Kind::Coil | Kind::Damper => vec![(a, at(0), 0.0), (b, at(3), 0.0)],
+            Kind::Terrain(_) => Vec::new(),
             // As a plane it is as large as one likes.
             Kind::Mesh(_) if self.role == Role::Surface => Vec::new(),
             Kind::Mesh(_) => match &self.mesh {

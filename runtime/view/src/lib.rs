@@ -13,6 +13,7 @@ mod motion;
 mod page;
 mod scene;
 mod server;
+mod terrain;
 mod text;
 
 pub use error::Error;

@@ -59,7 +59,8 @@ struct Plot {
 }
 
 impl Motion {
-    /// The motion that samples tell. Up to twelve coordinates are plotted.
+    /// The motion that samples tell. Up to twelve coordinates are plotted. Terrain that contacts touch is drawn as far as the motion
+    /// goes.
     ///
     /// # Errors
     ///
@@ -85,7 +86,11 @@ impl Motion {
             let curves: Vec<(&str, Vec<f64>)> = curves.collect();
             motion = motion.plot("Coordinates", "", curves)?;
         }
-        Ok(motion)
+        Ok(motion.terrain(|number, place| {
+            let place = place.map(linkwork::nalgebra::convert);
+            let heights = mechanism.drawing_heights(&place);
+            heights.as_ref().get(number).map(|height| plain(*height))
+        }))
     }
 
     /// Placements of all frames of a figure at each time, s: of what moves by other means than generated code.
@@ -150,6 +155,15 @@ impl Motion {
     /// What is drawn, to be changed and given back to [`figure`](Self::figure).
     pub fn drawn(&self) -> Figure {
         self.figure.clone()
+    }
+
+    /// Draws the terrains of the figure ([`Kind::Terrain`](linkwork::drawing::Kind::Terrain)) as far as the motion goes, and beyond by
+    /// the size of the mechanism: `height` gives, by the number of a terrain, its height at a place along its first two axes, m. One
+    /// without a finite height everywhere there is left out.
+    pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
+        let size = Scene::of(&self.figure, &self.placements, &self.shown()).size;
+        self.figure.raise(&self.placements, size, height);
+        self
     }
 
     /// Adds a plot over time: curves with a name and a value for each sample. Values that are not finite leave gaps.

@@ -90,7 +90,7 @@ impl Figure {
 impl Shape {
     /// Something is to be seen of it.
     pub(crate) fn is_shown(&self) -> bool {
-        !matches!(self.kind, Kind::Mesh(_)) || self.mesh.is_some()
+        !matches!(self.kind, Kind::Mesh(_) | Kind::Terrain(_)) || self.mesh.is_some()
     }
 
     /// It is part of the mechanism itself, which has a size.

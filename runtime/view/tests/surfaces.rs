@@ -40,24 +40,84 @@ fn meshes(motion: &Value) -> Vec<&Value> {
     motion["pieces"].as_array().unwrap().iter().filter(|piece| piece[0] == "Mesh").collect()
 }
 
-/// The bounds of the region, and the heights of the sine between them; the floor makes room for it, and the camera stays near.
-#[test]
-fn a_terrain_is_drawn_over_a_region() {
-    let plain = data(ball());
-    let figure = ball().drawn().surface("hills", None, [-1.0, 2.0], [-0.5, 0.5], hill).unwrap();
-    let motion = data(ball().figure(figure).unwrap());
-    let [surface] = meshes(&motion)[..] else { panic!("one surface") };
-    assert_eq!((&surface[1], &surface[2]), (&"Surface".into(), &"hills".into()));
+/// The lowest and the highest place of a mesh along each axis.
+fn bounds(surface: &Value) -> [[f64; 2]; 3] {
     let (low, step) = (&surface[6][0], &surface[6][1]);
-    let range = |k: usize| {
+    [0, 1, 2].map(|k| {
         let low = low[k].as_f64().unwrap();
         [low, low + 65535.0 * step[k].as_f64().unwrap()]
-    };
-    for (found, known) in [0, 1, 2].map(range).iter().zip([[-1.0, 2.0], [-0.5, 0.5], [-0.2, 0.2]]) {
-        assert!(found.iter().zip(known).all(|(x, y)| (x - y).abs() < 2e-3), "{found:?} {known:?}");
+    })
+}
+
+fn assert_bounds(surface: &Value, known: [[f64; 2]; 3]) {
+    let found = bounds(surface);
+    for (found, known) in found.as_flattened().iter().zip(known.as_flattened()) {
+        assert!((found - known).abs() < 2e-3, "{surface} {known}");
     }
-    assert!(plain["scene"][6].is_number() && motion["scene"][6].is_null());
+}
+
+/// The bounds of the region, and the heights of the sine between them; the floor makes room for it, and the camera stays near.
+#[test]
+fn a_surface_is_drawn_over_a_region() {
+    let plain = data(ball());
+    let figure = ball().drawn().surface("more", None, [-1.0, 2.0], [-0.5, 0.5], hill).unwrap();
+    let motion = data(ball().figure(figure).unwrap());
+    let [_, surface] = meshes(&motion)[..] else { panic!("the terrain and one surface") };
+    assert_eq!((&surface[1], &surface[2]), (&"Surface".into(), &"more".into()));
+    assert_bounds(surface, [[-1.0, 2.0], [-0.5, 0.5], [-0.2, 0.2]]);
+    assert!(motion["scene"][6].is_null());
     assert_eq!(plain["scene"][2], motion["scene"][2]);
+}
+
+/// Terrain is drawn by what is declared, as far as the motion goes and beyond it by the size of the ball: its diagonal.
+#[test]
+fn a_terrain_is_drawn_by_its_declaration() {
+    let motion = data(ball());
+    let [surface] = meshes(&motion)[..] else { panic!("the terrain") };
+    assert_eq!((&surface[1], &surface[2], &surface[3]), (&"Surface".into(), &"hills".into(), &(-1).into()));
+    let size = motion["scene"][0].as_f64().unwrap();
+    assert!((size - 0.2 * 3.0_f64.sqrt()).abs() < 1e-3, "{size}");
+    let (low, high) = (-size, 0.2 + size);
+    let height = |u: f64| 0.2 * (3.0 * u).sin();
+    assert_bounds(surface, [[low, high], [-size, size], [height(low), height(0.5)]]);
+    assert!(motion["scene"][6].is_null(), "no floor under it");
+}
+
+/// A table with parameters, on a tray that is tilted and moves: places are along the axes of the tray.
+#[test]
+fn a_terrain_may_be_a_table_on_a_body() {
+    #[mechanism(gravity = -9.81 * z, drawing)]
+    struct Tray {
+        share: f64,
+        bumps: Table<2>,
+        #[body(mass = 3, inertia = cuboid(3, 1, 1, 0.1))]
+        tray: Body,
+        #[body(mass = 0.1, inertia = sphere(0.1, 0.05))]
+        pearl: Body,
+        #[joint(ground -> tray, about = y)]
+        tilt: Pin,
+        #[joint(ground -> pearl)]
+        pose: Free,
+        #[contact(pearl.sphere(0.05), tray.at(0.5 * z).terrain(share * bumps(u, w)))]
+        hills: Contact,
+    }
+
+    let values = &[0.0, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.0];
+    let bumps = Table::new([&[-9.0, 0.0, 9.0], &[-9.0, 1.0, 9.0]], values).unwrap();
+    let tray = Tray { share: 0.5, bumps };
+    let turned = std::f64::consts::FRAC_PI_2;
+    // The axis x of the tray points down, z along x: the pearl is 2 m along −x and 1 m along y of the tray.
+    let q = [turned, 0.7, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0];
+    let sample = Sample { t: 0.0, q: q.into(), v: SVector::zeros(), u: [].into(), event: None };
+    let motion = data(Motion::of("tray", &tray, &[sample]).unwrap());
+    let [surface] = meshes(&motion)[..] else { panic!("the terrain") };
+    let size = motion["scene"][0].as_f64().unwrap();
+    let found = bounds(surface);
+    for (found, known) in found[..2].as_flattened().iter().zip([-2.0 - size, size, -size, 1.0 + size]) {
+        assert!((found - known).abs() < 2e-3, "{found} {known}");
+    }
+    // Half of the largest value, close to the grid's corner at 0, 1; nothing far from it.
+    assert!(found[2][1] > 0.15 && found[2][1] <= 0.2 + 1e-6, "{found:?}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{A, Q, Tau, U, V};
-use super::shape::{Called, Shape};
+use super::shape::{Argument, Called, Shape};
 use crate::syntax::Word;
 
 const INERTIA: &[Need] = &[Need::Inertia];
@@ -27,6 +27,13 @@ pub const ROWS: &[Row] = &[
         timeless: true,
         shape: Shape::Array(f.drawing),
         docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the parameters as they are."],
+        ..Declaration::default()
+    })
+    .alone(),
+    Row::derived(Id::Heights, "__drawing_heights", &[Need::Asks(Word::Drawing), Need::Terrain], |f| Declaration {
+        timeless: true,
+        arguments: vec![Argument::Given("place", 0, 2)],
+        shape: Shape::Array(f.heights),
         ..Declaration::default()
     })
     .alone(),

@@ -32,6 +32,8 @@ pub enum Need {
     Equilibria,
     /// Limits of coordinates.
     Limits,
+    /// Ground whose height is an expression.
+    Terrain,
     /// Derivatives of forward dynamics by calls of other functions.
     Calls,
     /// Passive forces that the other functions call.
@@ -61,6 +63,7 @@ impl Need {
             Need::FileInertials,
             Need::Equilibria,
             Need::Limits,
+            Need::Terrain,
             Need::Calls,
             Need::PassiveCalls,
             Need::FewContacts,
@@ -85,7 +88,9 @@ impl Need {
             Need::FileParameters => "HasFileParameters",
             Need::FileInertials => "HasFileInertials",
             Need::Equilibria => "DeclaresEquilibria",
-            Need::Limits | Need::Calls | Need::PassiveCalls | Need::FewContacts => return None,
+            Need::Limits | Need::Terrain | Need::Calls | Need::PassiveCalls | Need::FewContacts => {
+                return None;
+            }
         })
     }
 }
@@ -138,6 +143,8 @@ pub struct Facts {
     pub limits: usize,
     /// How many numbers the drawing has.
     pub drawing: usize,
+    /// How many terrains the drawing has.
+    pub heights: usize,
     /// How many figures follow from parameters and fulfil conditions.
     pub figures: usize,
     /// How many parameters the struct has.
@@ -186,6 +193,7 @@ impl Facts {
             limits: model.limit_values().len(),
             equilibria: model.equilibria.len(),
             drawing: model.drawing_numbers().len(),
+            heights: model.heights.len(),
             figures: model.figures().len(),
             parameters: model.parameters.len(),
             ..Facts::default()
@@ -208,6 +216,7 @@ impl Facts {
             Need::FileInertials => self.requests.file_inertials,
             Need::Equilibria => self.equilibria > 0,
             Need::Limits => self.limits > 0,
+            Need::Terrain => self.heights > 0,
             Need::Speeds => self.speeds,
             Need::NoSpeeds => !self.speeds,
             Need::Calls => self.calls,

@@ -10,6 +10,7 @@ pub enum Id {
     Neutral,
     Limits,
     Drawing,
+    Heights,
     MassMatrix,
     BiasForces,
     InverseDynamics,

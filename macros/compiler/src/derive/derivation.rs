@@ -154,6 +154,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::Neutral => of(&neutral(model)),
             Id::Limits => of(&model.limit_values()),
             Id::Drawing => of(&model.drawing_numbers()),
+            Id::Heights => of(&model.heights),
             Id::Figures => of(&model.figures()),
             Id::GeneralizedForces => of(&forces::generalized_forces(model, joints)),
             Id::DissipatedPower => of(&[power::dissipated(model)]),

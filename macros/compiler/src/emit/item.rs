@@ -313,18 +313,24 @@ fn assemble(
     write_frames_by_number(&mut text, frames.len(), s);
     text.push_str("}\n");
     if i.facts.requests.drawing {
+        let scalar = s.scalar.name();
+        let heights = match i.facts.heights {
+            0 => String::new(),
+            _ => format!(
+                "fn drawing_heights(&self, place: &[{scalar}; 2]) -> impl ::core::convert::AsRef<[{scalar}]> {{ Self::__drawing_heights(self, place) }}\n"
+            ),
+        };
         let _ = writeln!(
             text,
             "{ALLOW}impl{} ::linkwork::Drawn<{}, {}> for {}{} {} {{
             const DRAWING: &'static [::linkwork::drawing::Piece] = &Self::DRAWING;
-            fn drawing_numbers(&self) -> impl ::core::convert::AsRef<[{}]> {{ Self::drawing_numbers(self) }}\n}}",
+            fn drawing_numbers(&self) -> impl ::core::convert::AsRef<[{scalar}]> {{ Self::drawing_numbers(self) }}\n{heights}}}",
             head.generics,
             s.nq,
             s.nv,
             i.shell.ident,
             head.arguments,
-            head.bounds,
-            s.scalar.name()
+            head.bounds
         );
     }
     for (k, body) in frames.iter().enumerate() {

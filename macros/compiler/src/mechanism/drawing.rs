@@ -97,6 +97,8 @@ pub enum PieceKind {
     Torque(usize),
     /// Acceleration; at the origin.
     Gravity,
+    /// Axes; the number of its height over x and y.
+    Terrain(usize),
     /// Axes, scales; path of the file.
     Mesh(String),
 }

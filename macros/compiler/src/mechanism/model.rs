@@ -69,6 +69,8 @@ pub struct Model<'g> {
     pub frames: Vec<NamedFrame<'g>>,
     /// What it looks like, if that was asked for.
     pub drawing: Vec<Piece<'g>>,
+    /// The heights of its terrains, by two given numbers.
+    pub heights: Vec<Expr<'g>>,
     /// Springs.
     pub springs: Vec<Spring<'g>>,
     /// Dashpots.

@@ -161,6 +161,7 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
         outputs: _,
         released: _,
         drawing: _,
+        heights: _,
         limits: _,
         equilibria: _,
         contacts: _,

@@ -149,6 +149,7 @@ fn empty_model<'g>(
         requirements: Vec::new(),
         frames: Vec::new(),
         drawing: Vec::new(),
+        heights: Vec::new(),
         springs: Vec::new(),
         dashpots: Vec::new(),
         frictions: Vec::new(),

@@ -42,7 +42,7 @@ impl<'g> Builder<'_, 'g> {
         }
         self.draw_bodies(&shown, &mut pieces);
         self.draw_joints(&shown, &mut pieces);
-        self.draw_surfaces(&mut pieces);
+        let heights = self.draw_surfaces(&mut pieces);
         self.draw_actions(&mut pieces);
         self.scope.context.replace(previous);
         self.scope.requirements.replace(required);
@@ -51,6 +51,7 @@ impl<'g> Builder<'_, 'g> {
         };
         pieces.retain(|piece: &Piece<'g>| is_fixed(&piece.numbers));
         self.model.drawing = pieces;
+        self.model.heights = heights;
     }
 
     /// A place on a link in the axes of a frame that the link carries; `None` if it carries none.

@@ -9,8 +9,9 @@ use crate::resolve::builder::Builder;
 use crate::syntax::ExprKind;
 
 impl<'g> Builder<'_, 'g> {
-    /// The surfaces of contacts and of pairs that roll or slip, each once.
-    pub fn draw_surfaces(&self, pieces: &mut Vec<Piece<'g>>) {
+    /// The surfaces of contacts and of pairs that roll or slip, each once; returns the heights of terrains.
+    pub fn draw_surfaces(&self, pieces: &mut Vec<Piece<'g>>) -> Vec<Expr<'g>> {
+        let mut heights = Vec::new();
         let mut silent = Diagnostics::unread();
         let before = pieces.len();
         let contacts = self.description.contacts.iter();
@@ -30,7 +31,7 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         for (name, surface) in found {
-            let Some(piece) = self.surface_piece(name, &surface) else { continue };
+            let Some(piece) = self.surface_piece(name, &surface, &mut heights) else { continue };
             let is_same = |known: &Piece<'g>| {
                 known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
             };
@@ -38,9 +39,15 @@ impl<'g> Builder<'_, 'g> {
                 pieces.push(piece);
             }
         }
+        heights
     }
 
-    fn surface_piece(&self, name: &str, Surface { frame, form }: &Surface<'g>) -> Option<Piece<'g>> {
+    fn surface_piece(
+        &self,
+        name: &str,
+        Surface { frame, form }: &Surface<'g>,
+        heights: &mut Vec<Expr<'g>>,
+    ) -> Option<Piece<'g>> {
         let (index, pose) = self.anchor(frame.link, &frame.pose)?;
         let at = entries(&[pose.translation]);
         let round = |axis, numbers: &[Expr<'g>]| {
@@ -61,8 +68,14 @@ impl<'g> Builder<'_, 'g> {
             Form::Capsule(r, length, n) => (PieceKind::Capsule, round(*n, &[*r, *length])),
             Form::Cone(half, n) | Form::Funnel(half, n) => (PieceKind::Funnel, round(*n, &[*half])),
             Form::Point => (PieceKind::Point, at.clone()),
-            // They have no end.
-            Form::Sheet(_) | Form::Terrain(_) => return None,
+            Form::Terrain(terrain) => {
+                let known = heights.iter().position(|height| *height == terrain.height);
+                let number = known.unwrap_or(heights.len());
+                heights.extend(known.is_none().then_some(terrain.height));
+                (PieceKind::Terrain(number), [at.clone(), rows(&pose.rotation.matrix())].concat())
+            }
+            // It has no end, and no place along which it is as high as it is.
+            Form::Sheet(_) => return None,
         };
         Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
     }

@@ -23,7 +23,7 @@ const NEAR: f64 = 1.25;
 /// A height over x and y, with its first and second derivatives: xx, xy, yy.
 #[derive(Clone)]
 pub struct Terrain<'g> {
-    height: Expr<'g>,
+    pub(super) height: Expr<'g>,
     slopes: [Expr<'g>; 2],
     curvatures: [Expr<'g>; 3],
 }
