@@ -21,7 +21,8 @@ pub fn command() -> Command {
         )
         .subcommand(
             with_motion(with_input(
-                Command::new("simulate").about("Prints a motion as comma-separated values: t, q.…, v.…, u.…"),
+                Command::new("simulate")
+                    .about("Prints a motion as comma-separated values: t, q.…, v.…, u.…; a file that ends in .mcap is a log for robotics tools"),
             ))
             .arg(out_file()),
         )

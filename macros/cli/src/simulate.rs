@@ -1,4 +1,4 @@
-//! `linkwork simulate`: a motion as comma-separated values.
+//! `linkwork simulate`: a motion as comma-separated values, or as a log in the format MCAP.
 
 use crate::Stop;
 use crate::export::put;
@@ -7,13 +7,38 @@ use crate::motion::{Sample, Start};
 use clap::ArgMatches;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
+use linkwork_view::{Instant, Names, mcap_of};
+use std::path::PathBuf;
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let graph = Graph::new();
     let Compiled { source, model, output } = input.compiled(&graph)?;
-    let samples = Start::new(&source, &model, &output, matches)?.run(matches)?;
-    put(matches, &csv(&model, &samples))
+    let start = Start::new(&source, &model, &output, matches)?;
+    let samples = start.run(matches)?;
+    match matches.get_one::<PathBuf>("out") {
+        Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) => {
+            let log = mcap(&model, &start, samples)?;
+            std::fs::write(path, log)
+                .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
+        }
+        _ => put(matches, &csv(&model, &samples)),
+    }
+}
+
+/// The motion with the placements of all frames.
+fn mcap(model: &Model<'_>, start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
+    let frames: Vec<&str> = model.frames.iter().map(|frame| frame.name.as_str()).collect();
+    let configuration: Vec<&str> = model.configuration.iter().map(String::as_str).collect();
+    let velocities: Vec<&str> = model.velocities.iter().map(|(name, _)| name.as_str()).collect();
+    let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
+    let names =
+        Names { frames: &frames, configuration: &configuration, velocities: &velocities, inputs: &inputs };
+    let instant = |Sample { t, q, v, u }| {
+        let placements = start.mechanism.placements(t, &q);
+        Instant { t, q, v, u, placements }
+    };
+    Ok(mcap_of(&names, samples.into_iter().map(instant))?)
 }
 
 fn csv(model: &Model<'_>, samples: &[Sample]) -> String {

@@ -79,6 +79,57 @@ fn pages_show_motions() {
     assert_eq!(again.len(), page.len());
 }
 
+/// The messages of an MCAP file: records begin with their kind and the length of the rest.
+fn messages(file: &[u8]) -> Vec<serde_json::Value> {
+    let (mut rest, mut found) = (&file[8..file.len() - 8], Vec::new());
+    while let [kind, length @ ..] = rest {
+        let (length, after) = length.split_first_chunk().unwrap();
+        let (content, next) = after.split_at(u64::from_le_bytes(*length) as usize);
+        found.extend((*kind == 5).then(|| serde_json::from_slice(&content[22..]).unwrap()));
+        rest = next;
+    }
+    found
+}
+
+/// The log for robotics tools holds the states of the table to the last digit, and the placements that generated code gives.
+#[test]
+fn logs_hold_what_tables_hold() {
+    let here = folder("logs");
+    let simulated = |out: &str| {
+        let (set, every) =
+            (["--set", "handle=0.5", "--set", "v.chain.wy=-3"], ["--duration", "0.4", "--every", "0.2"]);
+        let log = [&["simulate", FLAIL][..], &set, &every, &["--out", out]].concat();
+        assert_eq!(linkwork(&here, &log), (0, String::new(), String::new()));
+        std::fs::read(here.join(out)).unwrap()
+    };
+    let table = rows(&String::from_utf8(simulated("log.csv")).unwrap());
+    let sample = |row: &Vec<f64>| {
+        let (q, v) = (SVector::from_column_slice(&row[1..12]), SVector::from_column_slice(&row[12..21]));
+        linkwork::simulate::Sample::<f64, 11, 9, 1> { t: row[0], q, v, u: [row[21]].into(), event: None }
+    };
+    let samples: Vec<_> = table.iter().map(sample).collect();
+    let expected = messages(&linkwork_view::mcap(&Flail { handle: 0.5 }, &samples).unwrap());
+    let found = messages(&simulated("log.mcap"));
+    assert_eq!((found.len(), expected.len()), (9, 9));
+    for (found, expected) in found.iter().zip(&expected) {
+        let Some(transforms) = found["transforms"].as_array() else {
+            assert_eq!(found, expected);
+            continue;
+        };
+        let others = expected["transforms"].as_array().unwrap();
+        assert_eq!(transforms.len(), others.len());
+        for (one, other) in transforms.iter().zip(others) {
+            assert_eq!(one["child_frame_id"], other["child_frame_id"]);
+            for (part, axes) in [("translation", "xyz"), ("rotation", "xyzw")] {
+                for axis in axes.chars().map(String::from) {
+                    let number = |of: &serde_json::Value| of[part][&axis].as_f64().unwrap();
+                    assert!((number(one) - number(other)).abs() < 1e-12, "{one} {other}");
+                }
+            }
+        }
+    }
+}
+
 const BALL: &str = "
 #[mechanism(gravity = -9.81 * z)]
 pub struct Ball {

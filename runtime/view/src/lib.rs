@@ -21,7 +21,7 @@ pub use figure::Figure;
 pub use free_body::{Side, free_body};
 pub use live::Live;
 pub use log::csv;
-pub use mcap::mcap;
+pub use mcap::{Instant, Names, mcap, mcap_of};
 pub use motion::Motion;
 pub use page::Page;
 

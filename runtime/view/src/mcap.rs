@@ -7,7 +7,7 @@
 use crate::figure::plain;
 use crate::motion::as_plain;
 use crate::{Error, text};
-use linkwork::nalgebra::UnitQuaternion;
+use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion};
 use linkwork::simulate::Sample;
 use linkwork::{Frames, Rheonomic};
 
@@ -75,44 +75,96 @@ pub fn mcap<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Rheonomic<NQ, NV, NU> + Frames<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
 {
+    let plain_list = |list: &[_]| list.iter().map(|x| plain(*x)).collect();
+    let names = Names {
+        frames: M::FRAMES,
+        configuration: &M::CONFIGURATION,
+        velocities: &M::VELOCITIES,
+        inputs: &M::INPUTS,
+    };
+    let instant = |sample: &Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>| {
+        let frames = 0..M::FRAMES.len();
+        Instant {
+            t: plain(sample.t),
+            q: plain_list(sample.q.as_slice()),
+            v: plain_list(sample.v.as_slice()),
+            u: plain_list(sample.u.as_slice()),
+            placements: frames
+                .filter_map(|k| Some(as_plain(&mechanism.placement_of(k, sample.t, &sample.q)?)))
+                .collect(),
+        }
+    };
+    mcap_of(&names, samples.iter().map(instant))
+}
+
+/// The names of what a log holds, in order.
+#[derive(Clone, Copy, Debug)]
+pub struct Names<'a> {
+    /// The frames that have placements.
+    pub frames: &'a [&'a str],
+    /// The entries of the configuration.
+    pub configuration: &'a [&'a str],
+    /// The entries of the velocity.
+    pub velocities: &'a [&'a str],
+    /// The inputs.
+    pub inputs: &'a [&'a str],
+}
+
+/// An instant of a motion that is logged.
+#[derive(Clone, Debug)]
+pub struct Instant {
+    /// Time, s.
+    pub t: f64,
+    /// Configuration.
+    pub q: Vec<f64>,
+    /// Velocity.
+    pub v: Vec<f64>,
+    /// Inputs.
+    pub u: Vec<f64>,
+    /// Where the frames are in the ground, m.
+    pub placements: Vec<IsometryMatrix3<f64>>,
+}
+
+/// The same as [`mcap`] of what moves by other means than generated code.
+///
+/// # Errors
+///
+/// Those of [`mcap`], and if an instant has another number of entries than there are names.
+pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) -> Result<Vec<u8>, Error> {
     let mut file = File::new();
     let mut last = 0.0;
-    for (k, sample) in samples.iter().enumerate() {
-        let motion = || "mcap".to_string();
-        let t = plain(sample.t);
-        // What 64 bits hold in nanoseconds.
-        if !(t >= last && t < 1e10) {
-            return Err(Error::Time { motion: motion(), sample: k });
-        }
-        last = t;
-        let numbers = sample.q.iter().chain(&sample.v).chain(&sample.u);
-        if numbers.into_iter().any(|x| !plain(*x).is_finite()) {
-            return Err(Error::NotFinite { motion: motion(), sample: k, frame: "state".to_string() });
-        }
-        let nanoseconds = (t * 1e9).round() as u64;
+    for (k, sample) in samples.into_iter().enumerate() {
+        check(names, k, &sample, last)?;
+        last = sample.t;
+        let nanoseconds = (sample.t * 1e9).round() as u64;
         let stamp =
             format!("{{\"sec\":{},\"nsec\":{}}}", nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
-        let mut transforms = Vec::new();
-        for (frame, name) in M::FRAMES.iter().enumerate() {
-            let Some(placement) = mechanism.placement_of(frame, sample.t, &sample.q) else { continue };
-            let placement = as_plain(&placement);
-            let (at, turn) = (placement.translation.vector, placement.rotation);
-            if at.iter().chain(turn.matrix().iter()).any(|x| !x.is_finite()) {
-                return Err(Error::NotFinite { motion: motion(), sample: k, frame: (*name).to_string() });
-            }
-            let q = UnitQuaternion::from_rotation_matrix(&turn);
-            transforms.push(format!(
+        let transform = |(name, placement): (&&str, &IsometryMatrix3<f64>)| {
+            let at = placement.translation.vector;
+            let q = UnitQuaternion::from_rotation_matrix(&placement.rotation);
+            format!(
                 "{{\"timestamp\":{stamp},\"parent_frame_id\":\"ground\",\"child_frame_id\":{},\"translation\":{{\"x\":{},\"y\":{},\"z\":{}}},\"rotation\":{{\"x\":{},\"y\":{},\"z\":{},\"w\":{}}}}}",
-                text::json(name), at.x, at.y, at.z, q.i, q.j, q.k, q.w
-            ));
-        }
-        let joint = |(k, name): (usize, &&str)| {
-            let rate = M::VELOCITIES.iter().position(|rate| rate == name)?;
-            let (x, v) = (plain(sample.q[k]), plain(sample.v[rate]));
-            Some(format!("{{\"name\":{},\"position\":{x},\"velocity\":{v}}}", text::json(name)))
+                text::json(name),
+                at.x,
+                at.y,
+                at.z,
+                q.i,
+                q.j,
+                q.k,
+                q.w
+            )
         };
-        let joints = M::CONFIGURATION.iter().enumerate().filter_map(joint);
-        let by_name = |names: &[&str], numbers: Vec<f64>| {
+        let transforms = names.frames.iter().zip(&sample.placements).map(transform);
+        let joint = |(name, x): (&&str, &f64)| {
+            let rate = names.velocities.iter().position(|rate| rate == name)?;
+            Some(format!(
+                "{{\"name\":{},\"position\":{x},\"velocity\":{}}}",
+                text::json(name),
+                sample.v[rate]
+            ))
+        };
+        let joints = names.configuration.iter().zip(&sample.q).filter_map(joint);
+        let by_name = |names: &[&str], numbers: &[f64]| {
             let entries = names.iter().zip(numbers);
             let entries: Vec<String> = entries.map(|(name, x)| format!("{}:{x}", text::json(name))).collect();
             format!("{{{}}}", entries.join(","))
@@ -121,10 +173,11 @@ where
             format!("{{\"transforms\":{}}}", text::list(transforms)),
             format!("{{\"timestamp\":{stamp},\"joints\":{}}}", text::list(joints)),
             format!(
-                "{{\"t\":{t},\"q\":{},\"v\":{},\"u\":{}}}",
-                by_name(&M::CONFIGURATION, sample.q.iter().map(|x| plain(*x)).collect()),
-                by_name(&M::VELOCITIES, sample.v.iter().map(|x| plain(*x)).collect()),
-                by_name(&M::INPUTS, sample.u.iter().map(|x| plain(*x)).collect())
+                "{{\"t\":{},\"q\":{},\"v\":{},\"u\":{}}}",
+                sample.t,
+                by_name(names.configuration, &sample.q),
+                by_name(names.velocities, &sample.v),
+                by_name(names.inputs, &sample.u)
             ),
         ];
         for (channel, message) in (1..).zip(&messages) {
@@ -132,6 +185,36 @@ where
         }
     }
     Ok(file.finish())
+}
+
+/// Reports what a file does not hold: times that 64 bits of nanoseconds do not, numbers that are none.
+fn check(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(), Error> {
+    let motion = || "mcap".to_string();
+    let not_finite =
+        |frame: &str| Err(Error::NotFinite { motion: motion(), sample: k, frame: frame.to_string() });
+    for (what, list, found) in [
+        ("frames", names.frames, sample.placements.len()),
+        ("configuration", names.configuration, sample.q.len()),
+        ("velocity", names.velocities, sample.v.len()),
+        ("inputs", names.inputs, sample.u.len()),
+    ] {
+        if list.len() != found {
+            let what = format!("the {what} of sample {k} of `mcap`");
+            return Err(Error::Count { what, expected: list.len(), found });
+        }
+    }
+    if !(sample.t >= last && sample.t < 1e10) {
+        return Err(Error::Time { motion: motion(), sample: k });
+    }
+    if sample.q.iter().chain(&sample.v).chain(&sample.u).any(|x| !x.is_finite()) {
+        return not_finite("state");
+    }
+    for (name, placement) in names.frames.iter().zip(&sample.placements) {
+        if placement.translation.vector.iter().chain(placement.rotation.matrix()).any(|x| !x.is_finite()) {
+            return not_finite(name);
+        }
+    }
+    Ok(())
 }
 
 /// A file that is being written.
