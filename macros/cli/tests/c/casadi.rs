@@ -1,6 +1,6 @@
 //! Functions in the shapes that CasADi and acados take.
 
-use super::{compilers, export, folder};
+use crate::compiled::{compilers, export, folder};
 use std::path::Path;
 use std::process::Command;
 

@@ -1,39 +1,15 @@
 //! What `linkwork export c` writes, compiled by the C compiler of the system, against the same functions in Rust.
 
 mod casadi;
+mod compiled;
 #[path = "../mechanisms/mod.rs"]
 mod mechanisms;
 
+use compiled::{Case, Entry, agrees, compare, compilers, export, folder, printed, program};
 use linkwork::prelude::*;
 use linkwork::{Frames, discrete};
 use linkwork_models::{AnymalB, CartPole, FourBar, FurutaPendulum, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use mechanisms::{Awkward, Balloon, Wing};
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-/// A function with its arguments as C and Rust write them, and its results one after another.
-struct Entry {
-    name: &'static str,
-    arguments: &'static str,
-    results: Vec<Vec<f64>>,
-    returned: bool,
-}
-
-/// A mechanism as C knows it.
-struct Case {
-    /// What identifiers and files begin with.
-    prefix: &'static str,
-    parameters: Vec<f64>,
-    /// Tables as C writes them, and the arrays that they name.
-    tables: [&'static str; 2],
-    time: Option<f64>,
-    /// Arguments by name.
-    given: Vec<(&'static str, Vec<f64>)>,
-    entries: Vec<Entry>,
-    /// How far results may be off, of the largest number of each.
-    tolerance: f64,
-}
 
 fn numbers(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + 1.7 * k as f64).sin()).collect()
@@ -222,147 +198,6 @@ where
         ),
         entry("frame_jacobian last", "q", m.jacobian_of(last, t, &q).expect(some).as_slice().to_vec()),
     ]
-}
-
-/// A program that prints the results of all entries, a line each.
-fn program(case: &Case, scalar: &str) -> String {
-    let p = case.prefix;
-    let list = |numbers: &[f64]| {
-        let texts: Vec<String> = numbers.iter().map(|x| format!("({scalar}){x:?}")).collect();
-        texts.join(", ")
-    };
-    let mut text = format!(
-        "#include \"{p}.h\"\n#include <stdio.h>\n\nstatic void show(int n, const {scalar} *x) {{\n    for (int k = 0; k < n; ++k) {{\n        printf(\"%.17g \", (double)x[k]);\n    }}\n}}\n\nint main(void) {{\n"
-    );
-    let own = match case.parameters.is_empty() {
-        true => "",
-        false => {
-            let [arrays, tables] = case.tables;
-            let _ =
-                writeln!(text, "{arrays}    static const {p} self = {{{}{tables}}};", list(&case.parameters));
-            "&self, "
-        }
-    };
-    for (name, numbers) in case.given.iter().filter(|(_, numbers)| !numbers.is_empty()) {
-        let _ = writeln!(text, "    static const {scalar} {name}[] = {{{}}};", list(numbers));
-    }
-    for (name, _) in case.given.iter().filter(|(_, numbers)| numbers.is_empty()) {
-        let _ = writeln!(text, "    static const {scalar} {name}[1] = {{0}};");
-    }
-    let most = case.entries.iter().flat_map(|e| &e.results).map(Vec::len).max().unwrap_or(1).max(1);
-    for k in 0..6 {
-        let _ = writeln!(text, "    static {scalar} r{k}[{most}];");
-    }
-    for name in ["r1", "r2", "r3", "r4", "r5", "tau", "u"] {
-        let _ = writeln!(text, "    (void){name};");
-    }
-    for entry in &case.entries {
-        let (name, frame) = match entry.name.split_once(' ') {
-            Some((name, "0")) => (name, "0, ".to_string()),
-            Some((name, _)) => (name, format!("{}_FRAMES - 1, ", p.to_uppercase())),
-            None => (entry.name, String::new()),
-        };
-        let timeless = ["neutral", "total_mass", "integrate", "difference", "tangent_rate"];
-        let is_timeless = timeless.contains(&name) || name == "standard_parameters";
-        let time = case.time.filter(|_| !is_timeless).map_or(String::new(), |t| format!("({scalar}){t:?}, "));
-        let comma = if entry.arguments.is_empty() { "" } else { ", " };
-        let mut arguments = format!("{own}{frame}{time}{}{comma}", entry.arguments);
-        if entry.returned {
-            let arguments = arguments.trim_end_matches(", ");
-            let _ = writeln!(text, "    r0[0] = {p}_{name}({arguments});\n    show(1, r0);");
-        } else {
-            let names: Vec<String> = (0..entry.results.len()).map(|k| format!("r{k}")).collect();
-            arguments += &names.join(", ");
-            let _ = writeln!(text, "    {p}_{name}({arguments});");
-            for (k, result) in entry.results.iter().enumerate() {
-                let _ = writeln!(text, "    show({}, r{k});", result.len());
-            }
-        }
-        text.push_str("    printf(\"\\n\");\n");
-    }
-    text.push_str("    return 0;\n}\n");
-    text
-}
-
-fn compilers() -> Vec<&'static str> {
-    let works = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
-    let known: Vec<&str> = ["gcc", "clang"].into_iter().filter(works).collect();
-    if known.is_empty() { ["cc"].into_iter().filter(works).collect() } else { known }
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join(name);
-    std::fs::create_dir_all(&folder).expect("a folder of the tests'");
-    folder
-}
-
-/// Runs `linkwork export c`.
-fn export(folder: &Path, arguments: &[&str]) {
-    let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(["export", "c", "--out"])
-        .arg(folder)
-        .args(arguments)
-        .output()
-        .expect("the command starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-/// What a compiled program prints, which is compiled without a warning.
-fn printed(compiler: &str, folder: &Path, p: &str, main: &str, flags: &[&str]) -> Vec<Vec<f64>> {
-    let (source, executable) = (folder.join("main.c"), folder.join(format!("main_{compiler}")));
-    std::fs::write(&source, main).expect("a file of the tests'");
-    let strict = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror"];
-    let compiled = Command::new(compiler)
-        .current_dir(folder)
-        .args(strict)
-        .args(flags)
-        .arg("-o")
-        .arg(&executable)
-        .args([format!("{p}.c"), "main.c".to_string()])
-        .arg("-lm")
-        .output()
-        .expect("the compiler starts");
-    assert!(compiled.status.success(), "{p}: {}", String::from_utf8_lossy(&compiled.stderr));
-    let run = Command::new(&executable).output().expect("the program starts");
-    assert!(run.status.success(), "{p}: {}", run.status);
-    let text = String::from_utf8_lossy(&run.stdout).into_owned();
-    let line = |line: &str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-    text.lines().map(line).collect()
-}
-
-fn compare(case: &Case, found: &[Vec<f64>], tolerance: f64) {
-    assert_eq!(found.len(), case.entries.len(), "{}", case.prefix);
-    for (entry, found) in case.entries.iter().zip(found) {
-        let expected = entry.results.concat();
-        assert_eq!(found.len(), expected.len(), "{}: {}", case.prefix, entry.name);
-        let largest = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
-        for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
-            assert!(
-                (found - expected).abs() <= tolerance * largest,
-                "{}: {}[{k}] is {found} in C and {expected} in Rust",
-                case.prefix,
-                entry.name
-            );
-        }
-    }
-}
-
-/// Exports, compiles and compares, once as plain as can be and once for this processor.
-fn agrees(case: &Case, arguments: &[&str]) {
-    let compilers = compilers();
-    if compilers.is_empty() {
-        println!("skipped: there is no C compiler");
-        return;
-    }
-    let folder = folder(case.prefix);
-    export(&folder, &[&["--prefix", case.prefix], arguments].concat());
-    for compiler in compilers {
-        for flags in [&["-O0"][..], &["-O1", "-march=native"]] {
-            let found = printed(compiler, &folder, case.prefix, &program(case, "double"), flags);
-            compare(case, &found, case.tolerance);
-        }
-    }
 }
 
 #[test]
