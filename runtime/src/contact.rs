@@ -63,6 +63,8 @@ pub use holding::{Holding, hold};
 pub use landing::{LandedDerivatives, land, land_derivatives};
 use lawful::lawful;
 use layout::Layout;
+#[doc(hidden)]
+pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
 use problem::Problem;

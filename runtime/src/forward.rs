@@ -81,6 +81,7 @@ macro_rules! each_function {
             is_nearly_singular(q: NQ, dv: NV) -> bool;
             acceleration_derivatives(q: NQ, v: NV, u: NU) -> Option<$crate::ByMotion<Self::Scalar, NV, NU>>;
             carry(q: NQ, dv: NV, v: NV) -> SVector<Self::Scalar, NV>;
+            contact_start(q: NQ, parts: truth) -> Result<SVector<Self::Scalar, NQ>, $crate::ConstraintError>;
             contact_step(start: state, end: state, given: NV, h: scalar) -> Result<$crate::contact::Touched<Self::Scalar, NQ, NV>, $crate::ConstraintError>;
         }
     };
@@ -122,6 +123,7 @@ macro_rules! write_functions {
 /// The type of an argument.
 macro_rules! kind {
     (scalar) => { Self::Scalar };
+    (truth) => { bool };
     (square) => { &mut SMatrix<Self::Scalar, NV, NV> };
     (state) => { (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>) };
     ($n:ident) => { &SVector<Self::Scalar, $n> };

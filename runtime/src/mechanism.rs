@@ -126,6 +126,20 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         *v
     }
 
+    /// The configuration `q` where a motion is to begin with it: surfaces that overlap are refused ([`contact::check`](crate::contact::check)), or taken apart
+    /// where `parts` ([`contact::project`](crate::contact::project)). Mechanisms without contacts leave it as it is.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Overlap`] with the contact whose surfaces overlap most.
+    fn contact_start(
+        &self,
+        q: &SVector<Self::Scalar, NQ>,
+        _parts: bool,
+    ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
+        Ok(*q)
+    }
+
     /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
     /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity
     /// ([`contact::solve`](crate::contact::solve)).

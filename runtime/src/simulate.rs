@@ -54,6 +54,7 @@ where
         method,
         events: NoEvents,
         start,
+        overlaps: Overlaps::Refuse,
         duration: None,
         samples: Samples::Steps,
         progress: None,
@@ -92,6 +93,21 @@ enum Samples<'m, T> {
     At(&'m [T]),
 }
 
+/// What a simulation does about surfaces of contacts that overlap at its start by more than `1e-8` m or rad (`2.3e-4` with `f32`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Overlaps {
+    /// [`ConstraintError::Overlap`](crate::ConstraintError::Overlap), which names the contact whose surfaces overlap most.
+    #[default]
+    Refuse,
+    /// They are taken apart through the constraints of the mechanism ([`contact::project`](crate::contact::project)); where that cannot
+    /// be the error is the same.
+    Part,
+    /// They stay as they are: for a run that goes on where another has ended, since a step of
+    /// [`TimeStepping`](crate::integrate::TimeStepping) leaves surfaces that meet in each other by what they approach in it. Where bodies
+    /// start deep inside each other they stay so.
+    Keep,
+}
+
 /// A simulation: first what is to be simulated and how, then the iterator over its samples.
 ///
 /// Made by [`simulate`]. The samples are the initial state, then one every [`sample_every`](Self::sample_every)
@@ -108,6 +124,7 @@ where
     method: S,
     events: E,
     start: State<T, NQ, NV>,
+    overlaps: Overlaps,
     duration: Option<T>,
     samples: Samples<'m, T>,
     progress: Option<Progress<T, S::Memory<NV>, NQ, NV>>,
@@ -132,6 +149,36 @@ where
     pub fn start_at(self, t: T) -> Self {
         let start = State { t, ..self.start };
         Self { start, ..self.afresh() }
+    }
+
+    /// What is done about surfaces of [contacts](crate::contact) that overlap at the start: without it they are refused.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    /// use linkwork::simulate::Overlaps;
+    ///
+    /// #[mechanism(gravity = -9.81 * z)]
+    /// struct Ball {
+    ///     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
+    ///     ball: Body,
+    ///     #[joint(ground -> ball)]
+    ///     pose: Free,
+    ///     #[contact(ball.sphere(0.1), ground.plane(z))]
+    ///     floor: Contact,
+    /// }
+    ///
+    /// # fn main() -> Result<(), Error> {
+    /// // Its centre is in the floor.
+    /// let run = simulate(&Ball {}).method(TimeStepping::step(1e-3)).duration(0.1);
+    /// let refused = run.clone().finish().unwrap_err();
+    /// assert_eq!(refused.to_string(), "at t = 0 s the surfaces of the contact `floor` overlap by 0.1");
+    /// let end = run.overlaps(Overlaps::Part).finish()?;
+    /// assert!((end.q[2] - 0.1).abs() < 1e-9);
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn overlaps(self, overlaps: Overlaps) -> Self {
+        Self { overlaps, ..self.afresh() }
     }
 
     /// Ends `duration` seconds after the start; with zero the start is all there is. Without it the run ends at an event of [`until`](Self::until), or
@@ -200,8 +247,8 @@ where
     /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), [`Rosenbrock`](crate::integrate::Rosenbrock),
     /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler).
     pub fn method<R: Method<T>>(self, method: R) -> Simulation<'m, M, T, I, R, E, NQ, NV, NU> {
-        let Self { system, events, start, duration, samples, .. } = self;
-        Simulation { system, method, events, start, duration, samples, progress: None, over: false }
+        let Self { system, events, start, overlaps, duration, samples, .. } = self;
+        Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }
     }
 
     /// Ends when `function(t, q, v)` crosses zero in either direction; the last sample is the state there.
@@ -288,18 +335,18 @@ where
     }
 
     fn with_inputs<J>(self, inputs: J) -> Simulation<'m, M, T, J, S, E, NQ, NV, NU> {
-        let Self { system, method, events, start, duration, samples, .. } = self;
+        let Self { system, method, events, start, overlaps, duration, samples, .. } = self;
         let system = System::new(system.mechanism, inputs);
-        Simulation { system, method, events, start, duration, samples, progress: None, over: false }
+        Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }
     }
 
     fn with_event<G, A>(
         self,
         event: Event<T, G, A>,
     ) -> Simulation<'m, M, T, I, S, With<E, T, G, A>, NQ, NV, NU> {
-        let Self { system, method, events, start, duration, samples, .. } = self;
+        let Self { system, method, events, start, overlaps, duration, samples, .. } = self;
         let events = (events, event);
-        Simulation { system, method, events, start, duration, samples, progress: None, over: false }
+        Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }
     }
 }
 
@@ -317,6 +364,7 @@ where
             method: self.method.clone(),
             events: self.events.clone(),
             start: self.start,
+            overlaps: self.overlaps,
             duration: self.duration,
             samples: self.samples,
             progress: self.progress.clone(),

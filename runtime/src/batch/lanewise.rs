@@ -125,6 +125,21 @@ where
         lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
+    /// Lane by lane; a lane whose surfaces overlap is an error of all.
+    fn contact_start(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        parts: bool,
+    ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
+        let results: [_; L] =
+            core::array::from_fn(|k| self.mechanism.contact_start(t.0[k], &lane(q, k), parts));
+        if let Some(Err(error)) = results.iter().find(|result| result.is_err()) {
+            return Err(*error);
+        }
+        Ok(lane_by_lane(|k| results[k].unwrap_or_else(|_| lane(q, k))))
+    }
+
     /// Lane by lane; a lane whose contacts have no impulses is no number afterwards, and it is an error if all are so.
     fn contact_step(
         &self,

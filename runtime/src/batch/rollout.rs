@@ -149,7 +149,8 @@ struct Group<T, const L: usize, const NQ: usize, const NV: usize> {
 
 impl<M, const L: usize> Lanewise<'_, M, L> {
     /// Rolls out many states: each goes so many steps of the method from where it is, and where it ends is written
-    /// in its place. Nothing allocates.
+    /// in its place. Nothing allocates. Whether surfaces of contacts overlap at the start is not looked at: rollouts go on
+    /// where others have ended ([`contact::check`](crate::contact::check)).
     ///
     /// - `q`, `v`: the states, a structure of arrays: entry `i` of state `k` of `count` stands at `i * count + k`.
     /// - `control(k, t, q, v)`: the inputs `u` of the states in the lanes, of which the first has index `k` (at the end

@@ -229,6 +229,15 @@ where
         self.mechanism.carry(t, q, dv, v)
     }
 
+    fn contact_start(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        parts: bool,
+    ) -> Result<SVector<M::Scalar, NQ>, ConstraintError> {
+        self.mechanism.contact_start(t, q, parts)
+    }
+
     fn contact_step(
         &self,
         t: M::Scalar,

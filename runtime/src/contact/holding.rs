@@ -244,6 +244,16 @@ where
         self.mechanism.carry(t, q, dv, v)
     }
 
+    /// What is held may overlap.
+    fn contact_start(
+        &self,
+        _t: T,
+        q: &SVector<T, NQ>,
+        _parts: bool,
+    ) -> Result<SVector<T, NQ>, ConstraintError> {
+        Ok(*q)
+    }
+
     /// Nothing opens or closes.
     fn contact_step(
         &self,

@@ -31,8 +31,8 @@ where
     Ok(found)
 }
 
-/// Refuses a configuration in which surfaces overlap. Simulations do not look: where bodies start inside each other they stay so,
-/// since surfaces that overlap touch.
+/// Refuses a configuration in which surfaces overlap, as simulations do where they start
+/// ([`Simulation::overlaps`](crate::simulate::Simulation::overlaps)).
 ///
 /// # Errors
 ///
@@ -132,4 +132,24 @@ where
         }
     }
     Ok(q)
+}
+
+/// The configuration that a simulation starts from: [`project`]'s where surfaces are to be taken apart, else this one if [`check`] does not
+/// refuse it. As generated code calls it.
+///
+/// # Errors
+///
+/// Those of [`project`] and [`check`].
+#[doc(hidden)]
+pub fn start<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    q: &SVector<T, NQ>,
+    parts: bool,
+) -> Result<SVector<T, NQ>, ConstraintError>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    if parts { project(mechanism, t, q) } else { check(mechanism, t, q).map(|()| *q) }
 }

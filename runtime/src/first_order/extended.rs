@@ -289,6 +289,15 @@ where
         together(&self.mechanism.carry(t, q, &dv, &v), &x)
     }
 
+    fn contact_start(
+        &self,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        parts: bool,
+    ) -> Result<SVector<M::Scalar, NQ>, ConstraintError> {
+        self.mechanism.contact_start(t, q, parts)
+    }
+
     fn contact_step(
         &self,
         t: M::Scalar,

@@ -2,7 +2,7 @@
 
 use super::clock::{Clock, after};
 use super::event::together;
-use super::{Events, Flow, Hit, Sample, Samples, Simulation, Undefined, not_negative, positive};
+use super::{Events, Flow, Hit, Overlaps, Sample, Samples, Simulation, Undefined, not_negative, positive};
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
@@ -109,6 +109,7 @@ where
         if let Some(coordinate) = (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {
             return Err(Error::Quaternion { coordinate });
         }
+        let start = self.parted(start)?;
         let node = self.on_constraints(start)?;
         let moved = node.q.iter().zip(&start.q).any(|(a, b)| far(*a, *b));
         let changed = node.v.iter().zip(&start.v).any(|(a, b)| far(*a, *b));
@@ -134,6 +135,21 @@ where
             stopped: false,
             jump: None,
         })
+    }
+
+    /// The start where surfaces of contacts do not overlap, unless they may.
+    fn parted(&self, start: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
+        if !M::CONTACTING || self.overlaps == Overlaps::Keep {
+            return Ok(start);
+        }
+        let (mechanism, State { t, q, v }) = (self.system.mechanism, start);
+        let reported = |reason| Error::Constraint { t: to_f64(t), reason };
+        let parted = mechanism.contact_start(t, &q, self.overlaps == Overlaps::Part).map_err(reported)?;
+        if parted == q {
+            return Ok(start);
+        }
+        let v = mechanism.carry(t, &q, &mechanism.difference(&q, &parted), &v);
+        self.on_constraints(State { t, q: parted, v })
     }
 
     /// The next sample; `None` at the end of the run.

@@ -3,6 +3,7 @@
 use super::laws::{Chain, Pile, Random};
 use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
+use linkwork::simulate::Overlaps;
 
 /// A block between two walls that are one and the same, and a floor that is there twice: more contacts than can be told apart.
 #[mechanism(gravity = -9.81 * z)]
@@ -76,7 +77,8 @@ where
         Err(ConstraintError::Contact { .. }) => errors += 1,
         Err(other) => panic!("{other}"),
     }
-    let run = simulate(m).from(q, v).method(TimeStepping::step(2e-3)).duration(0.012);
+    let run =
+        simulate(m).from(q, v).overlaps(Overlaps::Keep).method(TimeStepping::step(2e-3)).duration(0.012);
     for sample in run {
         match sample {
             Ok(sample) => {

@@ -2,9 +2,10 @@
 
 use linkwork::contact;
 use linkwork::prelude::*;
+use linkwork::simulate::Overlaps;
 
 /// Two balls of different masses in a channel of width `gap`.
-#[mechanism]
+#[mechanism(batch)]
 struct Channel {
     gap: f64,
     #[body(mass = 1, inertia = sphere(1, 0.1))]
@@ -55,6 +56,33 @@ fn what_has_no_room_is_refused() {
     assert!(matches!(refused, ConstraintError::Overlap { constraint: "low" | "high", .. }), "{refused}");
     let text = contact::check(&m, 0.0, &q).unwrap_err().to_string();
     assert!(text.starts_with("the surfaces of the contact `high` overlap by 0.013"), "{text}");
+}
+
+/// Simulations of both kinds, and those of lanes, refuse balls that overlap and name the contact, start from where
+/// [`contact::project`] takes them where they are asked to, and leave them where they are where that is said.
+#[test]
+fn simulations_look_at_their_start() {
+    let m = Channel { gap: 1.0 };
+    let mut q = m.neutral();
+    (q[7], q[8]) = (0.12, 0.09);
+    let v = SVector::from([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0]);
+    let overlap = contact::check(&m, 0.0, &q).unwrap_err();
+    let apart = contact::project(&m, 0.0, &q).unwrap();
+    let stepping = simulate(&m).from(q, v).start_at(2.0).method(TimeStepping::step(1e-3)).duration(0.0);
+    let located = simulate(&m).from(q, v).start_at(2.0).method(EventDriven::new()).duration(0.0);
+    let expected = Error::Constraint { t: 2.0, reason: overlap };
+    assert_eq!(stepping.clone().finish().unwrap_err(), expected);
+    assert_eq!(located.clone().finish().unwrap_err(), expected);
+    assert_eq!(stepping.clone().overlaps(Overlaps::Part).finish().unwrap().q, apart);
+    let parted = located.overlaps(Overlaps::Part).duration(0.1).finish().unwrap();
+    assert!((parted.q[2] - 0.01).abs() < 1e-9 && (parted.q[0] - apart[0]).abs() < 1e-9, "{}", parted.q);
+    assert_eq!(stepping.overlaps(Overlaps::Keep).finish().unwrap().q, q);
+    // One lane of four overlaps.
+    let lanes = SVector::from_fn(|i, _| Lanes([apart[i], apart[i], q[i], apart[i]]));
+    let four = m.lanes::<4>();
+    let start = |parts| linkwork::Rheonomic::contact_start(&four, Lanes([0.0; 4]), &lanes, parts);
+    assert_eq!(start(false).unwrap_err(), overlap);
+    assert_eq!(start(true).unwrap(), SVector::<_, 14>::from_fn(|i, _| Lanes([apart[i]; 4])));
 }
 
 /// A slider-crank whose slide may not pass a stop.

@@ -145,6 +145,9 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         "const CONTACTING: bool = true;
         const LOCATABLE: bool = true;
         {}
+        fn contact_start(&self, {t}q: &{q}, parts: bool) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
+            ::linkwork::contact::start(self, {any}, q, parts)
+        }}
         fn contact_step(&self, {t}start: (&{q}, &{v}), end: (&{q}, &{v}), given: &{v}, h: {scalar}) -> ::core::result::Result<::linkwork::contact::Touched<{scalar}, {}, {}>, ::linkwork::ConstraintError> {{
             ::linkwork::contact::step(self, {any}, start, end, given, h)
         }}
