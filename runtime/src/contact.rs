@@ -17,6 +17,12 @@
 //! M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   J v⁺ = 0,   0 ≤ u⁺ₙ + e u⁻ₙ  ⊥  Λₙ ≥ 0,   |Λₜ| ≤ μ Λₙ,  Λₜ = −μ Λₙ u⁺ₜ / |u⁺ₜ| where it slips
 //! ```
 //!
+//! Where restitution is Poisson's (`restitution = poisson(e)`) an impact has two parts, each with Coulomb's law. The impulses `Λᶜ` of
+//! compression are those without restitution, `0 ≤ uᶜₙ ⊥ Λᶜₙ ≥ 0`; then those of restitution are `e Λᶜₙ` at least, and more where
+//! surfaces would approach each other: `0 ≤ u⁺ₙ ⊥ Λₙ − (1 + e) Λᶜₙ ≥ 0` (Glocker and Pfeiffer, *Multiple impacts with friction in
+//! rigid multibody systems*, Nonlinear Dynamics 7, 1995). In a time step compression is that of the velocity before the step, so that
+//! what rests does not bounce.
+//!
 //! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato, *Numerical Methods for
 //! Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding: where all contacts
 //! stick that approach there is a linear system, else Newton's method for their natural map (Alart and Curnier, Comput. Methods Appl.
@@ -62,6 +68,7 @@ pub use held::{Held, forward_dynamics};
 pub use holding::{Holding, hold};
 pub use landing::{LandedDerivatives, land, land_derivatives};
 use lawful::lawful;
+pub use lawful::{Law, Restitution};
 use layout::Layout;
 #[doc(hidden)]
 pub use overlap::start;
@@ -93,15 +100,6 @@ pub enum Touch {
     /// Surfaces stay together, and friction acts against the slip that there is; where there is none it has no direction, and does
     /// not act.
     Slips,
-}
-
-/// Coefficients of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Law<T> {
-    /// Of friction, `μ`: zero or more. Of a moment of friction the largest by the normal force, m.
-    pub friction: T,
-    /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they met.
-    pub restitution: T,
 }
 
 /// What mechanisms with contacts offer, for generic code: `NK` contacts with `NR` rates.
@@ -450,10 +448,11 @@ where
     }
     let responses = acted.responses.insert(mechanism.contact_responses(t, q, closed));
     problem.weigh(&responses.rates);
-    problem.aim(&laws, &before, T::one());
     let failed = |contact: usize| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
     };
+    problem.compress(&laws, &before).map_err(failed)?;
+    problem.aim(&laws, &before, T::one());
     // What is driven may give energy, and without restitution nothing does.
     let may_gain = problem.rebounds() && {
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());

@@ -6,7 +6,7 @@ use linkwork::integrate::{
     DormandPrince, DormandPrince8, Error, EventDriven, ImplicitMidpoint, Method, Rk4, Rodas, TimeStepping,
 };
 use linkwork::nalgebra::SVector;
-use linkwork::simulate::{self, Sample};
+use linkwork::simulate::{self, Overlaps, Sample};
 
 /// A method of integration, with the length of its steps or its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +23,8 @@ pub enum Way<N> {
     ImplicitMidpoint(N),
     /// Contacts by their events, by a tolerance.
     EventDriven(N),
-    /// Contacts by impulses in steps.
+    /// Contacts by impulses in steps. Surfaces that overlap at the start stay so: callers go on from where steps have left them in each
+    /// other.
     TimeStepping(N),
 }
 
@@ -120,11 +121,16 @@ where
 {
     let q = SVector::<N, NQ>::from_fn(|k, _| motion.q.get(k).copied().unwrap_or(N::NAN));
     let v = SVector::<N, NV>::from_fn(|k, _| motion.v.get(k).copied().unwrap_or(N::NAN));
+    let overlaps = match motion.way {
+        Way::TimeStepping(_) => Overlaps::Keep,
+        _ => Overlaps::Refuse,
+    };
     let begun = simulate::simulate(m)
         .start_at(motion.start)
         .from(q, v)
         .duration(motion.duration)
         .sample_every(motion.interval)
+        .overlaps(overlaps)
         .method(method);
     let (every, samples) = (motion.every, &mut *motion.samples);
     let (control, count) = (&mut *motion.control, &mut motion.count);

@@ -1,9 +1,31 @@
 //! Coefficients that follow from parameters.
 
-use super::{Contacts, Law};
+use super::Contacts;
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::to_f64;
+
+/// Coefficients of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law<T> {
+    /// Of friction, `μ`: zero or more. Of a moment of friction the largest by the normal force, m.
+    pub friction: T,
+    /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they met.
+    pub restitution: T,
+    /// What it is a ratio of.
+    pub hypothesis: Restitution,
+}
+
+/// What a coefficient of restitution is a ratio of. Both are the same where slip keeps its direction in an impact, or where there is
+/// no friction and one contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Restitution {
+    /// Of velocities along the normal, after an impact and before it.
+    #[default]
+    Newton,
+    /// Of impulses along the normal, of restitution and of compression.
+    Poisson,
+}
 
 /// The coefficients of all contacts.
 ///
@@ -26,7 +48,7 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let laws = mechanism.contact_laws();
-    for (Law { friction, restitution }, constraint) in laws.iter().zip(M::CONTACTS) {
+    for (Law { friction, restitution, .. }, constraint) in laws.iter().zip(M::CONTACTS) {
         let rubs = *friction >= T::zero() && friction.is_finite();
         let bounces = *restitution >= T::zero() && *restitution <= T::one();
         if !(rubs && bounces) {

@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
-use super::{Contacts, Law, near};
+use super::{Contacts, Law, Restitution, near};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, to_f64};
@@ -97,7 +97,8 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
-    let smooth = [Law { friction: T::zero(), restitution: T::zero() }; NK];
+    let hypothesis = Restitution::Newton;
+    let smooth = [Law { friction: T::zero(), restitution: T::zero(), hypothesis }; NK];
     let enough = near::<T>() * constant(1e-2);
     let (mut q, mut pushes) = (*q, SVector::<T, NR>::zeros());
     for step in 0.. {

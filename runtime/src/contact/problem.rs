@@ -10,6 +10,7 @@ use nalgebra::{SMatrix, SVector};
 
 mod linear;
 mod newton;
+mod restitution;
 mod search;
 
 /// A number for each rate.
@@ -36,12 +37,21 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// turning alone.
     pressed_by: Total<usize, NK>,
     size: usize,
-    /// `u₀`.
+    /// The rates without any impulses.
+    given: List<T, NR>,
+    /// The impulses of compression, if restitution is a ratio of these, and whether there are any.
+    compression: List<T, NR>,
+    is_compressed: bool,
+    /// Impulses that act whatever the others are: of compression, and of restitution as far as they are known by it.
+    base: List<T, NR>,
+    /// `u₀`: the rates with what acts anyway.
     free: List<T, NR>,
     /// `W`.
     weights: Square<T, NR>,
     /// What the normal rate is at least.
     least: Total<T, NK>,
+    /// The part of the normal impulse of restitution that acts anyway, and presses friction as well.
+    floor: Total<T, NK>,
     friction: Total<T, NK>,
     /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where impulses move nothing.
     step: Total<T, NK>,
@@ -70,9 +80,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             rows: Total::repeat(none),
             pressed_by: Total::repeat(0),
             size: 0,
+            given: Total::repeat(T::zero()),
+            compression: Total::repeat(T::zero()),
+            is_compressed: false,
+            base: Total::repeat(T::zero()),
             free: Total::repeat(T::zero()),
             weights: Total::repeat(Total::repeat(T::zero())),
             least: Total::repeat(T::zero()),
+            floor: Total::repeat(T::zero()),
             friction: Total::repeat(T::zero()),
             step: Total::repeat(T::zero()),
             scale: T::one(),
@@ -112,6 +127,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             problem.friction[c] = law.friction;
             for i in 0..of.count {
                 problem.free[first + i] = entry(free, of.first + i);
+                problem.given[first + i] = problem.free[first + i];
             }
             problem.count += 1;
             problem.size += of.count;
@@ -146,11 +162,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         places
     }
 
-    /// Impulses by their rates in the mechanism.
+    /// Impulses by their rates in the mechanism, with those that act anyway.
     pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
-        for (place, impulse) in self.places().iter().zip(impulses.iter()).take(self.size) {
-            put(&mut all, *place, *impulse);
+        let impulses = impulses.iter().zip(self.base.iter());
+        for (place, (impulse, base)) in self.places().iter().zip(impulses).take(self.size) {
+            put(&mut all, *place, *impulse + *base);
         }
         all
     }
@@ -187,15 +204,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
-    /// The normal rates after the impact: at least this `part` of the restitution, and no less than zero.
-    pub(super) fn aim(&mut self, laws: &[Law<T>; NK], before: &SVector<T, NR>, part: T) {
-        for k in (0..self.count).filter(|k| self.pressed_by[*k] == *k) {
-            let (contact, Rows { first, .. }) = self.contacts[k];
-            let restitution = laws.get(contact).map_or(T::zero(), |law| law.restitution);
-            self.least[k] = (-(restitution * part * entry(before, first))).max(T::zero());
-        }
-    }
-
     /// The rates with impulses.
     fn rates(&self, impulses: &List<T, NR>) -> List<T, NR> {
         let mut rates = self.free;
@@ -205,25 +213,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
         }
         rates
-    }
-
-    /// Whether restitution is asked for.
-    pub(super) fn rebounds(&self) -> bool {
-        self.least.iter().take(self.count).any(|least| *least > T::zero())
-    }
-
-    /// Whether impulses give energy: their work is that of the mean rates.
-    pub(super) fn gains(&self, impulses: &List<T, NR>) -> bool {
-        if !self.rebounds() {
-            return false;
-        }
-        let rates = self.rates(impulses);
-        let (mut work, mut size) = (T::zero(), T::zero());
-        for i in 0..self.size {
-            work += impulses[i] * (rates[i] + self.free[i]);
-            size += (impulses[i] * (rates[i].abs() + self.free[i].abs())).abs();
-        }
-        work > size * epsilon::<T>() * constant(ROUNDINGS)
     }
 
     /// The step of the impulse that presses.
@@ -241,7 +230,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let (n, tangents) = self.of(k);
         let step = self.step[k] * self.scale;
         let normal = impulses[n] - self.press(k) * (rates[n] - self.least[self.pressed_by[k]]);
-        if normal <= T::zero() || step == T::zero() {
+        let bearing = self.bearing(k, normal);
+        if bearing <= T::zero() || step == T::zero() {
             return (normal, Mode::Open);
         }
         let mut direction = [T::zero(); 2];
@@ -250,7 +240,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         let [x, y] = direction;
         let size = (x * x + y * y).sqrt();
-        if size <= friction * normal {
+        if size <= friction * bearing {
             return (normal, Mode::Stick);
         }
         (normal, Mode::Slip { size, direction: [x / size, y / size] })
@@ -291,7 +281,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 Mode::Stick => self.step[k] * self.scale * rates[i],
                 Mode::Slip { direction, .. } => {
                     let friction = self.friction[k];
-                    (impulses[i] - component(&direction, c) * friction * normal) / friction.max(T::one())
+                    let most = friction * self.bearing(k, normal);
+                    (impulses[i] - component(&direction, c) * most) / friction.max(T::one())
                 }
             };
         }

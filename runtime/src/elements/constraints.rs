@@ -127,7 +127,8 @@ pub enum Slipping {}
 /// an error; name surfaces that stand for them.
 ///
 /// `friction`, the coefficient of Coulomb's friction, and `restitution`, the part of the speed of approach with which
-/// surfaces leave each other, are zero unless given, and may be expressions of parameters. Contacts are no constraints: the
+/// surfaces leave each other, are zero unless given, and may be expressions of parameters. `restitution = poisson(e)` is a ratio of
+/// impulses instead, of restitution and of compression ([`Restitution`](crate::contact::Restitution)). Contacts are no constraints: the
 /// functions of the dynamics are those of bodies that move freely, and the module [`contact`](crate::contact) says what contacts do
 /// to them.
 ///

@@ -14,6 +14,7 @@ mod laws;
 mod mechanisms;
 mod orders;
 mod piles;
+mod poisson;
 mod robots;
 mod soft;
 mod starts;

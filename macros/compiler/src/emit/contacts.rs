@@ -17,6 +17,8 @@ pub struct Touching {
     pressed_by: Option<usize>,
     /// Its gap is an angle.
     turns: bool,
+    /// Restitution is a ratio of impulses.
+    of_impulses: bool,
     /// Coefficients of friction and restitution, if they are numbers.
     laws: [Option<f64>; 2],
 }
@@ -29,6 +31,7 @@ impl Touching {
             rates: c.rates.len(),
             pressed_by: c.pressed_by,
             turns: c.turns,
+            of_impulses: c.of_impulses,
             laws: [c.friction.value(), c.restitution.value()],
         };
         model.contacts.iter().map(touching).collect()
@@ -36,7 +39,14 @@ impl Touching {
 
     /// One, where only the equations could tell how many there are.
     pub fn unknown() -> Touching {
-        Touching { name: String::new(), rates: 1, pressed_by: None, turns: false, laws: [None; 2] }
+        Touching {
+            name: String::new(),
+            rates: 1,
+            pressed_by: None,
+            turns: false,
+            of_impulses: false,
+            laws: [None; 2],
+        }
     }
 }
 
@@ -69,10 +79,12 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let (gaps, rates) = (s.vector(count), s.vector(rows));
     let laws: Vec<String> = (0..count)
         .map(|k| {
+            let of_impulses = i.contacts.get(k).is_some_and(|contact| contact.of_impulses);
             format!(
-                "::linkwork::contact::Law {{ friction: laws[{}], restitution: laws[{}] }}",
+                "::linkwork::contact::Law {{ friction: laws[{}], restitution: laws[{}], hypothesis: ::linkwork::contact::Restitution::{} }}",
                 2 * k,
-                2 * k + 1
+                2 * k + 1,
+                if of_impulses { "Poisson" } else { "Newton" }
             )
         })
         .collect();
@@ -184,6 +196,8 @@ pub fn write_docs(text: &mut String, contacts: &[Touching]) {
     for (k, contact) in contacts.iter().enumerate() {
         let [friction, restitution] =
             contact.laws.map(|law| law.map_or("by parameters".to_string(), |law| law.to_string()));
+        let restitution =
+            if contact.of_impulses { format!("{restitution}, of impulses") } else { restitution };
         let unit = if contact.turns { "rad" } else { "m" };
         // A moment of friction turns against the spin or the rolling of its contact.
         let (slip, friction) = match contact.pressed_by {

@@ -20,4 +20,6 @@ pub struct Contact<'g> {
     pub friction: Expr<'g>,
     /// Coefficient of restitution.
     pub restitution: Expr<'g>,
+    /// It is a ratio of impulses (Poisson), not of velocities (Newton).
+    pub of_impulses: bool,
 }

@@ -1,7 +1,7 @@
 //! Contacts: two surfaces that may part, strike, slide and stick.
 
 use super::arguments::Arguments;
-use super::{Contact, Description, Expr, ExprKind, Name, Softness};
+use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
 use crate::diag::Diagnostics;
 
 const KEYS: [&str; 8] =
@@ -23,8 +23,8 @@ pub fn read_contact(
 ) {
     let [friction, torsional, rolling] =
         ["friction", "torsional", "rolling"].map(|key| arguments.take_expr(key, cx));
-    let restitution = arguments.take_expr("restitution", cx);
-    let soft = read_softness(&name, restitution.as_ref(), arguments, cx);
+    let restitution = take_restitution(arguments, cx);
+    let soft = read_softness(&name, restitution.as_ref().map(|e| &e.value), arguments, cx);
     let mut surfaces = arguments.take_plain().into_iter();
     let is_empty = arguments.is_empty();
     arguments.finish("a Contact", &KEYS, cx);
@@ -53,6 +53,22 @@ pub fn read_contact(
                 .help(format!("write `{EXAMPLE}`"));
         }
         _ => {}
+    }
+}
+
+/// Takes `restitution = e`, or `restitution = poisson(e)`.
+pub fn take_restitution(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Restitution> {
+    let value = arguments.take_expr("restitution", cx)?;
+    match value.kind {
+        ExprKind::Call(word, mut list) if word.text == "poisson" => match (list.pop(), list.is_empty()) {
+            (Some(value), true) => Some(Restitution { value, of_impulses: true }),
+            _ => {
+                cx.error(word.place, "`poisson` takes one coefficient")
+                    .help("write `restitution = poisson(e)`");
+                None
+            }
+        },
+        _ => Some(Restitution { value, of_impulses: false }),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Limits: what a coordinate, its velocity and the force on it stay within.
 
 use super::arguments::Arguments;
+use super::contact::take_restitution;
 use super::{Description, Limit, Name};
 use crate::diag::Diagnostics;
 
@@ -16,7 +17,8 @@ pub fn read_limit(
     let on = arguments.need_expr("on", "joint", "limit", &KEYS, cx);
     let mut take = |key: &str| arguments.take_expr(key, cx);
     let (from, to) = (take("from"), take("to"));
-    let (max_speed, max_effort, restitution) = (take("max_speed"), take("max_effort"), take("restitution"));
+    let (max_speed, max_effort) = (take("max_speed"), take("max_effort"));
+    let restitution = take_restitution(arguments, cx);
     let is_empty = arguments.is_empty();
     arguments.finish("a Limit", &KEYS, cx);
     let Some(on) = on else { return };
@@ -28,7 +30,7 @@ pub fn read_limit(
         return;
     }
     if let (Some(e), None, None) = (&restitution, &from, &to) {
-        cx.error(e.place.clone(), "there is no bound to strike")
+        cx.error(e.value.place.clone(), "there is no bound to strike")
             .help("write where it is: `from = …`, `to = …`, or both");
         return;
     }

@@ -33,8 +33,8 @@ pub use attribute::parse_mechanism;
 pub use description::{
     Action, ActionKind, Base, BinaryOp, Body, Collision, Constraint, ConstraintKind, Contact, Definition,
     Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation, Frame,
-    FreeCoordinate, Inertias, Joint, Law, Limit, Mesh, Mimic, Name, Particle, Point, Rank, ScalarType, Shape,
-    SlipFriction, Softness, Table, Target, Visual, Wrench,
+    FreeCoordinate, Inertias, Joint, Law, Limit, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
+    ScalarType, Shape, SlipFriction, Softness, Table, Target, Visual, Wrench,
 };
 pub use expression::IF;
 pub use joint_kind::JointKind;

@@ -69,6 +69,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             *impulse = entry(rates, *place);
         }
         substitute(&system, self.size, &mut impulses);
+        impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
         Some(impulses)
     }
 

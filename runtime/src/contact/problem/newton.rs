@@ -125,7 +125,10 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 self.all_of(k).for_each(|i| right[i] = -impulses[i]);
                 continue;
             }
-            if self.is_gap(k) {
+            let presses = normal > T::zero();
+            if self.is_gap(k) && !presses {
+                right[n] = -impulses[n];
+            } else if self.is_gap(k) {
                 right[n] = -(step * (rates[n] - self.least[k]));
                 system[n] = self.weights[n].each(|weight| step * weight);
                 system[n][n] += lift;
@@ -137,10 +140,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     system[i][i] += lift;
                     continue;
                 };
-                let radius = friction * normal;
+                let radius = friction * self.bearing(k, normal);
                 right[i] = -(impulses[i] - radius * component(&direction, c));
                 // The row of `Λ − μ d (Λₙ − r uₙ) − (μ Λₙ / |·|) (1 − d dᵀ) (Λₜ − r uₜ)`.
-                let (turn, along) = (radius / size, friction * component(&direction, c));
+                let along = if presses { friction * component(&direction, c) } else { T::zero() };
+                let turn = radius / size;
                 let mut row = self.weights[n].each(|weight| along * press * weight);
                 row[i] += T::one();
                 row[n] -= along;

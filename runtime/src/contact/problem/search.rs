@@ -52,7 +52,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
             impulses[n] = impulses[n].max(T::zero());
-            let most = self.friction[k] * impulses[n];
+            let most = self.friction[k] * self.bearing(k, impulses[n]);
             let size = tangents.clone().fold(T::zero(), |sum, i| sum + impulses[i] * impulses[i]).sqrt();
             if size > most {
                 tangents.for_each(|i| impulses[i] *= most / size);
@@ -247,7 +247,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
                 let (n, tangents) = self.of(k);
-                let most = self.friction[k] * next[n];
+                let most = self.friction[k] * self.bearing(k, next[n]);
                 let mut wanted = [T::zero(); 2];
                 for (w, i) in wanted.iter_mut().zip(tangents.clone()) {
                     *w = ahead[i] - steps[i] * rates[i];

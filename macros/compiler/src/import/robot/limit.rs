@@ -1,7 +1,7 @@
 //! Bounds of a coordinate as a file has them.
 
 use crate::import::imported::Placed;
-use crate::syntax::{Expr, ExprKind, Limit, Name};
+use crate::syntax::{Expr, ExprKind, Limit, Name, Restitution};
 
 /// What a file says of the limits of a joint; nothing where it bounds nothing.
 #[derive(Default)]
@@ -39,7 +39,7 @@ impl FileLimits {
             max_speed: expression(&self.velocity),
             max_effort: expression(&self.effort).filter(|_| !follows),
             restitution: stops
-                .then(|| Expr::number(0.0, &joint.place))
+                .then(|| Restitution { value: Expr::number(0.0, &joint.place), of_impulses: false })
                 .filter(|_| self.lower.is_some() || self.upper.is_some()),
         };
         let bounds = [&limit.from, &limit.to, &limit.max_speed, &limit.max_effort];

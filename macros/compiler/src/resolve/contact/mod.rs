@@ -11,6 +11,7 @@ mod drawing;
 mod force;
 mod slipping;
 mod soft;
+mod stops;
 mod surface;
 pub use force::stands_alone;
 mod terrain;

@@ -6,7 +6,7 @@ use super::terrain::Terrain;
 use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
-use crate::kinematics::{time_derivative, velocity_gradient};
+use crate::kinematics::velocity_gradient;
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
@@ -26,6 +26,9 @@ const FLAT: f64 = 1e-24;
 
 const PAIRS: &str = "known are points, spheres, circles, tori, ellipsoids, capsules, cuboids and cylinders with two ends on a plane; points and spheres also on a sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; capsules on each other; cuboids on each other; spheres and capsules on cuboids; spheres on cylinders with two ends; points, spheres, capsules and cuboids on a terrain";
 
+/// What stands for a cylinder.
+const STAND_IN: &str = "a capsule of the same radius, or several spheres, may stand for a cylinder";
+
 /// Coefficients of a contact.
 #[derive(Clone, Copy)]
 pub(super) struct Laws<'g> {
@@ -34,7 +37,9 @@ pub(super) struct Laws<'g> {
     pub(super) torsional: Expr<'g>,
     /// Largest moment about the tangents by the normal force.
     pub(super) rolling: Expr<'g>,
-    restitution: Expr<'g>,
+    pub(super) restitution: Expr<'g>,
+    /// Restitution is a ratio of impulses.
+    pub(super) of_impulses: bool,
 }
 
 /// A point where two surfaces may touch.
@@ -49,6 +54,11 @@ pub(super) struct Point<'g> {
     pub(super) ancestor: Option<LinkId>,
     /// Where it is.
     pub(super) place: Terms<'g>,
+}
+
+/// The value of a coefficient of restitution, and whether it is a ratio of impulses.
+pub(super) fn apart(restitution: Option<&syntax::Restitution>) -> (Option<&syntax::Expr>, bool) {
+    restitution.map_or((None, false), |e| (Some(&e.value), e.of_impulses))
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -139,7 +149,13 @@ impl<'g> Builder<'_, 'g> {
         let pair = self.two(first.clone(), second.clone(), Form::touches, second_place, cx)?;
         let touches = self.touches(&pair);
         if touches.is_empty() {
-            cx.error(place.clone(), "where these surfaces touch is not known").help(PAIRS);
+            let is_cylinder =
+                |surface: &Surface<'g>| matches!(surface.form, Form::Cylinder(..) | Form::Drum(..));
+            let help = match is_cylinder(first) || is_cylinder(second) {
+                true => format!("{STAND_IN}; {PAIRS}"),
+                false => PAIRS.to_string(),
+            };
+            cx.error(place.clone(), "where these surfaces touch is not known").help(help);
             return None;
         }
         let side = self.scope.graph.num(if pair.a.frame.link == first_link { 1.0 } else { -1.0 });
@@ -170,7 +186,7 @@ impl<'g> Builder<'_, 'g> {
         let rates = rates.into_iter().map(|(_, rate)| rate).collect();
         let presses = self.model.contacts.len();
         self.touching.insert(name.clone(), point.place.clone());
-        self.push_contact(name.clone(), (point.gap, false), None, rates, (laws.friction, laws.restitution));
+        self.push_contact(name.clone(), (point.gap, false), None, rates, laws);
         let none = self.scope.graph.zero();
         for (word, about, most) in [("spin", 0..1, laws.torsional), ("roll", 1..3, laws.rolling)] {
             let turns = about.map(|k| (point.rates[k].0, point.turns[k]));
@@ -184,63 +200,22 @@ impl<'g> Builder<'_, 'g> {
                 }
                 let rates = turns.into_iter().map(|(_, rate)| rate).collect();
                 let name = format!("{name}.{word}");
-                self.push_contact(name, (point.gap, false), Some(presses), rates, (most, none));
+                let laws = Laws { friction: most, restitution: none, of_impulses: false, ..laws };
+                self.push_contact(name, (point.gap, false), Some(presses), rates, laws);
             }
         }
     }
 
-    /// Adds the stops at the bounds of a limit.
-    fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
-        let restitution =
-            self.coefficient(limit.restitution.as_ref(), "restitution", Rule::Fraction, &limit.name.text, cx);
-        let (Some(restitution), Some((own, rate, turns))) = (restitution, self.stopped(limit, cx)) else {
-            return;
-        };
-        let g = self.scope.graph;
-        let value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
-            // Mistakes are told where the limit is read.
-            true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
-            false => self.scope.scalar(e, &mut Diagnostics::unread()),
-        };
-        let bounds = [("from", &limit.from, 1.0), ("to", &limit.to, -1.0)];
-        let bounds = bounds.map(|(word, e, side)| Some((word, value(e.as_ref()?)?, side)));
-        for (word, bound, side) in bounds.into_iter().flatten() {
-            let gap = (own - bound) * g.num(side);
-            let name = format!("{}.{word}", limit.name.text);
-            self.push_contact(name, (gap, turns), None, vec![rate * g.num(side)], (g.zero(), restitution));
-        }
-    }
-
-    /// What a limit stops: its value, its rate, and whether it is an angle.
-    fn stopped(&self, limit: &syntax::Limit, cx: &mut Diagnostics) -> Option<(Expr<'g>, Expr<'g>, bool)> {
-        let g = self.scope.graph;
-        if !self.scope.is_moving(&limit.on) {
-            let (c, angle) = self.coordinate(&limit.on, cx)?;
-            let (q, v) = (c.q.expr(g), c.v.expr(g));
-            let ratio = g.num(c.ratio);
-            return Some((q * ratio + g.num(c.offset), v * ratio, angle == Some(true)));
-        }
-        let value = self
-            .scope
-            .in_context(Context::new(Allowed::Placement, None), |scope| scope.scalar(&limit.on, cx))?;
-        let rate = time_derivative(self.model.space(), value);
-        if velocity_gradient(rate).is_empty() {
-            cx.error(limit.on.place.clone(), "nothing moves what is limited")
-                .help("a limit is on an expression of coordinates, as a distance `norm(r(ball / anchor))`");
-            return None;
-        }
-        Some((value, rate, false))
-    }
-
-    fn push_contact(
+    pub(super) fn push_contact(
         &mut self,
         name: String,
         (gap, turns): (Expr<'g>, bool),
         pressed_by: Option<usize>,
         rates: Vec<Expr<'g>>,
-        (friction, restitution): (Expr<'g>, Expr<'g>),
+        Laws { friction, restitution, of_impulses, .. }: Laws<'g>,
     ) {
-        self.model.contacts.push(Contact { name, gap, turns, pressed_by, rates, friction, restitution });
+        let contact = Contact { name, gap, turns, pressed_by, rates, friction, restitution, of_impulses };
+        self.model.contacts.push(contact);
     }
 
     /// The coefficients of a contact; `None` after a mistake.
@@ -251,17 +226,19 @@ impl<'g> Builder<'_, 'g> {
         let friction = read(&contact.friction, "friction", Rule::NotNegative);
         let torsional = read(&contact.torsional, "torsional friction", Rule::NotNegative);
         let rolling = read(&contact.rolling, "rolling friction", Rule::NotNegative);
-        let restitution = read(&contact.restitution, "restitution", Rule::Fraction);
+        let (value, of_impulses) = apart(contact.restitution.as_ref());
+        let restitution = self.coefficient(value, "restitution", Rule::Fraction, name, cx);
         Some(Laws {
             friction: friction?,
             torsional: torsional?,
             rolling: rolling?,
             restitution: restitution?,
+            of_impulses,
         })
     }
 
     /// A coefficient, zero if it is not given; `None` after a mistake.
-    fn coefficient(
+    pub(super) fn coefficient(
         &self,
         e: Option<&syntax::Expr>,
         what: &str,

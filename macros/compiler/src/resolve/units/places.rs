@@ -86,7 +86,7 @@ pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<
     for contact in &d.contacts {
         places.surface(&contact.first);
         places.surface(&contact.second);
-        places.all(contact.friction.iter().chain(&contact.restitution), &PLAIN, "1");
+        places.all(contact.friction.iter().chain(contact.restitution.iter().map(|e| &e.value)), &PLAIN, "1");
         places.all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
         if let Some(soft) = &contact.soft {
             let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };
@@ -255,7 +255,7 @@ impl<'a> Places<'a> {
         self.all(limit.from.iter().chain(&limit.to), &q, length);
         self.maybe(&limit.max_speed, q.over(&TIME), speed);
         self.maybe(&limit.max_effort, ENERGY.over(&q), effort);
-        self.all(&limit.restitution, &PLAIN, "1");
+        self.all(limit.restitution.iter().map(|e| &e.value), &PLAIN, "1");
     }
 
     /// The value of a coordinate, an input or a state at rest.

@@ -62,7 +62,16 @@ pub struct Limit {
     /// Largest force or torque, in both directions.
     pub max_effort: Option<Expr>,
     /// How much of its speed a coordinate keeps that strikes a bound, which is a stop then.
-    pub restitution: Option<Expr>,
+    pub restitution: Option<Restitution>,
+}
+
+/// A coefficient of restitution.
+#[derive(Clone, Debug)]
+pub struct Restitution {
+    /// Its value.
+    pub value: Expr,
+    /// It is a ratio of impulses (Poisson), not of velocities (Newton).
+    pub of_impulses: bool,
 }
 
 /// Two surfaces that may part, strike, slide and stick.
@@ -81,7 +90,7 @@ pub struct Contact {
     /// Largest moment of friction about the tangents, by the normal force; none if absent.
     pub rolling: Option<Expr>,
     /// Coefficient of restitution; zero if absent.
-    pub restitution: Option<Expr>,
+    pub restitution: Option<Restitution>,
     /// The surfaces yield instead of being rigid.
     pub soft: Option<Softness>,
     /// A file says it: what never parts is left out.

@@ -9,7 +9,7 @@ mod force;
 mod geometry;
 mod structure;
 
-pub use constraint::{Constraint, ConstraintKind, Contact, Limit, SlipFriction, Softness};
+pub use constraint::{Constraint, ConstraintKind, Contact, Limit, Restitution, SlipFriction, Softness};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Expr, ExprKind, Name};
 pub use force::{Action, ActionKind, Drive, DriveLaw, DriveOn, Law, Target, Wrench};

@@ -1,0 +1,57 @@
+//! Stops: coordinates and expressions at the bounds of limits.
+
+use super::unilateral::{Laws, apart};
+use crate::diag::Diagnostics;
+use crate::expr::Expr;
+use crate::kinematics::{time_derivative, velocity_gradient};
+use crate::mechanism::Rule;
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::{Allowed, Context};
+use crate::syntax;
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds the stops at the bounds of a limit.
+    pub(super) fn add_stops(&mut self, limit: &syntax::Limit, cx: &mut Diagnostics) {
+        let (value, of_impulses) = apart(limit.restitution.as_ref());
+        let restitution = self.coefficient(value, "restitution", Rule::Fraction, &limit.name.text, cx);
+        let (Some(restitution), Some((own, rate, turns))) = (restitution, self.stopped(limit, cx)) else {
+            return;
+        };
+        let g = self.scope.graph;
+        let value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
+            // Mistakes are told where the limit is read.
+            true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
+            false => self.scope.scalar(e, &mut Diagnostics::unread()),
+        };
+        let bounds = [("from", &limit.from, 1.0), ("to", &limit.to, -1.0)];
+        let bounds = bounds.map(|(word, e, side)| Some((word, value(e.as_ref()?)?, side)));
+        for (word, bound, side) in bounds.into_iter().flatten() {
+            let gap = (own - bound) * g.num(side);
+            let name = format!("{}.{word}", limit.name.text);
+            let (friction, torsional, rolling) = (g.zero(), g.zero(), g.zero());
+            let laws = Laws { friction, torsional, rolling, restitution, of_impulses };
+            self.push_contact(name, (gap, turns), None, vec![rate * g.num(side)], laws);
+        }
+    }
+
+    /// What a limit stops: its value, its rate, and whether it is an angle.
+    fn stopped(&self, limit: &syntax::Limit, cx: &mut Diagnostics) -> Option<(Expr<'g>, Expr<'g>, bool)> {
+        let g = self.scope.graph;
+        if !self.scope.is_moving(&limit.on) {
+            let (c, angle) = self.coordinate(&limit.on, cx)?;
+            let (q, v) = (c.q.expr(g), c.v.expr(g));
+            let ratio = g.num(c.ratio);
+            return Some((q * ratio + g.num(c.offset), v * ratio, angle == Some(true)));
+        }
+        let value = self
+            .scope
+            .in_context(Context::new(Allowed::Placement, None), |scope| scope.scalar(&limit.on, cx))?;
+        let rate = time_derivative(self.model.space(), value);
+        if velocity_gradient(rate).is_empty() {
+            cx.error(limit.on.place.clone(), "nothing moves what is limited")
+                .help("a limit is on an expression of coordinates, as a distance `norm(r(ball / anchor))`");
+            return None;
+        }
+        Some((value, rate, false))
+    }
+}

@@ -1,0 +1,280 @@
+//! Restitution as a ratio of impulses (Poisson): where it differs from that of velocities (Newton), and the laws of both.
+
+use super::laws::Random;
+use linkwork::contact::{self, Contacts};
+use linkwork::prelude::*;
+
+/// A rod that strikes the floor with one end.
+macro_rules! rod {
+    ($name:ident, $e:expr) => {
+        #[mechanism(gravity = -gravity * y)]
+        struct $name {
+            gravity: f64,
+            friction: f64,
+            e: f64,
+            #[body(mass = 3, inertia = rod(3, 2, x))]
+            rod: Body,
+            #[joint(ground -> rod, about = z)]
+            pose: Planar,
+            #[contact(rod.at(-x), ground.plane(y), friction = friction, restitution = $e)]
+            end: Contact,
+        }
+    };
+}
+rod!(Impulses, poisson(e));
+rod!(Velocities, e);
+
+/// The rates of gap and slip after an impact of a rod with its centre at rest but for `rates`, those of the end.
+fn after<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
+where
+    M: Contacts<3, 3, 0, 1, 2, Scalar = f64>,
+{
+    let q = SVector::from([0.0, angle.sin(), angle]);
+    let jacobian = m.contact_jacobian(0.0, &q);
+    // No turning, so that the end moves as the centre does.
+    let moves = jacobian.fixed_columns::<2>(0).into_owned();
+    let v = moves.try_inverse().unwrap() * SVector::from([gap, slip]);
+    let found = contact::impact(m, 0.0, &q, &[v[0], v[1], 0.0].into()).unwrap();
+    let rates = m.contact_rates(0.0, &q, &found.v);
+    let taken = m.kinetic_energy(0.0, &q, &[v[0], v[1], 0.0].into()) - m.kinetic_energy(0.0, &q, &found.v);
+    ([rates[0], rates[1]], taken)
+}
+
+/// The oblique impact of a rod whose slip stops during compression (Wang and Mason, *Two-dimensional rigid-body collisions with
+/// friction*, J. Appl. Mech. 59, 1992: sticking in the phase of compression). With `W = G M⁻¹ Gᵀ` compression ends with no rates at all,
+/// so its impulses are `−W⁻¹ u`; restitution sticks too, so that the end leaves with `−e (uₙ − Wₙₜ uₜ / Wₜₜ)` by Poisson's law and with
+/// `−e uₙ` by Newton's. Of a rod of mass `m` and length `2 l` at an angle `θ`, `m Wₙₙ = 1 + 3 cos² θ`, `m Wₜₜ = 1 + 3 sin² θ` and
+/// `m |Wₙₜ| = 3 sin θ cos θ`.
+#[test]
+fn an_oblique_rod_leaves_faster_than_by_newton() {
+    let (friction, e, gravity) = (2.0, 0.6, 0.0);
+    let (poisson, newton) = (Impulses { gravity, friction, e }, Velocities { gravity, friction, e });
+    for angle in [0.6, 0.8, 1.0_f64] {
+        let q = SVector::from([0.0, angle.sin(), angle]);
+        let jacobian = poisson.contact_jacobian(&q);
+        let w = jacobian * poisson.mass_matrix(&q).try_inverse().unwrap() * jacobian.transpose();
+        let (sine, cosine) = angle.sin_cos();
+        let [nn, tt, nt] = [1.0 + 3.0 * cosine * cosine, 1.0 + 3.0 * sine * sine, 3.0 * sine * cosine];
+        assert!((w[(0, 0)] * 3.0 - nn).abs() < 1e-12 && (w[(1, 1)] * 3.0 - tt).abs() < 1e-12);
+        assert!((w[(0, 1)].abs() * 3.0 - nt).abs() < 1e-12);
+        let share = nt / tt * w[(0, 1)].signum();
+        for slip in [-0.4, -0.1, 0.0, 0.1, 0.4] {
+            // Impulses of compression, of which friction bears no more than it can.
+            let pressed = (tt + nt * w[(0, 1)].signum() * slip) / (nn * tt - nt * nt);
+            let along = (-nt * w[(0, 1)].signum() - nn * slip) / (nn * tt - nt * nt);
+            assert!(along.abs() < friction * pressed && share.abs() < friction);
+            let (found, taken) = after(&poisson, angle, [-1.0, slip]);
+            let wanted = e * (1.0 + share * slip);
+            assert!((found[0] - wanted).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?} {wanted}");
+            assert!(taken > 0.0);
+            let (found, _) = after(&newton, angle, [-1.0, slip]);
+            assert!((found[0] - e).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?}");
+        }
+    }
+}
+
+/// Where slip goes on both laws are one: the end leaves with `−e uₙ`, and slip is braked by `μ` times the impulse.
+#[test]
+fn while_a_rod_slips_both_laws_are_one() {
+    let (friction, e, gravity) = (0.1, 0.6, 0.0);
+    for angle in [0.6, 0.8, 1.0] {
+        for slip in [-3.0, 3.0] {
+            let (poisson, _) = after(&Impulses { gravity, friction, e }, angle, [-1.0, slip]);
+            let (newton, _) = after(&Velocities { gravity, friction, e }, angle, [-1.0, slip]);
+            assert!((poisson[0] - e).abs() < 1e-12, "{poisson:?}");
+            assert!(
+                (poisson[1] - newton[1]).abs() < 1e-12 && poisson[1] * slip > 0.0,
+                "{poisson:?} {newton:?}"
+            );
+        }
+    }
+}
+
+/// Steps in time through the oblique impact come to its velocity as they get shorter.
+#[test]
+fn steps_strike_as_impacts_do() {
+    let m = Impulses { gravity: 9.81, friction: 1.0, e: 0.6 };
+    let angle: f64 = 0.8;
+    let (sine, cosine) = angle.sin_cos();
+    let q = SVector::from([0.0, sine + 1e-3, angle]);
+    let v = SVector::from([0.3, -1.0, 0.0]);
+    let located = simulate(&m).from(q, v).method(EventDriven::new()).duration(0.02).finish().unwrap();
+    // It falls by a millimetre first, and strikes with this speed.
+    let speed = (1.0 + 2.0 * 9.81 * 1e-3_f64).sqrt();
+    let struck = (speed - 1.0) / 9.81;
+    let gap = m.contact_rates(&located.q, &located.v)[0];
+    let (tt, nt) = (1.0 + 3.0 * sine * sine, 3.0 * sine * cosine);
+    let slip = m.contact_rates(&q, &v)[1];
+    let sign = {
+        let jacobian = m.contact_jacobian(&q);
+        (jacobian * m.mass_matrix(&q).try_inverse().unwrap() * jacobian.transpose())[(0, 1)].signum()
+    };
+    let leaves = 0.6 * (speed + sign * nt / tt * slip);
+    // The end moves on a curve after it.
+    assert!((gap - leaves).abs() < 0.6, "{gap} {leaves}");
+    let early = simulate(&m).from(q, v).method(EventDriven::new()).duration(struck + 1e-7).finish().unwrap();
+    let found = m.contact_rates(&early.q, &early.v)[0];
+    assert!((found - leaves).abs() < 1e-4, "{found} {leaves}");
+    let mut before = f64::INFINITY;
+    for h in [1e-3, 1e-4, 1e-5] {
+        let end = simulate(&m).from(q, v).method(TimeStepping::step(h)).duration(0.02).finish().unwrap();
+        let apart = (end.v - located.v).amax();
+        assert!(apart < 40.0 * h && apart < before, "{h}: {apart}");
+        before = apart;
+    }
+}
+
+/// A ball that bounces by Poisson's law comes to rest when that by Newton's does, in both ways of simulating, and stays: at rest there is
+/// no compression that would lift it.
+#[mechanism(gravity = -9.81 * z)]
+struct Ball {
+    #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.1), ground.plane(z), friction = 0.3, restitution = poisson(0.5))]
+    floor: Contact,
+}
+
+#[test]
+fn a_ball_bounces_and_rests() {
+    let m = Ball {};
+    let mut q = m.neutral();
+    q[2] = 0.6;
+    // √(2 h / g) (1 + e) / (1 − e).
+    let rests = (1.0 / 9.81_f64).sqrt() * 3.0;
+    let located = simulate(&m).from(q, [0.0; 6]).method(EventDriven::new());
+    let apex = located.clone().duration((1.0 / 9.81_f64).sqrt() * 1.5).finish().unwrap();
+    assert!((apex.q[2] - 0.1 - 0.125).abs() < 1e-10 && apex.v[2].abs() < 1e-10, "{}", apex.q);
+    let end = located.duration(rests + 0.5).finish().unwrap();
+    assert!((end.q[2] - 0.1).abs() < 1e-12 && end.v.amax() < 1e-12, "{}", end.v);
+    let steps = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(rests + 0.5);
+    let mut highest = 0.0_f64;
+    for sample in steps {
+        let sample = sample.unwrap();
+        if sample.t > rests + 0.1 {
+            highest = highest.max((sample.q[2] - 0.1).abs());
+        }
+    }
+    assert!(highest < 1e-9, "{highest}");
+}
+
+/// A block in a corner, and a double pendulum whose tip strikes the floor, with Poisson's restitution.
+#[mechanism(gravity = -9.81 * z)]
+struct Block {
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 2, com = 0.02 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
+    block: Body,
+    #[joint(ground -> block)]
+    pose: Free,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.plane(z), friction = friction, restitution = poisson(restitution))]
+    floor: Contact,
+    #[contact(block.cuboid(0.3, 0.2, 0.1), ground.at(-0.15 * x).plane(x), friction = friction, restitution = restitution)]
+    wall: Contact,
+}
+
+#[mechanism(gravity = -9.81 * y)]
+struct Pendulum {
+    friction: f64,
+    restitution: f64,
+    #[body(mass = 1, com = 0.25 * x, inertia = rod(1, 0.5, x))]
+    first: Body,
+    #[body(mass = 1, com = 0.25 * x, inertia = rod(1, 0.5, x))]
+    second: Body,
+    #[joint(ground.at(height * y) -> first, about = z)]
+    upper: Pin,
+    #[joint(first.at(0.5 * x) -> second, about = z)]
+    lower: Pin,
+    height: f64,
+    #[contact(second.at(0.5 * x), ground.plane(y), friction = friction, restitution = poisson(restitution))]
+    tip: Contact,
+}
+
+/// Checks an impact against what both laws have in common.
+fn check<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+) where
+    M: Contacts<NQ, NV, 0, NK, NR, Scalar = f64>,
+{
+    let found = contact::impact(m, 0.0, q, v).unwrap();
+    let (before, after) = (m.contact_rates(0.0, q, v), m.contact_rates(0.0, q, &found.v));
+    let speed = before.amax().max(after.amax());
+    let energy = m.kinetic_energy(0.0, q, v);
+    let grown = m.kinetic_energy(0.0, q, &found.v) - energy;
+    assert!(grown < 1e-12 * energy, "energy grows by {grown} of {energy}");
+    let push =
+        m.mass_matrix(0.0, q) * (found.v - v) - m.contact_jacobian(0.0, q).transpose() * found.impulses;
+    assert!(push.amax() <= 1e-11 * (found.impulses.amax() + 1e-3), "{push}");
+    let (gaps, laws) = (m.contact_gaps(0.0, q), m.contact_laws());
+    for (k, rows) in M::CONTACT_ROWS.iter().enumerate().filter(|(k, _)| gaps[*k] < 1e-8) {
+        let normal = found.impulses[rows.first];
+        let along = found.impulses.rows(rows.first + 1, rows.count - 1).norm();
+        assert!(normal >= 0.0 && after[rows.first] >= -5e-8 * speed, "{k}: {normal} {}", after[rows.first]);
+        assert!(along <= laws[k].friction * normal * (1.0 + 1e-9) + 1e-11 * found.impulses.amax(), "{k}");
+    }
+}
+
+/// Energy never grows, impulses press, stay within their cones and keep surfaces apart: with many contacts at once, beside Newton's law,
+/// and where that alone would give energy.
+#[test]
+fn impacts_obey_the_laws() {
+    let mut random = Random(31);
+    for _ in 0..300 {
+        let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
+        let m = Block { friction, restitution: random.one_of([0.2, 0.6, 1.0]) };
+        let mut q = m.neutral();
+        q[2] = 0.05;
+        if random.next() > 0.3 {
+            q[0] = 1.0;
+        }
+        check(&m, &q, &random.vector(3.0));
+    }
+    for _ in 0..2000 {
+        let (a, b) = (random.next() * 3.0, random.next() * 3.0);
+        let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
+        let friction = random.one_of([0.0, 0.3, 0.7, 3.0]);
+        let m = Pendulum { friction, restitution: random.one_of([0.5, 0.9, 1.0]), height };
+        check(&m, &[a, b].into(), &random.vector(3.0));
+    }
+}
+
+/// A slider-crank whose slide strikes a stop, with Poisson's restitution.
+#[mechanism]
+struct Crank {
+    e: f64,
+    #[body(mass = 1, com = 0.05 * x, inertia = rod(1, 0.1, x))]
+    crank: Body,
+    #[joint(ground -> crank, about = z)]
+    shaft: Pin,
+    #[body(mass = 1, com = 0.15 * x, inertia = rod(1, 0.3, x))]
+    rod: Body,
+    #[joint(crank.at(0.1 * x) -> rod, about = z)]
+    wrist: Pin,
+    #[body(mass = 2, inertia = cuboid(2, 0.1, 0.1, 0.1))]
+    slide: Body,
+    #[joint(ground -> slide, along = x)]
+    way: Sleeve,
+    #[joint(rod.at(0.3 * x) -> slide, about = z)]
+    bolt: Pin,
+    #[limit(on = way, to = 0.37, restitution = poisson(e))]
+    stop: Limit,
+}
+
+/// Through a loop the slide leaves with `e` of its speed, the energy falls by `1 − e²`, and velocities stay on the constraints.
+#[test]
+fn loops_stay_closed() {
+    let m = Crank { e: 0.7 };
+    let cosine: f64 = (0.37 * 0.37 + 0.01 - 0.09) / (2.0 * 0.37 * 0.1);
+    let angle = cosine.acos();
+    let lean = -(angle.sin() / 3.0).asin();
+    let q = SVector::from([angle, lean - angle, 0.1 * cosine + 0.3 * lean.cos()]);
+    let v = m.project_velocity(&q, &[0.0, 0.0, 1.0].into()).unwrap();
+    let found = contact::impact(&m, 0.0, &q, &v).unwrap();
+    assert!((m.constraint_jacobian(&q) * found.v).amax() < 1e-12);
+    assert!((found.v[2] + 0.7 * v[2]).abs() < 1e-12 && v[2] > 0.1, "{}", found.v);
+    let energy = m.kinetic_energy(&q, &v);
+    assert!((m.kinetic_energy(&q, &found.v) - 0.49 * energy).abs() < 1e-12 * energy);
+}
