@@ -145,6 +145,25 @@ pub fn attacks(seed: u64, count: usize) -> usize {
     errors
 }
 
+/// A block in a corner of surfaces that are there twice, with a friction of 54 254: it turns about two of sixteen points, which neither
+/// gradients nor friction that grows by degrees find.
+#[test]
+fn a_block_turns_about_two_of_many_points() {
+    let m = Twice { friction: 54254.21780149019, restitution: 1.0 };
+    let q = [-1e-12, 0.0, 0.05, -1.2038604637858707e-13, 3.528791029535654e-13, 2.2409312509628288e-13, 1.0]
+        .into();
+    let v = [
+        -3.436024926795618e-13,
+        -2.980942872602148e-13,
+        5.526987384038264e-13,
+        -1.786750767074432e-13,
+        -6.316209121722274e-13,
+        3.9121351162862305e-13,
+    ]
+    .into();
+    super::laws::check(&m, &q, &v);
+}
+
 /// All have answers but one in ten thousand, whose error is said. `LINKWORK_ORACLE` is how many states of each of the five mechanisms
 /// are tried: 200 000 are a million.
 #[test]

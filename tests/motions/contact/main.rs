@@ -15,6 +15,7 @@ mod mechanisms;
 mod orders;
 mod piles;
 mod poisson;
+mod ratchet;
 mod robots;
 mod soft;
 mod starts;

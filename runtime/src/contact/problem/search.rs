@@ -19,6 +19,8 @@ const DEGREES: u32 = 24;
 const STEEP: f64 = 4.0;
 /// Contacts of which all selections are tried where nothing else helps.
 const GUESSED: usize = 6;
+/// Most contacts of which all pairs are tried then.
+const PAIRED: usize = 24;
 
 /// Less friction, by a share of the way from none.
 fn part_of<T: Real>(friction: T, share: T) -> T {
@@ -107,6 +109,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             if self.is_solved(&guess) {
                 return Ok(guess);
             }
+        }
+        if let Some(found) = self.in_pairs() {
+            return Ok(found);
         }
         let (left, worst) = self.residual(&impulses);
         let size = self.speed() * epsilon::<T>().sqrt();
@@ -200,6 +205,32 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
         }
         self.is_solved(&impulses).then_some(impulses)
+    }
+
+    /// Impulses that Newton's method finds from those with which two contacts stick, or one: a body that touches at many points with
+    /// strong friction turns about few of them. Of all that it finds those that leave the least energy, so that the order of contacts
+    /// decides nothing.
+    fn in_pairs(&self) -> Option<List<T, NR>> {
+        if self.count > PAIRED {
+            return None;
+        }
+        let mut best: Option<(T, List<T, NR>)> = None;
+        for one in 0..self.count {
+            for other in one..self.count {
+                let found = self.newton_twice(self.together(|k| k == one || k == other));
+                if !self.is_solved(&found) {
+                    continue;
+                }
+                let rates = self.rates(&found);
+                let all = found.iter().zip(rates.iter().zip(self.free.iter())).take(self.size);
+                let work = all
+                    .fold(T::zero(), |sum, (impulse, (after, before))| sum + *impulse * (*after + *before));
+                if best.is_none_or(|(least, _)| work < least) {
+                    best = Some((work, found));
+                }
+            }
+        }
+        best.map(|(_, found)| found)
     }
 
     /// Steps for the impulses that are short enough for all to be taken at once, whatever the directions of the tangents: the inverse of

@@ -1,0 +1,80 @@
+//! A ratchet with teeth: a pawl that its weight presses on a rack.
+
+use linkwork::contact;
+use linkwork::prelude::*;
+
+/// Teeth of 0.1 m with a gentle flank of slope 1/2 and a steep one of slope 2.
+#[mechanism(gravity = -9.81 * z)]
+struct Ratchet {
+    friction: f64,
+    load: f64,
+    #[body(mass = 1)]
+    rack: Body,
+    #[joint(ground -> rack, along = x)]
+    rail: Sleeve,
+    #[particle(mass = 0.5)]
+    pawl: Particle,
+    #[joint(ground -> pawl, along = z)]
+    guide: Sleeve,
+    #[acts(on = rack, value = load * x)]
+    pull: Force,
+    #[contact(
+        pawl,
+        rack.terrain(max(max(min(u / 2, 2 * (0.1 - u)), min((u - 0.1) / 2, 2 * (0.2 - u))), min((u - 0.2) / 2, 2 * (0.3 - u)))),
+        friction = friction
+    )]
+    teeth: Contact,
+}
+
+const WEIGHT: f64 = 0.5 * 9.81;
+
+/// Where the rack is after 0.05 s, from rest with the pawl on a flank at the place `u` of the rack, `z` high.
+fn moves(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
+    let m = Ratchet { friction, load };
+    let q = SVector::from([-u, z]);
+    contact::check(&m, 0.0, &q).unwrap();
+    let end = simulate(&m).from(q, [0.0; 2]).method(TimeStepping::step(1e-3)).duration(0.05).finish();
+    end.unwrap().q[0] - q[0]
+}
+
+/// A flank of slope `s = tan α` is climbed by a load of `m g tan(α + φ) = m g (s + μ) / (1 − s μ)` with `μ = tan φ`, and by none where
+/// `s μ > 1`: there the ratchet holds whatever pulls, and where it does not move it does not creep.
+#[test]
+fn a_pawl_holds_one_way() {
+    let climbs = |s: f64, friction: f64| WEIGHT * (s + friction) / (1.0 - s * friction);
+    let (gentle, steep) = ([0.03, 0.015], [0.19, 0.02]);
+    for friction in [0.3, 0.6] {
+        let load = -climbs(0.5, friction);
+        assert!(moves(friction, load * 1.001, gentle) < -1e-7, "{friction}");
+        if friction > 0.5 {
+            // The flank holds the pawl by itself, and the load up to its limit.
+            assert!(moves(friction, load * 0.999, gentle).abs() < 1e-12);
+        }
+    }
+    let load = climbs(2.0, 0.3);
+    assert!(moves(0.3, load * 1.001, steep) > 1e-7);
+    assert!(moves(0.3, load * 0.999, steep).abs() < 1e-12);
+    for times in [2.0, 1e3] {
+        let moved = moves(0.6, WEIGHT * times, steep);
+        assert!(moved.abs() < 1e-12, "{times}: {moved}");
+    }
+}
+
+/// Pulled the other way the rack runs under the pawl, which falls into one gap between teeth after another.
+#[test]
+fn a_rack_runs_one_way() {
+    // A little more than climbs the gentle flanks.
+    let m = Ratchet { friction: 0.3, load: -1.1 * WEIGHT };
+    let run = simulate(&m).from([-0.03, 0.015], [0.0; 2]).method(TimeStepping::step(2e-4)).duration(3.0);
+    let (mut falls, mut before) = (0, 0.0);
+    for sample in run {
+        let sample = sample.unwrap();
+        if sample.q[0] < -0.28 {
+            break;
+        }
+        falls += usize::from(before >= 0.0 && sample.v[1] < 0.0);
+        before = sample.v[1];
+        assert!(m.contact_gaps(&sample.q)[0] > -2e-3, "{}", sample.q);
+    }
+    assert!(falls >= 2, "{falls}");
+}
