@@ -1,8 +1,8 @@
-"""MuJoCo on the quadruped of `benches/src/bin/contact.rs`: the time of a step, and how exact it is.
+"""MuJoCo and Drake on the quadruped of `benches/src/bin/contact.rs`: the time of a step, and how exact it is.
 
     python contact.py URDF_FOLDER LINKWORK_PROGRAM
 
-Runs the program, and prints a table of both.
+Runs the program, and prints a table of all.
 """
 
 import json
@@ -10,6 +10,9 @@ import subprocess
 import sys
 import time
 
+from importlib.metadata import version
+
+import contact_drake
 import mujoco
 import numpy as np
 
@@ -117,10 +120,11 @@ ROWS = [
 def main():
     folder, program = sys.argv[1:3]
     ours = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
-    theirs = measured(folder)
-    print(f"| | Linkwork | MuJoCo {mujoco.__version__} |\n| --- | ---: | ---: |")
+    columns = [ours, measured(folder), contact_drake.measured(folder)]
+    print(f"| | Linkwork | MuJoCo {mujoco.__version__} | Drake {version('drake')} |\n| --- | ---: | ---: | ---: |")
     for text, key, unit, factor in ROWS:
-        print(f"| {text}, {unit} | {ours[key] * factor:.3g} | {theirs[key] * factor:.3g} |")
+        figures = " | ".join(f"{column[key] * factor:.3g}" for column in columns)
+        print(f"| {text}, {unit} | {figures} |")
 
 
 if __name__ == "__main__":
