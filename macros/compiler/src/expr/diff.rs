@@ -60,6 +60,35 @@ impl<'g> Derivative<'g> {
         Derivative { graph, rates, known: Memo::new(graph) }
     }
 
+    /// The same where the derivatives of some expressions are known, in other terms than by their operands. They hold for what constants
+    /// are added to, or multiply, as well.
+    pub fn knowing(mut self, derivatives: impl IntoIterator<Item = (Expr<'g>, Expr<'g>)>) -> Derivative<'g> {
+        for (e, derivative) in derivatives {
+            let (mut e, mut derivative) = (e, derivative);
+            loop {
+                self.known.set(e.id(), derivative.id());
+                let at = |id: Id| self.graph.expr(id);
+                let constant = |id: Id| at(id).value();
+                (e, derivative) = match e.node() {
+                    Node::Neg(a) => (at(a), -derivative),
+                    Node::Add(a, b) if constant(a).is_some() => (at(b), derivative),
+                    Node::Add(a, b) | Node::Sub(a, b) if constant(b).is_some() => (at(a), derivative),
+                    Node::Sub(a, b) if constant(a).is_some() => (at(b), -derivative),
+                    Node::Mul(a, b) => match (constant(a), constant(b)) {
+                        (Some(c), _) if c != 0.0 => (at(b), derivative * (1.0 / c)),
+                        (_, Some(c)) if c != 0.0 => (at(a), derivative * (1.0 / c)),
+                        _ => break,
+                    },
+                    _ => break,
+                };
+                if e.value().is_some() || matches!(e.node(), Node::Symbol(_)) {
+                    break;
+                }
+            }
+        }
+        self
+    }
+
     /// Derivatives of what a node is an operand of, where all others stay.
     fn by_node(id: Id, graph: &'g Graph) -> Derivative<'g> {
         let mut derivative = Derivative::along(Vec::new(), graph);

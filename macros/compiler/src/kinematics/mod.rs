@@ -17,7 +17,7 @@ pub use joint::{Dof, Drift, Joint, joint, joints};
 pub use links::{accelerations, change_axes, twists};
 pub use rates::{
     Partials, configuration_rate, energy_gradient, known_gradient, motion_rates, position, position_in, rate,
-    symbols_in, time_derivative, velocity_gradient, velocity_gradients,
+    rotation_rates, symbols_in, time_derivative, velocity_gradient, velocity_gradients,
 };
 pub use rows::{Rows, random_configuration, value_of};
 pub use spatial::{Spatial, map_spatial};

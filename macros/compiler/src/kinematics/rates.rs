@@ -37,8 +37,42 @@ pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool)
         _ => None,
     };
     let seeds = symbols_in(e).into_iter().filter_map(|symbol| rate(symbol).map(|rate| (symbol, rate)));
-    let mut along = Derivative::along(seeds.collect(), g);
+    let mut along = Derivative::along(seeds.collect(), g).knowing(rotation_rates(space));
     e.iter().map(|e| along.of(*e)).collect()
+}
+
+/// The entries of the rotation matrices of ball and free joints, each with its rate by `Ṙ = R [ω]×`: other entries times angular
+/// velocities, which the rates of the quaternion's components would have to be multiplied out for.
+pub fn rotation_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
+    let g = space.graph;
+    let mut all = Vec::new();
+    for chart in space.charts {
+        let (first, v) = match *chart {
+            Chart::Plain(..) => continue,
+            Chart::Ball(a, b) => (a, b),
+            Chart::Free(a, b) => (a + 3, b + 3),
+        };
+        let quaternion = [0, 1, 2, 3].map(|k| (first + k).expr(g));
+        let axes = [0, 1, 2].map(|k| {
+            let unit = [0, 1, 2].map(|i| if i == k { g.one() } else { g.zero() });
+            Rotation::quaternion(quaternion).to_parent(Vec3(unit))
+        });
+        let w = [0, 1, 2].map(|k| velocity(space, v + k));
+        for k in 0..3 {
+            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+            let rate = |i: usize| axes[next][i] * w[last] - axes[last][i] * w[next];
+            all.extend((0..3).map(|i| (axes[k][i], rate(i))));
+        }
+    }
+    all
+}
+
+/// A velocity of the joints.
+fn velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
+    match space.speeds {
+        None => index.expr(space.graph),
+        Some(speeds) => speeds.rate(space.graph, index),
+    }
 }
 
 /// Derivatives by single symbols, kept from one expression to the next: places of a chain have all in common that stands before
@@ -90,10 +124,7 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
 /// declared, these velocities are `Z(q)` times what the entries of `v` are.
 pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
-    let v = |index: InV| match space.speeds {
-        None => index.expr(g),
-        Some(speeds) => speeds.rate(g, index),
-    };
+    let v = |index: InV| velocity(space, index);
     let components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
     let three = |first: InV| [0, 1, 2].map(|k| v(first + k));
     for chart in space.charts {

@@ -2,9 +2,9 @@
 
 use super::super::crba::Matrix;
 use super::ForceDerivatives;
+use crate::expr::Expr;
 use crate::expr::diff::Derivative;
-use crate::expr::{Expr, Symbol};
-use crate::kinematics::configuration_rate;
+use crate::kinematics::{configuration_rate, rotation_rates};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Model, Quantity};
 
@@ -31,42 +31,42 @@ pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>)
 /// A column for each velocity: the rate of the expressions where that velocity is one and all others are zero.
 pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> = (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect();
+    let turning = rotation_rates(model.space());
     let direction = |i: usize| {
         let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
         let seed = |(k, rate): (usize, &Expr<'g>)| (Quantity::Configuration(k).symbol(), by.of(*rate));
-        let own = rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero());
+        let own = rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero()).collect::<Vec<_>>();
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_configuration(i));
-        own.chain(given).collect()
+        let known = turning.iter().map(|(entry, rate)| (*entry, by.of(*rate))).collect::<Vec<_>>();
+        Derivative::along(own.into_iter().chain(given).collect(), model.graph).knowing(known)
     };
-    columns(model, e, (0..model.nv()).map(direction))
+    columns(e, (0..model.nv()).map(direction))
 }
 
 fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let direction = |k: usize| {
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_velocity(k));
-        [(Quantity::Velocity(k).symbol(), model.graph.one())].into_iter().chain(given).collect()
+        let own = [(Quantity::Velocity(k).symbol(), model.graph.one())];
+        Derivative::along(own.into_iter().chain(given).collect(), model.graph)
     };
-    columns(model, e, (0..model.nv()).map(direction))
+    columns(e, (0..model.nv()).map(direction))
 }
 
 /// Derivatives of expressions by the inputs.
 pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    columns(model, e, (0..model.nu()).map(|k| vec![(Quantity::Input(k).symbol(), model.graph.one())]))
+    let by = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
+    columns(e, (0..model.nu()).map(by))
 }
 
 /// Derivatives of expressions by the accelerations.
 pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    columns(model, e, (0..model.nv()).map(|k| vec![(Quantity::Acceleration(k).symbol(), model.graph.one())]))
+    let by = |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
+    columns(e, (0..model.nv()).map(by))
 }
 
-fn columns<'g>(
-    model: &Model<'g>,
-    e: &[Expr<'g>],
-    directions: impl Iterator<Item = Vec<(Symbol, Expr<'g>)>>,
-) -> Matrix<'g> {
+fn columns<'g>(e: &[Expr<'g>], directions: impl Iterator<Item = Derivative<'g>>) -> Matrix<'g> {
     let mut rows = vec![Vec::new(); e.len()];
-    for direction in directions {
-        let mut d = Derivative::along(direction, model.graph);
+    for mut d in directions {
         for (row, e) in rows.iter_mut().zip(e) {
             row.push(if e.value().is_some() { e.zero() } else { d.of(*e) });
         }
