@@ -115,6 +115,26 @@ fn robots() {
     }
 }
 
+/// Contacts of four legs, whose rates are lanes as the legs are: instructions of what a step with held contacts needs of them.
+#[test]
+fn contacts_of_legs() {
+    let item = "pub struct Robot {
+        #[contact(FL_FOOT, ground.plane(z), friction = 0.7)] front_left: Contact,
+        #[contact(FR_FOOT, ground.plane(z), friction = 0.7)] front_right: Contact,
+        #[contact(HL_FOOT, ground.plane(z), friction = 0.7)] hind_left: Contact,
+        #[contact(HR_FOOT, ground.plane(z), friction = 0.7)] hind_right: Contact,
+    }";
+    let functions =
+        ["contact_rates", "contact_jacobian", "contact_bias", "__contact_responses", "__contact_derivatives"];
+    let arguments = "urdf = \"../models/urdf/solo12.urdf\", base = free, gravity = -9.81 * z, limits = ignore, derivatives";
+    let all = programs(arguments, item, &functions);
+    let in_lanes: Vec<usize> =
+        all.iter().map(|p| instructions(p.simd.as_deref().expect("its limbs are alike"))).collect();
+    at_most(&in_lanes, &[85, 300, 198, 1310, 1780], &format!("instructions in lanes of {functions:?}"));
+    let alone: Vec<usize> = all.iter().map(instructions).collect();
+    at_most(&alone, &[245, 1030, 610, 4270, 6470], &format!("instructions of {functions:?}"));
+}
+
 /// Chains of pins about alternating axes, with numbers and with parameters. Inverse and forward dynamics grow with the
 /// number of joints, the mass matrix with its square.
 #[test]

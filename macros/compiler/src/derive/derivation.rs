@@ -13,6 +13,7 @@ use crate::kinematics::Joint;
 use crate::lower::{Program, pipeline};
 use crate::mechanics::derivatives::parameters;
 use crate::mechanics::hamilton::Hamilton;
+use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanics::routh::Routh;
 use crate::mechanics::speeds::InSpeeds;
 use crate::mechanics::{energy, forces, power};
@@ -113,6 +114,39 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.dynamics().contact_responses(&constraints::contact_rows(native))
     }
 
+    /// One value for each rate of the contacts.
+    fn of_contacts(&self, values: &[Expr<'g>]) -> Program {
+        self.with_limb_contacts(self.specialisation.program(values), |contacts| contacts.values(values))
+    }
+
+    fn contact_jacobian(&self) -> Program {
+        let rows = constraints::contact_rows(self.model);
+        let plain = self.specialisation.program(&constraints::by_columns(self.model, &rows));
+        self.with_limb_contacts(plain, |contacts| {
+            Some(constraints::by_columns(self.model, &contacts.rows(&rows)?))
+        })
+    }
+
+    fn contact_derivatives(&self) -> Program {
+        let found = constraints::ContactDerivatives::new(self.model);
+        let plain = self.specialisation.program(&found.outputs(self.model));
+        self.with_limb_contacts(plain, |contacts| found.outputs_in_lanes(self.model, contacts))
+    }
+
+    /// A function of the contacts, or what is made of it with alike limbs as lanes.
+    fn with_limb_contacts(
+        &self,
+        plain: Program,
+        outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
+    ) -> Program {
+        match self.facts.kinematic || self.speeds.is_some() {
+            true => plain,
+            false => {
+                self.dynamics().with_limb_contacts(plain, &constraints::contact_rows(self.model), outputs)
+            }
+        }
+    }
+
     /// What is conserved, for the word of that name.
     fn conserved(&self) -> Vec<Expr<'g>> {
         let kept = self.extras.and_then(|extras| extras.conserved.as_ref());
@@ -185,12 +219,12 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::ConstraintJacobian => of(&constraints::jacobian(model)),
             Id::ConstraintBias => of(&constraints::biases(model)),
             Id::ContactGaps => of(&constraints::contact_gaps(model)),
-            Id::ContactRates => of(&model.contact_rates()),
-            Id::ContactJacobian => of(&constraints::contact_jacobian(model)),
-            Id::ContactBias => of(&constraints::contact_biases(model)),
+            Id::ContactRates => plain(self.of_contacts(&model.contact_rates())),
+            Id::ContactJacobian => plain(self.contact_jacobian()),
+            Id::ContactBias => plain(self.of_contacts(&constraints::contact_biases(model))),
             Id::ContactLaws => of(&constraints::contact_laws(model)),
             Id::ContactResponses => plain(self.contact_responses()),
-            Id::ContactDerivatives => of(&constraints::contact_first_order(model)),
+            Id::ContactDerivatives => plain(self.contact_derivatives()),
             Id::ConstrainedDynamics => plain(self.dynamics().constrained_dynamics()),
             Id::ConstraintResponse => plain(self.dynamics().constraint_response()),
             Id::SlippingResponse => plain(self.dynamics().slipping_response()),

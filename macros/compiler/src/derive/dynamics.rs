@@ -8,6 +8,7 @@ use crate::kinematics::Joint;
 use crate::lower::Program;
 use crate::machine::{COMPARED_OPERATIONS, COMPARED_VELOCITIES};
 use crate::mechanics::derivatives::Factor;
+use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanics::speeds::{InSpeeds, Role};
 use crate::mechanics::{self, crba, energy, frames, limb_responses, momentum};
 use crate::mechanism::Model;
@@ -162,6 +163,19 @@ impl<'g> Dynamics<'g> {
             let limbs = variants.plain_limbs().filter_map(|limbs| limb_responses::responses(limbs, rows));
             plain.or_in_lanes(in_lanes_of(self.specialisation, limbs))
         })
+    }
+
+    /// A function of contacts whose rates have these rows, or what is made of it with alike limbs as lanes.
+    pub(super) fn with_limb_contacts(
+        &self,
+        plain: Program,
+        rows: &crba::Matrix<'g>,
+        outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
+    ) -> Program {
+        let limbs = self.choices.first().and_then(|variants| variants.plain_limbs().next());
+        let mut contacts = limbs.and_then(|limbs| LimbContacts::of(limbs, rows));
+        let found = contacts.as_mut().and_then(outputs);
+        plain.or_in_lanes(found.map(|outputs| self.specialisation.program(&outputs)))
     }
 
     fn of_best(&self, program: impl FnOnce(&Variants<'g>) -> Program) -> Program {

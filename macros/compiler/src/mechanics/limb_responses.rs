@@ -3,7 +3,7 @@
 use super::crba::{Matrix, mass_matrix};
 use super::ldl::elimination_order;
 use crate::expr::Expr;
-use crate::vectorise::{LimbLane, Limbs, joined};
+use crate::vectorise::{AlikeRows, Limbs, joined};
 use std::collections::BTreeMap;
 
 /// Rates at contacts of the limbs of one group.
@@ -46,29 +46,20 @@ struct Factor<'g> {
 /// `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. `None` unless each row moves one limb of several alike ones,
 /// and each of these as many.
 pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
-    let groups = limbs.groups();
-    let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
-    for (i, row) in rows.iter().enumerate() {
-        let LimbLane { group, lane, width } = limbs.lane_of(row, &groups)?;
-        found.entry(group).or_insert_with(|| vec![Vec::new(); width])[lane].push(i);
-    }
-    let factor = Factor::of(limbs, groups);
+    let alike = limbs.alike_rows(rows)?;
+    let factor = Factor::of(limbs, limbs.groups());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
-    for (group, lanes) in found {
-        let count = lanes.first()?.len();
-        if lanes.iter().any(|rows| rows.len() != count) {
-            return None;
-        }
-        for (lane, numbers) in lanes.iter().enumerate() {
-            for (row, i) in numbers.iter().enumerate() {
+    for AlikeRows { group, width, rows: numbers } in alike {
+        for (row, lanes) in numbers.iter().enumerate() {
+            for (lane, i) in lanes.iter().enumerate() {
                 places.insert(*i, Place { family: families.len(), row, lane });
             }
         }
-        let all = (0..count).map(|row| {
-            let alike: Vec<&[Expr<'g>]> = lanes.iter().map(|numbers| rows[numbers[row]].as_slice()).collect();
+        let all = numbers.iter().map(|lanes| {
+            let alike: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
             factor.row(limbs.side_by_side(&alike), group)
         });
-        families.push(Family { group, width: lanes.len(), rows: all.collect() });
+        families.push(Family { group, width, rows: all.collect() });
     }
     let places: Vec<Place> = places.into_values().collect();
     let mut out = Vec::new();

@@ -21,6 +21,7 @@ pub mod independence;
 pub mod inertances;
 pub mod lagrange;
 pub mod ldl;
+pub mod limb_contacts;
 pub mod limb_responses;
 pub mod massless;
 pub mod momentum;

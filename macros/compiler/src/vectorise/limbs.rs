@@ -8,6 +8,7 @@ use super::velocities::{Location, Velocity, paired};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanism::{InV, Inertia, Link, LinkId, Model, Quantity};
+use std::collections::BTreeMap;
 
 /// A mechanism with one limb for each group of alike ones.
 pub struct Limbs<'g> {
@@ -31,6 +32,16 @@ pub struct LimbLane {
     pub lane: usize,
     /// How many lanes there are.
     pub width: usize,
+}
+
+/// Rows that limbs of one group have, one of each limb in turn.
+pub struct AlikeRows {
+    /// The first velocity of the group.
+    pub group: usize,
+    /// How many limbs there are.
+    pub width: usize,
+    /// Numbers of the rows that go together, by lane.
+    pub rows: Vec<Vec<usize>>,
 }
 
 impl<'g> Limbs<'g> {
@@ -179,24 +190,78 @@ impl<'g> Limbs<'g> {
         found
     }
 
+    /// Rows, by velocity of the whole mechanism, as the limbs have them: the first of each limb of a group go together, then the second,
+    /// and so on. `None` unless each row moves one limb of several alike ones, and each of these has as many.
+    pub fn alike_rows(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<AlikeRows>> {
+        let groups = self.groups();
+        let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
+        for (i, row) in rows.iter().enumerate() {
+            let LimbLane { group, lane, width } = self.lane_of(row, &groups)?;
+            found.entry(group).or_insert_with(|| vec![Vec::new(); width])[lane].push(i);
+        }
+        let alike = |(group, lanes): (usize, Vec<Vec<usize>>)| {
+            let count = lanes.first()?.len();
+            let row = |k: usize| lanes.iter().map(|numbers| numbers[k]).collect();
+            let is_even = lanes.iter().all(|numbers| numbers.len() == count);
+            is_even.then(|| AlikeRows { group, width: lanes.len(), rows: (0..count).map(row).collect() })
+        };
+        found.into_iter().map(alike).collect()
+    }
+
+    /// Rows that go together, by velocity of the whole mechanism, as one in lanes by velocity here, with the signs that they have there.
+    /// `None` if they are built differently.
+    pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
+        let entry = |velocity: &Velocity| {
+            let of = |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
+            let lanes = rows.iter().enumerate().map(|of_lane| of(of_lane).unwrap_or(self.model.graph.zero()));
+            merge.lanes(&lanes.collect::<Vec<_>>())
+        };
+        self.velocities.iter().map(entry).collect()
+    }
+
+    /// A square matrix of each lane, by velocities of the whole mechanism, as one in lanes; as [`merged_rows`](Self::merged_rows).
+    pub fn merged_squares(
+        &self,
+        lanes: &[Vec<Vec<Expr<'g>>>],
+        merge: &mut Merge<'g>,
+    ) -> Option<Vec<Vec<Expr<'g>>>> {
+        let row = |velocity: &Velocity| {
+            let of = |(lane, matrix): (usize, &'_ Vec<Vec<Expr<'g>>>)| {
+                self.velocity_in(velocity, lane).map(|k| matrix[k].clone())
+            };
+            let rows: Option<Vec<Vec<Expr<'g>>>> = lanes.iter().enumerate().map(of).collect();
+            match rows {
+                Some(rows) => self.merged_rows(&rows.iter().map(Vec::as_slice).collect::<Vec<_>>(), merge),
+                None => Some(vec![self.model.graph.zero(); self.velocities.len()]),
+            }
+        };
+        self.velocities.iter().map(row).collect()
+    }
+
+    /// Which velocity of the whole mechanism one here is in a lane; of what stands alone the same in all.
+    fn velocity_in(&self, velocity: &Velocity, lane: usize) -> Option<usize> {
+        let is_alone = velocity.lanes.len() == 1;
+        velocity.lanes.get(if is_alone { 0 } else { lane }).copied()
+    }
+
+    /// By velocity of the whole mechanism: the one here, and its lane if it is one of several.
+    pub fn places(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
+        self.places.iter().map(|place| (place.index, place.lane))
+    }
+
     /// Rows of the whole mechanism that belong to the limbs of a group, one of each, as one in lanes.
     pub fn side_by_side(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let merge = &mut Merge::new(g);
         let entry = |velocity: &Velocity| {
             // What stands alone is the trunk's, and of other limbs there is nothing.
-            let is_alone = velocity.lanes.len() == 1;
-            let of = |(lane, row): (usize, &&[Expr<'g>])| match velocity.lanes.get(if is_alone {
-                0
-            } else {
-                lane
-            }) {
-                Some(k) => row[*k],
+            let of = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_in(velocity, lane) {
+                Some(k) => row[k],
                 None => g.zero(),
             };
             let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(of).collect();
             let all = merge.lanes(&lanes).unwrap_or_else(|| joined(&lanes));
-            if is_alone { all } else { g.lane_constants(&velocity.signs) * all }
+            if velocity.lanes.len() == 1 { all } else { g.lane_constants(&velocity.signs) * all }
         };
         self.velocities.iter().map(entry).collect()
     }

@@ -8,6 +8,6 @@ mod paths;
 mod velocities;
 
 pub use find::{Group, find};
-pub use limbs::{LimbLane, Limbs, joined};
+pub use limbs::{AlikeRows, Limbs, joined};
 pub use merge::Merge;
 pub use paths::{LaneGroup, Paths, Propagated, Visitor};

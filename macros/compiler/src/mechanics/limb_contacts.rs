@@ -1,0 +1,84 @@
+//! What contacts say of a state where alike limbs touch: their rates are side by side in lanes, as the limbs are.
+
+use super::crba::Matrix;
+use crate::expr::Expr;
+use crate::vectorise::{AlikeRows, Limbs, Merge};
+
+/// Contacts of alike limbs, each with as many rates.
+pub struct LimbContacts<'a, 'g> {
+    limbs: &'a Limbs<'g>,
+    alike: Vec<AlikeRows>,
+    merge: Merge<'g>,
+    /// How many rates there are.
+    count: usize,
+}
+
+impl<'a, 'g> LimbContacts<'a, 'g> {
+    /// Those with a Jacobian by rows. `None` unless each rate moves one limb of several alike ones, and each of these as many.
+    pub fn of(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
+        let alike = limbs.alike_rows(jacobian)?;
+        Some(LimbContacts { limbs, alike, merge: Merge::new(limbs.model.graph), count: jacobian.len() })
+    }
+
+    /// Rates that each limb has, by lane: the numbers of those of one limb for each.
+    pub fn of_limbs(&self) -> impl Iterator<Item = Vec<Vec<usize>>> {
+        self.alike.iter().map(|alike| {
+            (0..alike.width).map(|lane| alike.rows.iter().map(|row| row[lane]).collect()).collect()
+        })
+    }
+
+    /// One value for each rate. `None` if those of limbs are built differently.
+    pub fn values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
+        let mut out = values.to_vec();
+        for row in self.alike.iter().flat_map(|alike| &alike.rows) {
+            let all = self.merge.lanes(&row.iter().map(|i| values[*i]).collect::<Vec<_>>())?;
+            row.iter().enumerate().for_each(|(lane, i)| out[*i] = all.lane(lane));
+        }
+        Some(out)
+    }
+
+    /// A row by velocities for each rate, which depends on the limb alone that the rate is of.
+    pub fn rows(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
+        let mut out = vec![Vec::new(); self.count];
+        for numbers in self.alike.iter().flat_map(|alike| &alike.rows) {
+            let lanes: Vec<&[Expr<'g>]> = numbers.iter().map(|i| rows[*i].as_slice()).collect();
+            let all = self.limbs.merged_rows(&lanes, &mut self.merge)?;
+            for (lane, i) in numbers.iter().enumerate() {
+                let entry = |(index, of): (usize, Option<usize>)| match of {
+                    Some(of) if of != lane => all[index].zero(),
+                    _ => all[index].lane(lane),
+                };
+                out[*i] = self.limbs.places().map(entry).collect();
+            }
+        }
+        Some(out)
+    }
+
+    /// The sum of square matrices by velocities, one of each limb, by the groups of [`of_limbs`](Self::of_limbs).
+    pub fn sum(&mut self, groups: &[Vec<Matrix<'g>>]) -> Option<Matrix<'g>> {
+        let places: Vec<(usize, Option<usize>)> = self.limbs.places().collect();
+        let mut sum: Option<Matrix<'g>> = None;
+        for lanes in groups {
+            let all = self.limbs.merged_squares(lanes, &mut self.merge)?;
+            let entry = |(i, row): (usize, Option<usize>), (j, column): (usize, Option<usize>)| {
+                let entry = all[i][j];
+                match (row, column) {
+                    (None, None) => entry.lane_sum(lanes.len()),
+                    (Some(a), Some(b)) if a != b => entry.zero(),
+                    (Some(lane), _) | (None, Some(lane)) => entry.lane(lane),
+                }
+            };
+            let row =
+                |row: &(usize, Option<usize>)| places.iter().map(|column| entry(*row, *column)).collect();
+            let found: Matrix<'g> = places.iter().map(row).collect();
+            match &mut sum {
+                None => sum = Some(found),
+                Some(sum) => {
+                    let both = sum.iter_mut().flatten().zip(found.into_iter().flatten());
+                    both.for_each(|(sum, more)| *sum += more);
+                }
+            }
+        }
+        sum
+    }
+}
