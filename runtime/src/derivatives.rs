@@ -32,6 +32,9 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// The velocity along which each input pushes, where every input is one entry of the generalized forces, as motors at joints are:
     /// derivatives by inputs are then columns of those by forces.
     const DIRECT_INPUTS: Option<[usize; NU]> = None;
+    /// The velocities of ball and free joints, from the first up to another: derivatives of `q ⊕ dv` are those of the identity elsewhere;
+    /// `None` where it is not known which these are.
+    const TURNED: Option<(usize, usize)> = None;
 
     /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
     fn integrate_derivatives(
@@ -260,6 +263,8 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
     const MOMENTUM_DERIVATIVES: bool = false;
     /// Where inputs are entries of the generalized forces ([`Derivatives::DIRECT_INPUTS`]).
     const DIRECT_INPUTS: Option<[usize; NU]> = None;
+    /// The velocities of ball and free joints ([`Derivatives::TURNED`]).
+    const TURNED: Option<(usize, usize)> = None;
 
     /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` ([`Derivatives::integrate_derivatives`]).
     fn integrate_derivatives(
@@ -447,6 +452,7 @@ where
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
     const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
+    const TURNED: Option<(usize, usize)> = M::TURNED;
 
     each_function!(tangent, plain Derivatives, self => *self);
     each_function!(derivatives, plain Derivatives, self => *self);
@@ -466,6 +472,7 @@ where
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
     const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
+    const TURNED: Option<(usize, usize)> = M::TURNED;
 
     each_function!(tangent, plain Derivatives, self => self);
     each_function!(derivatives, drop Derivatives, self => self);
@@ -485,6 +492,7 @@ where
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
     const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
+    const TURNED: Option<(usize, usize)> = M::TURNED;
 
     each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
     each_function!(derivatives, at RheonomicDerivatives, self => self.mechanism, self.t);

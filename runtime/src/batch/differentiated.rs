@@ -86,6 +86,7 @@ where
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
     const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
+    const TURNED: Option<(usize, usize)> = M::TURNED;
 
     of_each! {
         integrate_derivatives[](dv: NV) -> Pair<Self::Scalar, NV>;

@@ -19,10 +19,10 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         let (mut first, mut end) = (N, 0);
         for (j, column) in matrix.data.0.iter().enumerate() {
             // Without a way out early a column is compared at once.
-            let is_zero = |zero: bool, x: &T| zero & (*x == T::zero());
+            let others = column.iter().fold(0, |count, x| count + u64::from(*x != T::zero()));
             let (above, rest) = column.split_at(j);
             let Some((diagonal, below)) = rest.split_first() else { continue };
-            if above.iter().fold(true, is_zero) & below.iter().fold(true, is_zero) & (*diagonal == T::one()) {
+            if (others == 1) & (*diagonal == T::one()) {
                 continue;
             }
             let is_other = |x: &T| *x != T::zero();
@@ -93,6 +93,15 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         let is_other: [bool; 8] = core::array::from_fn(|k| (self.first..self.end).contains(&(start + k)));
         for column in &mut a.data.0 {
             let sum = self.rows(column, start);
+            if let Some(places) = column.get_mut(start..).and_then(<[T]>::first_chunk_mut::<8>) {
+                // Eight at once, each the sum or what it was.
+                let given = *places;
+                let chosen = given.iter().zip(sum.numbers()).zip(is_other);
+                places.iter_mut().zip(chosen).for_each(|(place, ((given, sum), is_other))| {
+                    *place = if is_other { *sum } else { *given };
+                });
+                continue;
+            }
             let places = column.get_mut(start..start + length).unwrap_or(&mut []);
             for ((place, sum), is_other) in places.iter_mut().zip(sum.numbers()).zip(is_other) {
                 if is_other {

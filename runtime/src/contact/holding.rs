@@ -283,6 +283,7 @@ where
 {
     const MOMENTUM_DERIVATIVES: bool = M::MOMENTUM_DERIVATIVES;
     const DIRECT_INPUTS: Option<[usize; NU]> = M::DIRECT_INPUTS;
+    const TURNED: Option<(usize, usize)> = M::TURNED;
 
     each_function!(tangent, plain RheonomicDerivatives, self => self.mechanism);
     each_function!(given_derivatives, pass RheonomicDerivatives, self => self.mechanism);

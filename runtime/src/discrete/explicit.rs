@@ -196,9 +196,10 @@ fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
         true => (SMatrix::identity(), SMatrix::identity()),
         false => mechanism.integrate_derivatives_at(q, &displacement),
     };
-    let chain = step.chained.insert(match is_plain {
-        true => Chained { period: h, by_q, by_displacement, others: [(0, 0); 2] },
-        false => Chained::new(h, by_q, by_displacement),
+    let others = if is_plain { Some((0, 0)) } else { M::TURNED };
+    let chain = step.chained.insert(match others {
+        Some(others) => Chained { period: h, by_q, by_displacement, others: [others; 2] },
+        None => Chained::new(h, by_q, by_displacement),
     });
     if !is_plain {
         let [_, d] = chain.nearly();

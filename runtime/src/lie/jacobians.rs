@@ -24,6 +24,22 @@ fn columns<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N>
     all
 }
 
+/// The columns that a linear function of SE(3) makes of the unit vectors, linear parts first. What it makes of an angular part it makes of a
+/// linear one likewise, and nothing else: motions are angular ones with dual numbers (Selig, *Geometric Fundamentals of Robotics*, § 7.5).
+#[inline(always)]
+fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
+    let mut all = [[T::zero(); 6]; 6];
+    let (linear, angular) = all.split_at_mut(3);
+    for (j, (linear, angular)) in linear.iter_mut().zip(angular).enumerate() {
+        let mut unit = [T::zero(); 6];
+        unit.iter_mut().skip(3 + j).take(1).for_each(|x| *x = T::one());
+        *angular = f(unit);
+        let [.., x, y, z] = *angular;
+        *linear = [x, y, z, T::zero(), T::zero(), T::zero()];
+    }
+    all
+}
+
 /// How the result of `q ⊕ dv` of a ball joint moves, in its body axes, with `q` moved in body axes and with `dv`:
 /// `exp(−dv)` and the right Jacobian of SO(3) (Chirikjian, *Stochastic Models, Information Theory, and Lie Groups*, vol. 2,
 /// 2012, § 10.6).
@@ -116,7 +132,7 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
         let third = bracket(dv, second);
         plus(plus(plus(plus(e, -c1, first), c2, second), -c3, third), c4, bracket(dv, third))
     };
-    (columns(carried), columns(right))
+    (dual_columns(carried), dual_columns(right))
 }
 
 /// Derivatives by `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3).
@@ -165,7 +181,7 @@ pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T
         let changed = plus(plus(plus(zero, constant(0.5), c1), second, c2), fourth, c4);
         plus(plus(changed, second_slope * along, b2), fourth_slope * along, b4)
     };
-    (columns(by_dv), columns(|e| free_tangent_rate(dv, e)))
+    (dual_columns(by_dv), dual_columns(|e| free_tangent_rate(dv, e)))
 }
 
 #[cfg(test)]

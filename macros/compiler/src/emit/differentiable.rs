@@ -30,6 +30,15 @@ pub fn write_methods(
             "::core::option::Option::Some({all:?})"
         ))
     );
+    let turned =
+        charts.filter(|_| !i.facts.speeds).map_or("::core::option::Option::None".to_string(), |charts| {
+            let (first, end) = turned(charts);
+            format!("::core::option::Option::Some(({first}, {end}))")
+        });
+    let _ = writeln!(
+        out,
+        "#[doc(hidden)]\npub const __TURNED: ::core::option::Option<(usize, usize)> = {turned};"
+    );
     let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
     for (name, about, arguments, first) in [
         (
@@ -192,6 +201,17 @@ pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature
     );
 }
 
+/// The velocities of ball and free joints, from the first up to another.
+fn turned(charts: &[Chart]) -> (usize, usize) {
+    let velocities = charts.iter().filter_map(|chart| match *chart {
+        Chart::Plain(..) => None,
+        Chart::Ball(_, v) => Some((v.0, v.0 + 3)),
+        Chart::Free(_, v) => Some((v.0, v.0 + 6)),
+    });
+    let both = |a: (usize, usize), b: (usize, usize)| (a.0.min(b.0), a.1.max(b.1));
+    velocities.reduce(both).unwrap_or((0, 0))
+}
+
 /// The blocks of ball and free joints, of these arguments.
 fn write_blocks(out: &mut String, name: &str, of: &[&str], charts: &[Chart]) {
     for chart in charts {
@@ -287,7 +307,8 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     }
     let _ = writeln!(
         out,
-        "const DIRECT_INPUTS: ::core::option::Option<[usize; {}]> = Self::__DIRECT_INPUTS;",
+        "const DIRECT_INPUTS: ::core::option::Option<[usize; {}]> = Self::__DIRECT_INPUTS;
+        const TURNED: ::core::option::Option<(usize, usize)> = Self::__TURNED;",
         s.nu
     );
     if i.facts.constraints.is_none() {
