@@ -28,6 +28,17 @@ pub fn add_product<T: Real, const R: usize, const K: usize, const C: usize>(
     dispatch::<0, T, _, _>(&Product { a, b }, sum);
 }
 
+/// [`add_product`] with these columns of `A` and rows of `B` alone.
+#[inline(never)]
+pub fn add_product_of_some<T: Real, const R: usize, const K: usize, const C: usize>(
+    sum: &mut SMatrix<T, R, C>,
+    places: &[usize],
+    a: &SMatrix<T, R, K>,
+    b: &SMatrix<T, K, C>,
+) {
+    dispatch::<2, T, _, _>(&Chosen { places, a, b }, sum);
+}
+
 /// What is multiplied.
 struct Product<'a, T, const R: usize, const K: usize, const C: usize> {
     a: &'a SMatrix<T, R, K>,
@@ -39,20 +50,49 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
 {
     type Output = ();
 
-    /// As many rows of four columns at a time as registers hold with room for what is added.
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, sum: &mut SMatrix<T, R, C>) {
         if (4..=small::MOST).contains(&R) && K <= small::MOST {
             return small::add_product::<A, T, R, K>(&mut sum.data.0, &self.a.data.0, &self.b.data.0);
         }
-        let (columns, a, b) = (&mut sum.data.0, rolled(&self.a.data.0), &self.b.data.0);
-        if A::WIDE && R >= 8 {
-            wide_rows::<A, T, R, K, C>(columns, a, b);
-        } else if R >= 4 {
-            rows_of::<A, T, 4, R, K, C>(columns, a, b);
-        } else {
-            rows_of::<A, T, 1, R, K, C>(columns, a, b);
-        }
+        let a = rolled(&self.a.data.0).iter().enumerate().take(K);
+        add_columns::<A, T, R, K, C>(&mut sum.data.0, a, &self.b.data.0);
+    }
+}
+
+/// What is multiplied of some columns.
+struct Chosen<'a, T, const R: usize, const K: usize, const C: usize> {
+    places: &'a [usize],
+    a: &'a SMatrix<T, R, K>,
+    b: &'a SMatrix<T, K, C>,
+}
+
+impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<2, &mut SMatrix<T, R, C>>
+    for Chosen<'_, T, R, K, C>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn evaluate<A: Arithmetic>(&self, sum: &mut SMatrix<T, R, C>) {
+        let a = self.places.iter().filter_map(|k| self.a.data.0.get(*k).map(|column| (*k, column)));
+        add_columns::<A, T, R, K, C>(&mut sum.data.0, a, &self.b.data.0);
+    }
+}
+
+/// Adds the product of columns, with their numbers, with as many rows of four columns at a time as registers hold with room for what is
+/// added.
+#[inline(always)]
+fn add_columns<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
+    columns: &mut [[T; R]; C],
+    a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
+    b: &[[T; K]; C],
+) {
+    if A::WIDE && R >= 8 {
+        wide_rows::<A, T, R, K, C>(columns, a, b);
+    } else if R >= 4 {
+        rows_of::<A, T, 4, R, K, C>(columns, a, b);
+    } else {
+        rows_of::<A, T, 1, R, K, C>(columns, a, b);
     }
 }
 
@@ -70,21 +110,21 @@ const fn left(rows: usize, w: usize) -> usize {
 /// All rows, in registers of so many: two registers at a time, and at last as many as are left, up to three. The last of these begins
 /// as much earlier as it would be too long; all are read before any is written.
 #[inline(always)]
-fn rows_of<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
+fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
-    a: &[[T; R]],
+    a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
 ) {
     let left = left(R, W);
     let mut from = 0;
     for _ in 0..(R - left) / (2 * W) {
-        strip::<A, T, W, 2, 0, R, K, C>(columns, a, b, from);
+        strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from);
         from += 2 * W;
     }
     match left.div_ceil(W) {
-        1 => strip::<A, T, W, 1, 0, R, K, C>(columns, a, b, from),
-        2 => strip::<A, T, W, 2, 0, R, K, C>(columns, a, b, from),
-        3 => strip::<A, T, W, 3, 0, R, K, C>(columns, a, b, from),
+        1 => strip::<A, T, W, 1, 0, R, K, C>(columns, a.clone(), b, from),
+        2 => strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from),
+        3 => strip::<A, T, W, 3, 0, R, K, C>(columns, a.clone(), b, from),
         _ => {}
     }
 }
@@ -92,29 +132,30 @@ fn rows_of<A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usiz
 /// [`rows_of`] eight, with a register of four at the end where that holds the rest: half as long an instruction on processors that execute
 /// those of eight in two parts.
 #[inline(always)]
-fn wide_rows<A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
+fn wide_rows<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
-    a: &[[T; R]],
+    a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
 ) {
     let left = left(R, 8);
     let mut from = 0;
     for _ in 0..(R - left) / 16 {
-        strip::<A, T, 8, 2, 0, R, K, C>(columns, a, b, from);
+        strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from);
         from += 16;
     }
     match (registers_of_eight(left, true), registers_of_four(left, true)) {
-        (1, 0) => strip::<A, T, 8, 1, 0, R, K, C>(columns, a, b, from),
-        (1, _) => strip::<A, T, 8, 1, 1, R, K, C>(columns, a, b, from),
-        (2, 0) => strip::<A, T, 8, 2, 0, R, K, C>(columns, a, b, from),
-        (2, _) => strip::<A, T, 8, 2, 1, R, K, C>(columns, a, b, from),
-        _ => strip::<A, T, 8, 3, 0, R, K, C>(columns, a, b, from),
+        (1, 0) => strip::<A, T, 8, 1, 0, R, K, C>(columns, a.clone(), b, from),
+        (1, _) => strip::<A, T, 8, 1, 1, R, K, C>(columns, a.clone(), b, from),
+        (2, 0) => strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from),
+        (2, _) => strip::<A, T, 8, 2, 1, R, K, C>(columns, a.clone(), b, from),
+        _ => strip::<A, T, 8, 3, 0, R, K, C>(columns, a.clone(), b, from),
     }
 }
 
 /// Adds the product in `V` registers of rows and `F` of four, from a given row on, in all columns.
 #[inline(always)]
 fn strip<
+    'a,
     A: Arithmetic,
     T: Real,
     const W: usize,
@@ -125,27 +166,27 @@ fn strip<
     const C: usize,
 >(
     columns: &mut [[T; R]; C],
-    a: &[[T; R]],
+    a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
     from: usize,
 ) {
     let (fours, rest) = columns.as_chunks_mut::<4>();
     let (factors, last) = b.as_chunks::<4>();
     for (columns, b) in fours.iter_mut().zip(factors) {
-        tile::<A, T, W, V, F, 4, R, K>(columns, a, b, from);
+        tile::<A, T, W, V, F, 4, R, K>(columns, a.clone(), b, from);
     }
     match (rest, last) {
         ([x, y, z], [d, e, f]) => {
             let mut three = [*x, *y, *z];
-            tile::<A, T, W, V, F, 3, R, K>(&mut three, a, &[*d, *e, *f], from);
+            tile::<A, T, W, V, F, 3, R, K>(&mut three, a.clone(), &[*d, *e, *f], from);
             [*x, *y, *z] = three;
         }
         ([x, y], [d, e]) => {
             let mut two = [*x, *y];
-            tile::<A, T, W, V, F, 2, R, K>(&mut two, a, &[*d, *e], from);
+            tile::<A, T, W, V, F, 2, R, K>(&mut two, a.clone(), &[*d, *e], from);
             [*x, *y] = two;
         }
-        ([x], [d]) => tile::<A, T, W, V, F, 1, R, K>(from_mut(x), a, from_ref(d), from),
+        ([x], [d]) => tile::<A, T, W, V, F, 1, R, K>(from_mut(x), a.clone(), from_ref(d), from),
         _ => {}
     }
 }
@@ -199,6 +240,7 @@ impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Row
 /// Adds the product in some registers of rows, from a given row on, in some columns.
 #[inline(always)]
 fn tile<
+    'a,
     A: Arithmetic,
     T: Real,
     const W: usize,
@@ -209,7 +251,7 @@ fn tile<
     const K: usize,
 >(
     columns: &mut [[T; R]; G],
-    a: &[[T; R]],
+    a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; G],
     from: usize,
 ) {
@@ -217,7 +259,7 @@ fn tile<
     for (rows, column) in all.iter_mut().zip(columns.iter()) {
         rows.read(column, from);
     }
-    for (k, column) in a.iter().enumerate().take(K) {
+    for (k, column) in a {
         let mut rows = Rows::zero();
         rows.read(column, from);
         for (sums, factors) in all.iter_mut().zip(b) {

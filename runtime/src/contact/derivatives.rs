@@ -3,8 +3,10 @@
 use super::held::held;
 use super::layout::Layout;
 use super::problem::{Problem, entry};
-use super::{Contacts, Touch};
-use crate::blocks::{add_multiple, add_product, product, transpose_into, transposed, zeros};
+use super::{Contacts, Rows, Touch};
+use crate::blocks::{
+    add_multiple, add_product, add_product_of_some, product, transpose_into, transposed, zeros,
+};
 use crate::constraint::ConstraintError;
 use crate::derivatives::{ByMotion, LinearMotion, under_inputs};
 use crate::{Real, RheonomicDerivatives};
@@ -276,45 +278,68 @@ where
     let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
     damp(&mut parts, &jacobian, layout, gains);
     // How friction turns with the slip while the normal forces stay.
-    let slips = touches.contains(&Touch::Slips);
-    let mut turned = [zeros::<T, NR, NV>(); 2];
-    if slips {
+    let turned = touches.contains(&Touch::Slips).then(|| {
+        let mut turned = [zeros::<T, NR, NV>(); 2];
         for (k, law) in laws.iter().enumerate().filter(|(k, _)| touches.get(*k) == Some(&Touch::Slips)) {
             let normal = law.friction * entry(&held.forces, layout.pressing(k).1);
             for (turned, rates) in turned.iter_mut().zip([&parts.rates_by_q, &jacobian]) {
                 turn(turned, layout.tangents(k), normal, &along, rates);
             }
         }
+        turned
+    });
+    if let Some([by_q, by_v]) = &turned {
         let across = transposed(&jacobian);
-        add_product(&mut parts.forces_by_q, &across, &turned[0]);
-        add_product(&mut found.by_v, &found.by_tau, &product(&across, &turned[1]));
+        add_product(&mut parts.forces_by_q, &across, by_q);
+        add_product(&mut found.by_v, &found.by_tau, &product(&across, by_v));
     }
     add_product(&mut found.by_q, &found.by_tau, &parts.forces_by_q);
     let closed = touches.map(|touch| touch != Touch::Open);
     let mut problem = Problem::new(layout, &laws, |k| closed.get(k) == Some(&true), &SVector::zeros());
     problem.weigh(&responses.rates);
-    // How the forces answer to the rates, which all of the derivatives share.
+    // How the forces answer to the rates, which all of the derivatives share; those of contacts that are open do nothing.
     let answer = problem.answers(touches, &along);
-    add_product(&mut parts.accelerations_by_q, &jacobian, &found.by_q);
-    add_product(&mut parts.accelerations_by_v, &jacobian, &found.by_v);
+    let (places, count) = closed_rows::<NK, NR>(layout, &closed);
+    let places = places.get(..count).unwrap_or(&[]);
     // What forces do to the rates is what impulses at the contacts do to the velocities, unless forces depend on the motion.
     let mut pushed = zeros();
     match M::FEEDBACK {
         true => add_product(&mut pushed, &jacobian, &found.by_tau),
         false => transpose_into(&responses.velocities, &mut pushed),
     }
-    (found.forces_by_q, found.forces_by_v, found.forces_by_tau) = (zeros(), zeros(), zeros());
-    add_product(&mut found.forces_by_q, &answer, &parts.accelerations_by_q);
-    add_product(&mut found.forces_by_v, &answer, &parts.accelerations_by_v);
-    add_product(&mut found.forces_by_tau, &answer, &pushed);
-    add_product(&mut found.by_q, &responses.velocities, &found.forces_by_q);
-    add_product(&mut found.by_v, &responses.velocities, &found.forces_by_v);
-    add_product(&mut found.by_tau, &responses.velocities, &found.forces_by_tau);
-    if slips {
-        add_multiple(&mut found.forces_by_q, T::one(), &turned[0]);
-        add_multiple(&mut found.forces_by_v, T::one(), &turned[1]);
+    add_product(&mut parts.accelerations_by_q, &jacobian, &found.by_q);
+    add_product(&mut parts.accelerations_by_v, &jacobian, &found.by_v);
+    let HeldDerivatives { by_q, by_v, by_tau, forces_by_q, forces_by_v, forces_by_tau, .. } = &mut *found;
+    for (motion, forces, rates) in [
+        (by_q, forces_by_q, &parts.accelerations_by_q),
+        (by_v, forces_by_v, &parts.accelerations_by_v),
+        (by_tau, forces_by_tau, &pushed),
+    ] {
+        *forces = zeros();
+        add_product_of_some(forces, places, &answer, rates);
+        add_product_of_some(motion, places, &responses.velocities, forces);
+    }
+    if let Some([by_q, by_v]) = &turned {
+        add_multiple(&mut found.forces_by_q, T::one(), by_q);
+        add_multiple(&mut found.forces_by_v, T::one(), by_v);
     }
     Ok(())
+}
+
+/// The places of the rates of contacts that are closed, and how many there are.
+fn closed_rows<const NK: usize, const NR: usize>(
+    layout: Layout<NK>,
+    closed: &[bool; NK],
+) -> ([usize; NR], usize) {
+    let (mut places, mut count) = ([0; NR], 0);
+    for (k, _) in closed.iter().enumerate().filter(|(_, is_closed)| **is_closed) {
+        let Rows { first, count: more } = layout.rows(k);
+        for (place, row) in places.iter_mut().skip(count).zip(first..first + more) {
+            *place = row;
+        }
+        count += more;
+    }
+    (places, count)
 }
 
 /// Adds what the accelerations of contacts that are held are to make of gaps and rates.

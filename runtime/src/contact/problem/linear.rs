@@ -225,6 +225,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         rates: &SVector<T, NR>,
     ) -> SMatrix<T, NR, NR> {
         let (slips, places) = (self.slipping(touches), self.places());
+        if let Some(found) = self.answers_of_independent(&slips) {
+            return found;
+        }
         let mut system = self.held_system(&slips, rates);
         let mut wanted = Total::repeat([T::zero(); NR]);
         for k in 0..self.count {
@@ -260,6 +263,42 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
         }
         all
+    }
+
+    /// [`answers`](Self::answers) where nothing slips and the motion tells all rates apart: `−W⁻¹`.
+    fn answers_of_independent(&self, slips: &Total<bool, NK>) -> Option<SMatrix<T, NR, NR>> {
+        let is_plain = |k: usize| !slips[k] && self.step[k] > T::zero();
+        let mut system = self.weights;
+        if !(0..self.count).all(is_plain) || !factorise(&mut system, self.size, false) {
+            return None;
+        }
+        // Rows of all columns at once.
+        let places = self.places();
+        let mut changes = Total::<[T; NR], NR>::repeat([T::zero(); NR]);
+        for j in 0..self.size {
+            if let Some(entry) = changes[j].get_mut(places[j]) {
+                *entry = -T::one();
+            }
+        }
+        for j in 0..self.size {
+            let value = changes[j].map(|x| x * system[j][j]);
+            (j + 1..self.size).for_each(|i| subtract(&mut changes[i], system[j][i], &value));
+            changes[j] = value;
+        }
+        for j in (0..self.size).rev() {
+            let mut value = changes[j];
+            let row = system[j];
+            (j + 1..self.size).for_each(|i| subtract(&mut value, row[i] * row[j], &changes[i]));
+            changes[j] = value;
+        }
+        let mut all = SMatrix::<T, NR, NR>::zeros();
+        for (place, change) in places.iter().zip(changes.iter()).take(self.size) {
+            // Symmetric: rows are columns.
+            if let Some(column) = all.data.0.get_mut(*place) {
+                *column = *change;
+            }
+        }
+        Some(all)
     }
 
     pub(super) fn lift(&self) -> T {
