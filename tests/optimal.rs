@@ -119,6 +119,49 @@ struct Flapper {
 }
 
 /// What is known of a step whose configuration follows from its velocity changes the work, not the result.
+/// Costs of numbers that the motion makes are `Jᵀ g` and `Jᵀ H J`, by a product of whole matrices; half of the numbers have none.
+#[test]
+fn costs_of_numbers_go_through_their_derivatives() {
+    let mut random = Random(7);
+    let mut numbers = |n: usize| (0..n).map(|_| random.uniform(1.0)).collect::<Vec<f64>>();
+    let jacobian = SMatrix::<f64, 6, 8>::from_column_slice(&numbers(48));
+    let mut gradient = SVector::<f64, 6>::from_column_slice(&numbers(6));
+    let half = SMatrix::<f64, 6, 6>::from_column_slice(&numbers(36));
+    let mut hessian = half.transpose() * half;
+    for k in [0, 2, 5] {
+        gradient[k] = 0.0;
+        hessian.column_mut(k).fill(0.0);
+        hessian.row_mut(k).fill(0.0);
+    }
+    let mut cost = Quadratic::<f64, 3, 2>::zeros();
+    (cost.q[1], cost.qv[(0, 2)]) = (1.0, 2.0);
+    let (by_q, by_v, by_u) = (
+        jacobian.fixed_columns::<3>(0).into_owned(),
+        jacobian.fixed_columns::<3>(3).into_owned(),
+        jacobian.fixed_columns::<2>(6).into_owned(),
+    );
+    cost.add_costs_of(&gradient, &hessian, (&by_q, &by_v, &by_u));
+    let (first, second) = (jacobian.transpose() * gradient, jacobian.transpose() * hessian * jacobian);
+    let block = |i: usize, j: usize, rows: usize, columns: usize| {
+        second.view((i, j), (rows, columns)).iter().copied().collect::<Vec<f64>>()
+    };
+    cost.q[1] -= 1.0;
+    cost.qv[(0, 2)] -= 2.0;
+    let close = |what: &str, found: &[f64], expected: &[f64]| {
+        let far = found.iter().zip(expected).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
+        assert!(far < 1e-13 && found.len() == expected.len(), "{what}: {found:?} and {expected:?}");
+    };
+    close("q", cost.q.as_slice(), &first.as_slice()[..3]);
+    close("v", cost.v.as_slice(), &first.as_slice()[3..6]);
+    close("u", cost.u.as_slice(), &first.as_slice()[6..]);
+    close("qq", cost.qq.as_slice(), &block(0, 0, 3, 3));
+    close("qv", cost.qv.as_slice(), &block(0, 3, 3, 3));
+    close("vv", cost.vv.as_slice(), &block(3, 3, 3, 3));
+    close("qu", cost.qu.as_slice(), &block(0, 6, 3, 2));
+    close("vu", cost.vu.as_slice(), &block(3, 6, 3, 2));
+    close("uu", cost.uu.as_slice(), &block(6, 6, 2, 2));
+}
+
 #[test]
 fn steps_that_are_chained_are_steps() {
     let (mut random, m) = (Random::new(3), Flapper {});

@@ -53,8 +53,8 @@
 //! ```
 
 use crate::blocks::{
-    add_multiple, add_product, add_with_transpose, factors, product, scale, solve, solve_rows_into, sum_into,
-    symmetric_into, transpose_into, transposed, zeros,
+    add_multiple, add_product, add_product_of_some, add_with_transpose, factors, product, scale, solve,
+    solve_rows_into, sum_into, symmetric_into, transpose_into, transposed, zeros,
 };
 use crate::derivatives::entry;
 use crate::discrete::{Chained, Transition};
@@ -170,6 +170,40 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
         add_product(&mut self.qu, &q_rows, by_u);
         add_product(&mut self.vu, &v_rows, by_u);
         add_product(&mut self.uu, &u_rows, by_u);
+    }
+
+    /// Adds the costs `gradient · δr + ½ δr · Hessian δr` of numbers with derivatives by configuration, velocity and inputs, without the
+    /// curvature of these (Gauss and Newton): of forces of contacts that are outside of their cones, say, many at once. Numbers without
+    /// costs, whose entries are zero, take no time.
+    pub fn add_costs_of<const R: usize>(
+        &mut self,
+        gradient: &SVector<T, R>,
+        hessian: &SMatrix<T, R, R>,
+        (by_q, by_v, by_u): (&SMatrix<T, R, NV>, &SMatrix<T, R, NV>, &SMatrix<T, R, NU>),
+    ) {
+        let (mut places, mut count) = ([0; R], 0);
+        for (k, (first, column)) in gradient.iter().zip(&hessian.data.0).enumerate() {
+            if *first != T::zero() || column.iter().any(|x| *x != T::zero()) {
+                places.iter_mut().skip(count).take(1).for_each(|place| *place = k);
+                count += 1;
+            }
+        }
+        let places = places.get(..count).unwrap_or(&[]);
+        let (q_rows, v_rows, u_rows) = (transposed(by_q), transposed(by_v), transposed(by_u));
+        add_product_of_some(&mut self.q, places, &q_rows, gradient);
+        add_product_of_some(&mut self.v, places, &v_rows, gradient);
+        add_product_of_some(&mut self.u, places, &u_rows, gradient);
+        let (mut weighed, mut of_u) = (zeros(), zeros());
+        add_product_of_some(&mut weighed, places, hessian, by_q);
+        add_product_of_some(&mut self.qq, places, &q_rows, &weighed);
+        weighed = zeros();
+        add_product_of_some(&mut weighed, places, hessian, by_v);
+        add_product_of_some(&mut self.qv, places, &q_rows, &weighed);
+        add_product_of_some(&mut self.vv, places, &v_rows, &weighed);
+        add_product_of_some(&mut of_u, places, hessian, by_u);
+        add_product_of_some(&mut self.qu, places, &q_rows, &of_u);
+        add_product_of_some(&mut self.vu, places, &v_rows, &of_u);
+        add_product_of_some(&mut self.uu, places, &u_rows, &of_u);
     }
 
     /// [`add_squares`](Self::add_squares) of a residual of the configuration alone.

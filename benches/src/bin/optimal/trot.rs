@@ -139,6 +139,13 @@ fn quasi_static(q: &Configuration, phase: &Phase) -> Inputs {
     })
 }
 
+/// The columns of the joints, which the inputs turn.
+fn of_joints<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12> {
+    let mut by_u = SMatrix::zeros();
+    by_u.data.0.copy_from_slice(&by_tau.data.0[6..]);
+    by_u
+}
+
 /// Rows of the friction cone as factors of the normal force and those along tangents, and how far a force is outside of each.
 fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
     let sides = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| [-FRICTION, x, y]);
@@ -218,11 +225,15 @@ impl Trot {
         cost.vv.set_diagonal(&of_v);
         // How the difference changes: as its coordinates do, but for the base.
         let (_, changes) = Walker {}.tangent_rate_derivatives(&off, v);
-        let base = changes.fixed_view::<6, 6>(0, 0).into_owned();
-        let weighed = SMatrix::<f64, 6, 6>::from_fn(|i, j| of_q[i] * base[(i, j)]);
-        cost.qq.fixed_view_mut::<6, 6>(0, 0).copy_from(&base.tr_mul(&weighed));
-        let gradient = base.tr_mul(&cost.q.fixed_rows::<6>(0));
-        cost.q.fixed_rows_mut::<6>(0).copy_from(&gradient);
+        let mut gradient = [0.0; 6];
+        for (j, (column, sum)) in changes.data.0.iter().zip(&mut gradient).enumerate() {
+            *sum = (0..6).fold(0.0, |sum, i| sum + column[i] * cost.q[i]);
+            let weighed: [f64; 6] = std::array::from_fn(|i| column[i] * of_q.data.0[0][i]);
+            for (entry, other) in cost.qq.data.0[j].iter_mut().zip(&changes.data.0).take(6) {
+                *entry = (0..6).fold(0.0, |sum, i| sum + other[i] * weighed[i]);
+            }
+        }
+        cost.q.data.0[0][..6].copy_from_slice(&gradient);
         if let Some(centre) = phase.centre {
             let by_q = Walker {}.centroidal_momentum_matrix(q).fixed_rows::<3>(0) / Walker {}.total_mass();
             let off = Walker {}.center_of_mass(q) - centre;
@@ -261,20 +272,26 @@ impl Trot {
         self.model(k, state, PERIOD, cost);
         let held = contact::hold(&Walker {}, phase.touches).with_gains(0.0, DAMPING);
         held.held_derivatives_into(0.0, q, v, &Walker {}.generalized_forces(q, u), found)?;
-        let by_u = found.by_tau.fixed_columns::<12>(6).into_owned();
+        let by_u = of_joints(&found.by_tau);
         let by = (&found.by_q, &found.by_v, &by_u);
         discrete::semi_implicit_into(&held, PERIOD, (q, v), &found.a, by, step);
         cost.u = u * (OF_INPUTS * PERIOD);
         cost.uu.fill_diagonal(OF_INPUTS * PERIOD);
+        let (mut gradient, mut hessian) = (SVector::<f64, 12>::zeros(), SMatrix::<f64, 12, 12>::zeros());
         for (k, force) in found.forces.as_slice().as_chunks::<3>().0.iter().enumerate() {
             for (row, off) in outside(*force) {
                 *is_mixed = true;
-                let mut all = SMatrix::<f64, 1, 12>::zeros();
-                all.fixed_columns_mut::<3>(3 * k).copy_from_slice(&row);
-                let by_u = all * found.forces_by_tau.fixed_columns::<12>(6);
-                let by = (&(all * found.forces_by_q), &(all * found.forces_by_v), &by_u);
-                cost.add_squares(OF_CONES * PERIOD, &SVector::from([off]), by);
+                for (i, x) in row.iter().enumerate() {
+                    gradient[3 * k + i] += OF_CONES * PERIOD * off * x;
+                    row.iter()
+                        .enumerate()
+                        .for_each(|(j, y)| hessian[(3 * k + i, 3 * k + j)] += OF_CONES * PERIOD * x * y);
+                }
             }
+        }
+        if *is_mixed {
+            let by = (&found.forces_by_q, &found.forces_by_v, &of_joints(&found.forces_by_tau));
+            cost.add_costs_of(&gradient, &hessian, by);
         }
         Ok(())
     }
