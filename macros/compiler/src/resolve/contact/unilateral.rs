@@ -6,7 +6,7 @@ use super::terrain::Terrain;
 use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
-use crate::kinematics::velocity_gradient;
+use crate::kinematics::{motion_rates, velocity_gradient};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
@@ -146,7 +146,12 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Vec<Point<'g>>> {
         let first_link = first.frame.link;
-        let pair = self.two(first.clone(), second.clone(), Form::touches, second_place, cx)?;
+        let mut pair = self.two(first.clone(), second.clone(), Form::touches, second_place, cx)?;
+        // The same as by the velocities of links, in fewer terms to differentiate.
+        let [x, y, z] = motion_rates(self.model.space(), &pair.center.value.0, false)[..] else {
+            return None;
+        };
+        pair.center.rate = Vec3([x, y, z]);
         let touches = self.touches(&pair);
         if touches.is_empty() {
             let is_cylinder =
