@@ -122,7 +122,7 @@ struct Flapper {
 /// Costs of numbers that the motion makes are `Jᵀ g` and `Jᵀ H J`, by a product of whole matrices; half of the numbers have none.
 #[test]
 fn costs_of_numbers_go_through_their_derivatives() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let mut numbers = |n: usize| (0..n).map(|_| random.uniform(1.0)).collect::<Vec<f64>>();
     let jacobian = SMatrix::<f64, 6, 8>::from_column_slice(&numbers(48));
     let mut gradient = SVector::<f64, 6>::from_column_slice(&numbers(6));

@@ -87,26 +87,57 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         if self.end - self.first.min(self.end) > 8 {
             return self.lead_many(a);
         }
-        // Eight rows at a time, or those before the end: all others are zero in these columns.
-        let length = N.min(8);
-        let start = self.first.min(N - length);
-        let is_other: [bool; 8] = core::array::from_fn(|k| (self.first..self.end).contains(&(start + k)));
+        let (start, is_other) = self.eight();
         for column in &mut a.data.0 {
-            let sum = self.rows(column, start);
-            if let Some(places) = column.get_mut(start..).and_then(<[T]>::first_chunk_mut::<8>) {
-                // Eight at once, each the sum or what it was.
-                let given = *places;
-                let chosen = given.iter().zip(sum.numbers()).zip(is_other);
-                places.iter_mut().zip(chosen).for_each(|(place, ((given, sum), is_other))| {
-                    *place = if is_other { *sum } else { *given };
-                });
-                continue;
+            self.lead_column(column, start, is_other);
+        }
+    }
+
+    /// Puts `s D A` into a matrix.
+    pub fn lead_multiple_into<const C: usize>(
+        &self,
+        s: T,
+        a: &SMatrix<T, N, C>,
+        into: &mut SMatrix<T, N, C>,
+    ) {
+        let few = self.end - self.first.min(self.end) <= 8;
+        let (start, is_other) = self.eight();
+        for (column, from) in into.data.0.iter_mut().zip(&a.data.0) {
+            column.iter_mut().zip(from).for_each(|(entry, x)| *entry = *x * s);
+            if few && self.first < self.end {
+                self.lead_column(column, start, is_other);
             }
-            let places = column.get_mut(start..start + length).unwrap_or(&mut []);
-            for ((place, sum), is_other) in places.iter_mut().zip(sum.numbers()).zip(is_other) {
-                if is_other {
-                    *place = *sum;
-                }
+        }
+        if !few {
+            self.lead_many(into);
+        }
+    }
+
+    /// Where eight rows begin that are at a time, or those before the end, and which of them are others: all that is beside them is zero
+    /// in these columns.
+    #[inline(always)]
+    fn eight(&self) -> (usize, [bool; 8]) {
+        let start = self.first.min(N - N.min(8));
+        (start, core::array::from_fn(|k| (self.first..self.end).contains(&(start + k))))
+    }
+
+    /// A column of [`lead`](Self::lead).
+    #[inline(always)]
+    fn lead_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
+        let sum = self.rows(column, start);
+        if let Some(places) = column.get_mut(start..).and_then(<[T]>::first_chunk_mut::<8>) {
+            // Eight at once, each the sum or what it was.
+            let given = *places;
+            let chosen = given.iter().zip(sum.numbers()).zip(is_other);
+            places.iter_mut().zip(chosen).for_each(|(place, ((given, sum), is_other))| {
+                *place = if is_other { *sum } else { *given };
+            });
+            return;
+        }
+        let places = column.get_mut(start..).unwrap_or(&mut []);
+        for ((place, sum), is_other) in places.iter_mut().zip(sum.numbers()).zip(is_other) {
+            if is_other {
+                *place = *sum;
             }
         }
     }

@@ -180,13 +180,9 @@ fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     T: Real,
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
 {
-    let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, .. } = &mut *step;
-    for (j, column) in v_by_v.data.0.iter_mut().enumerate() {
+    for (j, column) in step.v_by_v.data.0.iter_mut().enumerate() {
         column.iter_mut().skip(j).take(1).for_each(|x| *x += T::one());
     }
-    multiple_into(h, v_by_q, q_by_q);
-    multiple_into(h, v_by_v, q_by_v);
-    multiple_into(h, v_by_u, q_by_u);
     step.v = v + acceleration * h;
     let displacement = step.v * h;
     step.q = mechanism.integrate(q, &displacement);
@@ -197,17 +193,16 @@ fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
         false => mechanism.integrate_derivatives_at(q, &displacement),
     };
     let others = if is_plain { Some((0, 0)) } else { M::TURNED };
-    let chain = step.chained.insert(match others {
+    let Transition { v_by_q, v_by_v, v_by_u, q_by_q, q_by_v, q_by_u, chained, .. } = step;
+    let chain = chained.insert(match others {
         Some(others) => Chained { period: h, by_q, by_displacement, others: [others; 2] },
         None => Chained::new(h, by_q, by_displacement),
     });
-    if !is_plain {
-        let [_, d] = chain.nearly();
-        d.lead(&mut step.q_by_q);
-        d.lead(&mut step.q_by_v);
-        d.lead(&mut step.q_by_u);
-    }
-    add_multiple(&mut step.q_by_q, T::one(), &chain.by_q);
+    let [_, d] = chain.nearly();
+    d.lead_multiple_into(h, v_by_q, q_by_q);
+    d.lead_multiple_into(h, v_by_v, q_by_v);
+    d.lead_multiple_into(h, v_by_u, q_by_u);
+    add_multiple(q_by_q, T::one(), &chain.by_q);
 }
 
 impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {

@@ -272,28 +272,30 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if !(0..self.count).all(is_plain) || !factorise(&mut system, self.size, false) {
             return None;
         }
-        // Rows of all columns at once.
         let places = self.places();
-        let mut changes = Total::<[T; NR], NR>::repeat([T::zero(); NR]);
-        for j in 0..self.size {
-            if let Some(entry) = changes[j].get_mut(places[j]) {
+        let mut all = SMatrix::<T, NR, NR>::zeros();
+        // Rows of all columns at once, which are columns as well.
+        let mut changes = [[T::zero(); NR]; NR];
+        for (row, place) in changes.iter_mut().zip(places.iter()).take(self.size) {
+            if let Some(entry) = row.get_mut(*place) {
                 *entry = -T::one();
             }
         }
-        for j in 0..self.size {
-            let value = changes[j].map(|x| x * system[j][j]);
-            (j + 1..self.size).for_each(|i| subtract(&mut changes[i], system[j][i], &value));
-            changes[j] = value;
+        let (used, _) = changes.split_at_mut_checked(self.size)?;
+        for (j, factors) in system.iter().enumerate().take(self.size) {
+            let Some((row, below)) = used.get_mut(j..).and_then(<[_]>::split_first_mut) else { continue };
+            row.iter_mut().for_each(|x| *x *= factors[j]);
+            for (below, factor) in below.iter_mut().zip(factors.iter().skip(j + 1)) {
+                subtract(below, *factor, row);
+            }
         }
-        for j in (0..self.size).rev() {
-            let mut value = changes[j];
-            let row = system[j];
-            (j + 1..self.size).for_each(|i| subtract(&mut value, row[i] * row[j], &changes[i]));
-            changes[j] = value;
+        for (j, factors) in system.iter().enumerate().take(self.size).rev() {
+            let Some((row, below)) = used.get_mut(j..).and_then(<[_]>::split_first_mut) else { continue };
+            for (below, factor) in below.iter().zip(factors.iter().skip(j + 1)) {
+                subtract(row, *factor * factors[j], below);
+            }
         }
-        let mut all = SMatrix::<T, NR, NR>::zeros();
-        for (place, change) in places.iter().zip(changes.iter()).take(self.size) {
-            // Symmetric: rows are columns.
+        for (place, change) in places.iter().zip(used.iter()) {
             if let Some(column) = all.data.0.get_mut(*place) {
                 *column = *change;
             }
