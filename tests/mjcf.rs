@@ -96,6 +96,15 @@ fn cables_and_sites() {
     check(&Cables, "cables");
 }
 
+/// A medium brakes bodies as the boxes of their inertias.
+#[test]
+fn a_medium_brakes() {
+    #[mechanism(mjcf = "data/mjcf/medium.xml")]
+    struct Medium;
+
+    check(&Medium, "medium");
+}
+
 /// A connection keeps two points together, a weld two bodies; the conditions of a plane loop out of its plane are redundant.
 #[test]
 fn loops() {

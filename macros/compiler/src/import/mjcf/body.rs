@@ -88,7 +88,7 @@ impl<'a> Reader<'a> {
             let inside = self.inside(node, class, cx);
             self.add_sites(&inside, GROUND, cx);
             self.add_planes(&inside.shapes, cx);
-            self.name_shapes(GROUND, &inside.shapes);
+            self.note_shapes(GROUND, &inside.shapes, cx);
             open.extend(inside.bodies.into_iter().rev().map(|(node, outer, class)| Open {
                 node,
                 parent: world.clone(),
@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
         }
         self.add_collisions(self.robot.links.len(), &inside.shapes, cx);
         self.add_visuals(self.robot.links.len(), &inside.shapes, cx);
-        self.name_shapes(&body.text, &inside.shapes);
+        self.note_shapes(&body.text, &inside.shapes, cx);
         self.robot.links.push(link);
         self.masses.push(mass);
         self.poses.insert(body.text.clone(), world);

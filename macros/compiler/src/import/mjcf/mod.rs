@@ -27,6 +27,7 @@ mod geometry;
 mod include;
 mod joint;
 mod law;
+mod medium;
 mod mesh;
 mod reader;
 mod rest;
@@ -86,9 +87,9 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
     let defaults = Defaults::read(root, cx);
     let meshes = Meshes::list(root, folder, &settings, &defaults, cx);
     let mut reader = Reader::new(options, settings, defaults, meshes);
-    check_medium(&reader, cx);
     reader.read_world(root, cx)?;
     reader.scale_masses();
+    reader.drag(cx);
     robot::check_names(&reader.robot, cx);
     reader.touch_planes(cx);
     let tendons = reader.tendons(root, cx);
@@ -225,13 +226,6 @@ fn check_section(node: Node<'_>, cx: &mut Cx<'_>) {
     if !SECTIONS.contains(&name) {
         let message = format!("unknown element {}", tag(node));
         cx.error(&place(node, cx), message, |d| d.suggest(name, SECTIONS));
-    }
-}
-
-fn check_medium(reader: &Reader<'_>, cx: &mut Cx<'_>) {
-    for (which, place) in reader.settings.medium.iter().filter(|_| reader.passive) {
-        let message = format!("the `{which}` of a medium that bodies move through is not supported");
-        cx.error(place, message, |d| d.help(joint::IGNORE_PASSIVE));
     }
 }
 

@@ -36,6 +36,8 @@ pub(super) struct Reader<'a> {
     pub(super) poses_of_sites: BTreeMap<String, (String, Pose)>,
     /// The shapes with names: the body of each, and the pose of the frames in it that the shape stands in.
     pub(super) named_shapes: BTreeMap<String, (String, Element<'a>, Pose)>,
+    /// The first shape whose own form a medium would brake.
+    pub(super) shaped: Option<Place>,
     /// Bodies that programs move.
     pub(super) mocap: BTreeSet<String>,
     /// Mass properties by link.
@@ -74,6 +76,7 @@ impl<'a> Reader<'a> {
             poses: BTreeMap::new(),
             poses_of_sites: BTreeMap::new(),
             named_shapes: BTreeMap::new(),
+            shaped: None,
             mocap: BTreeSet::new(),
             masses: vec![None],
             bodies: 0,

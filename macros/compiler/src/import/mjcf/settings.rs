@@ -1,7 +1,6 @@
 //! `<compiler>` and `<option>`: how the rest of the file is to be read.
 
 use super::defaults::{choice, some};
-use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, elements, number, numbers, place};
 use crate::import::imported::Placed;
@@ -42,7 +41,7 @@ pub(super) struct Settings {
     /// Gravity.
     pub(super) gravity: Placed<[f64; 3]>,
     /// What pushes bodies through a medium: its density, viscosity and wind.
-    pub(super) medium: Vec<(&'static str, Place)>,
+    pub(super) medium: Vec<(&'static str, Placed<[f64; 3]>)>,
     /// Springs, dampers and friction are on.
     pub(super) passive: bool,
     /// Friction is on.
@@ -184,7 +183,7 @@ impl Settings {
             let Some(found) = some(node, which, [0.0; 3], cx) else { continue };
             self.medium.retain(|(known, _)| *known != which);
             if found.value != [0.0; 3] {
-                self.medium.push((which, found.place));
+                self.medium.push((which, found));
             }
         }
         for flag in elements(node).filter(|child| child.tag_name().name() == "flag") {

@@ -71,7 +71,7 @@ impl<'a> Reader<'a> {
 
 impl Spot {
     /// A vector that is given in the axes of the body.
-    fn along(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
+    pub(super) fn along(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
         let axis = |k: usize| {
             let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
             let name = Name { text: ["x", "y", "z"][k].to_string(), place: at.clone() };

@@ -189,9 +189,10 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Notes the shapes of a body that have names.
-    pub(super) fn name_shapes(&mut self, body: &str, shapes: &[(Element<'a>, Pose)]) {
+    /// Notes the shapes of a body that have names, or are more than boxes to a medium.
+    pub(super) fn note_shapes(&mut self, body: &str, shapes: &[(Element<'a>, Pose)], cx: &Cx<'_>) {
         for (shape, outer) in shapes {
+            self.note_shaped(shape, cx);
             if let Some(name) = shape.node.attribute("name") {
                 self.named_shapes.insert(name.to_string(), (body.to_string(), shape.clone(), *outer));
             }

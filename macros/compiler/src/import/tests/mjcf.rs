@@ -161,8 +161,16 @@ fn sections() {
             "r.xml:2:1: unknown element `<worldbdy>`\n= help: did you mean `worldbody`?\nr.xml:1:1: `<mujoco>` without `<worldbody>`",
         ),
         (
-            "<worldbody/><option density='1'/>",
-            "r.xml:2:30: the `density` of a medium that bodies move through is not supported\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+            "<worldbody/><option density='1' wind='1 0 0'/>",
+            "r.xml:2:39: the `wind` of a medium that bodies move through is not supported\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+        ),
+        (
+            "<worldbody/><option viscosity='-1'/>",
+            "r.xml:2:32: a medium of the density 0 and the viscosity -1\n= help: expected numbers that are not negative\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
+        ),
+        (
+            "<option density='1'/><worldbody><body><joint/><geom size='1' fluidshape='ellipsoid'/></body></worldbody>",
+            "r.xml:2:47: `fluidshape` in a medium is not supported\n= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`",
         ),
         (
             "<worldbody/><compiler eulerseq='xyw'/>",

@@ -1,0 +1,101 @@
+//! The density and the viscosity of a medium that bodies move through → Rayleigh's functions.
+//!
+//! MuJoCo's model by boxes of the inertia (*Computation*, "Passive forces", "Inertia model"): a body is the box with its mass and
+//! principal moments, and each side of it is braked by itself. With the edges `a`, `b`, `c` and their mean `d`, the density `ρ` and
+//! the viscosity `β`, forces are `−½ ρ b c |v| v − 3π d β v` along the edge `a`, torques `−ρ a (b⁴ + c⁴) |ω| ω / 64 − π d³ β ω`.
+
+use super::geometry::Mass;
+use super::joint::IGNORE_PASSIVE;
+use super::reader::Reader;
+use super::spatial::Spot;
+use crate::diag::Place;
+use crate::import::context::Cx;
+use crate::import::element::place;
+use crate::import::pose::{Pose, principal, transpose};
+use crate::syntax::{BinaryOp, Expr, ExprKind, GROUND, Name};
+use std::f64::consts::PI;
+
+impl Reader<'_> {
+    /// Lets a medium brake all bodies, if the file has one.
+    pub(super) fn drag(&mut self, cx: &mut Cx<'_>) {
+        if !self.passive || self.settings.medium.is_empty() {
+            return;
+        }
+        let (mut density, mut viscosity, mut at) = (0.0, 0.0, None);
+        for (which, found) in &self.settings.medium {
+            match *which {
+                "density" => density = found.value[0],
+                "viscosity" => viscosity = found.value[0],
+                _ => {
+                    let message =
+                        format!("the `{which}` of a medium that bodies move through is not supported");
+                    cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+                }
+            }
+            at = Some(found.place.clone());
+        }
+        if density < 0.0 || viscosity < 0.0 {
+            let message = format!("a medium of the density {density} and the viscosity {viscosity}");
+            cx.error(&at.clone().unwrap_or(self.options.path.place.clone()), message, |d| {
+                d.help("expected numbers that are not negative").help(IGNORE_PASSIVE)
+            });
+            return;
+        }
+        let shaped = self.shaped.take();
+        if let Some(shaped) = shaped {
+            cx.error(&shaped, "`fluidshape` in a medium is not supported", |d| d.help(IGNORE_PASSIVE));
+        }
+        let Some(at) = at else { return };
+        let masses = self.robot.links.iter().zip(&self.masses);
+        let functions: Vec<(Name, Expr)> = masses
+            .filter_map(|(link, mass)| {
+                let mass = mass.as_ref().filter(|mass| mass.mass > 0.0)?;
+                let text = format!("{}_medium", link.name.text);
+                let function = braked(&link.name.text, mass, [density, viscosity], &at);
+                Some((Name { text, place: at.clone() }, function))
+            })
+            .collect();
+        self.robot.dissipations.extend(functions);
+    }
+
+    /// Notes a shape whose own form a medium would brake.
+    pub(super) fn note_shaped(&mut self, shape: &super::defaults::Element<'_>, cx: &Cx<'_>) {
+        if shape.text("fluidshape").is_some_and(|word| word != "none") {
+            self.shaped.get_or_insert(place(shape.node, cx));
+        }
+    }
+}
+
+/// Half of the power that a medium takes from a body, a third of the part with squares of speeds.
+fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
+    let (moments, axes) = principal(&mass.inertia);
+    let sum: f64 = moments.iter().sum();
+    let edges = moments.map(|moment| ((sum - 2.0 * moment).max(0.0) / mass.mass * 6.0).sqrt());
+    let mean = edges.iter().sum::<f64>() / 3.0;
+    let name = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
+    let spot = Spot { body: link.to_string(), pose: Pose { at: mass.com, ..Pose::ZERO } };
+    let slash = |a, b| Expr::binary(BinaryOp::Div, a, b);
+    let path = slash(slash(spot.expression(at), name(GROUND)), name(GROUND));
+    let v = Expr::call("v", vec![path], at);
+    let omega = Expr::call("omega", vec![slash(name(link), name(GROUND))], at);
+    let times = |factor: f64, e: Expr| Expr::binary(BinaryOp::Mul, Expr::number(factor, at), e);
+    let mut terms = Vec::new();
+    if viscosity > 0.0 {
+        for (factor, of) in [(1.5 * PI * mean, &v), (0.5 * PI * mean.powi(3), &omega)] {
+            terms.push(times(factor * viscosity, Expr::call("dot", vec![of.clone(), of.clone()], at)));
+        }
+    }
+    if density > 0.0 {
+        for (k, axis) in transpose(&axes).into_iter().enumerate() {
+            let [a, b, c] = [edges[k], edges[(k + 1) % 3], edges[(k + 2) % 3]];
+            for (factor, of) in [(b * c / 6.0, &v), (a * (b.powi(4) + c.powi(4)) / 192.0, &omega)] {
+                let x = Expr::call("dot", vec![of.clone(), spot.along(axis, at)], at);
+                let square = Expr::binary(BinaryOp::Mul, x.clone(), x.clone());
+                let cube = Expr::binary(BinaryOp::Mul, Expr::call("abs", vec![x], at), square);
+                terms.push(times(factor * density, cube));
+            }
+        }
+    }
+    let sum = terms.into_iter().reduce(|a, b| Expr::binary(BinaryOp::Add, a, b));
+    sum.unwrap_or_else(|| Expr::number(0.0, at))
+}
