@@ -238,7 +238,7 @@ def generated(model, folder):
 
 
 def main():
-    command, sources, folder = Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
+    command, sources, folder = (Path(word).resolve() for word in sys.argv[1:4])
     folder.mkdir(parents=True, exist_ok=True)
     print("| robot | function | C99 by gcc, ns | by clang | Rust | CasADi's C | gcc : Rust | clang : Rust | CasADi : gcc | bytes | CasADi | agree to |")
     print("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")
