@@ -104,6 +104,7 @@ const CRANE: &str = r#"<mujoco model="crane">
   <compiler angle="radian"/>
   <option gravity="0 0 -3.7"/>
   <worldbody>
+    <site name="wall" pos="-1 0.3 0.2"/>
     <body name="trolley">
       <joint name="trolley" type="slide" axis="1 0 0" stiffness="30" springref="0.4" damping="2" armature="0.3" frictionloss="0.2"/>
       <geom type="box" size="0.1 0.1 0.1" mass="2"/>
@@ -114,13 +115,20 @@ const CRANE: &str = r#"<mujoco model="crane">
       </body>
     </body>
   </worldbody>
+  <tendon>
+    <spatial name="wire" stiffness="5" springlength="0.2 0.3" damping="0.4" frictionloss="0.1">
+      <site site="wall"/>
+      <site site="hook"/>
+    </spatial>
+  </tendon>
   <actuator>
+    <motor name="winch" tendon="wire"/>
     <motor name="drive" joint="trolley" gear="12"/>
     <motor name="twist" joint="swing"/>
   </actuator>
 </mujoco>"#;
 
-/// Names that are words, springs, rotors and gears of another format.
+/// Names that are words, springs, rotors, gears and cables of another format.
 #[test]
 fn elements_of_files_become_fields() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("converted");
