@@ -147,19 +147,22 @@ fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option
     let mut failed = None;
     let mut at = 0;
     let mut results = results;
+    // Of few states each call takes nanoseconds, which is what an allocation takes.
+    let mut given: Vec<&[M::Number]> = Vec::with_capacity(arguments.len());
+    let mut places: Vec<&mut [M::Number]> = Vec::with_capacity(results.len());
     while at < states {
         let (body, count) = match f.eight {
             Some(eight) if states - at >= LANES => (eight, LANES),
             _ => (f.one, 1),
         };
-        let given: Vec<&[M::Number]> =
-            f.arguments.iter().zip(&arguments).map(|(one, all)| &all[at * one..(at + count) * one]).collect();
-        let mut places: Vec<&mut [M::Number]> = f
-            .results
-            .iter()
-            .zip(&mut results)
-            .map(|(one, all)| &mut all[at * one..(at + count) * one])
-            .collect();
+        given.clear();
+        given.extend(f.arguments.iter().zip(&arguments).map(|(one, all)| &all[at * one..(at + count) * one]));
+        places.clear();
+        for (one, rest) in f.results.iter().zip(&mut results) {
+            let (front, back) = std::mem::take(rest).split_at_mut(count * one);
+            places.push(front);
+            *rest = back;
+        }
         if let Err(failure) = guarded(m, body, &given, &mut places) {
             failed.get_or_insert((first + at, failure));
         }
