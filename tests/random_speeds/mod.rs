@@ -142,7 +142,7 @@ fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
         .charts
         .iter()
         .filter_map(
-            |chart| if let Chart::Plain(q, _) = chart { Some(&plain.configuration[*q]) } else { None },
+            |chart| if let Chart::Plain(q, _) = chart { Some(&plain.configuration[q.0]) } else { None },
         )
         .collect();
     let mut text = String::new();
