@@ -193,14 +193,9 @@ fn moved(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
     let rates: Vec<Expr<'_>> =
         (0..model.nq()).map(|i| kinematics::configuration_rate(model.space(), i)).collect();
     let mut moved: Vec<f64> = q.iter().zip(eval(&rates, &along)).map(|(q, rate)| q + h * rate).collect();
-    for chart in &model.charts {
-        let quaternion = match *chart {
-            Chart::Plain(..) => continue,
-            Chart::Ball(q, _) => q..q + 4,
-            Chart::Free(q, _) => q + 3..q + 7,
-        };
-        let length = moved[quaternion.clone()].iter().map(|c| c * c).sum::<f64>().sqrt();
-        moved[quaternion].iter_mut().for_each(|c| *c /= length);
+    for first in model.charts.iter().filter_map(Chart::quaternion) {
+        let length = moved[first.and_next(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
+        moved[first.and_next(4)].iter_mut().for_each(|c| *c /= length);
     }
     moved
 }
