@@ -232,7 +232,7 @@ def _built(crate, origin, native, quiet):
         manifest = crate / "Cargo.toml"
         text = manifest.read_text(encoding="utf-8")
         manifest.write_text(text.replace('name = "mechanism"', f'name = "{own}"'), encoding="utf-8")
-        arguments = [_cargo(), "build", "--release", "--quiet", *_COMPILER, "--manifest-path", manifest]
+        arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", manifest]
         _run(arguments, "the library cannot be built", environment)
         kept.parent.mkdir(parents=True, exist_ok=True)
         unfinished = kept.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
@@ -251,13 +251,6 @@ def _files_named(source):
     found = [Path(path) for path in named]
     return b"".join(path.read_bytes() for path in found if path.is_file())
 
-
-# The command and the attribute share a compiler that is optimised a little: it takes half the time of a full release build.
-_COMPILER = [
-    part
-    for setting in ("opt-level=1", "codegen-units=16")
-    for part in ("--config", f"profile.release.package.linkwork-compiler.{setting}")
-]
 
 # One thread compiles the command, the others find it.
 _COMMAND = threading.Lock()
@@ -280,7 +273,10 @@ def _compiled_command(quiet):
         print("linkwork: compiling the compiler, once …", file=sys.stderr, flush=True)
     manifest = _sources() / "macros" / "cli" / "Cargo.toml"
     environment = {**os.environ, "CARGO_TARGET_DIR": str(target)}
-    arguments = [_cargo(), "build", "--release", "--quiet", *_COMPILER, "--manifest-path", manifest]
+    # The compiler in it and the one of the attribute are one, optimised a little: half the time of a full release build.
+    settings = (f"profile.release.package.linkwork-compiler.{setting}" for setting in ("opt-level=1", "codegen-units=16"))
+    once = [part for setting in settings for part in ("--config", setting)]
+    arguments = [_cargo(), "build", "--release", "--quiet", *once, "--manifest-path", manifest]
     _run(arguments, "Linkwork's command cannot be built", environment)
     kept.parent.mkdir(parents=True, exist_ok=True)
     unfinished = kept.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
