@@ -3,15 +3,6 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Options with which the command's compiler and the attribute's are one, optimised a little: it is built once, in half the time of
-/// a full release build.
-pub const ONE_COMPILER: [&str; 4] = [
-    "--config",
-    "profile.release.package.linkwork-compiler.opt-level=1",
-    "--config",
-    "profile.release.package.linkwork-compiler.codegen-units=16",
-];
-
 /// Calls cargo with a command for a package in release mode; it builds in the folder `packages` of `target`, which is
 /// `env!("CARGO_TARGET_TMPDIR")`: all packages share the compiler there. Without network, unless something is missing.
 pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {

@@ -273,10 +273,7 @@ def _compiled_command(quiet):
         print("linkwork: compiling the compiler, once …", file=sys.stderr, flush=True)
     manifest = _sources() / "macros" / "cli" / "Cargo.toml"
     environment = {**os.environ, "CARGO_TARGET_DIR": str(target)}
-    # The compiler in it and the one of the attribute are one, optimised a little: half the time of a full release build.
-    settings = (f"profile.release.package.linkwork-compiler.{setting}" for setting in ("opt-level=1", "codegen-units=16"))
-    once = [part for setting in settings for part in ("--config", setting)]
-    arguments = [_cargo(), "build", "--release", "--quiet", *once, "--manifest-path", manifest]
+    arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", manifest]
     _run(arguments, "Linkwork's command cannot be built", environment)
     kept.parent.mkdir(parents=True, exist_ok=True)
     unfinished = kept.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
