@@ -8,9 +8,14 @@ use crate::mechanism::{Model, Quantity};
 
 /// A pivot is `zᵀ M z` of a motion `z` in which one velocity is 1 and those before it are what leaves the least energy. If
 /// every entry of `M` is off by a part `ε` of itself, the pivot is by up to `ε |z|ᵀ |M| |z|` (Higham, *Accuracy and Stability of
-/// Numerical Algorithms*, 2002, § 10.1), however small it is beside the diagonal of `M`: pivots below this part of that bound are zero.
-/// Masses may lie twelve powers of ten apart.
+/// Numerical Algorithms*, 2002, § 10.1), however small it is beside the diagonal of `M`. Levers that cancel leave more of an entry than
+/// that, a part of its row's diagonal. Pivots below this part of either, of the diagonal as often as there are velocities, are zero. Masses
+/// may lie twelve powers of ten apart.
 const TOLERANCE: f64 = 32.0 * f64::EPSILON;
+
+/// Where all levers of a velocity cancel, its entry of the diagonal is the square of what rounding leaves of them: below this part of the
+/// largest entry it is none.
+const SQUARED_TOLERANCE: f64 = TOLERANCE * TOLERANCE;
 
 /// The entries of `v` at which the factorisation fails, from the root on. None if it does not fail in every one of several
 /// random configurations; those where it fails in all of them, if there are such.
@@ -45,11 +50,14 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
         }
     }
     let whole = m.clone();
+    let none = SQUARED_TOLERANCE * (0..n).map(|k| whole[k][k].abs()).fold(0.0, f64::max);
     let mut failing = Vec::new();
     let mut eliminated = Vec::new();
     for (step, &k) in order.iter().enumerate() {
         // Parameters at random may make an inertia that no body has: then a pivot is negative, and not zero all the same.
-        if m[k][k].abs() <= TOLERANCE * rounding(&whole, &m, &eliminated, k) {
+        let own = whole[k][k].abs();
+        let lost = TOLERANCE * rounding(&whole, &m, &eliminated, k).max(n as f64 * own);
+        if own <= none || m[k][k].abs() <= lost {
             failing.push(k);
             continue;
         }
