@@ -115,17 +115,18 @@ pub struct Names<'a> {
 pub struct Instant {
     /// Time, s.
     pub t: f64,
-    /// Configuration.
+    /// Configuration, an entry for each of [`Names::configuration`], m or rad.
     pub q: Vec<f64>,
-    /// Velocity.
+    /// Velocity, an entry for each of [`Names::velocities`], m/s or rad/s.
     pub v: Vec<f64>,
-    /// Inputs.
+    /// Inputs, an entry for each of [`Names::inputs`], in the units of their actuators.
     pub u: Vec<f64>,
-    /// Where the frames are in the ground, m.
+    /// Placements of [`Names::frames`] in the axes of the ground, m.
     pub placements: Vec<IsometryMatrix3<f64>>,
 }
 
-/// The same as [`mcap`] of what moves by other means than generated code.
+/// A log in MCAP's format of a motion that comes from elsewhere than generated code: placements of frames (m, in the axes of the
+/// ground), configurations, velocities and inputs in SI units, at the instants of `samples`. [`mcap`] writes the log of a mechanism.
 ///
 /// # Errors
 ///

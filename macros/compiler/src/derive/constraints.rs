@@ -68,7 +68,7 @@ impl<'g> ContactDerivatives<'g> {
         [&forces].into_iter().chain(&self.by_motion).flat_map(|rows| by_columns(model, rows)).collect()
     }
 
-    /// The same with alike limbs as lanes, as far as these are built alike.
+    /// The derivatives of the contacts' forces with alike limbs as lanes; `None` if limbs are built differently.
     pub(super) fn outputs_in_lanes(
         &self,
         model: &Model<'g>,

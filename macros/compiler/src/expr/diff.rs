@@ -60,8 +60,8 @@ impl<'g> Derivative<'g> {
         Derivative { graph, rates, known: Memo::new(graph) }
     }
 
-    /// The same where the derivatives of some expressions are known, in other terms than by their operands. They hold for what constants
-    /// are added to, or multiply, as well.
+    /// A derivative that takes those of some expressions as given, instead of differentiating their operands. They hold for the
+    /// expressions to which a constant is added, or which a constant multiplies, as well.
     pub fn knowing(mut self, derivatives: impl IntoIterator<Item = (Expr<'g>, Expr<'g>)>) -> Derivative<'g> {
         for (e, derivative) in derivatives {
             let (mut e, mut derivative) = (e, derivative);

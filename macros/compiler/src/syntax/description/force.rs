@@ -50,7 +50,7 @@ pub struct Wrench {
 }
 
 impl DriveOn {
-    /// The same with all weights times a factor.
+    /// What a drive works on, with all weights times a factor.
     pub fn scaled(&self, factor: f64) -> DriveOn {
         match self {
             DriveOn::Sum(terms) => {
