@@ -54,33 +54,111 @@ impl<'g> Tape<'g> {
 
     /// The values of the expressions.
     pub fn values(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        self.run_with(symbol)
+    }
+
+    /// The values of the expressions, each with what rounding may do to it.
+    pub fn rounded(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<Rounded> {
+        self.run_with(&|s| Rounded::of(symbol(s)))
+    }
+
+    fn run_with<V: Value>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
         match self.graph {
             None => Vec::new(),
-            Some(graph) if self.in_lanes => self.run::<MAX_LANES>(graph, symbol),
-            Some(graph) => self.run::<1>(graph, symbol),
+            Some(graph) if self.in_lanes => self.run::<V, MAX_LANES>(graph, symbol),
+            Some(graph) => self.run::<V, 1>(graph, symbol),
         }
     }
 
     /// The values of the expressions (their first lanes), everything computed in so many lanes.
-    fn run<const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-        let mut values: Vec<[f64; N]> = Vec::with_capacity(self.steps.len());
+    fn run<V: Value, const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
+        let none = V::of(f64::NAN);
+        let padded = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
+        let mut values: Vec<[V; N]> = Vec::with_capacity(self.steps.len());
         for (node, [a, b, c]) in &self.steps {
-            let at = |place: u32| values.get(place as usize).copied().unwrap_or([f64::NAN; N]);
+            let at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
             let value = match *node {
-                Node::Tuple(k) => padded(&graph.tuple(k)),
-                Node::Gather(k) => padded(&graph.gather(k).into_iter().map(symbol).collect::<Vec<_>>()),
-                Node::Sum(n, _) => [at(*a)[..usize::from(n)].iter().sum(); N],
+                Node::Tuple(k) => padded(graph.tuple(k).into_iter().map(V::of).collect()),
+                Node::Gather(k) => padded(graph.gather(k).into_iter().map(symbol).collect()),
+                Node::Sum(n, _) => [V::sum(&at(*a)[..usize::from(n)]); N],
                 Node::Lane(k, _) => [at(*a)[usize::from(k)]; N],
                 Node::Join(n, _, _) => joined(n.into(), at(*a), at(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
                     let (a, b, c) = (at(*a), at(*b), at(*c));
-                    std::array::from_fn(|lane| step(node, [a[lane], b[lane], c[lane]]))
+                    std::array::from_fn(|lane| V::step(node, [a[lane], b[lane], c[lane]]))
                 }
             };
             values.push(value);
         }
         self.roots.iter().map(|place| values[*place as usize][0]).collect()
+    }
+}
+
+/// What expressions are evaluated with.
+trait Value: Copy {
+    /// A constant.
+    fn of(number: f64) -> Self;
+    fn sum(lanes: &[Self]) -> Self;
+    /// An operation on the values of its operands.
+    fn step(node: Node, operands: [Self; 3]) -> Self;
+}
+
+impl Value for f64 {
+    fn of(number: f64) -> f64 {
+        number
+    }
+
+    fn sum(lanes: &[f64]) -> f64 {
+        lanes.iter().sum()
+    }
+
+    fn step(node: Node, operands: [f64; 3]) -> f64 {
+        step(node, operands)
+    }
+}
+
+/// A value and what rounding may do to it: every constant, symbol and operation is off by a part [`f64::EPSILON`] of itself, each for
+/// itself, and their effects add as standard deviations do (a running error analysis: Higham, *Accuracy and Stability of Numerical
+/// Algorithms*, 2002, § 3.3; sums of squares let errors pass through rotations without growth).
+#[derive(Clone, Copy, Debug)]
+pub struct Rounded {
+    /// What is computed.
+    pub value: f64,
+    /// The standard deviation of its error, in the value's own unit.
+    pub error: f64,
+}
+
+impl Value for Rounded {
+    fn of(number: f64) -> Rounded {
+        Rounded { value: number, error: f64::EPSILON * number.abs() }
+    }
+
+    fn sum(lanes: &[Rounded]) -> Rounded {
+        let mut sum = Rounded { value: 0.0, error: 0.0 };
+        for lane in lanes {
+            sum = Rounded { value: sum.value + lane.value, error: sum.error.hypot(lane.error) };
+        }
+        sum
+    }
+
+    fn step(node: Node, operands: [Rounded; 3]) -> Rounded {
+        let at = operands.map(|operand| operand.value);
+        let value = step(node, at);
+        let mut error = f64::EPSILON * value.abs();
+        for (k, operand) in operands.iter().enumerate().filter(|(_, operand)| operand.error > 0.0) {
+            let moved = [-operand.error, operand.error].map(|by| {
+                let mut at = at;
+                at[k] += by;
+                (step(node, at) - value).abs()
+            });
+            error = error.hypot(moved[0].max(moved[1]));
+        }
+        // Where both factors are nothing but errors, so is their product.
+        if let (Node::Mul(..), [a, b, _]) = (node, operands) {
+            error = error.hypot(a.error * b.error);
+        }
+        Rounded { value, error }
     }
 }
 
@@ -106,12 +184,8 @@ fn is_of_lanes(node: Node) -> bool {
 }
 
 /// So many lanes of `a`, then those of `b`.
-pub fn joined<const N: usize>(n: usize, a: [f64; N], b: [f64; N]) -> [f64; N] {
+pub fn joined<V: Copy, const N: usize>(n: usize, a: [V; N], b: [V; N]) -> [V; N] {
     std::array::from_fn(|k| if k < n { a[k] } else { b[k - n] })
-}
-
-fn padded<const N: usize>(list: &[f64]) -> [f64; N] {
-    std::array::from_fn(|k| list.get(k).copied().unwrap_or(f64::NAN))
 }
 
 /// An operation on the values of its operands.

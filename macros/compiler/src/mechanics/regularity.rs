@@ -2,20 +2,15 @@
 
 use super::crba::Matrix;
 use crate::expr::Symbol;
-use crate::expr::eval::eval;
+use crate::expr::eval::{Rounded, Tape};
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
 /// A pivot is `zᵀ M z` of a motion `z` in which one velocity is 1 and those before it are what leaves the least energy. If
-/// every entry of `M` is off by a part `ε` of itself, the pivot is by up to `ε |z|ᵀ |M| |z|` (Higham, *Accuracy and Stability of
-/// Numerical Algorithms*, 2002, § 10.1), however small it is beside the diagonal of `M`. Levers that cancel leave more of an entry than
-/// that, a part of its row's diagonal. Pivots below this part of either, of the diagonal as often as there are velocities, are zero. Masses
-/// may lie twelve powers of ten apart.
-const TOLERANCE: f64 = 32.0 * f64::EPSILON;
-
-/// Where all levers of a velocity cancel, its entry of the diagonal is the square of what rounding leaves of them: below this part of the
-/// largest entry it is none.
-const SQUARED_TOLERANCE: f64 = TOLERANCE * TOLERANCE;
+/// the entries of `M` are off by `E`, the pivot is by up to `|z|ᵀ E |z|` (Higham, *Accuracy and Stability of Numerical Algorithms*,
+/// 2002, § 10.1), however small it is beside the diagonal of `M`. `E` is what rounding does on the way to each entry, so that levers
+/// which cancel leave less than it, too. Pivots below so many times that are zero. Masses may lie twelve powers of ten apart.
+const TOLERANCE: f64 = 32.0;
 
 /// The entries of `v` at which the factorisation fails, from the root on. None if it does not fail in every one of several
 /// random configurations; those where it fails in all of them, if there are such.
@@ -36,11 +31,16 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let n = model.nv();
     let q = random_configuration(model, seed);
     let entries: Vec<_> = mass.iter().flatten().copied().collect();
-    let values = eval(&entries, &|s: Symbol| match Quantity::of(s) {
-        Quantity::Configuration(k) => q[k],
-        _ => crate::expr::sample::sample(s, seed),
-    });
-    let mut m: Vec<Vec<f64>> = values.chunks(n.max(1)).map(<[f64]>::to_vec).collect();
+    let whole: Vec<Vec<Rounded>> = Tape::of(&entries)
+        .rounded(&|s: Symbol| match Quantity::of(s) {
+            Quantity::Configuration(k) => q[k],
+            _ => crate::expr::sample::sample(s, seed),
+        })
+        .chunks(n.max(1))
+        .map(<[Rounded]>::to_vec)
+        .collect();
+    let mut m: Vec<Vec<f64>> =
+        whole.iter().map(|row| row.iter().map(|entry| entry.value).collect()).collect();
     // Root first: an entry that fails is then one that adds nothing to those before it.
     let mut order: Vec<usize> = Vec::new();
     // Coordinates that place nothing come last.
@@ -49,15 +49,11 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
             order.push(index);
         }
     }
-    let whole = m.clone();
-    let none = SQUARED_TOLERANCE * (0..n).map(|k| whole[k][k].abs()).fold(0.0, f64::max);
     let mut failing = Vec::new();
     let mut eliminated = Vec::new();
     for (step, &k) in order.iter().enumerate() {
         // Parameters at random may make an inertia that no body has: then a pivot is negative, and not zero all the same.
-        let own = whole[k][k].abs();
-        let lost = TOLERANCE * rounding(&whole, &m, &eliminated, k).max(n as f64 * own);
-        if own <= none || m[k][k].abs() <= lost {
+        if m[k][k].abs() <= TOLERANCE * rounding(&whole, &m, &eliminated, k) {
             failing.push(k);
             continue;
         }
@@ -72,12 +68,12 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     failing
 }
 
-/// `|z|ᵀ |M| |z|` of the motion `z` whose velocity `k` is 1, with what elimination has left of `M`.
-fn rounding(whole: &[Vec<f64>], left: &[Vec<f64>], eliminated: &[usize], k: usize) -> f64 {
+/// `|z|ᵀ E |z|` of the motion `z` whose velocity `k` is 1, with what elimination has left of `M`.
+fn rounding(whole: &[Vec<Rounded>], left: &[Vec<f64>], eliminated: &[usize], k: usize) -> f64 {
     let mut z = vec![(k, 1.0)];
     for &i in eliminated.iter().rev() {
         let others: f64 = z.iter().map(|(j, value)| left[i][*j] * value).sum();
         z.push((i, -others / left[i][i]));
     }
-    z.iter().flat_map(|(i, a)| z.iter().map(move |(j, b)| (a * whole[*i][*j] * b).abs())).sum()
+    z.iter().flat_map(|(i, a)| z.iter().map(move |(j, b)| (a * whole[*i][*j].error * b).abs())).sum()
 }
