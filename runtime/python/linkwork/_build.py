@@ -2,6 +2,7 @@
 
 import difflib
 import errno
+import functools
 import hashlib
 import json
 import os
@@ -49,8 +50,9 @@ def compile(
 ) -> type[Mechanism]:
     """Compiles a mechanism to a class.
 
-    The first call builds Linkwork's command, which takes a minute; every mechanism takes some seconds to half a minute, and is
-    found at once when it is asked for again.
+    The first call builds Linkwork's command, which takes a minute (the environment variable ``LINKWORK_COMMAND`` names one of the
+    same version that is there already); every mechanism takes some seconds to half a minute, and is found at once when it is asked
+    for again.
 
     Args:
         source: the path of a robot file (URDF, MJCF, SDF) or of a Rust file with a struct that has ``#[mechanism]``; or such a
@@ -257,9 +259,22 @@ _COMMAND = threading.Lock()
 
 
 def _command(quiet):
-    """Linkwork's command, which is compiled once."""
+    """Linkwork's command: the one that `LINKWORK_COMMAND` names, or one that is compiled once."""
+    own = os.environ.get("LINKWORK_COMMAND")
+    if own:
+        return _own_command(own)
     with _COMMAND:
         return _compiled_command(quiet)
+
+
+@functools.cache
+def _own_command(path):
+    said = _run([path, "--version"], "`LINKWORK_COMMAND` names no command that runs").split()
+    manifest = (_sources() / "Cargo.toml").read_text(encoding="utf-8")
+    wanted = re.search(r'^version = "(.*)"', manifest, re.MULTILINE).group(1)
+    if said != ["linkwork", wanted]:
+        raise ToolchainError(f"`LINKWORK_COMMAND` names {' '.join(said)!r}, and this package needs 'linkwork {wanted}'")
+    return Path(path)
 
 
 def _compiled_command(quiet):

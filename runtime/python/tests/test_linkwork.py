@@ -551,6 +551,17 @@ class OfThePackage(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("shoulder", done.stdout)
 
+    def test_a_command_of_ones_own_is_of_the_same_version(self):
+        with tempfile.TemporaryDirectory() as folder:
+            other = Path(folder) / "linkwork"
+            other.write_text("#!/bin/sh\necho linkwork 0.0.1\n")
+            other.chmod(0o755)
+            environment = {**os.environ, "LINKWORK_COMMAND": str(other)}
+            words = [sys.executable, "-m", "linkwork", "--version"]
+            done = subprocess.run(words, capture_output=True, text=True, env=environment)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("names 'linkwork 0.0.1', and this package needs 'linkwork 0.1.0'", done.stderr)
+
     def test_a_missing_toolchain_is_told(self):
         code = "import linkwork; linkwork.compile('#[mechanism] struct A {}')"
         environment = {"PATH": "/nonexistent", "HOME": "/nonexistent", "PYTHONPATH": str(Path(linkwork.__file__).parents[1])}
