@@ -14,6 +14,8 @@ const ATTEMPTS: usize = 50;
 const SHORTEST: f64 = 1e-6;
 /// The least decrease of the residuals that a step is taken for, next to that which its linear equations promise.
 const DECREASE: f64 = 1e-4;
+/// Steps in which what is given goes to its values.
+const STEPS: u8 = 40;
 /// How often a mechanism is assembled from another beginning.
 const ASSEMBLIES: u8 = 100;
 
@@ -50,15 +52,79 @@ impl Evaluated<'_, '_> {
         moving
     }
 
+    /// The entries of a configuration that move with no other velocities than those that are marked.
+    pub fn entries(&self, marks: &[bool]) -> Vec<bool> {
+        let mut entries = vec![false; self.model.nq()];
+        let mut mark = |at: std::ops::Range<usize>, from: std::ops::Range<usize>| {
+            if marks[from].iter().all(|marked| *marked) {
+                entries[at].fill(true);
+            }
+        };
+        for chart in &self.model.charts {
+            match *chart {
+                Chart::Plain(at, from) => mark(at.and_next(1), from.and_next(1)),
+                Chart::Ball(at, from) => mark(at.and_next(4), from.and_next(3)),
+                Chart::Free(at, from) => {
+                    mark(at.and_next(3), from.and_next(3));
+                    mark((at + 3).and_next(4), (from + 3).and_next(3));
+                }
+            }
+        }
+        entries
+    }
+
+    /// The velocities that change no constraint, in this configuration and beside it.
+    pub fn unreached(&self, t: f64, q: &[f64]) -> Vec<bool> {
+        let v = vec![0.0; self.model.nv()];
+        let mut unreached = vec![true; v.len()];
+        for size in [0.0, 0.1] {
+            let mut beside: Vec<f64> = q.iter().enumerate().map(|(k, x)| x + size * beside(1, k)).collect();
+            if self.normalise(&mut beside).is_err() {
+                continue;
+            }
+            let jacobian =
+                self.called("constraint_jacobian", Values { t, q: &beside, v: &v, ..Values::default() });
+            let all = self.model.constraints.len();
+            for (column, unreached) in
+                jacobian.iter().flat_map(|jacobian| jacobian.chunks(all)).zip(&mut unreached)
+            {
+                *unreached &= column.iter().all(|entry| *entry == 0.0);
+            }
+        }
+        unreached
+    }
+
+    /// Where the configuration on the constraints that is next to zero leads as what is given goes to its values, step by step: a loop
+    /// that has several forms keeps the one that it has there. On the constraints or, where what is given contradicts them, beside.
+    pub fn led(&self, t: f64, q: &[f64], given: &[bool], apart: &[bool], held: &[bool]) -> Vec<f64> {
+        let mut zero = self.neutral();
+        let is_apart = self.entries(apart);
+        for k in (0..q.len()).filter(|k| is_apart[*k]) {
+            zero[k] = q[k];
+        }
+        let Some(begin) = self.assembled(t, &zero, &is_apart, apart) else { return q.to_vec() };
+        let mut at = begin.clone();
+        for step in 1..=STEPS {
+            let part = f64::from(step) / f64::from(STEPS);
+            for k in (0..q.len()).filter(|k| given[*k]) {
+                at[k] = if step == STEPS { q[k] } else { begin[k] + (q[k] - begin[k]) * part };
+            }
+            if self.normalise(&mut at).is_err() {
+                return q.to_vec();
+            }
+            // As near as it comes.
+            _ = self.configure(t, &mut at, held);
+        }
+        at
+    }
+
     /// A configuration on the constraints, from this one or from others that are more and more off in what is not held.
     pub fn assembled(&self, t: f64, q: &[f64], given: &[bool], held: &[bool]) -> Option<Vec<f64>> {
         (0..=ASSEMBLIES).find_map(|attempt| {
             let mut from = q.to_vec();
             let size = 0.02 * f64::from(attempt);
             for (k, x) in from.iter_mut().enumerate().filter(|(k, _)| !given[*k]) {
-                // Numbers that repeat nothing: parts of a golden angle.
-                let turn = (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract();
-                *x += size * (2.0 * turn - 1.0);
+                *x += size * beside(attempt, k);
             }
             self.normalise(&mut from).ok()?;
             self.configure(t, &mut from, held)?;
@@ -134,6 +200,11 @@ impl Evaluated<'_, '_> {
         free.iter().zip(x).for_each(|(k, x)| motion[*k] = x);
         Some((motion, off))
     }
+}
+
+/// Numbers from −1 to 1 that repeat nothing: parts of a golden angle.
+fn beside(attempt: u8, k: usize) -> f64 {
+    2.0 * (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract() - 1.0
 }
 
 fn norm(x: &[f64]) -> f64 {

@@ -21,13 +21,13 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         if as_json {
             all.extend(cx.distinct().map(|one| message(input, one)));
         } else if cx.is_empty() {
-            println!("{}: `{}` is in order", input.file.display(), input.name);
+            crate::say!("{}: `{}` is in order", input.file.display(), input.name);
         } else {
             input.report(cx);
         }
     }
     if as_json {
-        println!("{:#}", json!({ "messages": all }));
+        crate::say!("{:#}", json!({ "messages": all }));
     }
     if good { Ok(()) } else { Err(Stop::Mistakes) }
 }

@@ -40,6 +40,10 @@ pub fn command() -> Command {
                     .help("Where it goes; its last part is the package's name")
                     .required(true)
                     .value_parser(value_parser!(PathBuf)),
+            )
+            .arg(
+                text("linkwork", "FOLDER", "The sources of Linkwork that it is built with [default: its release]")
+                    .value_parser(value_parser!(PathBuf)),
             ),
         )
         .subcommand(
@@ -178,6 +182,14 @@ fn with_motion(command: Command) -> Command {
                 "set",
                 "NAME=VALUE",
                 "A parameter, or at the beginning q.NAME or v.NAME, or the input u.NAME",
+            )
+            .action(ArgAction::Append),
+        )
+        .arg(
+            text(
+                "guess",
+                "q.NAME=VALUE",
+                "About where the mechanism begins, of what constraints put: chooses among the forms of a loop",
             )
             .action(ArgAction::Append),
         )

@@ -12,6 +12,7 @@ use linkwork_compiler::syntax::{
     JointKind, Limit,
 };
 use std::fmt::Write;
+use std::path::PathBuf;
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
@@ -19,6 +20,14 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         return Err(Stop::Failure(format!(
             "{} is no robot file: there is nothing to convert",
             input.file.display()
+        )));
+    }
+    if let Some(out) = matches.get_one::<PathBuf>("out")
+        && out.extension().is_none_or(|ending| ending != "rs")
+    {
+        let out = out.display();
+        return Err(Stop::Failure(format!(
+            "`convert` writes Rust: `--out` names a file that ends in .rs, not {out}"
         )));
     }
     let cx = &mut Diagnostics::new();

@@ -55,6 +55,34 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         Evaluated { model, output, parameters, tables }
     }
 
+    /// Whether a mechanism with these parameters can be, as `validate` says it in Rust.
+    pub fn validate(&self) -> Result<(), Stop> {
+        use linkwork::__private::{Figure, Rule, validate};
+        use linkwork_compiler::mechanism::Rule as Known;
+        let Some(values) = self.called("__figures", Values::default()) else { return Ok(()) };
+        // The command ends soon.
+        let kept = |text: &str| -> &'static str { Box::leak(text.to_string().into_boxed_str()) };
+        let figures = self.model.requirements.iter().map(|requirement| Figure {
+            rule: match requirement.rule {
+                Known::Finite => Rule::Finite,
+                Known::Mass => Rule::Mass,
+                Known::Length => Rule::Length,
+                Known::NotNegative => Rule::NotNegative,
+                Known::Positive => Rule::Positive,
+                Known::HalfAngle => Rule::HalfAngle,
+                Known::Unit => Rule::Unit,
+                Known::Fraction => Rule::Fraction,
+                Known::Order => Rule::Order,
+                Known::Inertia => Rule::Inertia,
+            },
+            name: kept(&requirement.figure),
+            parameters: Vec::leak(
+                requirement.parameters.iter().map(|k| kept(&self.model.parameters[*k])).collect(),
+            ),
+        });
+        Ok(validate(&figures.collect::<Vec<_>>(), &values)?)
+    }
+
     /// The configuration zero.
     pub fn neutral(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.model.nq()];
@@ -124,6 +152,13 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     /// There are constraints.
     pub fn is_constrained(&self) -> bool {
         !self.model.constraints.is_empty()
+    }
+
+    /// Whether the mass matrix can be inverted; true where there is none.
+    pub fn has_inertia(&self, t: f64, q: &[f64]) -> bool {
+        let v = vec![0.0; self.model.nv()];
+        let state = Values { t, q, v: &v, ..Values::default() };
+        self.called("mass_matrix", state).is_none_or(|matrix| Metric::of(&matrix, v.len()).is_some())
     }
 
     fn metric(&self, state: Values<'_>) -> Option<Metric> {

@@ -29,7 +29,7 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     source.mechanism.requests.derivatives |= !(matches.get_flag("no-derivatives") || kinematic);
     let prefix = given(matches, "prefix").unwrap_or_default().to_string();
     let fixed: Result<Vec<(String, f64)>, Stop> = (matches.get_many::<String>("set").into_iter().flatten())
-        .map(|given| parse(given).map(|(name, value)| (name.to_string(), value)))
+        .map(|given| parse("--set", given).map(|(name, value)| (name.to_string(), value)))
         .collect();
     let casadi = if matches.get_flag("casadi") { Some(fixed?) } else { None };
     let files = export_c(&source, &Options { prefix, single, casadi }, cx);
@@ -41,7 +41,7 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     for (end, text) in [(".h", &files.header), (".c", &files.source)].into_iter().chain(casadi) {
         let path = folder.join(format!("{}{end}", files.prefix));
         write(&path, text)?;
-        println!("{}", path.display());
+        crate::say!("{}", path.display());
     }
     for line in &files.left_out {
         eprintln!("linkwork: not in C: {line}");
@@ -63,7 +63,7 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
             Stop::Failure(format!("cannot make the folder {}: {error}", parent.display()))
         })?;
         write(&path, text)?;
-        println!("{}", path.display());
+        crate::say!("{}", path.display());
     }
     for name in &made.left_out {
         eprintln!("linkwork: not in the library: {name}");
@@ -122,7 +122,7 @@ pub fn put(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     match matches.get_one::<PathBuf>("out") {
         Some(path) => write(path, text),
         None => {
-            print!("{text}");
+            crate::print(format_args!("{text}"));
             Ok(())
         }
     }

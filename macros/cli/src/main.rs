@@ -36,6 +36,25 @@ impl<E: std::error::Error> From<E> for Stop {
     }
 }
 
+/// Prints a line.
+macro_rules! say {
+    ($($text:tt)*) => { $crate::print(format_args!("{}\n", format_args!($($text)*))) };
+}
+use say;
+
+/// Prints a text. Who reads only its beginning, as `head` does, closes its end: then there is no more to do.
+fn print(text: std::fmt::Arguments<'_>) {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    if let Err(error) = out.write_fmt(text).and_then(|()| out.flush()) {
+        if error.kind() == std::io::ErrorKind::BrokenPipe {
+            std::process::exit(0);
+        }
+        eprintln!("linkwork: cannot write: {error}");
+        std::process::exit(2);
+    }
+}
+
 fn main() -> ExitCode {
     let matches = commands::command().get_matches();
     let done = match matches.subcommand() {

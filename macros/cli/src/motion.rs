@@ -8,6 +8,7 @@ use crate::table::Table;
 use clap::ArgMatches;
 use linkwork_compiler::Source;
 use linkwork_compiler::derive::Output;
+use linkwork_compiler::diag::nearest;
 use linkwork_compiler::mechanism::Model;
 use std::path::PathBuf;
 
@@ -33,10 +34,14 @@ pub struct Start<'a, 'g> {
     u: Vec<f64>,
     /// Which entries of the configuration and of the velocity are given.
     given: [Vec<bool>; 2],
+    /// Some entries of the configuration are guessed.
+    is_guessed: bool,
 }
 
 /// Moves of a beginning that are told, m and rad.
 const TOLD: f64 = 1e-6;
+/// Moves of what is given beyond rounded figures, m and rad: it is not what was meant.
+const FAR: f64 = 0.05;
 /// Most samples of a motion.
 const MAX_SAMPLES: f64 = 1e7;
 
@@ -59,7 +64,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let (mut q, mut v, mut u) = (empty.neutral(), vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
         for given in matches.get_many::<String>("set").into_iter().flatten() {
-            let (name, value) = parse(given)?;
+            let (name, value) = parse("--set", given)?;
             let place = |list: &[String]| list.iter().position(|known| known == name);
             if let Some(k) = place(&model.parameters) {
                 parameters[k] = Some(value);
@@ -70,9 +75,21 @@ impl<'a, 'g> Start<'a, 'g> {
             } else if let Some(k) = place(&inputs) {
                 u[k] = value;
             } else {
-                let known = [&model.parameters[..], &configuration, &velocities, &inputs].concat().join(", ");
-                return Err(Stop::Failure(format!("`--set`: there is no `{name}`, but {known}")));
+                let known = [&model.parameters[..], &configuration, &velocities, &inputs].concat();
+                let meant = nearest(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
+                let meant = meant.map_or(String::new(), |meant| format!("; did you mean `{meant}`?"));
+                let known = known.join(", ");
+                return Err(Stop::Failure(format!("`--set`: there is no `{name}`, but {known}{meant}")));
             }
+        }
+        let is_guessed = matches.contains_id("guess");
+        for given in matches.get_many::<String>("guess").into_iter().flatten() {
+            let (name, value) = parse("--guess", given)?;
+            let Some(k) = configuration.iter().position(|known| known == name) else {
+                let known = configuration.join(", ");
+                return Err(Stop::Failure(format!("`--guess`: there is no `{name}`, but {known}")));
+            };
+            q[k] = value;
         }
         let missing: Vec<String> = (model.parameters.iter().zip(&parameters))
             .filter(|(_, value)| value.is_none())
@@ -84,8 +101,9 @@ impl<'a, 'g> Start<'a, 'g> {
         let tables: Result<Vec<Looked>, _> =
             grid::given(matches, &source.tables())?.iter().map(Grid::looked).collect();
         let mechanism = Evaluated::new(model, output, parameters.into_iter().flatten().collect(), tables?);
+        mechanism.validate()?;
         mechanism.normalise(&mut q)?;
-        Ok(Start { mechanism, q, v, u, given: known })
+        Ok(Start { mechanism, q, v, u, given: known, is_guessed })
     }
 
     /// The motion, sample by sample.
@@ -159,10 +177,24 @@ impl<'a, 'g> Start<'a, 'g> {
     /// A state that the constraints allow: with what is given as it is, if there is one, else the nearest. Says what moved.
     fn begin(&self) -> Result<Vec<f64>, Stop> {
         let (m, [in_q, in_v]) = (&self.mechanism, &self.given);
-        let (none_q, none_v) = (vec![false; self.q.len()], vec![false; self.v.len()]);
-        let held = m.assembled(0.0, &self.q, in_q, &m.moving(in_q));
+        if !m.has_inertia(0.0, &self.q) {
+            return Err(Stop::Failure(format!(
+                "the mass matrix of `{}` is singular at the beginning: with these parameters something that moves has no inertia",
+                m.model.name
+            )));
+        }
+        // What no constraint reaches stays.
+        let apart = m.unreached(0.0, &self.q);
+        let in_v: Vec<bool> = in_v.iter().zip(&apart).map(|(given, apart)| *given || *apart).collect();
+        let moving: Vec<bool> =
+            m.moving(in_q).iter().zip(&apart).map(|(given, apart)| *given || *apart).collect();
+        let near = match self.is_guessed {
+            true => self.q.clone(),
+            false => m.led(0.0, &self.q, in_q, &apart, &moving),
+        };
+        let held = m.assembled(0.0, &near, &m.entries(&moving), &moving);
         let mut kept = held.is_some();
-        let q = held.or_else(|| m.assembled(0.0, &self.q, &none_q, &none_v));
+        let q = held.or_else(|| m.assembled(0.0, &near, &m.entries(&apart), &apart));
         let q = q.ok_or_else(|| {
             Stop::Failure(format!(
                 "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set q.NAME=VALUE`",
@@ -170,20 +202,36 @@ impl<'a, 'g> Start<'a, 'g> {
             ))
         })?;
         let mut v = self.v.clone();
-        if m.move_along(0.0, &q, &mut v, in_v).is_none() {
+        if m.move_along(0.0, &q, &mut v, &in_v).is_none() {
             kept = false;
             v.clone_from(&self.v);
-            m.move_along(0.0, &q, &mut v, &none_v).ok_or_else(|| {
+            m.move_along(0.0, &q, &mut v, &apart).ok_or_else(|| {
                 Stop::Failure(format!("`{}` has constraints that contradict each other", m.model.name))
             })?;
         }
         let begins = [q, v].concat();
-        self.tell_of_moves(&begins, kept);
+        let moves = self.moves(&begins);
+        let some = self.given.iter().flatten().any(|given| *given);
+        let given = self.given.iter().flatten().zip(self.q.iter().chain(&self.v).zip(&begins));
+        let is_far = |(is_given, (wanted, is)): (&bool, (&f64, &f64))| *is_given && (wanted - is).abs() > FAR;
+        if !kept && given.into_iter().any(is_far) {
+            return Err(Stop::Failure(format!(
+                "what is given does not fulfil the constraints: give less of it (`--guess q.NAME=VALUE` gives what is only about so), or what is nearest: {moves}"
+            )));
+        }
+        let why = match (kept, some) {
+            (true, true) => "what is given is kept, and the constraints put the rest",
+            (false, _) => "what is given does not fulfil the constraints; the motion begins near it,",
+            (true, false) => "zero does not fulfil the constraints; the motion begins near it,",
+        };
+        if !moves.is_empty() {
+            eprintln!("linkwork: {why} at {moves}");
+        }
         Ok(begins)
     }
 
-    /// Says where a motion begins whose wanted beginning does not fulfil the constraints; `kept` if what was given of it stays.
-    fn tell_of_moves(&self, begins: &[f64], kept: bool) {
+    /// What of a beginning is other than what was wanted.
+    fn moves(&self, begins: &[f64]) -> String {
         let wanted = self.q.iter().chain(&self.v);
         let names = self.mechanism.model.configuration.iter().map(|name| format!("q.{name}"));
         let names = names.chain(self.mechanism.model.velocities.iter().map(|(name, _)| format!("v.{name}")));
@@ -192,15 +240,7 @@ impl<'a, 'g> Start<'a, 'g> {
             .filter(|(_, (wanted, is))| (*wanted - *is).abs() > TOLD * (1.0 + wanted.abs()))
             .map(|(name, (_, is))| format!("{name} = {is:.6}"))
             .collect();
-        let some = self.given.iter().flatten().any(|given| *given);
-        let why = match (kept, some) {
-            (true, true) => "what is given is kept, and the constraints put the rest",
-            (false, _) => "what is given does not fulfil the constraints; the motion begins near it,",
-            (true, false) => "zero does not fulfil the constraints; the motion begins near it,",
-        };
-        if !moved.is_empty() {
-            eprintln!("linkwork: {why} at {}", moved.join(", "));
-        }
+        moved.join(", ")
     }
 
     /// Inputs of a file, by their number.
@@ -224,10 +264,13 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 }
 
-/// A name with its value.
-pub fn parse(given: &str) -> Result<(&str, f64), Stop> {
-    let fail = || Stop::Failure(format!("`--set`: expected NAME=VALUE, found `{given}`"));
-    let (name, value) = given.split_once('=').ok_or_else(fail)?;
-    let value: f64 = value.trim().parse().map_err(|_| fail())?;
-    if value.is_finite() { Ok((name.trim(), value)) } else { Err(fail()) }
+/// A name with its value, of an option.
+pub fn parse<'a>(option: &str, given: &'a str) -> Result<(&'a str, f64), Stop> {
+    let fail =
+        |what: &str, found: &str| Stop::Failure(format!("`{option}`: expected {what}, found `{found}`"));
+    let (name, value) = given.split_once('=').ok_or_else(|| fail("NAME=VALUE", given))?;
+    let number: Option<f64> = value.trim().parse().ok();
+    let number = number.filter(|number| number.is_finite());
+    let what = format!("a number for `{}`", name.trim());
+    Ok((name.trim(), number.ok_or_else(|| fail(&what, value.trim()))?))
 }

@@ -17,10 +17,12 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let fail = |error: std::io::Error| Stop::Failure(format!("cannot make {}: {error}", folder.display()));
     std::fs::create_dir_all(folder.join("src")).map_err(fail)?;
     let write = |path: &str, text: &str| std::fs::write(folder.join(Path::new(path)), text).map_err(fail);
-    write("Cargo.toml", &manifest(&name))?;
+    let sources = matches.get_one::<PathBuf>("linkwork").map(std::fs::canonicalize).transpose();
+    let sources = sources.map_err(|error| Stop::Failure(format!("`--linkwork`: {error}")))?;
+    write("Cargo.toml", &manifest(&name, sources.as_deref()))?;
     write("src/main.rs", MAIN)?;
     write(".gitignore", "/target\n/motion.html\n")?;
-    println!("{0}: `cd {0}`, then `cargo run`, and open motion.html", folder.display());
+    crate::say!("{0}: `cd {0}`, then `cargo run`, and open motion.html", folder.display());
     Ok(())
 }
 
@@ -39,10 +41,16 @@ fn check_name(name: &str) -> Result<(), Stop> {
     Ok(())
 }
 
-fn manifest(name: &str) -> String {
-    let version = env!("CARGO_PKG_VERSION");
+/// With the sources of Linkwork in a folder, or its release.
+fn manifest(name: &str, sources: Option<&Path>) -> String {
+    let of = |part: &str| match sources {
+        Some(folder) => format!("{{ path = {:?} }}", folder.join(part).display().to_string()),
+        None => format!("{:?}", env!("CARGO_PKG_VERSION")),
+    };
+    let (linkwork, view) = (of("runtime"), of("runtime/view"));
     format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
-         [dependencies]\nlinkwork = \"{version}\"\nlinkwork-view = \"{version}\"\n\n[workspace]\n"
+         [dependencies]\nlinkwork = {linkwork}\nlinkwork-view = {view}\n\n\
+         # Without optimisation simulations take twenty times as long.\n[profile.dev]\nopt-level = 1\n\n[workspace]\n"
     )
 }

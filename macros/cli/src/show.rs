@@ -17,11 +17,11 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         let shown = Shown { model: &model, output: &output, structure: source.structure() };
         match as_json {
             true => all.push(shown.json()),
-            false => print!("{}", shown.text()),
+            false => crate::print(format_args!("{}", shown.text())),
         }
     }
     if as_json {
-        println!("{:#}", json!({ "mechanisms": all }));
+        crate::say!("{:#}", json!({ "mechanisms": all }));
     }
     Ok(())
 }

@@ -60,7 +60,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let out =
         matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{}.html", input.name)));
     Page::new(&input.name).motion(motion).write(&out)?;
-    println!("{}", out.display());
+    crate::say!("{}", out.display());
     Ok(())
 }
 

@@ -162,4 +162,6 @@ fn what_cannot_be_converted_is_told() {
     let panda = repository().join("models/urdf/panda.urdf");
     let (status, told) = run(&["convert", panda.to_str().unwrap()]);
     assert!(status == Some(0) && told.contains("follows `panda_finger_joint1` by a constraint"), "{told}");
+    let (status, told) = run(&["convert", panda.to_str().unwrap(), "--out", "panda.sdf"]);
+    assert!(status == Some(2) && told.contains("a file that ends in .rs, not panda.sdf"), "{told}");
 }

@@ -186,16 +186,17 @@ pub struct Closed {
 fn loops_stay_closed() {
     let here = folder("closed");
     std::fs::write(here.join("closed.rs"), CLOSED).unwrap();
-    let begin = ["--set", "q.input=1.2", "--set", "v.input=2", "--set", "q.output=1.9", "--set", "u.motor=0"];
+    let begin =
+        ["--set", "q.input=1.4017", "--set", "v.input=2", "--set", "q.output=2.0835", "--set", "u.motor=0"];
     let arguments = [
         &["simulate", "closed.rs", "--duration", "2", "--every", "0.25", "--tolerance", "1e-11"][..],
         &begin,
     ]
     .concat();
     let (status, log, told) = linkwork(&here, &arguments);
-    // The two angles that are given close the loop but for a part, which is told.
+    // The two angles that are given close the loop to their digits, which is told.
     assert!(status == 0 && told.contains("what is given does not fulfil the constraints"), "{told}");
-    assert!(told.contains("the motion begins near it, at q.input = "), "{told}");
+    assert!(told.contains("the motion begins near it, at q."), "{told}");
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let rows = rows(&log);
     assert_eq!(rows.len(), 9);
@@ -229,10 +230,79 @@ fn loops_stay_closed() {
     let (at, rate) = state(&self::rows(&log)[0]);
     assert_eq!((at[0], rate[2]), (0.3, 2.0));
     assert!(m.constraint_residuals(&at).norm() < 1e-11 && m.constraint_rates(&at, &rate).norm() < 1e-11);
+    // The same angle in the loop's other form.
+    let guessed = [&one[..], &["--guess", "q.output=2"]].concat();
+    let (status, log, told) = linkwork(&here, &guessed);
+    assert!(status == 0 && told.contains("what is given is kept"), "{told}");
+    let (other, _) = state(&self::rows(&log)[0]);
+    assert!(other[0] == 0.3 && other[2] > 1.0 && at[2] < 0.0, "{other} {at}");
+    assert!(m.constraint_residuals(&other).norm() < 1e-11);
+    // Angles that cannot be are none to begin with.
+    let wrong = ["simulate", "closed.rs", "--set", "q.input=1.2", "--set", "q.output=1.9"];
+    let (status, log, told) = linkwork(&here, &wrong);
+    assert!(status == 2 && log.is_empty() && told.contains("what is nearest: q.input = "), "{told}");
     // A loop that is stretched out is assembled near by, which is told; the page of it shows the motion.
     let (status, _, told) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
     assert!(status == 0 && told.contains("the motion begins near it, at q."), "{told}");
     assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
+}
+
+const SWING: &str = "
+#[mechanism(gravity = -9.81 * y)]
+pub struct Swing {
+    pub rope: f64,
+    pub child: f64,
+    #[body(mass = 0.5, com = -rope / 2 * y, inertia = rod(0.5, rope, y))]
+    left: Body,
+    #[body(mass = 0.5, com = -rope / 2 * y, inertia = rod(0.5, rope, y))]
+    right: Body,
+    #[body(mass = 2, com = 0.4 * x, inertia = rod(2, 0.8, x))]
+    seat: Body,
+    #[body(mass = child, com = 0.4 * y, inertia = rod(child, 0.8, y))]
+    kid: Body,
+    #[joint(ground -> left, about = z)]
+    left_hook: Pin,
+    #[joint(ground.at(0.8 * x) -> right, about = z)]
+    right_hook: Pin,
+    #[joint(left.at(-rope * y) -> seat, about = z)]
+    left_knot: Pin,
+    #[joint(seat.at(0.8 * x) -> right.at(-rope * y), about = z)]
+    right_knot: Pin,
+    #[joint(seat.at(0.4 * x) -> kid, about = z)]
+    hips: Pin,
+}
+";
+
+/// A joint that no constraint reaches is not moved where a motion begins. The loop keeps the form that it has at zero, a parallelogram,
+/// however far it swings. Parameters that no mechanism can have are refused.
+#[test]
+fn beginnings_move_what_constraints_reach() {
+    let here = folder("swing");
+    std::fs::write(here.join("swing.rs"), SWING).unwrap();
+    let short = ["simulate", "swing.rs", "--duration", "0.1", "--set", "rope=2"];
+    for angle in ["0.6", "-1.5", "2.5"] {
+        let given = format!("q.left_hook={angle}");
+        let (status, log, told) =
+            linkwork(&here, &[&short[..], &["--set", "child=25", "--set", &given]].concat());
+        assert!(status == 0 && told.contains("what is given is kept"), "{told}");
+        let begin = &rows(&log)[0];
+        let angle: f64 = angle.parse().unwrap();
+        let off = begin[1..5].iter().zip([angle, angle, -angle, 0.0]).map(|(is, wanted)| (is - wanted).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-11, "{begin:?}");
+    }
+    for (figures, why) in [
+        (
+            ["child=25", "rope=-2"],
+            "the length of a `rod` cannot be negative, but it is -2 (by the parameter `rope`)",
+        ),
+        (["child=0", "rope=2"], "the mass matrix of `Swing` is singular at the beginning"),
+        (["child=25", "rope=2 m"], "`--set`: expected a number for `rope`, found `2 m`"),
+        (["child=25", "rop=2"], "did you mean `rope`?"),
+    ] {
+        let arguments = ["simulate", "swing.rs", "--set", figures[0], "--set", figures[1]];
+        let (status, log, told) = linkwork(&here, &arguments);
+        assert!(status == 2 && log.is_empty() && told.contains(why), "{told}");
+    }
 }
 
 /// What no configuration fulfils is told; so are tables, whose figures the command does not have.

@@ -50,12 +50,20 @@ fn projects_are_made_once() {
         let local = format!("\n{name} = {{ path = {:?} }}\n", root.join(at).display().to_string());
         manifest = manifest.replace(&published, &local);
     }
-    std::fs::write(&path, manifest).unwrap();
+    std::fs::write(&path, &manifest).unwrap();
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["metadata", "--no-deps", "--offline", "--format-version=1"]);
     let cargo = cargo.current_dir(here.join("my-arm")).output().unwrap();
     let read: serde_json::Value = serde_json::from_slice(&cargo.stdout).unwrap();
     assert_eq!(read["packages"][0]["name"], "my-arm");
+
+    // With the sources in a folder the manifest names them itself.
+    let (status, _, told) = linkwork(&here, &["new", "own", "--linkwork", root.to_str().unwrap()]);
+    assert_eq!(status, 0, "{told}");
+    let own = std::fs::read_to_string(here.join("own/Cargo.toml")).unwrap();
+    assert_eq!(own.replace("\"own\"", "\"my-arm\""), manifest);
+    let (status, _, told) = linkwork(&here, &["new", "other", "--linkwork", "nowhere"]);
+    assert!(status == 2 && told.contains("`--linkwork`: "), "{told}");
 
     for (name, part) in
         [("my-arm", "is there already"), ("2d", "no name of a package"), ("fn", "no name"), ("std", "hide")]

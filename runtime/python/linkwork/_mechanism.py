@@ -548,7 +548,8 @@ class Mechanism:
     def equilibrium(self, q=None, inputs=None, *, held=(), tolerance=1e-12, iterations=50):
         """A configuration near `q` in which the mechanism stays at rest under constant inputs: Newton's method with half steps on the
         generated derivatives. Under constraints they hold there, and their forces are found along with it (the change of these with
-        the configuration by differences of the generated Jacobian).
+        the configuration by differences of the generated Jacobian). Limits of joints are not heeded: a long way off `q` it may lie
+        beyond them.
 
         Args:
             q: where the search begins: an array, or values by name.
@@ -598,13 +599,18 @@ class Mechanism:
         )
 
     def linear_system(self, q, v=None, inputs=None, *, t=0.0):
-        """The linear system about a state.
+        """The linear system about a state, which fulfils the constraints; of one that is no equilibrium A and B describe what is
+        added to its motion. Every joint of a robot file is an input unless the option `inputs` says otherwise.
 
         Raises:
-            Error: without derivatives.
+            Error: without derivatives, or off the constraints: `assemble` brings a configuration onto them.
         """
         self._need("linearize", "derivatives")
         q = self._vector(q, self.nq, "q")
+        if "constraint_residuals" in self._functions:
+            off = np.abs(self.constraint_residuals(*([t] if self._description["time"] else []), q)).max(initial=0)
+            if not off <= 1e-6:
+                raise Error(f"the configuration is off the constraints by {off:.3g} (m, rad): `assemble` brings it onto them")
         v = np.zeros(self.nv) if v is None else self._vector(v, self.nv, "v")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
         time = [t] if self._description["time"] else []

@@ -413,6 +413,8 @@ class UnderConstraints(unittest.TestCase):
         system = self.m.linear_system([0.0, -1.0])
         np.testing.assert_allclose(np.linalg.eigvals(system.a).imag, [np.sqrt(9.81), -np.sqrt(9.81)], rtol=1e-10)
         self.assertEqual(system.states, ["plane.x", "plane.x.rate"])
+        with self.assertRaisesRegex(linkwork.Error, "off the constraints by 0.1"):
+            self.m.linear_system([0.0, -0.9])
 
 
 class WithContacts(unittest.TestCase):
