@@ -12,6 +12,9 @@ use linkwork_compiler::mechanism::{self, PieceKind};
 use linkwork_view::{Figure, Motion, Page};
 use std::path::{Path, PathBuf};
 
+/// Time, configuration, and inputs, where they are known.
+type State = (f64, Vec<f64>, Vec<f64>);
+
 /// Most coordinates that are plotted of their own accord.
 const PLOTTED: usize = 12;
 
@@ -28,9 +31,9 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         None => match start.mechanism.obstacle(matches.get_flag("without-contacts")) {
             Some(why) if matches.get_one::<f64>("duration").is_none() => {
                 eprintln!("linkwork: the page shows one configuration: {why}");
-                vec![(0.0, start.q.clone())]
+                vec![(0.0, start.q.clone(), Vec::new())]
             }
-            _ => start.run(matches)?.into_iter().map(|sample| (sample.t, sample.q)).collect(),
+            _ => start.run(matches)?.into_iter().map(|sample| (sample.t, sample.q, sample.u)).collect(),
         },
     };
     let mut figure = figure(&start, &model);
@@ -44,18 +47,27 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             }
         }
     }
-    let times = states.iter().map(|(t, _)| *t).collect();
-    let placements = states.iter().map(|(t, q)| start.mechanism.placements(*t, q)).collect();
+    let times = states.iter().map(|(t, ..)| *t).collect();
+    let placements = states.iter().map(|(t, q, _)| start.mechanism.placements(*t, q)).collect();
     let heights = |number: usize, place: [f64; 2]| {
         let heights =
             start.mechanism.called("__drawing_heights", Values { given: &place, ..Values::default() })?;
         heights.get(number).copied()
     };
     let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
-    if states.len() > 1 && (1..=PLOTTED).contains(&model.nq()) {
-        let curve = |k: usize| states.iter().map(|(_, q)| q[k]).collect();
+    if states.len() > 1 && model.nq() <= PLOTTED {
+        let curve = |k: usize| states.iter().map(|(_, q, _)| q[k]).collect();
         let curves = model.configuration.iter().enumerate().map(|(k, name)| (name.as_str(), curve(k)));
-        motion = motion.plot("Coordinates", "", curves.collect::<Vec<_>>())?;
+        motion = plotted(motion, "Coordinates", &model.units.configuration, curves.collect())?;
+    }
+    if states.len() > 1 && model.nu() <= PLOTTED {
+        // Those that stay as they are need no plot.
+        let curve = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
+        let curves: Vec<(&str, Vec<f64>)> =
+            model.inputs.iter().enumerate().map(|(k, (name, _))| (name.as_str(), curve(k))).collect();
+        if curves.iter().any(|(_, values)| values.iter().any(|value| *value != values[0])) {
+            motion = plotted(motion, "Inputs", &model.units.inputs, curves)?;
+        }
     }
     let out =
         matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{}.html", input.name)));
@@ -65,7 +77,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// The configurations of a log.
-fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<(f64, Vec<f64>)>, Stop> {
+fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     let table = Table::read(path)?;
     let column = |name: &String| {
         let name = format!("q.{name}");
@@ -73,12 +85,36 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<(f64, Vec<f64>)>, 
         found.ok_or_else(|| Stop::Failure(format!("{}: there is no column `{name}`", path.display())))
     };
     let columns = start.mechanism.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
+    // All of them, or none.
+    let inputs: Vec<_> =
+        start.mechanism.model.inputs.iter().map(|(name, _)| table.column(&format!("u.{name}"))).collect();
+    let inputs = if inputs.contains(&None) { Vec::new() } else { inputs };
     let state = |(k, t): (usize, &f64)| {
         let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
         start.mechanism.normalise(&mut q)?;
-        Ok((*t, q))
+        let u = inputs.iter().filter_map(|column| Some(column.as_ref()?[k])).collect();
+        Ok((*t, q, u))
     };
     table.times.iter().enumerate().map(state).collect()
+}
+
+/// A plot for each unit.
+fn plotted(
+    mut motion: Motion,
+    title: &str,
+    units: &[String],
+    curves: Vec<(&str, Vec<f64>)>,
+) -> Result<Motion, Stop> {
+    let unit = |k: usize| units.get(k).map_or("", String::as_str);
+    let mut left: Vec<(&str, (&str, Vec<f64>))> =
+        curves.into_iter().enumerate().map(|(k, curve)| (unit(k), curve)).collect();
+    while let Some((unit, _)) = left.first() {
+        let unit = *unit;
+        let (own, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|(other, _)| *other == unit);
+        motion = motion.plot(title, unit, own.into_iter().map(|(_, curve)| curve))?;
+        left = others;
+    }
+    Ok(motion)
 }
 
 /// What is declared, with numbers.

@@ -77,6 +77,32 @@ fn pages_show_motions() {
     // The same but for the figures of the last digit.
     let again = std::fs::read_to_string(here.join("Flail.html")).unwrap();
     assert_eq!(again.len(), page.len());
+
+    // Lengths and angles have plots of their own, and so have inputs that change.
+    let cart = "
+#[mechanism(gravity = -9.81 * y)]
+pub struct Cart {
+    #[body(mass = 1)]
+    cart: Body,
+    #[body(mass = 1, com = -y, inertia = rod(1, 2, y))]
+    pole: Body,
+    #[joint(ground -> cart, along = x)]
+    rail: Sleeve,
+    #[joint(cart -> pole, about = z)]
+    hinge: Pin,
+    #[acts(on = rail)]
+    push: Force,
+}
+";
+    std::fs::write(here.join("cart.rs"), cart).unwrap();
+    std::fs::write(here.join("push.csv"), "t,u.push\n0,0\n1,2\n").unwrap();
+    for (inputs, plots) in [(&[][..], 0), (&["--inputs", "push.csv"], 1)] {
+        let view = [&["view", "cart.rs", "--duration", "1"][..], inputs].concat();
+        assert_eq!(linkwork(&here, &view).0, 0);
+        let page = std::fs::read_to_string(here.join("Cart.html")).unwrap();
+        let count = |text: &str| page.matches(text).count();
+        assert_eq!((count("[\"Coordinates\","), count("[\"Inputs\",\"N\",")), (2, plots));
+    }
 }
 
 /// The messages of an MCAP file: records begin with their kind and the length of the rest.

@@ -268,16 +268,24 @@ fn joined(list: &[String], word: &str) -> String {
 }
 
 /// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand. A letter in
-/// the other case is the smallest of slips; something of the name must remain.
+/// the other case is the smallest of slips; something of the name must remain. Else the only candidate of whose words `name` is one:
+/// `elbow_joint` for `elbow`.
 pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let length = name.chars().count();
     let limit = (length / 3).clamp(1, 3);
+    let mut longer =
+        candidates.iter().filter(|c| length > 2 && c.split(['_', '.', '-']).any(|word| word == name));
+    let longer = match (longer.next(), longer.next()) {
+        (Some(only), None) => Some(*only),
+        _ => None,
+    };
     candidates
         .iter()
         .map(|c| (if c.eq_ignore_ascii_case(name) { 0 } else { edit_distance(name, c) }, *c))
         .filter(|(distance, c)| *distance <= limit && *distance < length.max(c.chars().count()))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, c)| c)
+        .or(longer)
 }
 
 /// Edit distance with transpositions of neighbours counted as one edit (optimal string alignment).
@@ -314,5 +322,7 @@ mod tests {
         assert_eq!(nearest("Z", &["x", "y", "z"]), Some("z"));
         assert_eq!(nearest("w", &["x", "y", "z"]), None);
         assert_eq!(nearest("j", &["j1", "j2"]), Some("j1"));
+        assert_eq!(nearest("elbow", &["shoulder_joint", "elbow_joint"]), Some("elbow_joint"));
+        assert_eq!(nearest("joint", &["shoulder_joint", "elbow_joint"]), None);
     }
 }
