@@ -744,6 +744,8 @@ def _function(library, k, about, cls):
         return arrays
 
     def general(self, given, threads, out):
+        if not isinstance(self, Mechanism):
+            raise TypeError(f"{about['name']} is a function of a mechanism, not of its class: make one first, with values of its parameters")
         if len(given) != count:
             raise TypeError(f"{about['name']}({', '.join(names)}) takes {count} arguments, found {len(given)}")
         arrays = [prepared(i, value) for i, value in enumerate(given)]

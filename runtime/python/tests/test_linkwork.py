@@ -231,6 +231,8 @@ class OfAPendulum(unittest.TestCase):
             self.m.mass_matrix(np.zeros((3, 1)), threads=-1)
         with self.assertRaisesRegex(ValueError, "arrays of 2 and of 3 states"):
             self.m.kinetic_energy(np.zeros((2, 1)), np.zeros((3, 1)))
+        with self.assertRaisesRegex(TypeError, "of a mechanism, not of its class"):
+            type(self.m).mass_matrix(np.zeros(1))
         with self.assertRaisesRegex(TypeError, "takes 1 arguments"):
             self.m.mass_matrix([0.0], [0.0])
 

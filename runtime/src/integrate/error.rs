@@ -50,6 +50,10 @@ pub enum Error {
     OffConstraints {
         /// Time of the start.
         t: f64,
+        /// The entry of the configuration, or else of the velocity, that the constraints move most.
+        entry: &'static str,
+        /// By how much, in the entry's unit.
+        by: f64,
     },
     /// The constraints cannot be fulfilled: the mechanism is locked, its friction jams, or a step went too far.
     Constraint {
@@ -88,7 +92,10 @@ impl fmt::Display for Error {
                 write!(f, "the tolerance asks for a step of {h} s at t = {t} s, which is too small")
             }
             Self::TooManySteps { t } => write!(f, "the limit on steps was reached at t = {t} s"),
-            Self::OffConstraints { t } => write!(f, "the state at t = {t} s is off the constraints"),
+            Self::OffConstraints { t, entry, by } => write!(
+                f,
+                "the state at t = {t} s is off the constraints, which move `{entry}` by {by:.3e}: `assemble` and `project_velocity` bring a state onto them"
+            ),
             Self::Constraint { t, reason } => write!(f, "at t = {t} s {reason}"),
             Self::Event { t, event } => {
                 write!(f, "the function of event {event} is not a number after t = {t} s")
@@ -121,7 +128,7 @@ impl Error {
             | Self::StepTooSmall { t, .. }
             | Self::TooManySteps { t }
             | Self::Event { t, .. }
-            | Self::OffConstraints { t }
+            | Self::OffConstraints { t, .. }
             | Self::Constraint { t, .. }
             | Self::Impacts { t, .. }
             | Self::NotConverged { t, .. } => *t += origin,

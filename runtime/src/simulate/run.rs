@@ -14,6 +14,24 @@ const SEARCHES: u8 = 4;
 /// Part of a step within which the same impact again is one of infinitely many.
 const SOON: f64 = 1e-6;
 
+/// Whether numbers differ by more than a rounded figure does, or one of them is none.
+fn far<T: Real>(a: T, b: T) -> bool {
+    let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
+    let near = (a - b).abs() <= tolerance * (T::one() + a.abs());
+    !near
+}
+
+/// The name of the entry that moves most from one vector to another, and by how much, if any is [`far`].
+fn farthest<T: Real, const N: usize>(
+    to: &SVector<T, N>,
+    from: &SVector<T, N>,
+    names: [&'static str; N],
+) -> Option<(&'static str, f64)> {
+    let moves = to.iter().zip(from).zip(names).filter(|((to, from), _)| far(**to, **from));
+    let moves = moves.map(|((to, from), name)| (name, to_f64(*to - *from)));
+    moves.reduce(|most, other| if other.1.abs() > most.1.abs() { other } else { most })
+}
+
 /// Events of one instant, as they act one after another.
 #[derive(Clone, Debug)]
 struct Firing<T, const NQ: usize, const NV: usize> {
@@ -92,12 +110,6 @@ where
         self.check_samples()?;
         self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
         let start = self.start.finite()?;
-        let far = |a: T, b: T| {
-            let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
-            let near = (a - b).abs() <= tolerance * (T::one() + a.abs());
-            // Also where one of them is not a number.
-            !near
-        };
         // Going nowhere makes quaternions unit.
         let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
         // Where declared speeds determine no rates, nothing leads anywhere.
@@ -111,11 +123,11 @@ where
         }
         let start = self.parted(start)?;
         let node = self.on_constraints(start)?;
-        let moved = node.q.iter().zip(&start.q).any(|(a, b)| far(*a, *b));
-        let changed = node.v.iter().zip(&start.v).any(|(a, b)| far(*a, *b));
         let t = to_f64(node.t);
-        if moved || changed {
-            return Err(Error::OffConstraints { t });
+        if let Some((entry, by)) = farthest(&node.q, &start.q, M::CONFIGURATION)
+            .or_else(|| farthest(&node.v, &start.v, M::VELOCITIES))
+        {
+            return Err(Error::OffConstraints { t, entry, by });
         }
         self.events.begin(&node).map_err(|reason| failure(reason, t))?;
         Ok(Progress {

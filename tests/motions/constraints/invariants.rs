@@ -174,6 +174,22 @@ fn states_off_the_constraints_are_errors() {
     q[2] += 0.01;
     let run = simulate(&squeezer).from(q, [0.0; 7]).duration(0.001).finish();
     assert!(matches!(run, Err(Error::OffConstraints { .. } | Error::Constraint { .. })), "{run:?}");
+    // What would have to move most, and by how much.
+    let bar = FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
+    let closed = bar.assemble(&[0.8, 0.0, 2.0].into(), &[0]).expect("it is close");
+    let open = closed + SVector::from([0.0, 0.01, 0.0]);
+    let Err(error) = simulate(&bar).from(open, [0.0; 3]).duration(0.001).finish() else {
+        panic!("it is open")
+    };
+    assert!(
+        matches!(error, Error::OffConstraints { by, .. } if by.abs() > 1e-3 && by.abs() < 0.02),
+        "{error:?}"
+    );
+    assert!(error.to_string().contains("off the constraints, which move `"), "{error}");
+    let Err(error) = simulate(&bar).from(closed, [1.0, 0.0, 0.0]).duration(0.001).finish() else {
+        panic!("it would break")
+    };
+    assert!(matches!(error, Error::OffConstraints { by, .. } if by.abs() > 0.1), "{error:?}");
     // From there it is assembled, the crank where it is.
     let found = squeezer.assemble(&q, &[0]).expect("it is close");
     assert!((found[0] - q[0]).abs() < 1e-15 && squeezer.constraint_residuals(&found).amax() < 1e-14);

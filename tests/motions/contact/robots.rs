@@ -62,6 +62,57 @@ fn a_quadruped_stands() {
     assert!((along[0].hypot(along[1]) - weight * m.slope.sin()).abs() < 1e-6 * weight, "{along:?}");
 }
 
+/// On the corners of its soles: eight contacts, of which the motion cannot tell the impulses apart.
+#[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, limits = ignore, gravity = -9.81 * z)]
+struct Humanoid {
+    #[contact(l_ankle.at(0.16 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    left_toe: [Contact; 2],
+    #[contact(l_ankle.at(-0.09 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    left_heel: [Contact; 2],
+    #[contact(r_ankle.at(0.16 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    right_toe: [Contact; 2],
+    #[contact(r_ankle.at(-0.09 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    right_heel: [Contact; 2],
+}
+
+/// It drops onto its soles and stands, its joints held by springs and dampers: it does not creep, all of its weight is on its soles, and
+/// what presses does so below its centre of mass.
+#[test]
+fn a_humanoid_stands() {
+    let m = Humanoid {};
+    let hold = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
+        SVector::from_fn(|k, _| -1e4 * (q[7 + k] + 0.05 * v[6 + k]))
+    };
+    let mut q = m.neutral();
+    q[2] -= m.contact_gaps(&q).min() - 0.01;
+    let run = simulate(&m).from(q, [0.0; 35]).inputs(|_, q, v| hold(q, v));
+    let run = run.method(TimeStepping::step(1e-3)).sample_every(0.5).duration(6.0);
+    let samples: Vec<_> = run.map(|sample| sample.unwrap()).collect();
+    let (before, after) = (samples[samples.len() - 2], samples[samples.len() - 1]);
+    let creep = (after.q - before.q).norm() / 0.5;
+    assert!(creep < 1e-6, "{creep:e}");
+    assert!(m.contact_gaps(&after.q).amax() < 1e-9);
+    let forces = contact::forces(&m, after.t, &after.q, &after.v, &hold(&after.q, &after.v), 1e-3).unwrap();
+    let weight = m.total_mass() * 9.81;
+    let normal: f64 = (0..8).map(|k| forces[3 * k]).sum();
+    assert!((0..8).all(|k| forces[3 * k] >= 0.0) && (normal - weight).abs() < 1e-5 * weight, "{forces}");
+    // Places of the corners, in the order of declaration.
+    let center = m.center_of_mass(&after.q);
+    let feet = [
+        m.frame_placement(frame!(Humanoid, "l_ankle"), &after.q),
+        m.frame_placement(frame!(Humanoid, "r_ankle"), &after.q),
+    ];
+    for axis in 0..2 {
+        let mut pressed = 0.0;
+        for (k, x) in [0.16, 0.16, -0.09, -0.09].into_iter().cycle().take(8).enumerate() {
+            let corner = [x, 0.12 * (k % 2) as f64 - 0.06, -0.1];
+            let place = feet[k / 4] * linkwork::nalgebra::Point3::from(corner);
+            pressed += forces[3 * k] * place[axis] / normal;
+        }
+        assert!((pressed - center[axis]).abs() < 1e-5, "{pressed} {center}");
+    }
+}
+
 /// A trunk on four alike legs with two joints each, and with four alike arms.
 #[mechanism]
 struct Crab {
