@@ -1,4 +1,4 @@
-"""MuJoCo and Drake on the quadruped of `benches/src/bin/contact.rs`: the time of a step, and how exact it is.
+"""MuJoCo and Drake on the quadruped of `benches/src/bin/contact.rs`, and MuJoCo on its humanoid: the time of a step, and how exact it is.
 
     python contact.py URDF_FOLDER LINKWORK_PROGRAM
 
@@ -100,6 +100,53 @@ def measured(folder):
     }
 
 
+def humanoid(folder):
+    """The robot on the four corners of each sole, with the drives of the same program."""
+    with open(f"{folder}/simple_humanoid.urdf", encoding="utf-8") as file:
+        spec = mujoco.MjSpec.from_string(file.read().replace("</robot>", EXTENSION + "</robot>"))
+    spec.option.timestep = 1e-3
+    spec.worldbody.first_body().add_freejoint()
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], friction=[0.8, 0, 0], condim=3)
+    radius = 0.005
+    for side in ("l", "r"):
+        for x in (0.16, -0.09):
+            for y in (-0.06, 0.06):
+                ball = dict(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius, 0, 0], mass=0, pos=[x, y, radius - 0.1])
+                spec.body(f"{side}_ankle").add_geom(friction=[0.8, 0, 0], condim=3, **ball)
+    for joint in spec.joints:
+        if joint.type == mujoco.mjtJoint.mjJNT_HINGE:
+            joint.limited = 0
+            spec.add_actuator(target=joint.name, trntype=mujoco.mjtTrn.mjTRN_JOINT).set_to_position(kp=1e4, kv=500.0)
+    return spec.compile()
+
+
+def measured_humanoid(folder):
+    driven, loose = humanoid(folder), humanoid(folder)
+    loose.actuator_gainprm[:] = 0
+    loose.actuator_biasprm[:] = 0
+
+    def posed(m, height):
+        d = mujoco.MjData(m)
+        mujoco.mj_forward(m, d)
+        lowest = min(d.geom_xpos[k][2] - m.geom_size[k][0] for k in range(m.ngeom) if m.geom_bodyid[k] > 0)
+        d.qpos[2] += height - lowest
+        return d
+
+    standing = run(driven, posed(driven, 0.01), 8.0)
+
+    def stands():
+        d = posed(driven, 0.0)
+        d.qpos[:], d.qvel[:] = standing.qpos, standing.qvel
+        return d
+
+    return {
+        "humanoid_standing": timed(driven, stands, 0.5),
+        "humanoid_collapsing": timed(loose, lambda: posed(loose, 0.01), 0.5),
+        "humanoid_free": timed(driven, lambda: posed(driven, 100.0), 0.5),
+        "humanoid_creep": float(np.linalg.norm(run(driven, stands(), 1.0).qpos[:3] - standing.qpos[:3])),
+    }
+
+
 def stands_contacts(m, d):
     mujoco.mj_forward(m, d)
     return d.contact
@@ -114,16 +161,20 @@ ROWS = [
     ("creep on 10°", "inclined", "µm/s", 1e6),
     ("difference to a tenth of a step of 1 ms", "one", "µm", 1e6),
     ("difference to a tenth of a step of 2 ms", "two", "µm", 1e6),
+    ("a step while the humanoid stands", "humanoid_standing", "µs", 1),
+    ("a step while it collapses", "humanoid_collapsing", "µs", 1),
+    ("a step in the air", "humanoid_free", "µs", 1),
+    ("its creep", "humanoid_creep", "µm/s", 1e6),
 ]
 
 
 def main():
     folder, program = sys.argv[1:3]
     ours = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
-    columns = [ours, measured(folder), contact_drake.measured(folder)]
+    columns = [ours, measured(folder) | measured_humanoid(folder), contact_drake.measured(folder)]
     print(f"| | Linkwork | MuJoCo {mujoco.__version__} | Drake {version('drake')} |\n| --- | ---: | ---: | ---: |")
     for text, key, unit, factor in ROWS:
-        figures = " | ".join(f"{column[key] * factor:.3g}" for column in columns)
+        figures = " | ".join(f"{column[key] * factor:.3g}" if key in column else "–" for column in columns)
         print(f"| {text}, {unit} | {figures} |")
 
 

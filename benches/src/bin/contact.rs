@@ -1,5 +1,5 @@
-//! Steps of a quadruped with contacts at its feet: microseconds, and how exact they are, as JSON for `benches/peers/contact.py`,
-//! which has the same robot for MuJoCo.
+//! Steps of a quadruped with contacts at its feet, and of a humanoid on the corners of its soles: microseconds, and how exact they are,
+//! as JSON for `benches/peers/contact.py`, which has the same robots for MuJoCo.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -23,6 +23,19 @@ struct Solo {
     hind_right: Contact,
 }
 
+/// Eight contacts, of which the motion cannot tell the impulses apart.
+#[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, limits = ignore, gravity = -9.81 * z)]
+struct Humanoid {
+    #[contact(l_ankle.at(0.16 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    left_toe: [Contact; 2],
+    #[contact(l_ankle.at(-0.09 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    left_heel: [Contact; 2],
+    #[contact(r_ankle.at(0.16 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    right_toe: [Contact; 2],
+    #[contact(r_ankle.at(-0.09 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
+    right_heel: [Contact; 2],
+}
+
 type End = Sample<f64, 19, 18, 12>;
 
 /// What the joints are driven to.
@@ -39,18 +52,54 @@ fn end(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, h:
     run.method(TimeStepping::step(h)).duration(duration).finish().expect("the robot moves")
 }
 
-/// Microseconds of the process in a step: the least of several runs.
+/// Microseconds of the process in a step of the quadruped.
 fn time(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, h: f64, duration: f64) -> f64 {
+    least(duration / h, || {
+        end(m, start, stiffness, h, duration);
+    })
+}
+
+/// Microseconds of the process in one of so many steps: the least of several runs.
+fn least(steps: f64, run: impl Fn()) -> f64 {
     let now = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
         time.tv_sec as f64 * 1e6 + time.tv_nsec as f64 * 1e-3
     };
     let times = (0..30).map(|_| {
         let begin = now();
-        end(m, start, stiffness, h, duration);
+        run();
         now() - begin
     });
-    times.fold(f64::INFINITY, f64::min) / (duration / h)
+    times.fold(f64::INFINITY, f64::min) / steps
+}
+
+/// Times of the humanoid while it stands, collapses and is in the air, and its creep in metres a second. Each link turns about its own
+/// joint with 1 kg·m² and more, so that its drives may be stiff.
+fn humanoid() -> [f64; 4] {
+    let m = Humanoid {};
+    let high = m.neutral();
+    let mut low = high;
+    low[2] -= m.contact_gaps(&high).min() - 0.01;
+    let end = |(q, v): (SVector<f64, 36>, SVector<f64, 35>), stiffness: f64, duration: f64| {
+        let drives = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
+            SVector::from_fn(|k, _| -stiffness * (q[7 + k] + 0.05 * v[6 + k]))
+        };
+        let run =
+            simulate(&m).from(q, v).inputs(move |_, q, v| drives(q, v)).method(TimeStepping::step(1e-3));
+        let end = run.duration(duration).finish().expect("the robot moves");
+        (end.q, end.v)
+    };
+    let still = SVector::zeros();
+    let stands = end((low, still), 1e4, 8.0);
+    let creep = (end(stands, 1e4, 1.0).0 - stands.0).fixed_rows::<3>(0).norm();
+    let mut up = low;
+    up[2] += 100.0;
+    let time = |start, stiffness| {
+        least(500.0, || {
+            end(start, stiffness, 0.5);
+        })
+    };
+    [time(stands, 1e4), time((low, still), 0.0), time((up, still), 1e4), creep]
 }
 
 fn main() {
@@ -77,8 +126,9 @@ fn main() {
         let [coarse, fine] = [h, h / 10.0].map(|h| end(&level, drop, 6.0, h, 0.2).q);
         (coarse - fine).fixed_rows::<3>(0).norm()
     };
+    let [humanoid_standing, humanoid_collapsing, humanoid_free, humanoid_creep] = humanoid();
     println!(
-        "{{\"standing\": {}, \"collapsing\": {}, \"free\": {}, \"depth\": {}, \"creep\": {}, \"inclined\": {}, \"one\": {}, \"two\": {}}}",
+        "{{\"humanoid_standing\": {humanoid_standing}, \"humanoid_collapsing\": {humanoid_collapsing}, \"humanoid_free\": {humanoid_free}, \"humanoid_creep\": {humanoid_creep}, \"standing\": {}, \"collapsing\": {}, \"free\": {}, \"depth\": {}, \"creep\": {}, \"inclined\": {}, \"one\": {}, \"two\": {}}}",
         time(&level, stands, 6.0, 1e-3, 0.5),
         time(&level, drop, 0.0, 1e-3, 0.5),
         time(&level, posed(&level, 100.0), 6.0, 1e-3, 0.5),
