@@ -3,6 +3,7 @@
 use crate::constrained::Metric;
 use crate::evaluate::{Evaluated, Values};
 use linkwork_compiler::mechanism::Chart;
+use std::ops::Range;
 
 /// Velocities that miss a constraint by this part contradict it.
 const CONTRADICTION: f64 = 1e-6;
@@ -30,47 +31,38 @@ impl Evaluated<'_, '_> {
         self.move_along(t, q, v, &free)
     }
 
-    /// The velocities that entries of a configuration move with: all three of a rotation or of the place of a free body, if one
-    /// of its numbers is marked.
+    /// Entries of a configuration that move together, with their velocities: all of a rotation, or of the place of a free body.
+    fn together(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+        self.model
+            .charts
+            .iter()
+            .flat_map(|chart| match *chart {
+                Chart::Plain(at, from) => [Some((at.and_next(1), from.and_next(1))), None],
+                Chart::Ball(at, from) => [Some((at.and_next(4), from.and_next(3))), None],
+                Chart::Free(at, from) => [
+                    Some((at.and_next(3), from.and_next(3))),
+                    Some(((at + 3).and_next(4), (from + 3).and_next(3))),
+                ],
+            })
+            .flatten()
+    }
+
+    /// The velocities that entries of a configuration move with, if one of those that move together is marked.
     pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
-        let mut mark = |entries: std::ops::Range<usize>, velocities: std::ops::Range<usize>| {
-            if marks[entries].contains(&true) {
-                moving[velocities].fill(true);
-            }
-        };
-        for chart in &self.model.charts {
-            match *chart {
-                Chart::Plain(at, from) => mark(at.and_next(1), from.and_next(1)),
-                Chart::Ball(at, from) => mark(at.and_next(4), from.and_next(3)),
-                Chart::Free(at, from) => {
-                    mark(at.and_next(3), from.and_next(3));
-                    mark((at + 3).and_next(4), (from + 3).and_next(3));
-                }
-            }
+        for (entries, velocities) in self.together() {
+            moving[velocities].fill(marks[entries].contains(&true));
         }
         moving
     }
 
     /// The entries of a configuration that move with no other velocities than those that are marked.
     pub fn entries(&self, marks: &[bool]) -> Vec<bool> {
-        let mut entries = vec![false; self.model.nq()];
-        let mut mark = |at: std::ops::Range<usize>, from: std::ops::Range<usize>| {
-            if marks[from].iter().all(|marked| *marked) {
-                entries[at].fill(true);
-            }
-        };
-        for chart in &self.model.charts {
-            match *chart {
-                Chart::Plain(at, from) => mark(at.and_next(1), from.and_next(1)),
-                Chart::Ball(at, from) => mark(at.and_next(4), from.and_next(3)),
-                Chart::Free(at, from) => {
-                    mark(at.and_next(3), from.and_next(3));
-                    mark((at + 3).and_next(4), (from + 3).and_next(3));
-                }
-            }
+        let mut found = vec![false; self.model.nq()];
+        for (entries, velocities) in self.together() {
+            found[entries].fill(!marks[velocities].contains(&false));
         }
-        entries
+        found
     }
 
     /// The velocities that change no constraint, in this configuration and beside it.
