@@ -154,11 +154,9 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         !self.model.constraints.is_empty()
     }
 
-    /// Whether the mass matrix can be inverted; true where there is none.
-    pub fn has_inertia(&self, t: f64, q: &[f64]) -> bool {
-        let v = vec![0.0; self.model.nv()];
-        let state = Values { t, q, v: &v, ..Values::default() };
-        self.called("mass_matrix", state).is_none_or(|matrix| Metric::of(&matrix, v.len()).is_some())
+    /// Whether the mass matrix can be inverted at the time zero.
+    pub fn has_inertia(&self, q: &[f64]) -> bool {
+        self.metric(Values { q, v: &vec![0.0; self.model.nv()], ..Values::default() }).is_some()
     }
 
     fn metric(&self, state: Values<'_>) -> Option<Metric> {

@@ -40,7 +40,7 @@ pub struct Start<'a, 'g> {
 
 /// Moves of a beginning that are told, m and rad.
 const TOLD: f64 = 1e-6;
-/// Moves of what is given beyond rounded figures, m and rad: it is not what was meant.
+/// Moves of what is given beyond rounded figures, m and rad, or per second: it is not what was meant.
 const FAR: f64 = 0.05;
 /// Most samples of a motion.
 const MAX_SAMPLES: f64 = 1e7;
@@ -177,7 +177,7 @@ impl<'a, 'g> Start<'a, 'g> {
     /// A state that the constraints allow: with what is given as it is, if there is one, else the nearest. Says what moved.
     fn begin(&self) -> Result<Vec<f64>, Stop> {
         let (m, [in_q, in_v]) = (&self.mechanism, &self.given);
-        if !m.has_inertia(0.0, &self.q) {
+        if !m.has_inertia(&self.q) {
             return Err(Stop::Failure(format!(
                 "the mass matrix of `{}` is singular at the beginning: with these parameters something that moves has no inertia",
                 m.model.name
@@ -197,7 +197,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let q = held.or_else(|| m.assembled(0.0, &near, &m.entries(&apart), &apart));
         let q = q.ok_or_else(|| {
             Stop::Failure(format!(
-                "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set q.NAME=VALUE`",
+                "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set` or `--guess q.NAME=VALUE`",
                 m.model.name
             ))
         })?;

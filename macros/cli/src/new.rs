@@ -51,6 +51,6 @@ fn manifest(name: &str, sources: Option<&Path>) -> String {
     format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
          [dependencies]\nlinkwork = {linkwork}\nlinkwork-view = {view}\n\n\
-         # Without optimisation simulations take twenty times as long.\n[profile.dev]\nopt-level = 1\n\n[workspace]\n"
+         # Most of the speed of a release build, with its checks on.\n[profile.dev]\nopt-level = 1\n\n[workspace]\n"
     )
 }
