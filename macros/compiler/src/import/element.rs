@@ -195,6 +195,19 @@ fn read_numbers<const N: usize>(
     good.then_some(Placed { value, place })
 }
 
+/// Largest angle that is taken for one in radians: a full turn, and more than any rounding adds to it.
+const LARGEST_TURN: f64 = 7.0;
+
+/// Reports angles of an orientation that are most likely degrees; `help` says what the format takes.
+pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, cx: &mut Cx<'_>) {
+    let Some(n) = angles.iter().find(|n| n.abs() > LARGEST_TURN) else { return };
+    let (degrees, turned) = (n.to_radians(), n % std::f64::consts::TAU);
+    let message = format!(
+        "an angle of {n} rad is more than a full turn: {n}° are {degrees} rad, {n} rad turn like {turned} rad"
+    );
+    cx.habit(place, message, help);
+}
+
 const SEPARATE: &str =
     "write spaces between the numbers instead of commas, and a decimal point; so everywhere in the file";
 const POINT: &str = "write one number, with a decimal point";

@@ -2,7 +2,9 @@
 
 use super::defaults::Element;
 use super::settings::Settings;
+use crate::diag::Place;
 use crate::import::context::Cx;
+use crate::import::element::check_radians;
 use crate::import::imported::Placed;
 use crate::import::pose::{
     IDENTITY, Matrix, Pose, about, add, cross, dot, length, of_quaternion, of_z, product, scale,
@@ -42,11 +44,13 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
             let [x, y, z, angle] = found.value;
             let size = length([x, y, z]);
             check_length(size, "an axis", &found, cx)?;
+            check_turns(&[angle], &found.place, settings, cx);
             Some(about(scale([x, y, z], 1.0 / size), settings.angle(angle)))
         }
         "euler" => {
-            let angles = element.numbers::<3>("euler", cx)?.value;
-            Some(settings.euler.iter().zip(angles).fold(IDENTITY, |whole, (axis, angle)| {
+            let found = element.numbers::<3>("euler", cx)?;
+            check_turns(&found.value, &found.place, settings, cx);
+            Some(settings.euler.iter().zip(found.value).fold(IDENTITY, |whole, (axis, angle)| {
                 let unit = match axis.to_ascii_lowercase() {
                     'x' => [1.0, 0.0, 0.0],
                     'y' => [0.0, 1.0, 0.0],
@@ -77,6 +81,15 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
         }
     }
 }
+
+/// Reports angles in radians that are most likely degrees.
+fn check_turns(angles: &[f64], place: &Place, settings: &Settings, cx: &mut Cx<'_>) {
+    if !settings.degrees {
+        check_radians(angles, place, RADIANS, cx);
+    }
+}
+
+const RADIANS: &str = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, or `angle=\"degree\"`";
 
 /// Reports what has no direction.
 fn check_length<const N: usize>(

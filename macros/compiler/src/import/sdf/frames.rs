@@ -2,7 +2,7 @@
 
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, content, elements, place};
+use crate::import::element::{Node, check_attributes, check_radians, content, elements, place};
 use crate::import::imported::Placed;
 use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product, roll_pitch_yaw};
 use crate::import::robot::Origin;
@@ -79,6 +79,8 @@ pub(super) fn model(prefix: &str) -> String {
     format!("{prefix}__model__")
 }
 
+const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, everywhere in the file";
+
 fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     if node.attribute("rotation_format") == Some("quat_xyzw") {
         let [x, y, z, a, b, c, w] = content(node, cx)?.value;
@@ -90,8 +92,12 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
         }
         return Some(Pose { at: [x, y, z], axes: of_quaternion([w, a, b, c].map(|x| x / size)) });
     }
-    let [x, y, z, roll, pitch, yaw] = content(node, cx)?.value;
+    let found = content(node, cx)?;
+    let [x, y, z, roll, pitch, yaw] = found.value;
     let degrees = node.attribute("degrees").is_some_and(|word| matches!(word.trim(), "true" | "1"));
+    if !degrees {
+        check_radians(&[roll, pitch, yaw], &found.place, RADIANS, cx);
+    }
     let angle = |angle: f64| if degrees { angle.to_radians() } else { angle };
     let turns = [([0.0, 0.0, 1.0], yaw), ([0.0, 1.0, 0.0], pitch), ([1.0, 0.0, 0.0], roll)];
     let axes =

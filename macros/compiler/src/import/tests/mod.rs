@@ -20,6 +20,7 @@ mod mjcf;
 mod names;
 mod sdf;
 mod spatial;
+mod turns;
 
 fn name(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }

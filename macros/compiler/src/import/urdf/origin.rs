@@ -1,9 +1,11 @@
 //! `<origin xyz="…" rpy="…"/>` → [`Origin`].
 
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, numbers, place};
+use crate::import::element::{Node, check_attributes, check_radians, numbers, place};
 use crate::import::imported::Placed;
 use crate::import::robot::Origin;
+
+const RADIANS: &str = "`rpy` is in radians: write the angle that is meant, everywhere in the file";
 
 /// Reads the `<origin>` of `owner`; without one, the frames coincide.
 pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> Origin {
@@ -19,5 +21,6 @@ pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'
     }
     let xyz = numbers(node, "xyz", cx).unwrap_or(no_xyz);
     let rpy = numbers(node, "rpy", cx).unwrap_or(no_rpy);
+    check_radians(&rpy.value, &rpy.place, RADIANS, cx);
     Origin { xyz, rpy }
 }
