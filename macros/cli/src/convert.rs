@@ -40,6 +40,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let mut struct_of = Struct::new(description);
     let text = struct_of.text(&input);
     struct_of.notes.iter().for_each(|note| eprintln!("linkwork: {note}"));
+    struct_of.tell_renamed();
     put(matches, &text)
 }
 
@@ -51,14 +52,49 @@ struct Struct<'a> {
     fields: String,
     /// What is different from the file.
     notes: Vec<String>,
+    /// What has another name in the file, which is said, and the name here.
+    renamed: Vec<(String, String)>,
 }
+
+/// Names that are told where the struct is printed; its documentation has all.
+const RENAMED_SHOWN: usize = 4;
 
 impl<'a> Struct<'a> {
     fn new(description: &'a Description) -> Struct<'a> {
         let mut taken = Names::default();
         let links = taken.add(description.bodies.iter().map(|body| &*body.name.text), "link");
         let joints = taken.add(description.joints.iter().map(|joint| &*joint.name.text), "joint");
-        Struct { description, links, joints, others: taken, fields: String::new(), notes: Vec::new() }
+        let (fields, notes, renamed) = (String::new(), Vec::new(), Vec::new());
+        let mut made = Struct { description, links, joints, others: taken, fields, notes, renamed };
+        let links =
+            description.bodies.iter().map(|body| ("link", &body.name.text, made.links.of(&body.name.text)));
+        let joints = description
+            .joints
+            .iter()
+            .map(|joint| ("joint", &joint.name.text, made.joints.of(&joint.name.text)));
+        let all: Vec<_> = links.chain(joints).collect();
+        all.into_iter().for_each(|(kind, name, field)| made.rename(kind, name, &field));
+        made
+    }
+
+    /// Remembers what the file calls otherwise.
+    fn rename(&mut self, kind: &str, name: &str, field: &str) {
+        if name != field {
+            self.renamed.push((format!("{kind} `{name}`"), field.to_string()));
+        }
+    }
+
+    /// Says some of what the file calls otherwise.
+    fn tell_renamed(&self) {
+        let shown = self.renamed.iter().take(RENAMED_SHOWN);
+        let shown: Vec<String> = shown.map(|(what, field)| format!("{what} is `{field}`")).collect();
+        let more = match self.renamed.len().saturating_sub(RENAMED_SHOWN) {
+            0 => String::new(),
+            more => format!(", and {more} more that the struct's documentation lists"),
+        };
+        if !shown.is_empty() {
+            eprintln!("linkwork: other names than in the file: {}{more}", shown.join(", "));
+        }
     }
 
     fn text(&mut self, input: &Input) -> String {
@@ -70,14 +106,15 @@ impl<'a> Struct<'a> {
         d.drives.iter().for_each(|drive| self.drive(drive));
         for (name, e) in &d.dissipations {
             let e = self.expression(e);
-            self.element(&format!("#[dissipation({e})]"), &name.text, "Rayleigh");
+            self.named(&format!("#[dissipation({e})]"), ("dissipation", &name.text), "Rayleigh");
         }
         for constraint in &d.constraints {
             let (value, other) = (self.expression(&constraint.value), constraint.other.as_ref());
             let other = other.map_or(String::new(), |other| format!(" = {}", self.expression(other)));
             let kind =
                 if constraint.kind == ConstraintKind::Holonomic { "Holonomic" } else { "Nonholonomic" };
-            self.element(&format!("#[constraint({value}{other})]"), &constraint.name.text, kind);
+            let named = ("constraint", constraint.name.text.as_str());
+            self.named(&format!("#[constraint({value}{other})]"), named, kind);
         }
         d.limits.iter().for_each(|limit| self.limit(limit));
         let mut options =
@@ -97,6 +134,12 @@ impl<'a> Struct<'a> {
                 let _ = writeln!(text, "/// - {line}");
             });
         }
+        if !self.renamed.is_empty() {
+            text.push_str("///\n/// Other names than in the file:\n");
+            self.renamed.iter().for_each(|(what, field)| {
+                let _ = writeln!(text, "/// - {what} is `{field}`");
+            });
+        }
         let _ = writeln!(text, "#[mechanism({})]\npub struct {} {{", options.join(", "), input.name);
         text.push_str(&self.fields);
         text.push_str("}\n");
@@ -108,9 +151,16 @@ impl<'a> Struct<'a> {
     }
 
     /// A field with a name that no other has.
-    fn element(&mut self, attribute: &str, name: &str, kind: &str) {
+    fn element(&mut self, attribute: &str, name: &str, kind: &str) -> String {
         let name = self.others.fresh(name, "element");
         self.field(attribute, &name, kind);
+        name
+    }
+
+    /// The same for what has a name in the file.
+    fn named(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
+        let field = self.element(attribute, name, kind);
+        self.rename(what, name, &field);
     }
 
     fn body(&mut self, body: &Body) {
@@ -190,22 +240,25 @@ impl<'a> Struct<'a> {
     fn inputs(&mut self) {
         for joint in self.description.joints.iter().filter(|joint| joint.driven && joint.mimic.is_none()) {
             let on = self.joints.of(&joint.name.text);
-            self.element(&format!("#[acts(on = {on})]"), &format!("{on}_motor"), push(joint.kind));
+            let attribute = format!("#[acts(on = {on})]");
+            let motor = self.element(&attribute, &format!("{on}_motor"), push(joint.kind));
+            self.rename("input", &joint.name.text, &motor);
         }
         let geared = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
         for drive in self.description.drives.iter().filter(geared) {
             if let [(joint, 1.0)] = drive.on.terms() {
                 let on = self.joints.of(&joint.text);
                 let kind = push(self.kind(&joint.text));
-                self.element(&format!("#[acts(on = {on})]"), &drive.name.text, kind);
+                self.named(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
             } else if let DriveOn::Length(length) = &drive.on {
                 let on = self.expression(length);
-                self.element(&format!("#[acts(on = {on})]"), &drive.name.text, "Force");
+                self.named(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), "Force");
             } else if let DriveOn::Wrench(_) = &drive.on {
                 self.notes
                     .push(format!("`{}`, which acts at a point of a body, is left out", drive.name.text));
             } else {
                 let name = self.others.fresh(&drive.name.text, "input");
+                self.rename("input", &drive.name.text, &name);
                 let _ = writeln!(self.fields, "    {name}: Input,");
                 for (joint, weight) in drive.on.terms() {
                     let (on, kind) = (self.joints.of(&joint.text), push(self.kind(&joint.text)));
@@ -265,7 +318,7 @@ impl<'a> Struct<'a> {
                 DriveLaw::Push(force) => (format!("value = {}", number(force * w)), push(kind)),
                 DriveLaw::Input(_) => return,
             };
-            return self.element(&format!("#[acts(on = {on}, {figures})]"), &name, element);
+            return self.named(&format!("#[acts(on = {on}, {figures})]"), ("element", &name), element);
         }
         let joined = |rate: bool| {
             let one = |(joint, w): &(String, String)| {
@@ -277,12 +330,12 @@ impl<'a> Struct<'a> {
             DriveLaw::Spring { stiffness, free } => {
                 let stretch = format!("({} - {})", joined(false), number(free));
                 let energy = format!("#[energy({} * {stretch} * {stretch})]", number(stiffness / 2.0));
-                self.element(&energy, &name, "Potential");
+                self.named(&energy, ("element", &name), "Potential");
             }
             DriveLaw::Damper(damping) => {
                 let rate = format!("({})", joined(true));
                 let loss = format!("#[dissipation({} * {rate} * {rate})]", number(damping / 2.0));
-                self.element(&loss, &name, "Rayleigh");
+                self.named(&loss, ("element", &name), "Rayleigh");
             }
             DriveLaw::Input(_) => {}
             DriveLaw::Slack { .. } | DriveLaw::Friction(_) | DriveLaw::Inerter(_) | DriveLaw::Push(_) => {
@@ -304,7 +357,7 @@ impl<'a> Struct<'a> {
             DriveLaw::Push(force) => (format!("value = {}", number(force)), "Force"),
             DriveLaw::Input(_) => return,
         };
-        self.element(&format!("#[acts(on = {on}, {figures})]"), name, element);
+        self.named(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
     }
 
     fn limit(&mut self, limit: &Limit) {

@@ -63,7 +63,8 @@ fn frames(model: &Model<'_>) -> usize {
 fn check(format: &str, file: &Path, with: &str) {
     let (code, told) = converted(file, with);
     let (arguments, item) = parts(&code);
-    assert!(told.is_empty(), "{}: {told}", file.display());
+    let names = |line: &str| line.starts_with("linkwork: other names than in the file: ");
+    assert!(told.lines().all(names), "{}: {told}", file.display());
     let given = format!("{format} = {:?}, {with}", file.display().to_string());
     let functions =
         ["mass_matrix", "inverse_dynamics", "forward_dynamics", "generalized_forces", "potential_energy"];
@@ -149,6 +150,48 @@ fn elements_of_files_become_fields() {
     let one_to_one = CRANE.replace("gear=\"12\"", "");
     std::fs::write(&file, one_to_one).unwrap();
     check("mjcf", &file, "");
+}
+
+/// Names that fields cannot have, and those of motors.
+#[test]
+fn other_names_than_in_the_file_are_told() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("renamed");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("arm.urdf");
+    let inertial =
+        "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 0 1'/></joint>"
+        )
+    };
+    let arm = format!(
+        "<robot name='arm'><link name='world'/><link name='Upper-arm'>{inertial}</link><link name='hand'>{inertial}</link>{}{}</robot>",
+        joint("shoulder", "world", "Upper-arm"),
+        joint("hand", "Upper-arm", "hand")
+    );
+    std::fs::write(&file, arm).unwrap();
+    let (code, told) = converted(&file, "");
+    let all = [
+        ("link `world`", "world_link"),
+        ("link `Upper-arm`", "upper_arm"),
+        ("joint `hand`", "hand_joint"),
+        ("input `shoulder`", "shoulder_motor"),
+        ("input `hand`", "hand_joint_motor"),
+    ];
+    for (what, field) in all {
+        assert!(code.contains(&format!("/// - {what} is `{field}`\n")), "{code}");
+        assert!(code.contains(&format!("    {field}: ")), "{code}");
+    }
+    let shown: Vec<String> = all[..4].iter().map(|(what, field)| format!("{what} is `{field}`")).collect();
+    let expected = format!(
+        "linkwork: other names than in the file: {}, and 1 more that the struct's documentation lists\n",
+        shown.join(", ")
+    );
+    assert_eq!(told, expected);
+    // What keeps its names says nothing.
+    let (code, told) = converted(&file, "inputs = none, lock = [\"hand\", \"shoulder\"], base = free");
+    assert!(!told.contains("shoulder") && !code.contains("shoulder` is"), "{told}{code}");
 }
 
 #[test]
