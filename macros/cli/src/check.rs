@@ -1,7 +1,7 @@
 //! `linkwork check`: every mistake with its place.
 
 use crate::Stop;
-use crate::input::Input;
+use crate::input::{Input, Mistake};
 use clap::ArgMatches;
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
@@ -9,8 +9,14 @@ use linkwork_compiler::expr::Graph;
 use serde_json::{Value, json};
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
-    let inputs = Input::all(matches)?;
     let as_json = matches.get_flag("json");
+    let inputs = match Input::all(matches) {
+        Err(Stop::Syntax(mistake)) if as_json => {
+            crate::say!("{:#}", json!({ "messages": [message(&mistake)] }));
+            return Err(Stop::Mistakes);
+        }
+        inputs => inputs?,
+    };
     let (mut all, mut good) = (Vec::new(), true);
     for input in &inputs {
         let cx = &mut Diagnostics::new();
@@ -19,7 +25,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         }
         good &= cx.is_empty();
         if as_json {
-            all.extend(cx.distinct().map(|one| message(input, one)));
+            all.extend(cx.distinct().map(|one| message(&input.mistake(one))));
         } else if cx.is_empty() {
             crate::say!("{}: `{}` is in order", input.file.display(), input.name);
         } else {
@@ -32,16 +38,15 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     if good { Ok(()) } else { Err(Stop::Mistakes) }
 }
 
-fn message(input: &Input, one: &linkwork_compiler::diag::Diagnostic) -> Value {
-    let (file, line, column) = input.position(one);
+fn message(mistake: &Mistake) -> Value {
     json!({
         "level": "error",
-        "mechanism": input.name,
-        "file": file,
-        "line": line,
-        "column": column,
-        "message": one.message(),
-        "notes": one.notes(),
-        "help": one.helps(),
+        "mechanism": mistake.mechanism,
+        "file": mistake.file,
+        "line": mistake.at.map(|at| at.0),
+        "column": mistake.at.map(|at| at.1),
+        "message": mistake.message,
+        "notes": mistake.notes,
+        "help": mistake.helps,
     })
 }

@@ -8,7 +8,7 @@ pub fn command() -> Command {
     Command::new("linkwork")
         .version(env!("CARGO_PKG_VERSION"))
         .about("Checks, shows, simulates, draws and exports mechanisms")
-        .after_help("Exit status: 0 done, 1 the mechanism has mistakes, 2 the command cannot be carried out.")
+        .after_help("Exit status: 0 done, 1 the file has mistakes, 2 the command cannot be carried out.")
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(with_input(Command::new("check").about("Lists every mistake with its place")).arg(json()))

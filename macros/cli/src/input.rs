@@ -103,7 +103,7 @@ impl Input {
     /// Prints the mistakes, if there are any.
     pub fn report(&self, cx: &Diagnostics) -> Stop {
         for one in cx.distinct() {
-            eprintln!("{}", self.shown(one));
+            eprintln!("{}", self.mistake(one));
         }
         Stop::Mistakes
     }
@@ -124,30 +124,58 @@ impl Input {
         Ok(Compiled { source, model, output })
     }
 
-    /// File, line and column of a mistake.
-    pub fn position(&self, one: &Diagnostic) -> (String, usize, usize) {
-        match &one.place().file {
-            Some(at) => (at.file.to_string(), at.line as usize, at.column as usize),
-            None => {
-                let start = one.place().span.start();
-                (self.file.display().to_string(), start.line, start.column + 1)
-            }
+    /// What is wrong, and where.
+    pub fn mistake(&self, one: &Diagnostic) -> Mistake {
+        let (file, at) = match &one.place().file {
+            Some(at) => (at.file.to_string(), Some((at.line as usize, at.column as usize))),
+            None => (self.file.display().to_string(), (!self.is_robot).then(|| start(one.place().span))),
+        };
+        Mistake {
+            mechanism: Some(self.name.clone()),
+            file,
+            at,
+            message: one.message().to_string(),
+            notes: one.notes().to_vec(),
+            helps: one.helps().to_vec(),
         }
     }
+}
 
-    /// A mistake as compilers print it.
-    fn shown(&self, one: &Diagnostic) -> String {
-        let (file, line, column) = self.position(one);
-        let place = match self.is_robot && one.place().file.is_none() {
-            true => file,
-            false => format!("{file}:{line}:{column}"),
-        };
-        let mut text = format!("{place}: error: {}", one.message());
-        let lines = one.notes().iter().map(|line| ("note", line));
-        for (word, line) in lines.chain(one.helps().iter().map(|line| ("help", line))) {
-            text.push_str(&format!("\n  = {word}: {line}"));
+/// Line and column of a place, both from one.
+fn start(span: Span) -> (usize, usize) {
+    let start = span.start();
+    (start.line, start.column + 1)
+}
+
+/// Something wrong in a file.
+#[derive(Default)]
+pub struct Mistake {
+    /// The struct, of what is one.
+    pub mechanism: Option<String>,
+    /// The file.
+    pub file: String,
+    /// Line and column, both from one.
+    pub at: Option<(usize, usize)>,
+    /// What is wrong.
+    pub message: String,
+    /// What belongs to it.
+    pub notes: Vec<String>,
+    /// What to do.
+    pub helps: Vec<String>,
+}
+
+/// As compilers print it.
+impl std::fmt::Display for Mistake {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.at {
+            Some((line, column)) => write!(f, "{}:{line}:{column}: error: {}", self.file, self.message)?,
+            None => write!(f, "{}: error: {}", self.file, self.message)?,
         }
-        text
+        let lines = self.notes.iter().map(|line| ("note", line));
+        for (word, line) in lines.chain(self.helps.iter().map(|line| ("help", line))) {
+            write!(f, "\n  = {word}: {line}")?;
+        }
+        Ok(())
     }
 }
 
@@ -177,12 +205,22 @@ fn is_mechanism(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
 }
 
+/// What is said of a text that has no words and brackets of Rust.
+const UNCLOSED: &str = "this is never closed, closes nothing, or is no word of Rust";
+
 /// The mechanisms of a Rust file, those in modules within it included. Paths in them are relative to the package.
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
     let parsed = syn::parse_file(&text).map_err(|error| {
-        let start = error.span().start();
-        Stop::Failure(format!("{}:{}:{}: {error}", path.display(), start.line, start.column + 1))
+        Stop::Syntax(Mistake {
+            file: path.display().to_string(),
+            at: Some(start(error.span())),
+            message: match text.trim_start_matches('\u{feff}').parse::<TokenStream>() {
+                Ok(_) => error.to_string(),
+                Err(_) => UNCLOSED.to_string(),
+            },
+            ..Mistake::default()
+        })
     })?;
     let whole = path.canonicalize()?;
     let package = whole.ancestors().find(|folder| folder.join("Cargo.toml").is_file());

@@ -26,6 +26,8 @@ use std::process::ExitCode;
 enum Stop {
     /// The mechanism has mistakes, which were printed.
     Mistakes,
+    /// A file cannot be read as what it is, at a place.
+    Syntax(input::Mistake),
     /// It cannot be carried out.
     Failure(String),
 }
@@ -77,6 +79,10 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(Stop::Mistakes) => ExitCode::from(1),
+        Err(Stop::Syntax(mistake)) => {
+            eprintln!("{mistake}");
+            ExitCode::from(1)
+        }
         Err(Stop::Failure(why)) => {
             eprintln!("linkwork: {why}");
             ExitCode::from(2)

@@ -67,7 +67,8 @@ fn what_cannot_be_done_is_said() {
     let here = folder("failures");
     std::fs::write(here.join("mujoco.urdf"), "<mujoco><worldbody/></mujoco>").unwrap();
     std::fs::write(here.join("nothing.rs"), "pub struct Plain;").unwrap();
-    std::fs::write(here.join("broken.rs"), "pub struct {").unwrap();
+    std::fs::write(here.join("broken.rs"), "pub struct 3;").unwrap();
+    std::fs::write(here.join("open.rs"), "#[mechanism]\n// A word.\nstruct Fan {").unwrap();
     std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
     std::fs::write(here.join("two.rs"), format!("{PENDULUM}{}", PENDULUM.replace("Pendulum", "Other")))
         .unwrap();
@@ -75,7 +76,8 @@ fn what_cannot_be_done_is_said() {
         (&["check", "robot.urdf"][..], 2, "there is no such file"),
         (&["check", "mujoco.urdf"], 1, "mujoco"),
         (&["check", "nothing.rs"], 2, "no struct with `#[mechanism]`"),
-        (&["check", "broken.rs"], 2, "broken.rs:1:"),
+        (&["check", "broken.rs"], 1, "broken.rs:1:12: error: expected identifier"),
+        (&["show", "open.rs"], 1, "open.rs:3:12: error: this is never closed"),
         (&["check", "pendulum.rs", "--struct", "Pendulm"], 2, "no mechanism `Pendulm`, but Pendulum"),
         (&["export", "c", "two.rs"], 2, "several mechanisms"),
         (&["chekc", "pendulum.rs"], 2, "check"),
@@ -85,6 +87,28 @@ fn what_cannot_be_done_is_said() {
     ] {
         let (found, _, error) = linkwork(&here, arguments);
         assert!(found == status && error.contains(told), "{arguments:?}: {found}, {error}");
+    }
+}
+
+/// What cannot be read at all is told as any other mistake is.
+#[test]
+fn syntax_errors_are_mistakes_among_others() {
+    let here = folder("syntax");
+    std::fs::write(here.join("broken.rs"), "\npub struct {").unwrap();
+    std::fs::write(here.join("broken.urdf"), "<robot name='r'>\n<link></robot>").unwrap();
+    std::fs::write(here.join("bad.rs"), PENDULUM.replace("cos(theta)", "cos(thta)")).unwrap();
+    for (file, line, column) in [("broken.rs", 2, 12), ("broken.urdf", 2, 7), ("bad.rs", 5, 62)] {
+        let (status, _, told) = linkwork(&here, &["check", file]);
+        let begin = format!("{file}:{line}:{column}: error: ");
+        assert!(status == 1 && told.starts_with(&begin), "{told}");
+        let (status, json, told) = linkwork(&here, &["check", file, "--json"]);
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let found = &json["messages"][0];
+        assert_eq!((status, told.as_str()), (1, ""), "{json}");
+        assert_eq!(
+            (&found["file"], &found["line"], &found["column"]),
+            (&file.into(), &line.into(), &column.into())
+        );
     }
 }
 

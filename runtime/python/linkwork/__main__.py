@@ -14,4 +14,4 @@ except (ToolchainError, OSError) as error:
     sys.exit(2)
 except Error as error:
     print(error, file=sys.stderr)
-    sys.exit(1)
+    sys.exit(getattr(error, "status", 1))

@@ -382,5 +382,7 @@ def _run(arguments, failure, environment=None):
         return done.stdout
     complaints = done.stderr.strip() or f"exit status {done.returncode}"
     if failure is None:
-        raise Error(complaints.replace("`--struct NAME`", "`name=`"))
+        error = Error(complaints.replace("`--struct NAME`", "`name=`"))
+        error.status = done.returncode
+        raise error
     raise ToolchainError(f"{failure}:\n{complaints}")
