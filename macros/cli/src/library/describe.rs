@@ -25,7 +25,7 @@ pub fn description(known: &Known<'_, '_>) -> String {
         "prefix": known.prefix,
         "version": env!("CARGO_PKG_VERSION"),
         "number": known.number(),
-        "documentation": docs.join("\n\n"),
+        "documentation": without_links(&docs.join("\n\n")),
         "configuration": named(plain(&m.configuration), &m.units.configuration),
         "velocities": named(m.velocities.iter().map(|(name, _)| name.as_str()).collect(), &m.units.velocities),
         "inputs": named(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
@@ -44,7 +44,7 @@ pub fn description(known: &Known<'_, '_>) -> String {
 }
 
 fn of_function(f: &Function, unit: Option<String>) -> Value {
-    let docs: Vec<String> = f.docs.iter().map(|paragraph| without_links(paragraph)).collect();
+    let (docs, errors) = super::functions::spoken(&f.docs);
     let arguments: Vec<Value> = f
         .arguments
         .iter()
@@ -61,6 +61,7 @@ fn of_function(f: &Function, unit: Option<String>) -> Value {
     json!({
         "name": f.name,
         "documentation": docs.join("\n\n"),
+        "errors": errors,
         "arguments": arguments,
         "results": results,
         "unit": unit,

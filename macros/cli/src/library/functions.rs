@@ -1,6 +1,8 @@
 //! The functions that a mechanism has, read from its generated Rust.
 
+use linkwork_compiler::export::without_links;
 use quote::ToTokens;
+use std::fmt::Write;
 use syn::{FnArg, GenericArgument, ImplItem, Item, PathArguments, ReturnType, Type};
 
 /// An argument.
@@ -138,8 +140,51 @@ pub fn docs(attributes: &[syn::Attribute]) -> Vec<String> {
     });
     let text: Vec<String> = lines.map(|line| line.trim().to_string()).collect();
     let text = text.join("\n");
-    let paragraphs = text.split("\n\n").map(|paragraph| paragraph.trim().replace('\n', " "));
+    // Items of lists keep lines of their own.
+    let joined = |text: &str| text.trim().replace("\n- ", "\0- ").replace('\n', " ").replace('\0', "\n");
+    let paragraphs = text.split("\n\n").map(joined);
     paragraphs.filter(|paragraph| !paragraph.is_empty()).collect()
+}
+
+/// Paragraphs for those who read no Rust, and where there is no result.
+pub fn spoken(docs: &[String]) -> (Vec<String>, String) {
+    let plain: Vec<String> = docs.iter().map(|paragraph| without_links(&without_trait(paragraph))).collect();
+    let begin = plain.iter().position(|paragraph| paragraph.starts_with(ERRORS)).unwrap_or(plain.len());
+    let (about, errors) = plain.split_at(begin);
+    (about.to_vec(), without_variants(errors.join(" ").trim_start_matches(ERRORS).trim()))
+}
+
+const ERRORS: &str = "# Errors";
+
+/// A paragraph without its word on the trait that has more.
+fn without_trait(paragraph: &str) -> String {
+    let end = " of the trait.";
+    match (paragraph.find(" See ["), paragraph.find(end)) {
+        (Some(from), Some(to)) if from < to => {
+            format!("{}{}", &paragraph[..from], &paragraph[to + end.len()..])
+        }
+        _ => paragraph.to_string(),
+    }
+}
+
+/// Where an error is told, without the names that its kinds have in Rust: `` `Held` for an index `` is "for an index".
+fn without_variants(text: &str) -> String {
+    let parts: Vec<&str> = text.split('`').collect();
+    let told = |k: usize| {
+        parts.get(k + 1).is_some_and(|next| [" where ", " for "].iter().any(|word| next.starts_with(word)))
+    };
+    let mut out = String::new();
+    for (k, part) in parts.iter().enumerate() {
+        match k % 2 {
+            0 if k > 0 && told(k - 1) => out.push_str(part.trim_start()),
+            1 if !told(k) => {
+                let _ = write!(out, "`{part}`");
+            }
+            0 => out.push_str(part),
+            _ => {}
+        }
+    }
+    out
 }
 
 /// Words for what is no number of the mechanism's scalar type.

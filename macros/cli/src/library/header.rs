@@ -1,7 +1,7 @@
 //! The header of the library.
 
 use super::{Function, Kind, Known};
-use linkwork_compiler::export::{in_comment, in_comment_lines, without_links};
+use linkwork_compiler::export::{in_comment, in_comment_lines};
 use std::fmt::Write;
 
 /// The text of the header.
@@ -68,11 +68,15 @@ fn write_frames(text: &mut String, known: &Known<'_, '_>, upper: &str) {
 
 fn write_function(text: &mut String, f: &Function, known: &Known<'_, '_>, number: &str) {
     let nv = known.model.nv();
-    for (k, paragraph) in f.docs.iter().enumerate() {
-        let first = if k == 0 { "/* " } else { " * " };
-        text.push_str(&in_comment_lines(&without_links(paragraph), first, " * "));
+    let (mut docs, errors) = super::functions::spoken(&f.docs);
+    if !errors.is_empty() {
+        docs.push(format!("Returns 1 {errors}"));
     }
-    text.push_str(if f.docs.is_empty() { "/*\n" } else { " *\n" });
+    for (k, paragraph) in docs.iter().enumerate() {
+        let first = if k == 0 { "/* " } else { " * " };
+        text.push_str(&in_comment_lines(paragraph, first, " * "));
+    }
+    text.push_str(if docs.is_empty() { "/*\n" } else { " *\n" });
     for (name, kind) in &f.arguments {
         let about = match kind {
             Kind::Number => continue,

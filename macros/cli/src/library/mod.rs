@@ -11,6 +11,7 @@ use crate::commands::given;
 use crate::grid::{self, Grid};
 use crate::input::{Compiled, Input};
 use clap::ArgMatches;
+pub use functions::docs;
 use functions::{Function, Kind};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;

@@ -12,22 +12,32 @@ pub fn safe(text: &str) -> String {
     plain.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
 }
 
-/// Text without rustdoc's links.
+/// Text without rustdoc's links, of which the words stay. Brackets in code stay as they are.
 pub fn without_links(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
-    while let Some(at) = rest.find("](Self::") {
-        let (before, after) = rest.split_at(at);
-        match before.rfind('[') {
-            Some(open) => {
-                out.push_str(&before[..open]);
-                out.push_str(&before[open + 1..]);
-            }
-            None => out.push_str(before),
-        }
-        rest = after.find(')').map_or("", |end| &after[end + 1..]);
+    while let Some(at) = rest.find(['`', '[']) {
+        let (before, found) = rest.split_at(at);
+        out.push_str(before);
+        let (words, after) = match found.strip_prefix('`') {
+            Some(code) => found.split_at(code.find('`').map_or(found.len(), |end| end + 2)),
+            None => link(found).unwrap_or(found.split_at(1)),
+        };
+        out.push_str(words);
+        rest = after;
     }
     out + rest
+}
+
+/// The words of the link that a text begins with, and what stands behind it.
+fn link(text: &str) -> Option<(&str, &str)> {
+    let is_code = text.starts_with("[`");
+    let end = if is_code { text.find("`]")? + 1 } else { text.find(']')? };
+    let (words, after) = (&text[1..end], &text[end + 1..]);
+    match after.strip_prefix('(') {
+        Some(target) => target.find(')').map(|end| (words, &target[end + 1..])),
+        None => (is_code && words.len() > 2).then_some((words, after)),
+    }
 }
 
 /// A paragraph in lines that begin with so many characters.
@@ -108,5 +118,13 @@ mod tests {
     fn a_comment_ends_where_it_should() {
         assert_eq!(safe("a */ b /* c ??/ d\n"), "a * / b / * c ? ?/ d ");
         assert_eq!(without_links("of [`x`](Self::x) and [`y`](Self::y)."), "of `x` and `y`.");
+        for (text, plain) in [
+            ("[`a`](::linkwork::Error::A) where [this](crate) is", "`a` where this is"),
+            ("See [`Mechanism`], `v[k]` and `[a, b](c)`.", "See `Mechanism`, `v[k]` and `[a, b](c)`."),
+            ("[`v[k]`](Self::v), [1, 2], [x](y", "`v[k]`, [1, 2], [x](y"),
+            ("[`", "[`"),
+        ] {
+            assert_eq!(without_links(text), plain);
+        }
     }
 }
