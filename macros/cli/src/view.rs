@@ -3,10 +3,12 @@
 use crate::Stop;
 use crate::evaluate::Values;
 use crate::input::{Compiled, Input};
+use crate::library::docs;
 use crate::motion::Start;
 use crate::table::Table;
 use clap::ArgMatches;
 use linkwork::drawing::{Kind, Piece, Role};
+use linkwork_compiler::export::without_links;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, PieceKind};
 use linkwork_view::{Figure, Motion, Page};
@@ -71,7 +73,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     }
     let out =
         matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{}.html", input.name)));
-    Page::new(&input.name).motion(motion).write(&out)?;
+    let about = without_links(&docs(&source.mechanism.shell.attributes).join("\n\n"));
+    Page::new(&input.name).text(&about).motion(motion).write(&out)?;
     crate::say!("{}", out.display());
     Ok(())
 }

@@ -112,6 +112,41 @@ fn syntax_errors_are_mistakes_among_others() {
     }
 }
 
+/// The page says what the struct's documentation says; descriptions of libraries have no links of rustdoc.
+#[test]
+fn documentation_is_for_other_readers_too() {
+    let here = folder("documented");
+    let about = "/// A *simple* pendulum, as [`Pendulum`](crate::Pendulum), with [`theta`].\n///\n/// - `theta`, rad\n/// - `length`, m\n";
+    std::fs::write(here.join("pendulum.rs"), format!("{about}{}", PENDULUM.trim_start())).unwrap();
+    let (status, _, told) =
+        linkwork(&here, &["view", "pendulum.rs", "--set", "length=1", "--duration", "0.1"]);
+    assert_eq!((status, told.as_str()), (0, ""));
+    let page = std::fs::read_to_string(here.join("Pendulum.html")).unwrap();
+    let first = "<p>A <em>simple</em> pendulum, as <code>Pendulum</code>, with <code>theta</code>.</p>";
+    let more = "<ul><li><code>theta</code>, rad</li><li><code>length</code>, m</li></ul></details>";
+    assert!(page.contains(first) && page.contains(more), "{}", &page[..3000]);
+
+    let bowl = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/four_bar.rs");
+    let sources = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let (status, _, told) = linkwork(
+        &here,
+        &["export", "library", bowl, "--struct", "FourBar", "--out", "bar", "--linkwork", sources],
+    );
+    assert_eq!((status, told.as_str()), (0, ""));
+    let description: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(here.join("bar/description.json")).unwrap()).unwrap();
+    let functions = description["functions"].as_array().unwrap();
+    for f in functions {
+        let text = f["documentation"].as_str().unwrap();
+        assert!(!["](", "[`", "::", "# "].iter().any(|part| text.contains(part)), "{text}");
+    }
+    let assemble = functions.iter().find(|f| f["name"] == "assemble").unwrap();
+    assert_eq!(assemble["errors"], "where none is found, for an index that is none.");
+    assert!(assemble["documentation"].as_str().unwrap().ends_with("stay as they are."));
+    let header = std::fs::read_to_string(here.join("bar/include/four_bar.h")).unwrap();
+    assert!(header.contains("* Returns 1 where none is found, for an index that is none."), "{header}");
+}
+
 /// The text of the first block of a language in the guide.
 fn block(language: &str) -> String {
     let guide = include_str!("../README.md");

@@ -21,7 +21,8 @@ impl Page {
         Page { title: title.to_string(), ..Page::default() }
     }
 
-    /// A paragraph below the title.
+    /// What stands below the title, in paragraphs with blank lines between them: the first one, and the others when they are asked
+    /// for. Lines that begin with `- ` are a list, words in backticks code, and those between asterisks are emphasised.
     pub fn text(mut self, text: &str) -> Page {
         self.text = text.to_string();
         self
@@ -35,8 +36,12 @@ impl Page {
 
     /// The whole page.
     pub fn html(&self) -> String {
-        let (title, about) = (text::html(&self.title), text::html(&self.text));
-        let about = if about.is_empty() { about } else { format!("<p>{about}</p>\n") };
+        let (title, mut about) = (text::html(&self.title), text::blocks(&self.text));
+        if about.len() > 1 {
+            let more = about.split_off(1).concat();
+            about.push(format!("<details><summary>More</summary>{more}</details>"));
+        }
+        let about: String = about.iter().map(|block| format!("{block}\n")).collect();
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\

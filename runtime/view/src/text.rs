@@ -18,6 +18,77 @@ pub fn html(text: &str) -> String {
     out
 }
 
+/// Prose as HTML, block by block: paragraphs and lists with blank lines between them. Items begin with `- `, code stands in
+/// backticks, what is emphasised between asterisks, headings behind `#`.
+pub fn blocks(text: &str) -> Vec<String> {
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let blocks = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty());
+    blocks.map(block).collect()
+}
+
+fn block(lines: &[&str]) -> String {
+    let first = lines.iter().position(|line| line.starts_with("- ")).unwrap_or(lines.len());
+    let (before, list) = lines.split_at(first);
+    let mut items: Vec<String> = Vec::new();
+    for line in list {
+        match (line.strip_prefix("- "), items.last_mut()) {
+            (None, Some(item)) => {
+                let _ = write!(item, " {line}");
+            }
+            (item, _) => items.push(item.unwrap_or(line).to_string()),
+        }
+    }
+    let before = before.join(" ");
+    let heading = before.trim_start_matches('#');
+    let mut out = match before.as_str() {
+        "" => String::new(),
+        text if text == heading => format!("<p>{}</p>", inline(text)),
+        _ => format!("<p><b>{}</b></p>", inline(heading.trim())),
+    };
+    if !items.is_empty() {
+        let items: String = items.iter().map(|item| format!("<li>{}</li>", inline(item))).collect();
+        let _ = write!(out, "<ul>{items}</ul>");
+    }
+    out
+}
+
+/// Words with code and emphasis; signs without their other half stand for themselves.
+fn inline(text: &str) -> String {
+    let text = html(text);
+    let parts: Vec<&str> = text.split('`').collect();
+    let mut out = String::new();
+    for (k, part) in parts.iter().enumerate() {
+        if k % 2 == 0 {
+            out.push_str(&emphasised(part));
+        } else if k + 1 < parts.len() {
+            let _ = write!(out, "<code>{part}</code>");
+        } else {
+            let _ = write!(out, "`{}", emphasised(part));
+        }
+    }
+    out
+}
+
+/// Text with what stands between asterisks emphasised; those of products stay.
+fn emphasised(text: &str) -> String {
+    let parts: Vec<&str> = text.split('*').collect();
+    let mut out = String::new();
+    let mut is_open = false;
+    for (k, part) in parts.iter().enumerate() {
+        let before = k.checked_sub(1).map_or("", |k| parts[k]);
+        if is_open {
+            out.push_str("</em>");
+            is_open = false;
+        } else if k > 0 {
+            let begins = !before.ends_with(char::is_alphanumeric) && part.trim() == *part && !part.is_empty();
+            is_open = begins && k + 1 < parts.len();
+            out.push_str(if is_open { "<em>" } else { "*" });
+        }
+        out.push_str(part);
+    }
+    out
+}
+
 /// A string of JSON that may stand in a script of an HTML page: no character begins or ends markup.
 pub fn json(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 2);
@@ -73,6 +144,20 @@ mod tests {
         assert!(!text.contains(['<', '>', '"', '\'']));
         assert!(!data.contains(['<', '>', '&', '\u{2028}', '\0']));
         assert_eq!(serde_json::from_str::<String>(&data).ok().as_deref(), Some(hostile));
+    }
+
+    #[test]
+    fn prose_has_paragraphs_lists_code_and_emphasis() {
+        let text = "The *simple* pendulum: `m l² * θ''`, 2 * 3 * 4, a*b*c.\nOne line more.\n\n# Source\n\nCoordinates:\n- `pin`, rad,\n  counted up\n- <b>, `open and *so";
+        assert_eq!(
+            blocks(text),
+            [
+                "<p>The <em>simple</em> pendulum: <code>m l² * θ&#39;&#39;</code>, 2 * 3 * 4, a*b*c. One line more.</p>",
+                "<p><b>Source</b></p>",
+                "<p>Coordinates:</p><ul><li><code>pin</code>, rad, counted up</li><li>&lt;b&gt;, `open and *so</li></ul>",
+            ]
+        );
+        assert!(blocks(" \n\n").is_empty());
     }
 
     #[test]
