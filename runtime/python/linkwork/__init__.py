@@ -23,7 +23,9 @@ All quantities are in SI units, angles in radians.
 """
 
 from ._build import ToolchainError, command, compile, gallery, toolchain
-from ._mechanism import Error, LinearSystem, Mechanism, Page, Run
+from ._mechanism import Mechanism
+from ._names import Error, UnknownName
+from ._results import LinearSystem, Page, Run
 
 __all__ = [
     "Error",
@@ -32,6 +34,7 @@ __all__ = [
     "Page",
     "Run",
     "ToolchainError",
+    "UnknownName",
     "command",
     "compile",
     "gallery",

@@ -17,7 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ._mechanism import Error, Mechanism, load
+from ._mechanism import Mechanism, load
+from ._names import Error, UnknownName, checked
 
 _HERE = Path(__file__).resolve().parent
 
@@ -37,6 +38,7 @@ def toolchain() -> str:
     return _run([rustc, "-vV"], "cannot run rustc").strip()
 
 
+@checked
 def compile(
     source: str | os.PathLike,
     *,
@@ -73,7 +75,7 @@ def compile(
 
     Raises:
         ToolchainError: there is no toolchain of Rust, or it cannot build.
-        Error: the mechanism has mistakes; the message has all of them with their places.
+        Error: the mechanism has mistakes, all of which the message has with their places; or the text is no declaration.
         FileNotFoundError: there is no such file.
     """
     text, path = _source(source)
@@ -109,11 +111,13 @@ def gallery(name: str | None = None, **settings):
         for one in re.finditer(r"^#\[mechanism\b.*?^pub struct (\w+)", text, flags=re.DOTALL | re.MULTILINE):
             found[one[1]] = path
     if name is None:
+        if settings:
+            raise TypeError(f"{', '.join(settings)}: settings are of one mechanism, which is named first")
         return sorted(found)
     if name not in found:
-        near = difflib.get_close_matches(name, found, n=3)
-        hint = f": did you mean {', '.join(near)}?" if near else ""
-        raise KeyError(f"the gallery has no mechanism {name!r}{hint}")
+        near = difflib.get_close_matches(str(name), found, n=3)
+        meant = f": did you mean {', '.join(near)}?" if near else ""
+        raise UnknownName(f"the gallery has no mechanism {name!r}{meant}")
     return compile(found[name], name=name, **settings)
 
 
@@ -179,15 +183,27 @@ def _source(source):
         path = Path(source)
     elif not isinstance(source, str):
         raise TypeError(f"expected a path or a declaration, found {type(source).__name__}")
-    elif "#[" in source or "\n" in source:
+    elif "#[" in source or "\n" in source or not source.strip():
         if "struct" not in source or "mechanism" not in source:
-            raise Error("expected a path, or a declaration: a struct with the attribute `#[mechanism(…)]`")
+            found = "" if source.strip() else ", found an empty text"
+            raise Error(f"expected a path, or a declaration: a struct with the attribute `#[mechanism(…)]`{found}")
         return source, None
     else:
         path = Path(source).expanduser()
+    if path.is_dir():
+        raise FileNotFoundError(f"expected a file, but {path} is a folder")
     if not path.is_file():
-        raise FileNotFoundError(f"there is no file {path}")
+        raise FileNotFoundError(f"there is no file {path}{_meant(path)}")
     return None, path.resolve()
+
+
+def _meant(path):
+    """What a path that there is not may stand for."""
+    if re.fullmatch(r"\w+", str(path)) and str(path) in gallery():
+        return f"; `linkwork.gallery({str(path)!r})` is the one of the gallery"
+    beside = [file.name for file in path.parent.iterdir() if file.is_file()] if path.parent.is_dir() else []
+    near = difflib.get_close_matches(path.name, beside, n=3)
+    return f": did you mean {', '.join(near)}?" if near else ""
 
 
 def _words(path, text, options, batch, derivatives):

@@ -1,255 +1,28 @@
 """Compiled mechanisms as classes of Python."""
 
-import csv
 import ctypes
-import difflib
-import html
-import inspect
 import json
-import keyword
-import webbrowser
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-
-class Error(Exception):
-    """What Linkwork cannot do, in its words."""
-
-
-@dataclass(frozen=True)
-class Page:
-    """A page of HTML that shows a motion and opens offline. Notebooks show it in place."""
-
-    #: Where it is.
-    path: Path
-
-    def _repr_html_(self):
-        text = html.escape(Path(self.path).read_text(encoding="utf-8"), quote=True)
-        return f'<iframe srcdoc="{text}" width="100%" height="560" frameborder="0"></iframe>'
-
-    def open(self):
-        """Opens it in the browser."""
-        webbrowser.open(Path(self.path).resolve().as_uri())
+from ._equilibrium import Rest, find
+from ._functions import ENTRIES, Library, address, function, marked, quoted
+from ._names import Error, checked, hint, index, number, numbers, safe
+from ._results import LinearSystem, Run, Units
 
 
-@dataclass(frozen=True)
-class Run:
-    """A motion: samples of time, configuration, velocity and inputs, a row each."""
-
-    mechanism: "Mechanism"
-    #: Times, s.
-    t: np.ndarray
-    #: Configurations, a row for each time.
-    q: np.ndarray
-    #: Velocities, a row for each time.
-    v: np.ndarray
-    #: Inputs, a row for each time.
-    u: np.ndarray
-
-    def __len__(self):
-        return len(self.t)
-
-    def csv(self, path):
-        """Writes the samples as comma-separated values with the columns t, q.…, v.…, u.…, which `linkwork view --motion` reads."""
-        m = self.mechanism
-        head = ["t"] + [f"q.{n}" for n in m.configuration]
-        head += [f"v.{n}" for n in m.velocities] + [f"u.{n}" for n in m.inputs]
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(head)
-            writer.writerows(np.column_stack([self.t, self.q, self.v, self.u]).tolist())
-
-    def view(self, path=None) -> Page:
-        """Writes a page that shows the motion, and opens offline: to `path`, or to the mechanism's name with .html."""
-        try:
-            from ._build import view
-        except ImportError:
-            raise Error("pages are made by the package `linkwork`, which this package does not need otherwise") from None
-
-        path = Path(path if path is not None else f"{self.mechanism.name}.html")
-        view(self.mechanism._origin(), self, path)
-        return Page(path)
-
-    def plot(self, *names, ax=None):
-        """Draws entries of the motion over time with matplotlib: of the configuration by default, or those that are named
-        (`"hinge"`, `"v.hinge"`, `"u.motor"`). Returns the axes."""
-        import matplotlib.pyplot as plt
-
-        m = self.mechanism
-        ax = ax if ax is not None else plt.subplots()[1]
-        for name in names or m.configuration:
-            kind, rest = name.split(".", 1) if name[:2] in ("q.", "v.", "u.") else ("q", name)
-            lists = {"q": m.configuration, "v": m.velocities, "u": m.inputs}
-            k = _index(lists[kind], rest, {"q": "coordinate", "v": "velocity", "u": "input"}[kind])
-            unit = {"q": m.units.configuration, "v": m.units.velocities, "u": m.units.inputs}[kind][k]
-            ax.plot(self.t, getattr(self, kind)[:, k], label=f"{name} [{unit}]" if unit else name)
-        ax.set_xlabel("t [s]")
-        ax.legend()
-        return ax
-
-
-@dataclass(frozen=True)
-class LinearSystem:
-    """x' = A x + B u about a state: displacements of the configuration, then changes of the velocity, each in the order of `v`."""
-
-    a: np.ndarray
-    b: np.ndarray
-    #: Names of the states.
-    states: list
-    #: Names of the inputs.
-    inputs: list
-
-    def control(self, c=None, d=None):
-        """The system in the type of the package python-control, with all states as outputs if no others are given."""
-        import control
-
-        c = np.eye(len(self.a)) if c is None else c
-        d = np.zeros((np.shape(c)[0], self.b.shape[1])) if d is None else d
-        return control.ss(self.a, self.b, c, d)
-
-
-@dataclass(frozen=True)
-class Units:
-    """Units of all entries, in their order."""
-
-    configuration: list
-    velocities: list
-    inputs: list
-    parameters: list
-
-
-def _index(names, name, what):
-    """The index of a name in a list of names."""
-    if name in names:
-        return names.index(name)
-    near = difflib.get_close_matches(str(name), names, n=3)
-    hint = f": did you mean {', '.join(map(repr, near))}?" if near else f"; there are {', '.join(names) or 'none'}"
-    raise KeyError(f"there is no {what} {name!r}{hint}")
-
-
-class _Rest:
-    """The equations of a mechanism at rest under inputs, of those velocities that are free: forces and those of the constraints
-    balance, and the constraints hold."""
-
-    def __init__(self, mechanism, inputs, free):
-        self.m, self.u, self.free = mechanism, inputs, free
-        self.zero = np.zeros(mechanism.nv)
-        self.time = [0.0] if mechanism._description["time"] else []
-        self.is_constrained = bool(mechanism._description["constraints"])
-
-    def forces(self, q):
-        m = self.m
-        return m.inverse_dynamics(*self.time, q, self.zero, self.zero) - m._forces(self.time, q, self.zero, self.u)
-
-    def jacobian(self, q):
-        return self.m.constraint_jacobian(*self.time, q) if self.is_constrained else np.zeros((0, self.m.nv))
-
-    def residuals(self, q):
-        return self.m.constraint_residuals(*self.time, q) if self.is_constrained else np.zeros(0)
-
-    def multipliers(self, q):
-        """Those that balance forces best."""
-        jacobian, forces = self.jacobian(q), self.forces(q)[self.free]
-        if not (len(jacobian) and np.all(np.isfinite(forces)) and np.all(np.isfinite(jacobian))):
-            return np.zeros(len(jacobian))
-        return np.linalg.lstsq(jacobian.T[self.free], forces, rcond=1e-13)[0]
-
-    def lacking(self, q, multipliers):
-        balance = self.forces(q) - self.jacobian(q).T @ multipliers
-        return np.concatenate([balance[self.free], self.residuals(q)])
-
-    def slope(self, q, multipliers):
-        m, free = self.m, self.free
-        slope = m.inverse_dynamics_derivatives(*self.time, q, self.zero, self.zero)[0]
-        if m.nu:
-            slope = slope - m.generalized_forces_derivatives(*self.time, q, self.zero, self.u)[0]
-        jacobian, count = self.jacobian(q), len(self.residuals(q))
-        for k in np.flatnonzero(free) if len(jacobian) else ():
-            move = 1e-6 * np.eye(m.nv)[k]
-            sides = [self.jacobian(m.integrate(q, side * move)).T @ multipliers for side in (1, -1)]
-            slope[:, k] -= (sides[0] - sides[1]) / 2e-6
-        above = np.hstack([slope[np.ix_(free, free)], -jacobian.T[free]])
-        return np.vstack([above, np.hstack([jacobian[:count, free], np.zeros((count, len(jacobian)))])])
-
-    def moved(self, x, step):
-        move = np.zeros(self.m.nv)
-        count = self.free.sum()
-        move[self.free] = step[:count]
-        return self.m.integrate(x[0], move), x[1] + step[count:]
-
-
-def _structures(number):
-    """Settings of simulations and rollouts, and the type of controllers, for a type of numbers."""
-
-    class Settings(ctypes.Structure):
-        _fields_ = [
-            ("start", number),
-            ("duration", number),
-            ("interval", number),
-            ("method", ctypes.c_char_p),
-            ("setting", number),
-            ("period", number),
-            ("control", ctypes.c_void_p),
-            ("user", ctypes.c_void_p),
-        ]
-
-    class Rollout(ctypes.Structure):
-        _fields_ = [
-            ("start", number),
-            ("step", number),
-            ("steps", ctypes.c_size_t),
-            ("states", ctypes.c_size_t),
-            ("threads", ctypes.c_size_t),
-            ("inputs_of", ctypes.c_int),
-        ]
-
-    control = ctypes.CFUNCTYPE(
-        ctypes.c_int, ctypes.c_void_p, number, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p
-    )
-    return Settings, Rollout, control
-
-
-class _Library:
-    """The functions of a shared library with their types."""
-
-    def __init__(self, path, prefix="mechanism"):
-        self.handle = ctypes.CDLL(str(path))
-        get = lambda name: getattr(self.handle, f"{prefix}_{name}")
-        describe = get("description")
-        describe.restype = ctypes.c_char_p
-        self.description = json.loads(describe().decode("utf-8"))
-        single = self.description["number"] == "f32"
-        self.dtype = np.dtype(np.float32 if single else np.float64)
-        number = ctypes.c_float if single else ctypes.c_double
-        self.Settings, self.Rollout, self.Control = _structures(number)
-        self.message = get("message")
-        self.message.restype = ctypes.c_char_p
-        self.call = get("call")
-        size, pointer = ctypes.c_size_t, ctypes.c_void_p
-        self.call.argtypes = [size, pointer, pointer, pointer, size, size]
-        self.validate = get("validate")
-        self.validate.argtypes = [pointer]
-        self.simulate = get("simulate")
-        self.simulate.argtypes = [pointer, pointer, pointer, pointer, pointer, size, pointer]
-        self.roll_out = get("roll_out")
-        self.roll_out.argtypes = [pointer] * 5
-        self.defaults = get("defaults") if self.description["parameters"] else None
-
-    def why(self):
-        return self.message().decode("utf-8")
-
-
-def _address(array):
-    """Where an array's numbers are. The quick way does not go with arrays that are empty or cannot be written to."""
-    try:
-        return _addressof(_from_buffer(array))
-    except (TypeError, ValueError, BufferError):
-        return array.__array_interface__["data"][0]
-
-
-_addressof, _from_buffer = ctypes.addressof, ctypes.c_char.from_buffer
+#: Methods of simulations, and what says how exact they are.
+_METHODS = {
+    "dormand_prince": "tolerance",
+    "dormand_prince8": "tolerance",
+    "rodas": "tolerance",
+    "event_driven": "tolerance",
+    "rk4": "step",
+    "implicit_midpoint": "step",
+    "time_stepping": "step",
+}
 
 
 class Mechanism:
@@ -270,21 +43,21 @@ class Mechanism:
     left_out = ()
     _library = None
 
-    def __init__(self, parameters=None, /, **named):
+    def __init__(self, parameters=None, /, *others, **named):
         if self._library is None:
             raise TypeError("mechanisms are made by `linkwork.compile`")
         values = np.zeros(len(self.parameter_names), self._library.dtype)
         if self._library.defaults is not None:
-            self._library.defaults(ctypes.c_void_p(_address(values)))
-        given = {**dict(parameters or {}), **named}
+            self._library.defaults(ctypes.c_void_p(address(values)))
+        given = self._given(parameters, others, named)
         for name, value in given.items():
-            values[_index(self.parameter_names, name, "parameter")] = value
+            values[index(self.parameter_names, name, "parameter")] = number(value, f"the parameter {name!r}")
         missing = [n for n, v in zip(self.parameter_names, values) if np.isnan(v) and n not in given]
         if missing:
             raise TypeError(f"{self.name} needs the parameters {', '.join(missing)}")
         values.flags.writeable = False
         self._values = values
-        self._own = _address(values) if len(values) else None
+        self._own = address(values) if len(values) else None
         if len(values) and self._library.validate(self._own) != 0:
             raise Error(self._library.why())
 
@@ -293,9 +66,24 @@ class Mechanism:
         """Values of the parameters by name."""
         return dict(zip(self.parameter_names, self._values.tolist()))
 
-    def replace(self, parameters=None, /, **named):
+    def replace(self, parameters=None, /, *others, **named):
         """The mechanism with other values of some parameters."""
-        return type(self)({**self.parameters, **dict(parameters or {}), **named})
+        return type(self)({**self.parameters, **self._given(parameters, others, named)})
+
+    @classmethod
+    def _given(cls, parameters, others, named):
+        """Values of parameters by their names."""
+        if not others and (parameters is None or isinstance(parameters, Mapping)):
+            return {**dict(parameters or {}), **named}
+        words = [f"{name}=…" for name in cls.parameter_names if name.isidentifier()]
+        if not cls.parameter_names:
+            expected = f"no parameters: {cls.name}()"
+        elif words:
+            expected = f"its parameters by name: {cls.name}({', '.join(words[:4])}{', …' if len(words) > 4 else ''})"
+        else:
+            expected = f"its parameters in a dictionary: {cls.name}({{{cls.parameter_names[0]!r}: …}})"
+        found = ", ".join(map(repr, (parameters, *others)))
+        raise TypeError(f"{cls.name} takes {expected}; found {found}")
 
     def __repr__(self):
         values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())
@@ -320,7 +108,7 @@ class Mechanism:
             "import linkwork",
             "",
             f"class {cls.name}(linkwork.Mechanism):",
-            f"    {_quoted(cls.__doc__)}",
+            f"    {quoted(cls.__doc__)}",
         ]
         values = ", ".join(f"{name}: float" for name in cls.parameter_names if name.isidentifier())
         star = f", *, {values}" if values else ""
@@ -329,15 +117,16 @@ class Mechanism:
         for name, about in cls._functions.items():
             if name not in cls.__dict__:
                 continue
-            arguments = "".join(f", {_safe(a['name'])}: {kinds.get(a['kind'], 'ArrayLike')}" for a in about["arguments"])
+            arguments = "".join(f", {safe(a['name'])}: {kinds.get(a['kind'], 'ArrayLike')}" for a in about["arguments"])
             position = f"{arguments}, /" if arguments else ""
             count = len(about["results"])
             result = "NDArray[Any]" if count == 1 else f"tuple[{', '.join(['NDArray[Any]'] * count)}]"
             lines.append(f"    def {name}(self{position}, *, threads: int | None = None, out: Any = None) -> {result}:")
-            lines.append(f"        {_quoted(getattr(cls, name).__doc__, 8)}")
+            lines.append(f"        {quoted(getattr(cls, name).__doc__, 8)}")
         return "\n".join(lines) + "\n"
 
     @classmethod
+    @checked
     def save(cls, folder=".") -> Path:
         """Writes the class as a package into a folder: a module with its library and its stubs, which needs NumPy alone. It can be
         copied to machines without Linkwork and Rust that have the same system and the same kind of processor; compile with
@@ -360,15 +149,15 @@ class Mechanism:
 
     def index_q(self, name):
         """The index of an entry of `q`, by its name."""
-        return _index(self.configuration, name, "coordinate")
+        return index(self.configuration, name, "coordinate")
 
     def index_v(self, name):
         """The index of an entry of `v`, by its name."""
-        return _index(self.velocities, name, "velocity")
+        return index(self.velocities, name, "velocity")
 
     def index_u(self, name):
         """The index of an entry of `u`, by its name."""
-        return _index(self.inputs, name, "input")
+        return index(self.inputs, name, "input")
 
     # Motions
 
@@ -376,17 +165,40 @@ class Mechanism:
         if value is None:
             return None
         if isinstance(value, dict):
-            names = {"q": self.configuration, "v": self.velocities, "u": self.inputs}[what]
-            vector = self.neutral().copy() if what == "q" else np.zeros(length, self._library.dtype)
-            kind = {"q": "coordinate", "v": "velocity", "u": "input"}[what]
+            entries = ENTRIES[what]
+            names = {"q": self.configuration, "v": self.velocities, "u": self.inputs}[entries]
+            vector = self.neutral().copy() if entries == "q" else np.zeros(length, self._library.dtype)
+            kind = {"q": "coordinate", "v": "velocity", "u": "input"}[entries]
             for name, entry in value.items():
-                vector[_index(names, name, kind)] = entry
+                vector[index(names, name, kind)] = number(entry, f"the {kind} {name!r}")
             return vector
-        vector = np.ascontiguousarray(_numbers(value, self._library.dtype, what))
+        vector = np.ascontiguousarray(numbers(value, self._library.dtype, what))
         if vector.shape != (length,):
             raise ValueError(f"{what} has {length} entries, found an array of shape {vector.shape}")
         return vector
 
+    def _method(self, method, tolerance, step):
+        """The method, and its tolerance or the length of its steps."""
+        if method is None and self._description["contacts"]:
+            method = "event_driven" if step is None else "time_stepping"
+        elif method is None:
+            method = "dormand_prince" if step is None else "rk4"
+        if method not in _METHODS:
+            raise Error(f"there is no method {method!r}{hint(method, list(_METHODS))}")
+        given = {"step": step, "tolerance": tolerance}
+        wanted = _METHODS[method]
+        other = "tolerance" if wanted == "step" else "step"
+        if given[other] is not None:
+            of = ", ".join(name for name, setting in _METHODS.items() if setting == other)
+            raise TypeError(f"the method {method} takes a `{wanted}`, not a `{other}`, which is for {of}")
+        if wanted == "step" and step is None:
+            raise TypeError(f"the method {method} needs a step")
+        setting = number(given[wanted] if given[wanted] is not None else 1e-8, f"`{wanted}`")
+        if not (setting > 0 and np.isfinite(setting)):
+            raise ValueError(f"`{wanted}` is a positive number, found {setting!r}")
+        return method, setting
+
+    @checked
     def simulate(
         self,
         q=None,
@@ -399,7 +211,7 @@ class Mechanism:
         control=None,
         period=None,
         method=None,
-        tolerance=1e-8,
+        tolerance=None,
         step=None,
     ):
         """A motion.
@@ -415,9 +227,10 @@ class Mechanism:
             period: time between calls of `control`, s; its inputs are held in between. Without it `control` is called whenever
                 the method evaluates the dynamics, and must be continuous.
             method: `"dormand_prince"`, `"dormand_prince8"`, `"rodas"` (stiff), by tolerance; `"rk4"`, `"implicit_midpoint"`, by
-                step. With contacts `"event_driven"`, by tolerance, or `"time_stepping"`, by step.
-            tolerance: error of a step, relative and absolute.
-            step: length of a step, s.
+                step. With contacts `"event_driven"`, by tolerance, or `"time_stepping"`, by step. By default
+                `"dormand_prince"` and `"event_driven"`; with a `step` `"rk4"` and `"time_stepping"`.
+            tolerance: error of a step, relative and absolute, of methods by tolerance; 1e-8 if it is not given.
+            step: length of a step, s, of methods by step.
 
         Raises:
             Error: the motion cannot go on; the samples so far are in its attribute `run`.
@@ -425,38 +238,40 @@ class Mechanism:
         library = self._library
         q = self.neutral() if q is None else self._vector(q, self.nq, "q")
         v = np.zeros(self.nv, library.dtype) if v is None else self._vector(v, self.nv, "v")
+        duration = number(duration, "`duration`")
         if not (duration >= 0 and np.isfinite(duration)):
             raise ValueError(f"the duration is a time in seconds, found {duration!r}")
-        every = every if every is not None else (duration / 100 or 1.0)
+        every = number(every, "`every`") if every is not None else (duration / 100 or 1.0)
         if not (every > 0 and np.isfinite(every)):
             raise ValueError(f"`every` is a positive time in seconds, found {every!r}")
+        period = number(period, "`period`") if period is not None else None
         if period is not None and not (period > 0 and np.isfinite(period)):
             raise ValueError(f"`period` is a positive time in seconds, found {period!r}")
         if inputs is not None and control is not None:
             raise TypeError("give either constant inputs or a function `control`")
-        if method is None:
-            smooth = not self._description["contacts"]
-            method = ("rk4" if step else "dormand_prince") if smooth else ("time_stepping" if step else "event_driven")
-        by_step = method in ("rk4", "implicit_midpoint", "time_stepping")
-        if by_step and step is None:
-            raise TypeError(f"the method {method} needs a step")
-        setting = step if by_step else tolerance
+        if control is not None and not callable(control):
+            raise TypeError(f"`control` is a function of t, q, v that returns the inputs, found {control!r}")
+        if control is not None and not self.nu:
+            raise TypeError(f"{self.name} has no inputs that `control` could give")
+        if period is not None and control is None:
+            raise TypeError("`period` is the time between calls of `control`, and there is none; samples stand `every` so often")
+        method, setting = self._method(method, tolerance, step)
         constant = self._vector(inputs, self.nu, "u")
         if constant is not None:
-            control, period = (lambda t, q, v: constant), period or every
+            control, period = (lambda t, q, v: constant), every
         raised = []
         size = library.dtype.itemsize
 
         def asked(_user, t, q, v, u):
             try:
                 own_q, own_v = np.empty(self.nq, library.dtype), np.empty(self.nv, library.dtype)
-                ctypes.memmove(_address(own_q), q, self.nq * size)
-                ctypes.memmove(_address(own_v), v, self.nv * size)
+                ctypes.memmove(address(own_q), q, self.nq * size)
+                ctypes.memmove(address(own_v), v, self.nv * size)
                 found = control(t, own_q, own_v)
                 found = self._vector(found, self.nu, "u")
                 if found is None:
                     raise TypeError("`control` returned nothing")
-                ctypes.memmove(u, _address(found), self.nu * size)
+                ctypes.memmove(u, address(found), self.nu * size)
                 return 0
             except BaseException as error:  # It cannot pass through the library: it is raised again behind it.
                 raised.append(error)
@@ -464,17 +279,17 @@ class Mechanism:
 
         pointer = library.Control(asked) if control is not None else None
         settings = library.Settings(
-            start, duration, every, method.encode(), setting, period or 0.0, ctypes.cast(pointer, ctypes.c_void_p), None
+            number(start, "`start`"), duration, every, method.encode(), setting, period or 0.0, ctypes.cast(pointer, ctypes.c_void_p), None
         )
         rows = int(np.floor(duration / every * (1 + 1e-9))) + 3
         samples = np.empty((rows, 1 + self.nq + self.nv + self.nu), library.dtype)
         count = ctypes.c_size_t()
         code = library.simulate(
             self._own,
-            _address(q),
-            _address(v),
+            address(q),
+            address(v),
             ctypes.addressof(settings),
-            _address(samples),
+            address(samples),
             rows,
             ctypes.addressof(count),
         )
@@ -489,6 +304,7 @@ class Mechanism:
             raise error
         return run
 
+    @checked
     def roll_out(self, q, v, inputs=None, *, steps=None, h, start=0.0, threads=0):
         """Many motions by steps of the classical method of Runge and Kutta, eight states at a time and on all processors, while other
         threads of Python go on.
@@ -534,9 +350,9 @@ class Mechanism:
         all_q = np.empty((n, steps + 1, self.nq), library.dtype)
         all_v = np.empty((n, steps + 1, self.nv), library.dtype)
         all_q[:, 0], all_v[:, 0] = q, v
-        settings = library.Rollout(start, h, steps, n, threads, kind)
-        given = _address(inputs) if kind else None
-        code = library.roll_out(self._own, ctypes.addressof(settings), given, _address(all_q), _address(all_v))
+        settings = library.Rollout(number(start, "`start`"), number(h, "`h`"), steps, n, threads, kind)
+        given = address(inputs) if kind else None
+        code = library.roll_out(self._own, ctypes.addressof(settings), given, address(all_q), address(all_v))
         if code != 0:
             error = Error(library.why())
             error.q, error.v = all_q, all_v
@@ -545,6 +361,7 @@ class Mechanism:
 
     # Steady states and linear systems
 
+    @checked
     def equilibrium(self, q=None, inputs=None, *, held=(), tolerance=1e-12, iterations=50):
         """A configuration near `q` in which the mechanism stays at rest under constant inputs: Newton's method with half steps on the
         generated derivatives. Under constraints they hold there, and their forces are found along with it (the change of these with
@@ -566,38 +383,10 @@ class Mechanism:
         self._need("inverse_dynamics_derivatives", "derivatives")
         q = self.neutral() if q is None else self._vector(q, self.nq, "q")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
-        free = np.ones(self.nv, bool)
-        for name in held:
-            free[self.index_v(name)] = False
-        if not free.any():
-            return q
-        rest = _Rest(self, u, free)
-        x = (q, rest.multipliers(q))
-        lacking = rest.lacking(*x)
-        if not np.all(np.isfinite(lacking)):
-            raise Error("no equilibrium was found: forces are not finite where the search begins")
-        for _ in range(iterations):
-            slope = rest.slope(*x)
-            if not np.all(np.isfinite(slope)):
-                break
-            step = -np.linalg.lstsq(slope, lacking, rcond=1e-13)[0]
-            largest = np.abs(step[: free.sum()]).max()
-            part = 1.0
-            while part > 1e-6:
-                there = rest.moved(x, part * step)
-                found = rest.lacking(*there)
-                if np.linalg.norm(found) < np.linalg.norm(lacking) or part * largest < tolerance:
-                    break
-                part /= 2
-            x, lacking = there, found
-            if part * largest <= tolerance * (1 + np.abs(x[0]).max()):
-                if np.abs(lacking).max() <= 1e-8 * (1 + np.abs(slope).max()):
-                    return x[0]
-                break
-        raise Error(
-            f"no equilibrium was found near this configuration: forces (N, N m) and gaps of constraints (m, rad) of {np.abs(lacking).max():.3g} are left"
-        )
+        free = marked(held, self.velocities, self._library.dtype) == 0
+        return find(Rest(self, u, free), q, tolerance, iterations) if free.any() else q
 
+    @checked
     def linear_system(self, q, v=None, inputs=None, *, t=0.0):
         """The linear system about a state, which fulfils the constraints; of one that is no equilibrium A and B describe what is
         added to its motion. Every joint of a robot file is an input unless the option `inputs` says otherwise.
@@ -638,179 +427,13 @@ class Mechanism:
             raise Error(f"this needs the function `{function}`: compile with `{word}=True`")
 
 
-def _numbers(value, dtype, what):
-    """An array of numbers, which nothing is lost of that cannot be seen."""
-    if np.iscomplexobj(value):
-        raise TypeError(f"{what} has complex numbers")
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
-        raise TypeError(f"{what} has masked entries")
-    return np.asarray(value, dtype)
-
-
-def _safe(name):
-    """A name that is no keyword."""
-    return f"{name}_" if keyword.iskeyword(name) else name
-
-
-def _quoted(text, indent=4):
-    """A text as a documentation string."""
-    text = text.replace("\\", "\\\\").replace('"""', "'''").strip()
-    lines = text.split("\n")
-    inner = "\n".join([lines[0], *[(" " * indent + line).rstrip() for line in lines[1:]]])
-    close = "\n" + " " * indent if len(lines) > 1 else ""
-    return f'"""{inner}{close}"""'
-
-
 def _again(path, parameters):
     return load(path)(parameters)
 
 
-def _function(library, k, about, cls):
-    """The method that calls a function by its number."""
-    arguments, results = about["arguments"], about["results"]
-    dtype, call, nv = library.dtype, library.call, len(library.description["velocities"])
-    shapes = []
-    for a in arguments:
-        shapes.append(tuple(a["shape"]) if a["kind"] == "array" else (nv,) if a["kind"] == "velocities" else ())
-    kinds = [a["kind"] for a in arguments]
-    names = [_safe(a["name"]) for a in arguments]
-    # Matrices stand column by column: in memory their transposes.
-    stored = [tuple(r["shape"][:-2] + r["shape"][:-3:-1]) if len(r["shape"]) > 1 else tuple(r["shape"]) for r in results]
-    turned = [len(shape) > 1 for shape in stored]
-    Arguments, Results = ctypes.c_void_p * max(len(arguments), 1), ctypes.c_void_p * len(results)
-    count = len(arguments)
-    frames = library.description["frames"]
-    velocities = [entry["name"] for entry in library.description["velocities"]]
-
-    def prepared(i, value):
-        kind = kinds[i]
-        if kind == "frame" and isinstance(value, str):
-            value = _index(frames, value, "frame")
-        elif kind == "velocities":
-            marks = np.zeros(nv, dtype)
-            for one in value:
-                marks[_index(velocities, one, "velocity") if isinstance(one, str) else one] = 1
-            return marks
-        array = _numbers(value, dtype, names[i])
-        if len(shapes[i]) == 2:
-            array = np.swapaxes(array, -1, -2)
-            expected = shapes[i][::-1]
-        else:
-            expected = shapes[i]
-        if array.shape[array.ndim - len(expected) :] != expected or array.ndim > len(expected) + 1:
-            raise ValueError(
-                f"{about['name']}: {names[i]} has the shape {shapes[i]}, or (N, …) of N states, not {np.shape(value)}"
-            )
-        return array if array.flags.c_contiguous else np.ascontiguousarray(array)
-
-    plain = all(kind == "array" and len(shape) == 1 for kind, shape in zip(kinds, shapes))
-    ndarray, empty = np.ndarray, np.empty
-
-    def method(self, *given, threads=None, out=None):
-        # One state in arrays that need no conversion: the way of control loops.
-        if plain and out is None and len(given) == count:
-            for array, shape in zip(given, shapes):
-                if type(array) is not ndarray or array.shape != shape or array.dtype != dtype:
-                    break
-                if not array.flags.c_contiguous:
-                    break
-            else:
-                found = [empty(shape, dtype) for shape in stored]
-                own = Arguments(*[_address(array) for array in given])
-                if call(k, self._own, own, Results(*[_address(array) for array in found]), 1, 1) != 0:
-                    raise Error(f"{about['name']}: {library.why()}")
-                if len(found) == 1:
-                    array = found[0]
-                    return array.swapaxes(-1, -2) if turned[0] else array if array.ndim else array[()]
-                return tuple(
-                    array.swapaxes(-1, -2) if turn else array[()] for array, turn in zip(found, turned)
-                )
-        return general(self, given, threads, out)
-
-    def placed(out, lead):
-        """Arrays that results go into, as they are stored."""
-        given = out if isinstance(out, tuple) else (out,)
-        if len(given) != len(stored):
-            raise ValueError(f"{about['name']}: `out` has {len(given)} arrays for {len(stored)} results")
-        arrays = []
-        for array, shape, turn, result in zip(given, stored, turned, results):
-            kept = array.swapaxes(-1, -2) if turn and isinstance(array, ndarray) and array.ndim > 1 else array
-            fits = isinstance(kept, ndarray) and kept.shape == lead + shape and kept.dtype == dtype
-            if not fits or not kept.flags.c_contiguous or not kept.flags.writeable:
-                raise ValueError(
-                    f"{about['name']}: `out` is what an earlier call with as many states returned; of {result['name']} it is not"
-                )
-            arrays.append(kept)
-        return arrays
-
-    def general(self, given, threads, out):
-        if not isinstance(self, Mechanism):
-            raise TypeError(f"{about['name']} is a function of a mechanism, not of its class: make one first, with values of its parameters")
-        if len(given) != count:
-            raise TypeError(f"{about['name']}({', '.join(names)}) takes {count} arguments, found {len(given)}")
-        arrays = [prepared(i, value) for i, value in enumerate(given)]
-        states = None
-        for array, shape in zip(arrays, shapes):
-            if array.ndim > len(shape):
-                if states is not None and states != len(array):
-                    raise ValueError(f"{about['name']}: arrays of {states} and of {len(array)} states")
-                states = len(array)
-        n, lead = (1, ()) if states is None else (states, (states,))
-        if states is not None:
-            arrays = [
-                array if array.ndim > len(shape) else np.ascontiguousarray(np.broadcast_to(array, (n, *array.shape)))
-                for array, shape in zip(arrays, shapes)
-            ]
-        found = [empty(lead + shape, dtype) for shape in stored] if out is None else placed(out, lead)
-        if n > 0:
-            own = Arguments(*[_address(array) for array in arrays])
-            wanted = Results(*[_address(array) for array in found])
-            if threads is None:
-                threads = 0 if n >= 256 else 1
-            elif threads < 0:
-                raise ValueError(f"a number of threads is not {threads!r}")
-            if call(k, self._own, own, wanted, n, threads) != 0:
-                raise Error(f"{about['name']}: {library.why()}")
-        found = [array.swapaxes(-1, -2) if turn else array[()] for array, turn in zip(found, turned)]
-        return found[0] if len(found) == 1 else tuple(found)
-
-    method.__name__ = about["name"]
-    method.__qualname__ = f"{cls}.{about['name']}"
-    method.__doc__ = _documentation(about, shapes)
-    kind = inspect.Parameter
-    parameters = [kind("self", kind.POSITIONAL_ONLY)]
-    parameters += [kind(name, kind.POSITIONAL_ONLY) for name in names]
-    parameters += [kind(name, kind.KEYWORD_ONLY, default=None) for name in ("threads", "out")]
-    method.__signature__ = inspect.Signature(parameters)
-    return method
-
-
-def _documentation(about, shapes):
-    lines = [about["documentation"], ""]
-    if about["arguments"]:
-        lines.append("Args:")
-        for a, shape in zip(about["arguments"], shapes):
-            text = {
-                "number": "a number",
-                "frame": "the name of a frame, or its number",
-                "velocities": "names of velocities, or their indices",
-            }.get(a["kind"], f"shape {shape}")
-            lines.append(f"    {a['name']}: {text}")
-        lines.append("")
-    lines.append("Returns:")
-    unit = f", {about['unit']}" if about["unit"] else ""
-    for r in about["results"]:
-        shape = f"shape {tuple(r['shape'])}" if r["shape"] else "a number"
-        lines.append(f"    {r['name']}: {shape}{unit}")
-    lines.append("")
-    lines.append("Arrays of N states, with N before these shapes, give arrays of N results. `threads` says how many share them;")
-    lines.append("`out` is what an earlier call with as many states returned, and is written over.")
-    return "\n".join(lines)
-
-
 def load(path):
     """The class of a compiled library."""
-    library = _Library(path)
+    library = Library(path)
     d = library.description
     names = lambda key: [entry["name"] for entry in d[key]]
     units = lambda key: [entry["unit"] for entry in d[key]]
@@ -837,5 +460,5 @@ def load(path):
     }
     for k, about in enumerate(d["functions"]):
         if about["name"] not in members and not hasattr(Mechanism, about["name"]):
-            members[about["name"]] = _function(library, k, about, d["name"])
+            members[about["name"]] = function(library, k, about, d["name"])
     return type(d["name"], (Mechanism,), members)

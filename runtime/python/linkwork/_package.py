@@ -11,13 +11,18 @@ _MODULE = '''"""{name}, compiled by Linkwork: needs NumPy alone, and a machine o
 
 from pathlib import Path
 
-from ._mechanism import Error, LinearSystem, Mechanism, Run, load
+from ._mechanism import Mechanism, load
+from ._names import Error
+from ._results import LinearSystem, Run
 
 {name} = load(Path(__file__).with_name("{library}"))
 {name}.__module__ = __name__
 
 __all__ = ["Error", "LinearSystem", "Mechanism", "Run", "{name}"]
 '''
+
+#: What a mechanism needs of Linkwork.
+_PARTS = ("_equilibrium.py", "_functions.py", "_mechanism.py", "_names.py", "_results.py")
 
 
 def module_name(name):
@@ -40,10 +45,12 @@ def save(kind, folder):
     # A library that is loaded is not written into, but replaced.
     shutil.copy(library, package / (own + ".new"))
     (package / (own + ".new")).replace(package / own)
-    shutil.copy(_HERE / "_mechanism.py", package / "_mechanism.py")
+    for part in _PARTS:
+        shutil.copy(_HERE / part, package / part)
     text = _MODULE.format(name=kind.name, machine=machine, library=own)
     (package / "__init__.py").write_text(text, encoding="utf-8")
-    stub = kind.stub().replace("import linkwork\n", "from ._mechanism import Error, LinearSystem, Mechanism, Run\n")
+    imports = "from ._mechanism import Mechanism\nfrom ._names import Error\nfrom ._results import LinearSystem, Run\n"
+    stub = kind.stub().replace("import linkwork\n", imports)
     stub = stub.replace("(linkwork.Mechanism)", "(Mechanism)")
     (package / "__init__.pyi").write_text(stub, encoding="utf-8")
     (package / "py.typed").write_text("", encoding="utf-8")

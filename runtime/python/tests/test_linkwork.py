@@ -151,8 +151,20 @@ class OfAPendulum(unittest.TestCase):
         poles = np.sort(np.linalg.eigvals(system.a).real)
         np.testing.assert_allclose(poles, np.sqrt(1.5 * 9.81 / 1.5) * np.array([-1, 1]), rtol=1e-12)
         self.assertEqual(system.states, ["hinge", "hinge.rate"])
-        if importlib.util.find_spec("control"):
-            self.assertEqual(system.control().nstates, 2)
+
+    @unittest.skipUnless(importlib.util.find_spec("control"), "python-control is not installed")
+    def test_a_regulator_of_python_control(self):
+        import control
+
+        # θ̈ = a θ + b u about the upper position: the equation of Riccati has a closed form.
+        q, (q1, q2), r = 2.0 * 1.5**2 / 3, (10.0, 1.0), 0.1
+        a, b = 2.0 * 9.81 * 0.75 / q, 1 / q
+        first = (a + np.sqrt(a**2 + b**2 * q1 / r)) / b
+        second = np.sqrt((q2 + 2 * first * r / b) / r)
+        system = self.m.linear_system([np.pi])
+        gain, _, poles = control.lqr(system.control(), np.diag([q1, q2]), [[r]])
+        np.testing.assert_allclose(gain, [[first, second]], rtol=1e-9)
+        np.testing.assert_allclose(np.sort(np.linalg.eigvals(system.a - system.b @ gain)), np.sort(poles), rtol=1e-9)
 
     def test_rollouts_are_steps_one_after_another(self):
         rng = np.random.default_rng(2)
@@ -203,8 +215,20 @@ class OfAPendulum(unittest.TestCase):
         np.testing.assert_allclose(heavy.mass_matrix([0.0]), 2 * self.m.mass_matrix([0.0]))
         with self.assertRaisesRegex(TypeError, "needs the parameters length"):
             self.kind(mass=1.0)
-        with self.assertRaisesRegex(KeyError, "did you mean 'length'"):
+        with self.assertRaisesRegex(linkwork.UnknownName, "^there is no parameter 'lenght': did you mean 'length'"):
             self.kind(mass=1.0, lenght=2.0)
+        named = r"Pendulum takes its parameters by name: Pendulum\(mass=…, length=…\); found "
+        for make, found in [
+            (lambda: self.kind(2), "2"),
+            (lambda: self.kind(2, 1.5), "2, 1.5"),
+            (lambda: self.kind([("mass", 2)]), r"\[\("),
+            (lambda: self.m.replace(3.0), "3.0"),
+        ]:
+            with self.assertRaisesRegex(TypeError, named + found):
+                make()
+        for value in ("2", None, [1.0, 2.0], 1j):
+            with self.assertRaisesRegex(TypeError, "the parameter 'mass' is a number, found"):
+                self.kind(mass=value, length=1.5)
         with self.assertRaisesRegex(linkwork.Error, "mass of `rod` cannot be negative"):
             self.kind(mass=-1.0, length=2.0)
         copy = pickle.loads(pickle.dumps(self.m))
@@ -235,15 +259,40 @@ class OfAPendulum(unittest.TestCase):
             type(self.m).mass_matrix(np.zeros(1))
         with self.assertRaisesRegex(TypeError, "takes 1 arguments"):
             self.m.mass_matrix([0.0], [0.0])
+        with self.assertRaisesRegex(TypeError, r"mass_matrix\(q\): arguments are given without their names"):
+            self.m.mass_matrix(q=[0.0])
+        with self.assertRaisesRegex(TypeError, "no argument 'thread': did you mean 'threads'"):
+            self.m.mass_matrix([0.0], thread=1)
+        with self.assertRaisesRegex(ValueError, "q is an array of numbers, found 'a'"):
+            self.m.mass_matrix("a")
+
+    def test_entries_are_given_by_name(self):
+        given = {"hinge": 1.0}
+        expected = self.m.inverse_dynamics([1.0], [1.0], [1.0])
+        np.testing.assert_array_equal(self.m.inverse_dynamics(given, given, given), expected)
+        np.testing.assert_array_equal(self.m.step(given, {}, {"motor": 2.0}, 0.1), self.m.step([1.0], [0.0], [2.0], 0.1))
+        with self.assertRaisesRegex(linkwork.UnknownName, "there is no input 'motr': did you mean 'motor'"):
+            self.m.step(given, {}, {"motr": 2.0}, 0.1)
+        with self.assertRaisesRegex(TypeError, "the coordinate 'hinge' is a number, found 'up'"):
+            self.m.mass_matrix({"hinge": "up"})
 
     def test_bad_simulations(self):
         for settings, kind, words in [
             ({"duration": -1.0}, ValueError, "duration"),
             ({"duration": 1.0, "every": 0.0}, ValueError, "every"),
             ({"duration": 1.0, "method": "rk4"}, TypeError, "needs a step"),
-            ({"duration": 1.0, "method": "euler"}, linkwork.Error, "no method `euler`"),
+            ({"duration": 1.0, "method": "rodass"}, linkwork.Error, "no method 'rodass': did you mean 'rodas'"),
             ({"duration": 1.0, "method": "time_stepping", "step": 0.1}, linkwork.Error, "no contacts"),
-            ({"duration": 1.0, "step": -0.1}, linkwork.Error, "step"),
+            ({"duration": 1.0, "step": -0.1}, ValueError, "step"),
+            ({"duration": 1.0, "step": 0}, ValueError, "`step` is a positive number"),
+            ({"duration": "1"}, TypeError, "`duration` is a number, found '1'"),
+            # What would be without effect.
+            ({"duration": 1.0, "method": "rodas", "step": 0.1}, TypeError, "takes a `tolerance`, not a `step`"),
+            ({"duration": 1.0, "step": 0.1, "tolerance": 1e-6}, TypeError, "rk4 takes a `step`, not a `tolerance`"),
+            ({"duration": 1.0, "period": 0.1}, TypeError, "`period` is the time between calls of `control`"),
+            ({"duration": 1.0, "period": 0.1, "inputs": [1.0]}, TypeError, "`period` is the time between"),
+            ({"duration": 1.0, "control": [1.0]}, TypeError, "`control` is a function of t, q, v"),
+            ({"duration": 1.0, "tolerence": 1e-6}, TypeError, "no argument 'tolerence': did you mean 'tolerance'"),
         ]:
             with self.subTest(settings), self.assertRaisesRegex(kind, words):
                 self.m.simulate([0.1], **settings)
@@ -265,13 +314,25 @@ class OfAPendulum(unittest.TestCase):
         import matplotlib
 
         matplotlib.use("Agg")
+        from matplotlib import pyplot
+
         run = self.m.simulate([1.0], duration=1.0, every=0.05, inputs={"motor": 1.0})
+        legend = lambda axes: [text.get_text() for text in axes.get_legend().get_texts()]
+        # A unit, axes of its own.
         axes = run.plot("hinge", "v.hinge", "u.motor")
-        labels = [line.get_label() for line in axes.get_lines()]
-        self.assertEqual(labels, ["hinge [rad]", "v.hinge [rad/s]", "u.motor [N·m]"])
-        np.testing.assert_array_equal(axes.get_lines()[2].get_ydata(), np.ones(21))
+        self.assertEqual([legend(own) for own in axes], [["hinge"], ["v.hinge"], ["u.motor"]])
+        units = ["coordinates [rad]", "velocities [rad/s]", "inputs [N·m]"]
+        self.assertEqual([own.get_ylabel() for own in axes], units)
+        self.assertEqual([own.get_xlabel() for own in axes], ["", "", "t [s]"])
+        np.testing.assert_array_equal(axes[2].get_lines()[0].get_ydata(), np.ones(21))
+        one = run.plot()
+        self.assertEqual((legend(one), one.get_xlabel(), one.get_ylabel()), (["hinge"], "t [s]", "coordinates [rad]"))
+        # In axes that are given, units stand with the names.
+        own = run.plot("hinge", "v.hinge", ax=pyplot.subplots()[1])
+        self.assertEqual(legend(own), ["hinge [rad]", "v.hinge [rad/s]"])
         with self.assertRaisesRegex(KeyError, "did you mean 'hinge'"):
             run.plot("hing")
+        pyplot.close("all")
 
     def test_stubs_are_python(self):
         text = self.kind.stub()
@@ -394,6 +455,23 @@ class UnderConstraints(unittest.TestCase):
         np.testing.assert_allclose(q, [0.6, -0.8], rtol=1e-12)
         with self.assertRaises(linkwork.Error):
             self.m.assemble([1.5, 0.0], ["plane.x"])
+        named = self.m.assemble({"plane.x": 0.6, "plane.y": -0.7}, "plane.x")
+        np.testing.assert_array_equal(named, q)
+        for held, kind in [("plane.z", KeyError), ([2], IndexError), ([-1], IndexError), ([0.5], IndexError)]:
+            with self.assertRaises(kind):
+                self.m.assemble(q, held)
+
+    def test_documentation_is_for_python(self):
+        text = self.m.assemble.__doc__
+        self.assertIn("\nRaises:\n    Error: where none is found, for an index that is none.\n", text)
+        self.assertIn("    q: shape (2,), or values by name\n    held: names of velocities, or their indices\n", text)
+        for name in self.m._functions:
+            text = getattr(self.m, name).__doc__
+            self.assertNotRegex(text, r"\]\(|\[`|::|# Errors|None\b", name)
+
+    def test_what_has_no_inputs_has_no_controller(self):
+        with self.assertRaisesRegex(TypeError, "Bead has no inputs that `control` could give"):
+            self.m.simulate([1.0, 0.0], duration=1.0, control=lambda t, q, v: [])
 
     def test_a_failure_in_a_batch_names_its_state(self):
         q = np.array([[0.6, -0.7], [1.5, 0.0], [0.0, -0.9]])
@@ -483,8 +561,21 @@ class OfRobots(unittest.TestCase):
             compiled(PENDULUM + BEAD)
         with self.assertRaisesRegex(linkwork.Error, "expected a path, or a declaration"):
             linkwork.compile("#[nothing]")
-        with self.assertRaises(FileNotFoundError):
+        for empty in ("", " \n"):
+            with self.assertRaisesRegex(linkwork.Error, "a declaration: a struct .* found an empty text"):
+                linkwork.compile(empty)
+        with self.assertRaisesRegex(FileNotFoundError, "no file nowhere.urdf$"):
             linkwork.compile("nowhere.urdf")
+        with self.assertRaisesRegex(FileNotFoundError, r"`linkwork\.gallery\('CartPole'\)`"):
+            linkwork.compile("CartPole")
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "robot.urdf").write_text(self.ROBOT)
+            with self.assertRaisesRegex(FileNotFoundError, "did you mean robot.urdf"):
+                linkwork.compile(Path(folder) / "robbot.urdf")
+            with self.assertRaisesRegex(FileNotFoundError, "is a folder"):
+                linkwork.compile(folder)
+        with self.assertRaisesRegex(TypeError, r"compile\(\) has no argument 'optoins': did you mean 'options'"):
+            linkwork.compile(PENDULUM, optoins="batch")
         with self.assertRaises(TypeError):
             linkwork.compile(3)
 
@@ -536,7 +627,10 @@ class OfTheGuide(unittest.TestCase):
             try:
                 with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
                     for block in blocks:
-                        exec(compile(block, "python.md", "exec"), names)
+                        # Other packages need not be there.
+                        needed = re.findall(r"^import (\w+)", block, flags=re.MULTILINE)
+                        if all(importlib.util.find_spec(name) for name in needed):
+                            exec(compile(block, "python.md", "exec"), names)
                 self.assertTrue(Path("motion.html").is_file())
             finally:
                 os.chdir(before)
@@ -549,6 +643,8 @@ class OfThePackage(unittest.TestCase):
         self.assertIn("CartPole", linkwork.gallery())
         with self.assertRaisesRegex(KeyError, "did you mean CartPole"):
             linkwork.gallery("CartPol")
+        with self.assertRaisesRegex(TypeError, "quite: settings are of one mechanism"):
+            linkwork.gallery(quite=True)
 
     def test_the_command(self):
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:

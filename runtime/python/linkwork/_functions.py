@@ -1,0 +1,254 @@
+"""Functions of compiled libraries as methods."""
+
+import ctypes
+import inspect
+import json
+
+import numpy as np
+
+from ._names import Error, hint, index, numbers, safe
+
+
+def _structures(number):
+    """Settings of simulations and rollouts, and the type of controllers, for a type of numbers."""
+
+    class Settings(ctypes.Structure):
+        _fields_ = [
+            ("start", number),
+            ("duration", number),
+            ("interval", number),
+            ("method", ctypes.c_char_p),
+            ("setting", number),
+            ("period", number),
+            ("control", ctypes.c_void_p),
+            ("user", ctypes.c_void_p),
+        ]
+
+    class Rollout(ctypes.Structure):
+        _fields_ = [
+            ("start", number),
+            ("step", number),
+            ("steps", ctypes.c_size_t),
+            ("states", ctypes.c_size_t),
+            ("threads", ctypes.c_size_t),
+            ("inputs_of", ctypes.c_int),
+        ]
+
+    control = ctypes.CFUNCTYPE(
+        ctypes.c_int, ctypes.c_void_p, number, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p
+    )
+    return Settings, Rollout, control
+
+
+class Library:
+    """The functions of a shared library with their types."""
+
+    def __init__(self, path, prefix="mechanism"):
+        self.handle = ctypes.CDLL(str(path))
+        get = lambda name: getattr(self.handle, f"{prefix}_{name}")
+        describe = get("description")
+        describe.restype = ctypes.c_char_p
+        self.description = json.loads(describe().decode("utf-8"))
+        single = self.description["number"] == "f32"
+        self.dtype = np.dtype(np.float32 if single else np.float64)
+        number = ctypes.c_float if single else ctypes.c_double
+        self.Settings, self.Rollout, self.Control = _structures(number)
+        self.message = get("message")
+        self.message.restype = ctypes.c_char_p
+        self.call = get("call")
+        size, pointer = ctypes.c_size_t, ctypes.c_void_p
+        self.call.argtypes = [size, pointer, pointer, pointer, size, size]
+        self.validate = get("validate")
+        self.validate.argtypes = [pointer]
+        self.simulate = get("simulate")
+        self.simulate.argtypes = [pointer, pointer, pointer, pointer, pointer, size, pointer]
+        self.roll_out = get("roll_out")
+        self.roll_out.argtypes = [pointer] * 5
+        self.defaults = get("defaults") if self.description["parameters"] else None
+
+    def why(self):
+        return self.message().decode("utf-8")
+
+
+def address(array):
+    """Where an array's numbers are. The quick way does not go with arrays that are empty or cannot be written to."""
+    try:
+        return _addressof(_from_buffer(array))
+    except (TypeError, ValueError, BufferError):
+        return array.__array_interface__["data"][0]
+
+
+_addressof, _from_buffer = ctypes.addressof, ctypes.c_char.from_buffer
+
+
+#: What the entries of an argument are, by its name: those of configurations, velocities and inputs.
+ENTRIES = {"q": "q", "from": "q", "to": "q", "v": "v", "a": "v", "tau": "v", "dv": "v", "u": "u"}
+
+
+def marked(chosen, velocities, dtype):
+    """Marks at velocities that are named, or given by their indices."""
+    marks = np.zeros(len(velocities), dtype)
+    for one in [chosen] if isinstance(chosen, (str, int)) else chosen:
+        k = index(velocities, one, "velocity") if isinstance(one, str) else one
+        if not isinstance(k, (int, np.integer)) or not 0 <= k < len(velocities):
+            raise IndexError(f"velocities have names, or the indices 0 to {len(velocities) - 1}, found {one!r}")
+        marks[k] = 1
+    return marks
+
+
+def function(library, k, about, cls):
+    """The method that calls a function by its number."""
+    arguments, results = about["arguments"], about["results"]
+    dtype, call, nv = library.dtype, library.call, len(library.description["velocities"])
+    shapes = []
+    for a in arguments:
+        shapes.append(tuple(a["shape"]) if a["kind"] == "array" else (nv,) if a["kind"] == "velocities" else ())
+    kinds = [a["kind"] for a in arguments]
+    names = [safe(a["name"]) for a in arguments]
+    # Matrices stand column by column: in memory their transposes.
+    stored = [tuple(r["shape"][:-2] + r["shape"][:-3:-1]) if len(r["shape"]) > 1 else tuple(r["shape"]) for r in results]
+    turned = [len(shape) > 1 for shape in stored]
+    Arguments, Results = ctypes.c_void_p * max(len(arguments), 1), ctypes.c_void_p * len(results)
+    count = len(arguments)
+    frames = library.description["frames"]
+    velocities = [entry["name"] for entry in library.description["velocities"]]
+
+    def prepared(self, i, value):
+        kind = kinds[i]
+        if kind == "frame" and isinstance(value, str):
+            value = index(frames, value, "frame")
+        elif kind == "velocities":
+            return marked(value, velocities, dtype)
+        elif isinstance(value, dict) and arguments[i]["name"] in ENTRIES:
+            return self._vector(value, shapes[i][0], arguments[i]["name"])
+        array = numbers(value, dtype, names[i])
+        if len(shapes[i]) == 2:
+            array = np.swapaxes(array, -1, -2)
+            expected = shapes[i][::-1]
+        else:
+            expected = shapes[i]
+        if array.shape[array.ndim - len(expected) :] != expected or array.ndim > len(expected) + 1:
+            raise ValueError(
+                f"{about['name']}: {names[i]} has the shape {shapes[i]}, or (N, …) of N states, not {np.shape(value)}"
+            )
+        return array if array.flags.c_contiguous else np.ascontiguousarray(array)
+
+    plain = all(kind == "array" and len(shape) == 1 for kind, shape in zip(kinds, shapes))
+    ndarray, empty = np.ndarray, np.empty
+
+    def method(self, *given, threads=None, out=None, **others):
+        for name in others:
+            if name in names:
+                raise TypeError(f"{about['name']}({', '.join(names)}): arguments are given without their names")
+            raise TypeError(f"{about['name']}() has no argument {name!r}{hint(name, ['threads', 'out'])}")
+        # One state in arrays that need no conversion: the way of control loops.
+        if plain and out is None and len(given) == count:
+            for array, shape in zip(given, shapes):
+                if type(array) is not ndarray or array.shape != shape or array.dtype != dtype:
+                    break
+                if not array.flags.c_contiguous:
+                    break
+            else:
+                found = [empty(shape, dtype) for shape in stored]
+                own = Arguments(*[address(array) for array in given])
+                if call(k, self._own, own, Results(*[address(array) for array in found]), 1, 1) != 0:
+                    raise Error(f"{about['name']}: {library.why()}")
+                if len(found) == 1:
+                    array = found[0]
+                    return array.swapaxes(-1, -2) if turned[0] else array if array.ndim else array[()]
+                return tuple(
+                    array.swapaxes(-1, -2) if turn else array[()] for array, turn in zip(found, turned)
+                )
+        return general(self, given, threads, out)
+
+    def placed(out, lead):
+        """Arrays that results go into, as they are stored."""
+        given = out if isinstance(out, tuple) else (out,)
+        if len(given) != len(stored):
+            raise ValueError(f"{about['name']}: `out` has {len(given)} arrays for {len(stored)} results")
+        arrays = []
+        for array, shape, turn, result in zip(given, stored, turned, results):
+            kept = array.swapaxes(-1, -2) if turn and isinstance(array, ndarray) and array.ndim > 1 else array
+            fits = isinstance(kept, ndarray) and kept.shape == lead + shape and kept.dtype == dtype
+            if not fits or not kept.flags.c_contiguous or not kept.flags.writeable:
+                raise ValueError(
+                    f"{about['name']}: `out` is what an earlier call with as many states returned; of {result['name']} it is not"
+                )
+            arrays.append(kept)
+        return arrays
+
+    def general(self, given, threads, out):
+        if not hasattr(self, "_own"):
+            raise TypeError(f"{about['name']} is a function of a mechanism, not of its class: make one first, with values of its parameters")
+        if len(given) != count:
+            raise TypeError(f"{about['name']}({', '.join(names)}) takes {count} arguments, found {len(given)}")
+        arrays = [prepared(self, i, value) for i, value in enumerate(given)]
+        states = None
+        for array, shape in zip(arrays, shapes):
+            if array.ndim > len(shape):
+                if states is not None and states != len(array):
+                    raise ValueError(f"{about['name']}: arrays of {states} and of {len(array)} states")
+                states = len(array)
+        n, lead = (1, ()) if states is None else (states, (states,))
+        if states is not None:
+            arrays = [
+                array if array.ndim > len(shape) else np.ascontiguousarray(np.broadcast_to(array, (n, *array.shape)))
+                for array, shape in zip(arrays, shapes)
+            ]
+        found = [empty(lead + shape, dtype) for shape in stored] if out is None else placed(out, lead)
+        if n > 0:
+            own = Arguments(*[address(array) for array in arrays])
+            wanted = Results(*[address(array) for array in found])
+            if threads is None:
+                threads = 0 if n >= 256 else 1
+            elif threads < 0:
+                raise ValueError(f"a number of threads is not {threads!r}")
+            if call(k, self._own, own, wanted, n, threads) != 0:
+                raise Error(f"{about['name']}: {library.why()}")
+        found = [array.swapaxes(-1, -2) if turn else array[()] for array, turn in zip(found, turned)]
+        return found[0] if len(found) == 1 else tuple(found)
+
+    method.__name__ = about["name"]
+    method.__qualname__ = f"{cls}.{about['name']}"
+    method.__doc__ = documentation(about, shapes)
+    kind = inspect.Parameter
+    parameters = [kind("self", kind.POSITIONAL_ONLY)]
+    parameters += [kind(name, kind.POSITIONAL_ONLY) for name in names]
+    parameters += [kind(name, kind.KEYWORD_ONLY, default=None) for name in ("threads", "out")]
+    method.__signature__ = inspect.Signature(parameters)
+    return method
+
+
+def documentation(about, shapes):
+    lines = [about["documentation"], ""]
+    if about["arguments"]:
+        lines.append("Args:")
+        for a, shape in zip(about["arguments"], shapes):
+            text = {
+                "number": "a number",
+                "frame": "the name of a frame, or its number",
+                "velocities": "names of velocities, or their indices",
+            }.get(a["kind"], f"shape {shape}")
+            by_name = ", or values by name" if a["kind"] == "array" and a["name"] in ENTRIES else ""
+            lines.append(f"    {safe(a['name'])}: {text}{by_name}")
+        lines.append("")
+    lines.append("Returns:")
+    unit = f", {about['unit']}" if about["unit"] else ""
+    for r in about["results"]:
+        shape = f"shape {tuple(r['shape'])}" if r["shape"] else "a number"
+        lines.append(f"    {r['name']}: {shape}{unit}")
+    lines.append("")
+    if about["errors"]:
+        lines += ["Raises:", f"    Error: {about['errors']}", ""]
+    lines.append("Arrays of N states, with N before these shapes, give arrays of N results. `threads` says how many share them;")
+    lines.append("`out` is what an earlier call with as many states returned, and is written over.")
+    return "\n".join(lines)
+
+
+def quoted(text, indent=4):
+    """A text as a documentation string."""
+    text = text.replace("\\", "\\\\").replace('"""', "'''").strip()
+    lines = text.split("\n")
+    inner = "\n".join([lines[0], *[(" " * indent + line).rstrip() for line in lines[1:]]])
+    close = "\n" + " " * indent if len(lines) > 1 else ""
+    return f'"""{inner}{close}"""'

@@ -1,0 +1,150 @@
+"""What mechanisms give: motions, pages, linear systems."""
+
+import csv
+import html
+import webbrowser
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ._names import Error, checked, index
+
+if TYPE_CHECKING:
+    from ._mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of HTML that shows a motion and opens offline. Notebooks show it in place."""
+
+    #: Where it is.
+    path: Path
+
+    def _repr_html_(self):
+        text = html.escape(Path(self.path).read_text(encoding="utf-8"), quote=True)
+        return f'<iframe srcdoc="{text}" width="100%" height="560" frameborder="0"></iframe>'
+
+    def open(self):
+        """Opens it in the browser."""
+        webbrowser.open(Path(self.path).resolve().as_uri())
+
+
+@dataclass(frozen=True)
+class Run:
+    """A motion: samples of time, configuration, velocity and inputs, a row each."""
+
+    mechanism: "Mechanism"
+    #: Times, s.
+    t: np.ndarray
+    #: Configurations, a row for each time.
+    q: np.ndarray
+    #: Velocities, a row for each time.
+    v: np.ndarray
+    #: Inputs, a row for each time.
+    u: np.ndarray
+
+    def __len__(self):
+        return len(self.t)
+
+    def csv(self, path):
+        """Writes the samples as comma-separated values with the columns t, q.…, v.…, u.…, which `linkwork view --motion` reads."""
+        m = self.mechanism
+        head = ["t"] + [f"q.{n}" for n in m.configuration]
+        head += [f"v.{n}" for n in m.velocities] + [f"u.{n}" for n in m.inputs]
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(head)
+            writer.writerows(np.column_stack([self.t, self.q, self.v, self.u]).tolist())
+
+    @checked
+    def view(self, path=None) -> Page:
+        """Writes a page that shows the motion, and opens offline: to `path`, or to the mechanism's name with .html."""
+        try:
+            from ._build import view
+        except ImportError:
+            raise Error("pages are made by the package `linkwork`, which this package does not need otherwise") from None
+
+        path = Path(path if path is not None else f"{self.mechanism.name}.html")
+        view(self.mechanism._origin(), self, path)
+        return Page(path)
+
+    @checked
+    def plot(self, *names, ax=None):
+        """Draws entries of the motion over time with matplotlib: of the configuration by default, or those that are named
+        (`"hinge"`, `"v.hinge"`, `"u.motor"`). Entries of one unit share axes, one below the other; all go into `ax` if it is given.
+
+        Returns:
+            The axes; an array of them where there are several.
+        """
+        m = self.mechanism
+        kinds = {
+            "q": ("coordinate", m.configuration, m.units.configuration),
+            "v": ("velocity", m.velocities, m.units.velocities),
+            "u": ("input", m.inputs, m.units.inputs),
+        }
+        groups = {}
+        for name in names or m.configuration:
+            kind, rest = name.split(".", 1) if name[:2] in ("q.", "v.", "u.") else ("q", name)
+            what, known, units = kinds[kind]
+            k = index(known, rest, what)
+            groups.setdefault(units[k], []).append((name, kind, getattr(self, kind)[:, k]))
+
+        import matplotlib.pyplot as plt
+
+        if ax is None:
+            rows = max(len(groups), 1)
+            size = (6.4, 1.6 + 2.4 * rows)
+            axes = plt.subplots(rows, sharex=True, squeeze=False, figsize=size, layout="constrained")[1][:, 0]
+            axes[0].set_title(m.name)
+        else:
+            axes = np.array([ax])
+        for k, (unit, curves) in enumerate(groups.items()):
+            own = axes[min(k, len(axes) - 1)]
+            shares = len(groups) > len(axes)
+            for name, _, values in curves:
+                own.plot(self.t, values, label=f"{name} [{unit}]" if shares and unit else name)
+            said = " and ".join(dict.fromkeys(_MANY[kind] for _, kind, _ in curves))
+            own.set_ylabel("" if shares else f"{said} [{unit}]" if unit else said)
+        for own in axes:
+            # Many names stand beside the curves.
+            beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(own.get_lines()) > 6 else {}
+            own.legend(**beside)
+        axes[-1].set_xlabel("t [s]")
+        return axes[0] if len(axes) == 1 else axes
+
+
+_MANY = {"q": "coordinates", "v": "velocities", "u": "inputs"}
+
+
+@dataclass(frozen=True)
+class LinearSystem:
+    """x' = A x + B u about a state: displacements of the configuration, then changes of the velocity, each in the order of `v`."""
+
+    a: np.ndarray
+    b: np.ndarray
+    #: Names of the states.
+    states: list
+    #: Names of the inputs.
+    inputs: list
+
+    @checked
+    def control(self, c=None, d=None):
+        """The system in the type of the package python-control, whose `lqr` and others take it; all states are outputs if no others
+        are given."""
+        import control
+
+        c = np.eye(len(self.a)) if c is None else c
+        d = np.zeros((np.shape(c)[0], self.b.shape[1])) if d is None else d
+        return control.ss(self.a, self.b, c, d)
+
+
+@dataclass(frozen=True)
+class Units:
+    """Units of all entries, in their order."""
+
+    configuration: list
+    velocities: list
+    inputs: list
+    parameters: list
