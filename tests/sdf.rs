@@ -3,6 +3,7 @@
 use linkwork::prelude::*;
 use linkwork::{Limits, frame};
 use support::compare::{assert_close, assert_same_dynamics};
+use support::random::Random;
 
 const TOLERANCE: f64 = 1e-12;
 
@@ -27,6 +28,33 @@ fn the_same_arm_as_sdf_and_as_urdf() {
     assert_close("ring", ring.as_slice(), twin.as_slice(), TOLERANCE);
     assert_eq!(Sdf.upper_limits(), Urdf.upper_limits());
     assert_eq!(Sdf.velocity_limits()[4], f64::INFINITY, "less than zero stands for none");
+}
+
+/// Fixed joints between links with mass, frames that stand in frames, joints in frames, links in joints, models in models.
+#[test]
+fn the_same_tree_of_nested_frames() {
+    #[mechanism(sdf = "data/sdf/tree.sdf")]
+    struct Sdf;
+    #[mechanism(urdf = "data/sdf/tree.urdf")]
+    struct Urdf;
+
+    assert_eq!((Sdf::NQ, Sdf::NV), (7, 6));
+    assert_eq!(Sdf::VELOCITIES, Urdf::VELOCITIES);
+    assert_eq!(Sdf::INPUTS, Urdf::INPUTS);
+    assert_same_dynamics(&Sdf, &Urdf, 20, TOLERANCE);
+    let mut random = Random::new(2);
+    for _ in 0..20 {
+        let q = random.configuration(&Sdf);
+        let (all, twins) = (Sdf.frame_placements(&q), Urdf.frame_placements(&q));
+        for link in
+            ["base", "upper", "plate", "carriage", "wheel", "hand::palm", "hand::tip::pad", "deck", "socket"]
+        {
+            let twin = link.rsplit("::").next().unwrap_or(link);
+            let at = |names: &[&str], name: &str| names.iter().position(|known| *known == name).unwrap();
+            let (a, b) = (all[at(&Sdf::FRAMES, link)], twins[at(&Urdf::FRAMES, twin)]);
+            assert_close(link, a.to_homogeneous().as_slice(), b.to_homogeneous().as_slice(), TOLERANCE);
+        }
+    }
 }
 
 /// Two axes are two joints with a massless link between them; a screw turns and advances.
