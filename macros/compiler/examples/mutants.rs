@@ -16,15 +16,29 @@ use syn::{Arm, BinOp, Block, Expr, Lit, Pat, PatGuard, parse_quote, spanned::Spa
 /// What is mutated: what hands arms, offsets and sizes on.
 const ROOMS: [&str; 4] = ["src/catalogue", "src/derive", "src/derive.rs", "src/emit"];
 
-/// The module of the copy that knows which mutant is asked for.
-const CHOICE: &str = "//! The mutant that is asked for.
+/// The module of the copy that knows which mutants are asked for. A program that is given a file for it writes there which ones it
+/// comes upon.
+const CHOICE: &str = r#"//! The mutants that are asked for.
+use std::env::var;
+use std::fs::File;
+use std::io::Write;
 use std::sync::OnceLock;
-static CHOSEN: OnceLock<usize> = OnceLock::new();
-/// Whether it is this one.
+use std::sync::atomic::{AtomicBool, Ordering};
+static CHOSEN: OnceLock<Vec<usize>> = OnceLock::new();
+static REACHED: OnceLock<Option<File>> = OnceLock::new();
+static SEEN: [AtomicBool; 10_000] = [const { AtomicBool::new(false) }; 10_000];
+/// Whether this is one of them.
 pub fn is(mutant: usize) -> bool {
-    *CHOSEN.get_or_init(|| std::env::var(\"LINKWORK_MUTANT\").ok().and_then(|text| text.parse().ok()).unwrap_or(usize::MAX)) == mutant
+    if !SEEN[mutant].load(Ordering::Relaxed)
+        && !SEEN[mutant].swap(true, Ordering::Relaxed)
+        && let Some(file) = REACHED.get_or_init(|| var("LINKWORK_REACHED").ok().map(|path| File::create(path).unwrap()))
+    {
+        let _ = (&*file).write_all(format!("{mutant}\n").as_bytes());
+    }
+    let chosen = || var("LINKWORK_MUTANTS").unwrap_or_default().split(',').flat_map(str::parse).collect();
+    CHOSEN.get_or_init(chosen).contains(&mutant)
 }
-";
+"#;
 
 /// Walks through a file's expressions and gives each place that can change a number.
 struct Mutator<'a> {
