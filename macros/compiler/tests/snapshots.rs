@@ -2,6 +2,7 @@
 //! look at it, and write the files anew with `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test snapshots`.
 
 use linkwork_compiler::expand;
+use proc_macro2::TokenTree;
 use quote::ToTokens;
 use std::fs;
 use std::path::Path;
@@ -17,8 +18,30 @@ const CART_POLE: &str = "
     #[joint(cart -> pole, about = z)] hinge: Pin,
     #[acts(on = rail)] push: Force,";
 
-/// Name, arguments of the attribute, fields, and what is shown.
-const MECHANISMS: [(&str, &str, &str, &[&str]); 6] = [
+/// Joints of every chart, a limit, a contact, and outputs that follow from the motion.
+const BUOY: &str = "k: f64,
+    #[body(mass = 2, inertia = sphere(2, 0.3))] hull: Body,
+    #[body(mass = 1, inertia = sphere(1, 0.2))] eye: Body,
+    #[body(mass = 1)] cart: Body,
+    #[joint(ground -> cart, along = x)] rail: Sleeve,
+    #[joint(ground -> hull)] flight: Free,
+    #[joint(hull -> eye)] socket: Ball,
+    #[limit(on = rail, from = -1, to = k)] stop: Limit,
+    #[contact(hull.sphere(0.3), ground.plane(y), friction = 0.3)] floor: Contact,
+    #[acts(on = rail)] motor: Force,
+    #[output(contact_force(floor))] push: Vector,
+    #[output(hull, resolved_in = ground)] diagram: FreeBody,";
+
+/// A rod whose end slips on the ground.
+const SLIDING: &str = "friction: f64,
+    #[body(mass = 2, inertia = rod(2, 1, x))] rod: Body,
+    #[joint(ground -> rod, about = z)] pose: Planar,
+    #[constraint(slips(rod.at(-0.5 * x).sphere(0.01), ground.plane(y)), friction = friction, speed = 0.001)]
+    floor: Slipping,";
+
+/// Name, arguments of the attribute, fields, and what is shown: functions with their bodies, or with traits (`Trait::*`), of which
+/// what is a call of the function of the same name is left out.
+const MECHANISMS: [(&str, &str, &str, &[&str]); 9] = [
     (
         "pendulum",
         "gravity = -9.81 * y",
@@ -74,7 +97,67 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 6] = [
         CART_POLE,
         &["mass_matrix_inverse", "inverse_dynamics_derivatives", "forward_dynamics_derivatives", "linearize"],
     ),
+    (
+        "charts",
+        "gravity = -9.81 * y, derivatives, second_derivatives",
+        BUOY,
+        &[
+            "neutral",
+            "diagram",
+            "diagram_under",
+            "push",
+            "integrate",
+            "difference",
+            "tangent_rate",
+            "__carry",
+            "integrate_derivatives",
+            "tangent_rate_derivatives",
+            "__tangent_rate_second_derivatives",
+            "generalized_forces_derivatives",
+            "forward_dynamics_second_derivatives",
+            "validate",
+            "__link2_path_placement",
+            "__link2_path_motion",
+            "__link2_path_columns",
+            "Limits::*",
+            "Mechanism::*",
+            "Derivatives::*",
+            "SecondDerivatives::*",
+            "Contacts::*",
+            "ContactDerivatives::*",
+            "Frames::*",
+        ],
+    ),
+    (
+        "slipping",
+        "gravity = -9.81 * y, derivatives, batch",
+        SLIDING,
+        &[
+            "constrained_dynamics",
+            "try_constrained_dynamics",
+            "forward_dynamics",
+            "forward_dynamics_lanes",
+            "generalized_forces",
+            "Mechanism::*",
+            "Derivatives::*",
+            "Constraints::*",
+        ],
+    ),
+    (
+        "f32",
+        "gravity = -9.81 * y, scalar = f32",
+        // What follows from the figures is no normal number any more.
+        "#[particle(mass = 1e-20)] bob: Particle,
+        #[joint(ground -> bob.at(-1e-10 * y), about = z)] hinge: Pin,",
+        &["mass_matrix", "kinetic_energy"],
+    ),
 ];
+
+/// True for the function of a trait that calls the one of its name.
+fn is_passed_on(function: &syn::ImplItemFn) -> bool {
+    let body = function.block.to_token_stream().to_string();
+    body.starts_with(&format!("{{ Self :: {} (", function.sig.ident))
+}
 
 /// The code without documentation, without what only says what is missing, and without frames.
 fn shown(text: &str, functions: &[&str]) -> String {
@@ -82,17 +165,19 @@ fn shown(text: &str, functions: &[&str]) -> String {
     file.items.retain_mut(|item| {
         let syn::Item::Impl(block) = item else { return false };
         let clause = block.generics.where_clause.to_token_stream().to_string();
-        let of = block.trait_.as_ref().map_or(String::new(), |t| t.0.to_token_stream().to_string());
-        if clause.contains("absent") || of.contains("NamedFrame") || of.contains("Batch") {
+        let of = block.trait_.as_ref().and_then(|t| Some(t.0.segments.last()?.ident.to_string()));
+        let asked = of.as_ref().is_some_and(|of| functions.contains(&format!("{of}::*").as_str()));
+        let large = of.as_deref() == Some("Evaluate") && !functions.iter().any(|name| name.ends_with("::*"));
+        if clause.contains("absent") || !(of.is_none() || asked || large) {
             return false;
         }
         block.attrs.clear();
-        let inherent = of.is_empty();
+        let inherent = of.is_none();
         block.items.retain_mut(|member| {
             let attributes = match member {
                 syn::ImplItem::Fn(f) => {
                     let name = f.sig.ident.to_string();
-                    if inherent && (!functions.contains(&name.as_str())) {
+                    if inherent && !functions.contains(&name.as_str()) || asked && is_passed_on(f) {
                         return false;
                     }
                     &mut f.attrs
@@ -100,43 +185,83 @@ fn shown(text: &str, functions: &[&str]) -> String {
                 syn::ImplItem::Const(c) if inherent && c.ident == "EQUATIONS" && functions.is_empty() => {
                     &mut c.attrs
                 }
+                syn::ImplItem::Const(c) if asked => &mut c.attrs,
                 syn::ImplItem::Type(_) => return true,
                 _ => return false,
             };
             attributes.retain(|attribute| !attribute.path().is_ident("doc"));
             true
         });
-        !block.items.is_empty() && (inherent || of.contains("Evaluate"))
+        !block.items.is_empty()
     });
     prettyplease::unparse(&file)
         .replace("::linkwork::nalgebra::", "na::")
         .replace("::linkwork::__private::", "private::")
 }
 
+/// Compares a text with a file of this folder, or writes it there. What differs first.
+fn difference(name: &str, text: &str) -> Option<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots").join(format!("{name}.txt"));
+    if std::env::var_os("LINKWORK_WRITE").is_some() {
+        fs::write(&path, text).unwrap();
+    }
+    let expected = fs::read_to_string(&path).unwrap_or_default();
+    let lines = text.lines().count().max(expected.lines().count());
+    let padded = |text: &'static str| std::iter::repeat(text);
+    let both = text.lines().chain(padded("(no more)")).zip(expected.lines().chain(padded("(no more)")));
+    let (k, (now, before)) = both.take(lines).enumerate().find(|(_, (now, before))| now != before)?;
+    Some(format!("{name}.txt, line {}:\n  before: {before}\n  now:    {now}", k + 1))
+}
+
 #[test]
 fn generated_code() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
-    let write = std::env::var_os("LINKWORK_WRITE").is_some();
     let mut differ = Vec::new();
     for (name, attribute, fields, functions) in MECHANISMS {
         let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
         let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
         assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
-        let code = shown(&emitted.text, functions);
-        let path = folder.join(format!("{name}.txt"));
-        if write {
-            fs::write(&path, &code).unwrap();
-        }
-        let expected = fs::read_to_string(&path).unwrap_or_default();
-        if let Some((k, (now, before))) = code
-            .lines()
-            .zip(expected.lines().chain(std::iter::repeat("")))
-            .enumerate()
-            .find(|(_, (a, b))| a != b)
-        {
-            differ.push(format!("{name}.txt, line {}:\n  before: {before}\n  now:    {now}", k + 1));
-        }
-        assert!(code.lines().count() >= expected.lines().count() || !differ.is_empty(), "{name} is shorter");
+        differ.extend(difference(name, &shown(&emitted.text, functions)));
     }
     assert!(differ.is_empty(), "generated code differs:\n{}", differ.join("\n"));
+}
+
+/// Mechanisms whose structs' documentation has, between them, every part.
+const DOCUMENTED: [(&str, &str); 4] = [
+    ("gravity = -9.81 * y, equations = structure, batch, conserved", BUOY),
+    ("gravity = -9.81 * y, batch", SLIDING),
+    ("gravity = -9.81 * y, second_derivatives, conserved, equations = hamilton", CART_POLE),
+    (
+        "inertia = none",
+        "#[body] arm: Body,
+        #[joint(ground -> arm, about = z)] hinge: Pin,
+        #[limit(on = hinge, from = -2, max_speed = 3)] stop: Limit,",
+    ),
+];
+
+#[test]
+fn documentation_of_structs() {
+    let mut text = String::new();
+    for (attribute, fields) in DOCUMENTED {
+        let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
+        let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
+        assert!(!emitted.tokens.to_string().contains("compile_error"), "{}", emitted.tokens);
+        let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
+        let attributes = file.items.iter().find_map(|item| match item {
+            syn::Item::Struct(item) if item.ident == "Shown" => Some(&item.attrs),
+            _ => None,
+        });
+        text += &format!("##### {attribute}\n");
+        // Everywhere, or `cfg_attr(doc, doc = …)`: on pages, in editors.
+        for attribute in attributes.unwrap() {
+            let tokens = attribute.meta.to_token_stream().into_iter().flat_map(|token| match token {
+                TokenTree::Group(group) => group.stream().into_iter().collect(),
+                token => vec![token],
+            });
+            let literals = tokens.filter_map(|token| syn::parse2::<syn::LitStr>(token.into()).ok());
+            // Typeset equations are seen on pages.
+            let lines = literals.map(|line| line.value()).filter(|line| !line.contains("<math>"));
+            lines.for_each(|line| text += &format!("{line}\n"));
+        }
+    }
+    assert_eq!(difference("documentation", &text), None, "documentation differs");
 }
