@@ -2,6 +2,7 @@
 //! as one of the compiler's own, every value that generated code names is there, and what it computes agrees with itself.
 
 mod agreement;
+mod chosen;
 mod constrained;
 mod source;
 mod values;
@@ -79,6 +80,17 @@ fn functions_agree_with_each_other() {
     let compared: Vec<usize> = all.clone().map(agreement::check).collect();
     let (many, most) = (compared.iter().filter(|n| **n > 20).count() as u64, all.end - all.start);
     assert!(8 * many > most, "only {many} of {most} mechanisms have much to compare");
+}
+
+#[test]
+fn chosen_mechanisms_agree_with_themselves() {
+    for (arguments, fields, functions) in chosen::MECHANISMS {
+        let item = format!("pub struct Any {{ {fields} }}");
+        for seed in 0..2 {
+            let compared = agreement::check_all(arguments, &item, functions, seed);
+            assert!(compared > 20, "{compared} comparisons of #[mechanism({arguments})]\n{item}");
+        }
+    }
 }
 
 /// Long bodies are written in blocks, before which sines and cosines stand: some are results as they are.

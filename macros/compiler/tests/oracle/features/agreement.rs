@@ -33,9 +33,16 @@ fn with_compiled(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Out
 /// Everything of the mechanism of a seed. The number of comparisons that were possible.
 pub fn check(seed: u64) -> usize {
     let (arguments, item) = source::source(seed);
+    check_all(&arguments, &item, &[], seed)
+}
+
+/// Everything of a mechanism, which has some functions at least, in the state of a seed. The number of comparisons that were possible.
+pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> usize {
     let name = format!("seed {seed}\n#[mechanism({arguments})]\n{item}");
     let mut compared = 0;
-    with_compiled(&arguments, &item, &mut |model, output| {
+    with_compiled(arguments, item, &mut |model, output| {
+        let lacks = functions.iter().find(|name| !output.functions.iter().any(|f| f.name == **name));
+        assert_eq!(lacks, None, "{name}");
         let values = Values::random(model, seed);
         let mut case = Case { model, output, values, name: name.clone(), compared: 0 };
         case.check_variants();
@@ -47,7 +54,7 @@ pub fn check(seed: u64) -> usize {
         case.check_parameters();
         case.check_requested();
         compared = case.compared;
-        with_compiled(&format!("{arguments}{SKIPPED}"), &item, &mut |_, plain| case.check_passes(plain));
+        with_compiled(&format!("{arguments}{SKIPPED}"), item, &mut |_, plain| case.check_passes(plain));
     });
     compared
 }
@@ -289,6 +296,7 @@ impl Case<'_, '_> {
         self.check_motion_derivatives();
         self.check_forward_derivatives();
         self.check_second_derivatives();
+        self.check_constraint_curvature();
     }
 
     /// Columns of forward dynamics that are known, and those of the forces that are multiplied by the inverse.
@@ -337,14 +345,25 @@ impl Case<'_, '_> {
         );
     }
 
-    /// Second derivatives by two things each, contracted with the factors, against differences of differences; of those by
-    /// configuration twice the mean of both orders.
+    /// Second derivatives of a function, contracted with the factors.
     fn check_hessian(&mut self, what: &str, base: &str, blocks: &[(By, By)]) {
         let found = self.here(what);
         let Some(function) = self.function(base).cloned().filter(|_| !found.is_empty()) else { return };
-        let (output, changed, nv) = (self.output, self.changer(), self.values.v.len());
+        let (output, nv) = (self.output, self.values.v.len());
         let factors = self.values.given[..nv].to_vec();
-        let of = |x: &Values| vec![dot(&x.run(output, &function), &factors)];
+        self.compare_blocks(what, &found, blocks, &|x| dot(&x.run(output, &function), &factors));
+    }
+
+    /// Compares second derivatives of a number by two things each with differences of differences; those by configuration twice
+    /// with the mean of both orders.
+    pub(super) fn compare_blocks(
+        &mut self,
+        what: &str,
+        found: &[f64],
+        blocks: &[(By, By)],
+        of: &dyn Fn(&Values) -> f64,
+    ) {
+        let (changed, of) = (self.changer(), |x: &Values| vec![of(x)]);
         let mut first = 0;
         for (rows, columns) in blocks {
             let (m, n) = (self.values.size(*rows), self.values.size(*columns));

@@ -46,6 +46,36 @@ impl Case<'_, '_> {
         self.close("constrained accelerations", &change, &vec![0.0; nc], 1e-4 * TOLERANCE * scale);
     }
 
+    /// `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`, twice differentiated, and `−J w` by configuration, whose rows are the multipliers.
+    pub(super) fn check_constraint_curvature(&mut self) {
+        let found = self.here("__constraint_curvature");
+        let get = |name: &str| self.function(name).cloned();
+        let (Some(jacobian), Some(bias), Some(rates)) =
+            (get("constraint_jacobian"), get("constraint_bias"), get("constraint_rates"))
+        else {
+            return;
+        };
+        if found.is_empty() {
+            return;
+        }
+        let (output, nv, nc) = (self.output, self.values.v.len(), self.model.constraints.len());
+        let given = self.values.given.clone();
+        let [lambda, w, z, y] = [(0, nc), (nc, nv), (nc + nv, nc), (2 * nc + nv, nc)]
+            .map(|(first, count)| given[first..first + count].to_vec());
+        let along = |x: &Values| product(&x.run(output, &jacobian), &w);
+        let sum_of_all = |x: &Values| {
+            let change = sum(&product(&x.run(output, &jacobian), &x.a), &x.run(output, &bias));
+            dot(&z, &change) + dot(&y, &x.run(output, &rates)) - dot(&lambda, &along(x))
+        };
+        use By::{A, Q, V};
+        let (state, by_multipliers) = found.split_at(4 * nv * nv);
+        let what = "curvature of constraints";
+        self.compare_blocks(what, state, &[(Q, Q), (Q, V), (V, V), (Q, A)], &sum_of_all);
+        let columns: Vec<f64> =
+            (0..nv).flat_map(|k| (0..nc).map(move |i| -by_multipliers[i * nv + k])).collect();
+        self.compare_columns(what, &columns, Q, &along);
+    }
+
     pub(super) fn check_contacts(&mut self) {
         let Some(gaps) = self.function("contact_gaps").cloned() else { return };
         self.check_contact_derivatives();

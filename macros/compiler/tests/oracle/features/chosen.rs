@@ -1,0 +1,43 @@
+//! Mechanisms with what random ones seldom have together.
+
+/// Arguments of the attribute, fields, and functions that must be among those that are compared.
+pub const MECHANISMS: [(&str, &str, &[&str]); 2] = [
+    (
+        "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
+        "m: f64, l: f64,
+        #[body(mass = 2)] cart: Body,
+        #[body(mass = m, com = 0.4 * l * x, inertia = rod(m, 1.2, x))] arm: Body,
+        #[joint(ground -> cart, along = x)] rail: Sleeve,
+        #[joint(cart -> arm, about = z)] hinge: Pin,
+        #[acts(on = arm.at(l * x), along = arm.y)] jet: Force,
+        #[acts(on = rail, damping = 0.3 * l)] rubbing: Dashpot,
+        #[speed(rate(rail) * cos(hinge) + 0.3 * rate(hinge))] along: Speed,
+        #[speed(1.5 * rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,
+        #[output(along * hinge)] product: Scalar,
+        #[output(reaction_force(hinge))] load: Vector,",
+        &[
+            "inverse_dynamics_by_parameters",
+            "forward_dynamics_by_parameters",
+            "generalized_forces_by_parameters",
+            "inverse_dynamics_second_derivatives",
+            "generalized_forces_second_derivatives",
+        ],
+    ),
+    (
+        "gravity = -9.81 * y, derivatives, second_derivatives, sensitivities",
+        "m: f64,
+        #[body(mass = m, inertia = diagonal(0.3, 0.4, 0.5))] sleigh: Body,
+        #[joint(ground -> sleigh, about = z)] pose: Planar,
+        #[acts(on = sleigh.at(0.3 * x), along = sleigh.y)] jet: Force,
+        #[constraint(dot(v(sleigh.at(0.7 * x) / ground / ground), sleigh.y) = 0)] blade: Nonholonomic,
+        #[speed(rate(pose.x) * cos(pose.angle) + rate(pose.y) * sin(pose.angle))] ahead: Speed,
+        #[speed(rate(pose.y) * cos(pose.angle) - rate(pose.x) * sin(pose.angle))] aside: Speed,
+        #[speed(0.7 * rate(pose.angle))] turn: Speed,",
+        &[
+            "__motion_derivatives",
+            "__constraint_curvature",
+            "inverse_dynamics_second_derivatives",
+            "generalized_forces_second_derivatives",
+        ],
+    ),
+];
