@@ -51,6 +51,29 @@ fn mechanisms_without_a_form_say_which_they_have() {
     answers(setting, ROWS);
 }
 
+/// Four cyclic coordinates that are coupled.
+#[test]
+fn equations_of_routh_that_are_too_long_are_not_printed() {
+    fn setting(words: &str) -> (String, String) {
+        let mut fields = "#[body(mass = 1, inertia = sphere(1, 1))] cart0: Body, #[joint(ground -> cart0, along = x)] rail0: Sleeve,"
+            .to_string();
+        for k in 1..5 {
+            fields += &format!(
+                "#[body(mass = {k}, inertia = sphere(1, 1))] cart{k}: Body,
+                #[joint(cart{} -> cart{k}, along = unit([1, {k}, 0]))] rail{k}: Sleeve,",
+                k - 1
+            );
+        }
+        (words.to_string(), fields)
+    }
+    const ROWS: &[Row] = &[(
+        "equations = routh",
+        "Routh's equations of this mechanism are too long: more than three cyclic coordinates are coupled by inertia, or thousands of terms",
+        "the word `routh` gives them as functions",
+    )];
+    answers(setting, ROWS);
+}
+
 /// What slips holds its normal force, which no independent speeds eliminate.
 #[test]
 fn contacts_that_slip_have_no_equations_of_kane() {
