@@ -6,6 +6,7 @@
 
 mod combinations;
 mod combined;
+mod emitted;
 mod features;
 mod files;
 mod jet;

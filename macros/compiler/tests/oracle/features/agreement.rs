@@ -13,7 +13,7 @@ use linkwork_compiler::{compile, read};
 use std::path::Path;
 
 /// Largest difference of what passes change alone, relative to the result's largest entry.
-const SAME: f64 = 1e-9;
+pub(super) const SAME: f64 = 1e-9;
 /// Largest difference from differences, relative to the largest of both and of what they are differences of.
 pub(super) const TOLERANCE: f64 = 1e-7;
 /// Step of differences of differences.

@@ -1,7 +1,7 @@
 //! Mechanisms with what random ones seldom have together.
 
 /// Arguments of the attribute, fields, and functions that must be among those that are compared.
-pub const MECHANISMS: [(&str, &str, &[&str]); 2] = [
+pub const MECHANISMS: [(&str, &str, &[&str]); 3] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
         "m: f64, l: f64,
@@ -40,4 +40,26 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 2] = [
             "generalized_forces_second_derivatives",
         ],
     ),
+    // Limbs as lanes, whose results go into matrices in pairs.
+    (
+        "gravity = -9.81 * y, derivatives, packed",
+        LIMBS,
+        &["inverse_dynamics_derivatives_into", "mass_matrix_into"],
+    ),
 ];
+
+const LIMBS: &str = "
+    #[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body,
+    #[joint(ground -> trunk)] base: Free,
+    #[body(mass = 2, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] left0: Body,
+    #[body(mass = 1, com = 0.3 * z, inertia = diagonal(0.02, 0.03, 0.04))] left1: Body,
+    #[body(mass = 0.7, com = 0.1 * x, inertia = diagonal(0.02, 0.01, 0.02))] left2: Body,
+    #[body(mass = 2, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] right0: Body,
+    #[body(mass = 1, com = 0.3 * z, inertia = diagonal(0.02, 0.03, 0.04))] right1: Body,
+    #[body(mass = 0.7, com = 0.1 * x, inertia = diagonal(0.02, 0.01, 0.02))] right2: Body,
+    #[joint(trunk.at(0.2 * x) -> left0, about = x)] left_joint0: Pin,
+    #[joint(left0.at(0.4 * z) -> left1, about = y)] left_joint1: Pin,
+    #[joint(left1.at(0.4 * z) -> left2, about = z)] left_joint2: Pin,
+    #[joint(trunk.at(-0.2 * x) -> right0, about = x)] right_joint0: Pin,
+    #[joint(right0.at(0.4 * z) -> right1, about = y)] right_joint1: Pin,
+    #[joint(right1.at(0.4 * z) -> right2, about = z)] right_joint2: Pin,";

@@ -50,6 +50,8 @@ impl Values {
             given: list(4 * (nv + model.constraints.len()), 0.7),
             contact_forces: list(model.contacts.iter().map(|c| c.rates.len()).sum(), 0.9),
         };
+        // Parameters of mass properties are given, too: ten of each body.
+        values.given.extend(list(10 * model.frames.len(), 0.7));
         for chart in &model.charts {
             if let Some(quaternion) = quaternion(*chart, &mut values.q) {
                 quaternion[3] += 1.5;

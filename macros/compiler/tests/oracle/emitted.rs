@@ -1,0 +1,447 @@
+//! What generated bodies compute, as Rust says it, without rustc: an interpreter of straight lines on numbers, lanes, arrays and
+//! tuples. Bodies that call more than the operations of `Arithmetic` are not its own to run.
+
+use linkwork_compiler::expr::Function;
+use std::collections::BTreeMap;
+use syn::{Block, Expr, ExprCall, ExprField, Lit, Member, Pat, Stmt, UnOp};
+
+/// Why a body gives nothing.
+#[derive(Debug)]
+pub enum Stop {
+    /// It calls something else.
+    Foreign,
+    /// Rustc would not take it, or it does not end with a value.
+    Wrong(String),
+}
+
+type Result<T> = std::result::Result<T, Stop>;
+
+fn foreign<T>() -> Result<T> {
+    Err(Stop::Foreign)
+}
+
+fn wrong<T>(what: impl Into<String>) -> Result<T> {
+    Err(Stop::Wrong(what.into()))
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    Number(f64),
+    Lanes(Vec<f64>),
+    /// An array or a tuple; of a matrix its columns.
+    List(Vec<Value>),
+    /// An operation by its name, with the lanes that it makes.
+    Operation(String, Option<usize>),
+}
+
+impl Value {
+    pub fn list(numbers: &[f64]) -> Value {
+        Value::List(numbers.iter().map(|x| Value::Number(*x)).collect())
+    }
+
+    /// The numbers in it one after another, of lanes that of one.
+    pub fn numbers(&self, lane: usize) -> Result<Vec<f64>> {
+        match self {
+            Value::Number(x) => Ok(vec![*x]),
+            Value::Lanes(all) => all.get(lane).map_or_else(|| wrong("no such lane"), |x| Ok(vec![*x])),
+            Value::List(list) => {
+                let all: Result<Vec<Vec<f64>>> = list.iter().map(|value| value.numbers(lane)).collect();
+                Ok(all?.concat())
+            }
+            Value::Operation(name, _) => wrong(format!("{name} is no number")),
+        }
+    }
+
+    fn elements(&self) -> Result<&Vec<Value>> {
+        match self {
+            Value::List(list) => Ok(list),
+            other => wrong(format!("{other:?} has no elements")),
+        }
+    }
+}
+
+/// Applies an operation to numbers, or lane by lane to lanes of the same number.
+fn each(values: &[Value], f: &dyn Fn(&[f64]) -> f64) -> Result<Value> {
+    if let [Value::Number(_), ..] = values {
+        let numbers: Result<Vec<f64>> = values
+            .iter()
+            .map(|value| if let Value::Number(x) = value { Ok(*x) } else { wrong("a number and lanes") })
+            .collect();
+        return Ok(Value::Number(f(&numbers?)));
+    }
+    let lanes: Result<Vec<&Vec<f64>>> = values
+        .iter()
+        .map(|value| match value {
+            Value::Lanes(lanes) => Ok(lanes),
+            other => wrong(format!("lanes and {other:?}")),
+        })
+        .collect();
+    let lanes = lanes?;
+    let count = lanes.first().map_or(0, |first| first.len());
+    if lanes.iter().any(|own| own.len() != count) {
+        return wrong("lanes of different numbers");
+    }
+    Ok(Value::Lanes((0..count).map(|k| f(&lanes.iter().map(|own| own[k]).collect::<Vec<_>>())).collect()))
+}
+
+/// The variables of nested blocks, and the parameters of the mechanism; how many states stand side by side.
+pub struct Machine {
+    pub scopes: Vec<BTreeMap<String, Option<Value>>>,
+    pub parameters: BTreeMap<String, Value>,
+    pub states: usize,
+}
+
+impl Machine {
+    /// The value of a body, and its variables.
+    pub fn run(&mut self, body: &Block) -> Result<Value> {
+        let mut last = Value::List(Vec::new());
+        for statement in &body.stmts {
+            last = Value::List(Vec::new());
+            match statement {
+                Stmt::Local(local) => match &local.init {
+                    Some(init) => {
+                        let value = self.value(&init.expr)?;
+                        self.bind(&local.pat, value)?;
+                    }
+                    None => self.declare(&local.pat)?,
+                },
+                Stmt::Expr(expr, None) => last = self.value(expr)?,
+                Stmt::Expr(expr, Some(_)) => drop(self.value(expr)?),
+                Stmt::Item(syn::Item::Use(_)) => {}
+                _ => return foreign(),
+            }
+        }
+        Ok(last)
+    }
+
+    fn declare(&mut self, pattern: &Pat) -> Result<()> {
+        match pattern {
+            Pat::Ident(name) => drop(self.here().insert(name.ident.to_string(), None)),
+            Pat::Tuple(tuple) => tuple.elems.iter().try_for_each(|pattern| self.declare(pattern))?,
+            _ => return foreign(),
+        }
+        Ok(())
+    }
+
+    fn here(&mut self) -> &mut BTreeMap<String, Option<Value>> {
+        self.scopes.last_mut().expect("a scope")
+    }
+
+    pub fn bind(&mut self, pattern: &Pat, value: Value) -> Result<()> {
+        let patterns = match pattern {
+            Pat::Wild(_) => return Ok(()),
+            Pat::Ident(name) => {
+                self.here().insert(name.ident.to_string(), Some(value));
+                return Ok(());
+            }
+            Pat::Tuple(tuple) => &tuple.elems,
+            Pat::Slice(slice) => &slice.elems,
+            _ => return foreign(),
+        };
+        let (values, open) = (value.elements()?, matches!(patterns.last(), Some(Pat::Rest(_))));
+        let count = patterns.len() - usize::from(open);
+        if values.len() < count || (values.len() > count && !open) {
+            return wrong(format!("{} values for {count} patterns", values.len()));
+        }
+        for (pattern, value) in patterns.iter().take(count).zip(values.clone()) {
+            self.bind(pattern, value)?;
+        }
+        Ok(())
+    }
+
+    pub fn variable(&self, name: &str) -> Result<Value> {
+        let found = self.scopes.iter().rev().find_map(|scope| scope.get(name));
+        found.cloned().flatten().map_or_else(|| wrong(format!("`{name}` has no value")), Ok)
+    }
+
+    fn value(&mut self, expr: &Expr) -> Result<Value> {
+        match expr {
+            Expr::Lit(lit) => match &lit.lit {
+                Lit::Float(x) => x.base10_parse().map(Value::Number).or_else(|_| foreign()),
+                _ => foreign(),
+            },
+            Expr::Path(path) => match path.path.get_ident() {
+                Some(name) if name == "self" => foreign(),
+                Some(name) => self.variable(&name.to_string()),
+                None => self.operation(&path.path),
+            },
+            Expr::Paren(inner) => self.value(&inner.expr),
+            Expr::Reference(inner) => self.value(&inner.expr),
+            Expr::Unary(unary) => {
+                let value = self.value(&unary.expr)?;
+                match unary.op {
+                    UnOp::Neg(_) => each(&[value], &|x| -x[0]),
+                    UnOp::Deref(_) => Ok(value),
+                    _ => foreign(),
+                }
+            }
+            Expr::Binary(binary) => {
+                let values = [self.value(&binary.left)?, self.value(&binary.right)?];
+                match binary.op {
+                    syn::BinOp::Add(_) => each(&values, &|x| x[0] + x[1]),
+                    syn::BinOp::Sub(_) => each(&values, &|x| x[0] - x[1]),
+                    syn::BinOp::Mul(_) => each(&values, &|x| x[0] * x[1]),
+                    syn::BinOp::Div(_) => each(&values, &|x| x[0] / x[1]),
+                    _ => foreign(),
+                }
+            }
+            Expr::Tuple(tuple) => self.values(tuple.elems.iter()),
+            Expr::Array(array) => self.values(array.elems.iter()),
+            Expr::Repeat(repeat) => Ok(Value::List(vec![self.value(&repeat.expr)?; index(&repeat.len)?])),
+            Expr::Struct(fields) => self.values(fields.fields.iter().map(|field| &field.expr)),
+            Expr::Block(block) => {
+                self.scopes.push(BTreeMap::new());
+                let value = self.run(&block.block);
+                self.scopes.pop();
+                value
+            }
+            Expr::Field(field) => self.field(field),
+            Expr::Index(inner) => {
+                let (list, at) = (self.value(&inner.expr)?, index(&inner.index)?);
+                list.elements()?.get(at).cloned().map_or_else(|| wrong(format!("no element {at}")), Ok)
+            }
+            Expr::Assign(assign) => {
+                let value = self.value(&assign.right)?;
+                self.put(&assign.left, &[], value)?;
+                Ok(Value::List(Vec::new()))
+            }
+            Expr::Call(call) => self.call(call),
+            Expr::MethodCall(call) => {
+                let value = self.value(&call.receiver)?;
+                let number = || call.turbofish.as_ref().and_then(|types| constants(types).first().copied());
+                match (call.method.to_string().as_str(), value, number()) {
+                    ("lanes", value, None) => Ok(value),
+                    ("sum", Value::Lanes(lanes), None) => Ok(Value::Number(lanes.iter().sum())),
+                    ("lane", Value::Lanes(lanes), Some(k)) if k < lanes.len() => Ok(Value::Number(lanes[k])),
+                    ("first", Value::Lanes(lanes), Some(n)) if n <= lanes.len() => {
+                        Ok(Value::Lanes(lanes[..n].to_vec()))
+                    }
+                    ("lane" | "first" | "sum", ..) => wrong(format!("{}", quote::quote!(#call))),
+                    _ => foreign(),
+                }
+            }
+            _ => foreign(),
+        }
+    }
+
+    fn values<'e>(&mut self, all: impl Iterator<Item = &'e Expr>) -> Result<Value> {
+        Ok(Value::List(all.map(|expr| self.value(expr)).collect::<Result<_>>()?))
+    }
+
+    /// `self.parameter`; of vectors, matrices and lanes what holds the numbers is the value itself.
+    fn field(&mut self, field: &ExprField) -> Result<Value> {
+        let is_storage = |base: &Expr| match base {
+            Expr::Field(inner) => matches!(&inner.member, Member::Named(name) if name == "data"),
+            Expr::MethodCall(call) => call.method == "lanes",
+            _ => false,
+        };
+        match (&*field.base, &field.member) {
+            (Expr::Path(base), Member::Named(name)) if base.path.is_ident("self") => {
+                match self.parameters.get(&name.to_string()) {
+                    Some(value) => Ok(value.clone()),
+                    None => foreign(),
+                }
+            }
+            (base, Member::Named(name)) if name == "data" => self.value(base),
+            (base, Member::Unnamed(at)) if at.index == 0 && is_storage(base) => {
+                // The numbers of lanes are an array.
+                match self.value(base)? {
+                    Value::Lanes(lanes) => Ok(Value::list(&lanes)),
+                    value => Ok(value),
+                }
+            }
+            // The lanes of an argument.
+            (Expr::Path(base), Member::Unnamed(at)) if at.index == 0 && base.path.is_ident("t") => {
+                self.variable("t")
+            }
+            _ => foreign(),
+        }
+    }
+
+    /// Puts a value where an assignment says: into a variable, or a number into an entry of a matrix.
+    fn put(&mut self, place: &Expr, more: &[usize], value: Value) -> Result<()> {
+        let (mut at, mut inner) = (more.to_vec(), place);
+        let name = loop {
+            match inner {
+                Expr::Path(name) => break quote::quote!(#name).to_string(),
+                Expr::Index(one) => {
+                    at.insert(0, index(&one.index)?);
+                    inner = &one.expr;
+                }
+                Expr::Field(field) => inner = &field.base,
+                Expr::Reference(reference) => inner = &reference.expr,
+                _ => return foreign(),
+            }
+        };
+        let found = self.scopes.iter_mut().rev().find_map(|scope| scope.get_mut(&name));
+        let Some(variable) = found else { return wrong(format!("`{name}` is not declared")) };
+        if at.is_empty() {
+            *variable = Some(value);
+            return Ok(());
+        }
+        let mut entry = variable.as_mut();
+        for k in &at {
+            entry = entry.and_then(|entry| match entry {
+                Value::List(list) => list.get_mut(*k),
+                _ => None,
+            });
+        }
+        let Some(entry) = entry else { return wrong(format!("{name} has no {at:?}")) };
+        *entry = value;
+        Ok(())
+    }
+
+    /// `Ops::name::<…>`, with the lanes that stand last among the types.
+    fn operation(&self, path: &syn::Path) -> Result<Value> {
+        let mut segments = path.segments.iter().rev();
+        let (Some(last), Some(before)) = (segments.next(), segments.next()) else { return foreign() };
+        if before.ident != "Ops" {
+            return foreign();
+        }
+        let lanes = match &last.arguments {
+            syn::PathArguments::AngleBracketed(types) => match types.args.last() {
+                Some(syn::GenericArgument::Const(expr)) => Some(index(expr)?),
+                Some(syn::GenericArgument::Type(syn::Type::Path(name))) if name.path.is_ident("LANES") => {
+                    Some(self.states)
+                }
+                _ => None,
+            },
+            _ => None,
+        };
+        Ok(Value::Operation(last.ident.to_string(), lanes))
+    }
+
+    fn call(&mut self, call: &ExprCall) -> Result<Value> {
+        let Expr::Path(function) = &*call.func else { return foreign() };
+        let last = function.path.segments.last().expect("a name");
+        let name = last.ident.to_string();
+        if ["from_array_storage", "ArrayStorage", "Lanes"].contains(&name.as_str()) {
+            return self.value(&call.args[0]);
+        }
+        if name.starts_with("store_") {
+            return self.store(&name, last, call);
+        }
+        let operation = match function.path.get_ident() {
+            Some(_) if self.variable(&name).is_err() => return foreign(),
+            Some(_) => self.variable(&name)?,
+            None => self.operation(&function.path)?,
+        };
+        let Value::Operation(name, lanes) = operation else { return foreign() };
+        let values: Vec<Value> = call.args.iter().map(|expr| self.value(expr)).collect::<Result<_>>()?;
+        applied(&name, lanes, &values).unwrap_or_else(foreign)
+    }
+
+    /// Lanes into rows of a matrix.
+    fn store(&mut self, name: &str, last: &syn::PathSegment, call: &ExprCall) -> Result<Value> {
+        let syn::PathArguments::AngleBracketed(types) = &last.arguments else { return foreign() };
+        let constants = constants(types);
+        let vectors: Vec<Value> = call.args.iter().skip(1).map(|e| self.value(e)).collect::<Result<_>>()?;
+        let lane = |vector: usize, k: usize| match &vectors[vector] {
+            Value::Lanes(lanes) if k < lanes.len() => Ok(Value::Number(lanes[k])),
+            other => wrong(format!("lane {k} of {other:?}")),
+        };
+        let count = |vector: usize| if let Value::Lanes(lanes) = &vectors[vector] { lanes.len() } else { 0 };
+        match (name, constants.as_slice()) {
+            ("store_two", [i, j, row]) => {
+                self.put(&call.args[0], &[*row], lane(0, *i)?)?;
+                self.put(&call.args[0], &[row + 1], lane(1, *j)?)?;
+            }
+            ("store_rows", [row]) => {
+                for k in 0..count(0) {
+                    self.put(&call.args[0], &[row + k], lane(0, k)?)?;
+                }
+            }
+            ("store_columns", [row, column]) => {
+                for k in 0..count(0) {
+                    self.put(&call.args[0], &[column + k, *row], lane(0, k)?)?;
+                    self.put(&call.args[0], &[column + k, row + 1], lane(1, k)?)?;
+                }
+            }
+            _ => return foreign(),
+        }
+        Ok(Value::List(Vec::new()))
+    }
+}
+
+/// What an operation gives; nothing where it is not known.
+fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<Value>> {
+    // A number times lanes is written without the number in each lane.
+    let scaled = |rest: &str| -> Option<Result<Value>> {
+        let (Value::Number(x), Value::Lanes(own)) = (values.first()?, values.get(1)?) else {
+            return Some(wrong(format!("{name} of {values:?}")));
+        };
+        let all = [vec![Value::Lanes(vec![*x; own.len()])], values[1..].to_vec()].concat();
+        match rest {
+            "" => Some(each(&all, &|x| x[0] * x[1])),
+            rest => applied(rest, lanes, &all),
+        }
+    };
+    let by_name = |name: &str| Function::ALL.iter().find(|(known, _)| *known == name);
+    Some(match (name, values) {
+        ("mul_add", [_, _, _]) => each(values, &|x| x[0] * x[1] + x[2]),
+        ("mul_sub", [_, _, _]) => each(values, &|x| x[0] * x[1] - x[2]),
+        ("neg_mul_add", [_, _, _]) => each(values, &|x| x[2] - x[0] * x[1]),
+        ("scale", [_, _]) => scaled("")?,
+        ("scale_add", [_, _, _]) => scaled("mul_add")?,
+        ("scale_sub", [_, _, _]) => scaled("mul_sub")?,
+        ("neg_scale_add", [_, _, _]) => scaled("neg_mul_add")?,
+        ("splat", [Value::Number(x)]) => Ok(Value::Lanes(vec![*x; lanes?])),
+        ("each", [all]) => Ok(all.clone()),
+        ("lanes", [Value::List(list)]) => {
+            let numbers = |value: &Value| if let Value::Number(x) = value { Some(*x) } else { None };
+            match list.iter().map(numbers).collect::<Option<Vec<f64>>>() {
+                Some(lanes) => Ok(Value::Lanes(lanes)),
+                None => wrong(format!("lanes of {list:?}")),
+            }
+        }
+        // The time of several states.
+        ("lanes", [Value::Lanes(lanes)]) => Ok(Value::Lanes(lanes.clone())),
+        ("join", [Value::Lanes(a), Value::Lanes(b)]) if a.len() == b.len() && lanes == Some(2 * a.len()) => {
+            Ok(Value::Lanes([a.clone(), b.clone()].concat()))
+        }
+        ("sin_cos", [x]) => both(x),
+        ("sin_cos_all", [Value::List(angles)]) => {
+            let all: Result<Vec<Value>> = angles.iter().map(both).collect();
+            all.and_then(|all| {
+                let part = |k: usize| -> Result<Value> {
+                    Ok(Value::List(
+                        all.iter().map(|pair| Ok(pair.elements()?[k].clone())).collect::<Result<_>>()?,
+                    ))
+                };
+                Ok(Value::List(vec![part(0)?, part(1)?]))
+            })
+        }
+        ("atan2", [_, _]) => each(values, &|x| x[0].atan2(x[1])),
+        ("powf", [_, _]) => each(values, &|x| x[0].powf(x[1])),
+        ("min", [_, _]) => each(values, &|x| x[0].min(x[1])),
+        ("max", [_, _]) => each(values, &|x| x[0].max(x[1])),
+        (name, [_]) => {
+            let (_, function) = by_name(name)?;
+            each(values, &|x| function.apply(x[0]))
+        }
+        _ => return None,
+    })
+}
+
+/// Sine and cosine.
+fn both(x: &Value) -> Result<Value> {
+    let x = std::slice::from_ref(x);
+    Ok(Value::List(vec![each(x, &|x| x[0].sin())?, each(x, &|x| x[0].cos())?]))
+}
+
+/// A number that stands there.
+fn index(expr: &Expr) -> Result<usize> {
+    match expr {
+        Expr::Lit(syn::ExprLit { lit: Lit::Int(k), .. }) => k.base10_parse().or_else(|_| foreign()),
+        _ => foreign(),
+    }
+}
+
+/// The numbers among generic arguments.
+fn constants(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
+    let constant = |argument: &syn::GenericArgument| match argument {
+        syn::GenericArgument::Const(expr) => index(expr).ok(),
+        _ => None,
+    };
+    types.args.iter().filter_map(constant).collect()
+}

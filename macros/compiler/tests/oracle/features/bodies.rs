@@ -1,0 +1,196 @@
+//! What is written computes what its programs compute: bodies are run as the Rust that they are, for one state, for one in debug
+//! builds, and for several at once.
+
+use super::agreement::{SAME, size};
+use super::values::Values;
+use crate::emitted::{Machine, Stop, Value};
+use linkwork_compiler::catalogue::{Argument, Shape};
+use linkwork_compiler::derive::{Function, Output};
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::{Model, Quantity};
+use linkwork_compiler::{compile, expand, read};
+use proc_macro2::TokenStream;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use syn::{Block, Expr, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, Pat, Stmt};
+
+/// The functions of the mechanism's own implementations, and the bodies that those of a number dispatch to.
+struct Written {
+    functions: BTreeMap<String, ImplItemFn>,
+    bodies: BTreeMap<String, Vec<ImplItemFn>>,
+}
+
+fn written(text: &str) -> Written {
+    let mut all = Written { functions: BTreeMap::new(), bodies: BTreeMap::new() };
+    for item in syn::parse_file(text).expect("Rust").items {
+        let Item::Impl(block) = item else { continue };
+        // Of those with bounds the functions say that they are missing.
+        let (number, other) =
+            (number_of(&block), block.trait_.is_some() || block.generics.where_clause.is_some());
+        for member in block.items {
+            let ImplItem::Fn(function) = member else { continue };
+            match &number {
+                Some(number) => all.bodies.entry(number.clone()).or_default().push(function),
+                None if !other => drop(all.functions.insert(function.sig.ident.to_string(), function)),
+                None => {}
+            }
+        }
+    }
+    all
+}
+
+/// The first argument of `Evaluate<…>`.
+fn number_of(block: &ItemImpl) -> Option<String> {
+    let of = block.trait_.as_ref()?.0.segments.last().filter(|last| last.ident == "Evaluate")?.clone();
+    first_argument(&of.arguments)
+}
+
+fn first_argument(arguments: &syn::PathArguments) -> Option<String> {
+    let syn::PathArguments::AngleBracketed(types) = arguments else { return None };
+    types.args.first().map(|first| quote::quote!(#first).to_string())
+}
+
+/// The bodies of a function, or those that it dispatches to, each with the patterns of its arguments.
+fn bodies<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
+    let Some(function) = written.functions.get(name) else { return Vec::new() };
+    let arguments = |function: &ImplItemFn| -> Vec<Pat> {
+        let typed = function.sig.inputs.iter().filter_map(|input| match input {
+            FnArg::Typed(typed) => Some((*typed.pat).clone()),
+            FnArg::Receiver(_) => None,
+        });
+        typed.collect()
+    };
+    if let [Stmt::Expr(Expr::Call(call), None)] = function.block.stmts.as_slice()
+        && let Expr::Path(called) = &*call.func
+        && let Some(last) = called.path.segments.last().filter(|last| last.ident == "dispatch")
+    {
+        let number = first_argument(&last.arguments).expect("a number");
+        let all = written.bodies.get(&number).unwrap_or_else(|| panic!("{name} has no body {number}"));
+        return all
+            .iter()
+            .map(|body| match arguments(body).as_slice() {
+                [Pat::Tuple(tuple)] => (tuple.elems.iter().cloned().collect(), &body.block),
+                other => panic!("{} arguments of a body of {name}", other.len()),
+            })
+            .collect();
+    }
+    vec![(arguments(function), &function.block)]
+}
+
+/// Values of an argument side by side.
+fn lanes(all: &[Value]) -> Value {
+    match &all[0] {
+        Value::List(list) => {
+            let entry = |k: usize| {
+                let column: Vec<Value> = all
+                    .iter()
+                    .map(|value| if let Value::List(list) = value { list[k].clone() } else { value.clone() })
+                    .collect();
+                lanes(&column)
+            };
+            Value::List((0..list.len()).map(entry).collect())
+        }
+        _ => Value::Lanes(all.iter().map(|value| value.numbers(0).expect("a number")[0]).collect()),
+    }
+}
+
+fn argument(a: Argument, f: &Function, values: &Values) -> Option<Value> {
+    let vector = |list: &[f64]| Value::List(vec![Value::list(list)]);
+    Some(match a {
+        Argument::T => Value::Number(values.t),
+        Argument::Q => vector(&values.q),
+        Argument::V => vector(&values.v),
+        Argument::A => vector(&values.a),
+        Argument::Tau => vector(&values.tau),
+        Argument::U => vector(&values.u),
+        Argument::Standard(n) | Argument::Factors(n) | Argument::Momenta(n) => vector(&values.given[..n]),
+        Argument::Given(_, first, count) => {
+            let uses =
+                |s: &linkwork_compiler::expr::Symbol| matches!(Quantity::of(*s), Quantity::ContactForce(_));
+            let list = match f.program.symbols().iter().any(uses) && first == 0 {
+                true => &values.contact_forces,
+                false => &values.given[first..],
+            };
+            Value::list(list.get(..count)?)
+        }
+        Argument::Into(_, n) => Value::List(vec![Value::list(&vec![0.0; n]); n]),
+        Argument::Called(_) => return None,
+    })
+}
+
+/// Runs all bodies that call no other functions. Their names, with what they are for.
+pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
+    let tokens = |text: &str| -> TokenStream { text.parse().expect("the source is Rust") };
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let source = read(tokens(arguments), tokens(item), Path::new(""), &mut cx);
+    let Some((model, output)) = source.as_ref().and_then(|source| compile(source, &graph, &mut cx)) else {
+        return BTreeSet::new();
+    };
+    let emitted = expand(tokens(arguments), tokens(item), Path::new(""));
+    let written = written(&emitted.text);
+    let mut run = BTreeSet::new();
+    for f in &output.functions {
+        for (suffix, states) in [("", 1), ("_lanes", 2)] {
+            for (k, body) in bodies(&written, &format!("{}{suffix}", f.name)).into_iter().enumerate() {
+                let name = format!("{}{suffix}, body {k}", f.name);
+                let about = format!("{name}, seed {seed}\n#[mechanism({arguments})]\n{item}");
+                if check_body(&model, &output, f, &body, (states, seed), &about) {
+                    run.insert(name);
+                }
+            }
+        }
+    }
+    run
+}
+
+/// True if a body calls nothing else.
+fn check_body(
+    model: &Model<'_>,
+    output: &Output,
+    f: &Function,
+    (patterns, body): &(Vec<Pat>, &Block),
+    (states, seed): (usize, u64),
+    about: &str,
+) -> bool {
+    let all: Vec<Values> = (0..states as u64).map(|k| Values::random(model, seed + 1000 * k)).collect();
+    let parameters = &all[0].parameters;
+    // Several states have the same parameters.
+    let all: Vec<Values> =
+        all.iter().map(|values| Values { parameters: parameters.clone(), ..values.clone() }).collect();
+    let named = model.parameters.iter().cloned().zip(parameters.iter().map(|x| Value::Number(*x)));
+    let mut machine = Machine { scopes: vec![BTreeMap::new()], parameters: named.collect(), states };
+    assert_eq!(patterns.len(), f.arguments.len(), "arguments of {about}");
+    for (pattern, a) in patterns.iter().zip(&f.arguments) {
+        let found: Option<Vec<Value>> = all.iter().map(|values| argument(*a, f, values)).collect();
+        let Some(found) = found else { return false };
+        let value = if states > 1 { lanes(&found) } else { found[0].clone() };
+        machine.bind(pattern, value).unwrap_or_else(|stop| panic!("{stop:?}, {about}"));
+    }
+    let mut result = match machine.run(body) {
+        Ok(value) => vec![value],
+        Err(Stop::Foreign) => return false,
+        Err(Stop::Wrong(what)) => panic!("{what}, {about}"),
+    };
+    // Results of such a function are where it puts them.
+    let into =
+        f.arguments.iter().filter_map(|a| if let Argument::Into(name, _) = a { Some(*name) } else { None });
+    result.extend(into.map(|name| machine.variable(name).expect("a matrix")));
+    for (lane, values) in all.iter().enumerate() {
+        let found: Vec<f64> = result
+            .iter()
+            .flat_map(|value| value.numbers(lane).unwrap_or_else(|stop| panic!("{stop:?}, {about}")))
+            .collect();
+        // This one says where its numbers go, on both sides of the diagonal.
+        let whole = output.functions.iter().find(|f| f.name == "mass_matrix");
+        let of = whole.filter(|_| matches!(f.shape, Shape::Symmetric(_))).unwrap_or(f);
+        let expected = values.run(output, of);
+        assert_eq!(found.len(), expected.len(), "results of {about}");
+        let bound = SAME * (1.0 + size(&expected));
+        for (k, (a, b)) in found.iter().zip(&expected).enumerate() {
+            let both_none = !a.is_finite() && !b.is_finite();
+            assert!(both_none || (a - b).abs() <= bound, "entry {k}: {a} and {b} within {bound}, {about}");
+        }
+    }
+    true
+}
