@@ -140,6 +140,17 @@ function poses(motion, t) {
 
 // ---- Forms: corners with normals, three for each triangle
 
+// Parts of the steps of round forms: what is small on the screen needs few.
+const DETAILS = [0.3, 0.5, 1];
+let detail = 1;
+const some = (steps, least) => Math.max(least, Math.round(steps * detail));
+// With radii up to so many pixels a circle of the fewer steps is off by a third of one.
+const level = (name, m, pixels) => {
+  if (name === "mesh" || name === "box" || name === "square") return 2;
+  const column = k => Math.hypot(m[k], m[k + 1], m[k + 2]), round = Math.max(column(0), column(4));
+  const radius = pixels * (name === "sphere" ? Math.max(round, column(8)) : round);
+  return radius < 9 ? 0 : radius < 25 ? 1 : 2;
+};
 function form() {
   const data = [];
   const corner = (p, n) => data.push(...p, ...n);
@@ -147,8 +158,8 @@ function form() {
   return { data, corner, quad };
 }
 // A profile of points [radius, height, normal outwards, normal upwards], in pairs of which each is a strip, about z.
-function revolve(strips, steps = 40) {
-  const { data, quad } = form();
+function revolve(strips, most = 40) {
+  const { data, quad } = form(), steps = some(most, 8);
   for (const [a, b] of strips)
     for (let k = 0; k < steps; k++) {
       const [s, t] = [k, k + 1].map(j => j % steps / steps * 2 * Math.PI);
@@ -158,7 +169,8 @@ function revolve(strips, steps = 40) {
   return data;
 }
 const cap = (r, z, up, inner = 0) => up > 0 ? [[r, z, 0, 1], [inner, z, 0, 1]] : [[inner, z, 0, -1], [r, z, 0, -1]];
-function arcs(radius, from, to, centre, out = 0, steps = 14) {
+function arcs(radius, from, to, centre, out = 0, most = 14) {
+  const steps = some(most, 4);
   const at = k => { const a = from + (to - from) * k / steps, [c, s] = [Math.cos(a), Math.sin(a)]; return [out + radius * c, centre + radius * s, c, s]; };
   return Array.from({ length: steps }, (_, k) => [at(k), at(k + 1)]);
 }
@@ -183,7 +195,7 @@ const shapes = {
   square: () => { const { data, quad } = form(), p = (x, y) => [[x, y, 0], [0, 0, 1]]; quad(p(-1, -1), p(1, -1), p(1, 1), p(-1, 1)); return data; },
   // A wire of given radius along a curve, flattened where it will be stretched.
   wire: (curve, radius, steps, flat = 1) => {
-    const { data, quad } = form(), round = 8;
+    const { data, quad } = form(), round = some(8, 4);
     const ring = k => {
       const at = curve(k / steps), z = unit(sub(curve((k + 0.01) / steps), curve((k - 0.01) / steps))), side = unit(cross(z, [0.1, 0.2, 1])), other = cross(z, side);
       return Array.from({ length: round + 1 }, (_, j) => { const a = j / round * 2 * Math.PI, n = add(times(side, Math.cos(a)), times(other, Math.sin(a))); const d = times(n, radius); return [add(at, [d[0], d[1], d[2] * flat]), n]; });
@@ -203,7 +215,7 @@ const coil = () => shapes.wire(s => {
   return [r * Math.cos(a), r * Math.sin(a), s];
 }, 0.16, 220, 0.07);
 const spiral = () => shapes.wire(s => { const a = s * 3.5 * 2 * Math.PI, r = 0.2 + 0.8 * s; return [r * Math.cos(a), r * Math.sin(a), 0]; }, 0.05, 160);
-const bow = () => shapes.wire(s => { const a = s * 1.5 * Math.PI; return [Math.cos(a), Math.sin(a), 0]; }, 0.06, 60);
+const bow = () => shapes.wire(s => { const a = s * 1.5 * Math.PI; return [Math.cos(a), Math.sin(a), 0]; }, 0.06, some(60, 16));
 function meshOf([low, step, places, indices]) {
   const p = new Uint16Array(bytesOf(places).buffer), list = new Uint32Array(bytesOf(indices).buffer);
   const { data, corner } = form();
@@ -213,6 +225,17 @@ function meshOf([low, step, places, indices]) {
     for (const q of [a, b, c]) corner(q, n);
   }
   return data;
+}
+
+// Each corner once, and the order in which triangles have them: it is placed once for all triangles that meet there.
+function shared(data) {
+  const known = new Map(), corners = [], order = [];
+  for (let k = 0; k < data.length; k += 6) {
+    const corner = data.slice(k, k + 6), key = corner.map(x => Math.round(1e5 * x)).join();
+    if (!known.has(key)) { known.set(key, known.size); corners.push(...corner); }
+    order.push(known.get(key));
+  }
+  return [corners, order];
 }
 
 // ---- Pieces: parts with a form, a colour, and a matrix
@@ -370,15 +393,21 @@ function painter(canvas) {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
   };
   begin();
-  const make = (name, more, source) => {
-    const key = name + more.join();
+  const make = (name, more, source, fine) => {
+    const key = name + more.join() + "/" + fine;
     let found = forms.get(key);
     if (!found) {
-      const data = new Float32Array(name === "mesh" ? meshOf(source(more[0])) : { coil, spiral, bow, ...shapes }[name](...more));
-      found = { array: gl.createVertexArray(), count: data.length / 6 };
+      detail = DETAILS[fine];
+      // Facets of meshes have normals of their own, and share no corners.
+      const [corners, order] = name === "mesh" ? [meshOf(source(more[0])), null] : shared({ coil, spiral, bow, ...shapes }[name](...more));
+      found = { array: gl.createVertexArray(), count: order ? order.length : corners.length / 6, order };
       gl.bindVertexArray(found.array);
       gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(corners), gl.STATIC_DRAW);
+      if (order) {
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+        gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint16Array(order), gl.STATIC_DRAW);
+      }
       for (const k of [0, 1]) { gl.enableVertexAttribArray(k); gl.vertexAttribPointer(k, 3, gl.FLOAT, false, 24, 12 * k); }
       forms.set(key, found);
     }
@@ -399,12 +428,13 @@ function painter(canvas) {
     gl.uniform3fv(at.sun, camera.sun);
     gl.uniform3fv(at.up, camera.up);
     const one = (name, more, matrix, colour, alpha) => {
-      const found = make(name, more, source);
+      const found = make(name, more, source, level(name, matrix, camera.pixels * box[3]));
       gl.bindVertexArray(found.array);
       gl.uniformMatrix4fv(at.model, false, matrix);
       gl.uniformMatrix3fv(at.turn, false, cofactors(matrix));
       gl.uniform4f(at.colour, ...colour, alpha);
-      gl.drawArrays(gl.TRIANGLES, 0, found.count);
+      if (found.order) gl.drawElements(gl.TRIANGLES, found.count, gl.UNSIGNED_SHORT, 0);
+      else gl.drawArrays(gl.TRIANGLES, 0, found.count);
     };
     if (floor) {
       gl.uniform1i(at.mode, 2);
@@ -556,7 +586,9 @@ function start(root) {
     const f = 1 / Math.tan(angle);
     const lens = [f * h / w, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
     const sun = unit(add(add(times(up, 1), times(front, 0.45)), times(right, 0.5)));
-    return { matrix: mul(lens, look), eye, up, sun, level: [right, front] };
+    // Parts of the height that a metre in the middle takes.
+    const pixels = 1 / (2 * away * Math.tan(angle));
+    return { matrix: mul(lens, look), eye, up, sun, level: [right, front], pixels };
   }
 
   function triads(motion, poses) {
