@@ -58,17 +58,16 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     };
     let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
     if states.len() > 1 && model.nq() <= PLOTTED {
-        let curve = |k: usize| states.iter().map(|(_, q, _)| q[k]).collect();
-        let curves = model.configuration.iter().enumerate().map(|(k, name)| (name.as_str(), curve(k)));
-        motion = plotted(motion, "Coordinates", &model.units.configuration, curves.collect())?;
+        let values = |k: usize| states.iter().map(|(_, q, _)| q[k]).collect();
+        motion =
+            motion.plots("Coordinates", curves(&model.configuration, &model.units.configuration, values))?;
     }
     if states.len() > 1 && model.nu() <= PLOTTED {
         // Those that stay as they are need no plot.
-        let curve = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
-        let curves: Vec<(&str, Vec<f64>)> =
-            model.inputs.iter().enumerate().map(|(k, (name, _))| (name.as_str(), curve(k))).collect();
-        if curves.iter().any(|(_, values)| values.iter().any(|value| *value != values[0])) {
-            motion = plotted(motion, "Inputs", &model.units.inputs, curves)?;
+        let values = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
+        let curves = curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values);
+        if curves.iter().any(|(.., values)| values.iter().any(|value| *value != values[0])) {
+            motion = motion.plots("Inputs", curves)?;
         }
     }
     let out =
@@ -101,23 +100,14 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     table.times.iter().enumerate().map(state).collect()
 }
 
-/// A plot for each unit.
-fn plotted(
-    mut motion: Motion,
-    title: &str,
-    units: &[String],
-    curves: Vec<(&str, Vec<f64>)>,
-) -> Result<Motion, Stop> {
+/// Curves with their units and names.
+fn curves<'n>(
+    names: impl IntoIterator<Item = &'n String>,
+    units: &'n [String],
+    values: impl Fn(usize) -> Vec<f64>,
+) -> Vec<(&'n str, &'n str, Vec<f64>)> {
     let unit = |k: usize| units.get(k).map_or("", String::as_str);
-    let mut left: Vec<(&str, (&str, Vec<f64>))> =
-        curves.into_iter().enumerate().map(|(k, curve)| (unit(k), curve)).collect();
-    while let Some((unit, _)) = left.first() {
-        let unit = *unit;
-        let (own, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|(other, _)| *other == unit);
-        motion = motion.plot(title, unit, own.into_iter().map(|(_, curve)| curve))?;
-        left = others;
-    }
-    Ok(motion)
+    names.into_iter().enumerate().map(|(k, name)| (unit(k), name.as_str(), values(k))).collect()
 }
 
 /// What is declared, with numbers.

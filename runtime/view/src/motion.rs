@@ -16,8 +16,10 @@ const TICK: f64 = 1e-5;
 const LEVELS: f64 = 4000.0;
 /// Parts of the size of the figure that places are rounded to.
 const PARTS: f64 = 10_000.0;
-/// More samples per second than this are not shown.
+/// More samples per second than this are not shown of a motion that has more than [`SHOWN`] of them.
 const RATE: f64 = 60.0;
+/// Of a shorter motion, which one looks at slowly, as many samples are shown.
+const SHOWN: f64 = 600.0;
 /// Coordinates that are plotted of their own accord.
 const PLOTTED: usize = 12;
 
@@ -59,7 +61,7 @@ struct Plot {
 }
 
 impl Motion {
-    /// The motion that samples tell. Up to twelve coordinates are plotted. Terrain that contacts touch is drawn as far as the motion
+    /// The motion that samples tell. Up to twelve coordinates are plotted, those of each unit together. Terrain that contacts touch is drawn as far as the motion
     /// goes.
     ///
     /// # Errors
@@ -81,10 +83,10 @@ impl Motion {
         let mut motion = Motion::from_placements(title, Figure::of(mechanism), times, placements.collect())?;
         motion.inputs = samples.iter().map(|s| s.u.iter().map(|u| plain(*u)).collect()).collect();
         if NQ > 0 && NQ <= PLOTTED {
-            let curves =
-                (0..NQ).map(|k| (M::CONFIGURATION[k], samples.iter().map(|s| plain(s.q[k])).collect()));
-            let curves: Vec<(&str, Vec<f64>)> = curves.collect();
-            motion = motion.plot("Coordinates", "", curves)?;
+            let units = units(&M::CONFIGURATION, if M::SPEEDS { &[] } else { &M::VELOCITY_UNITS });
+            let values = |k: usize| samples.iter().map(|s| plain(s.q[k])).collect();
+            motion =
+                motion.plots("Coordinates", (0..NQ).map(|k| (units[k], M::CONFIGURATION[k], values(k))))?;
         }
         Ok(motion.terrain(|number, place| {
             let place = place.map(linkwork::nalgebra::convert);
@@ -186,6 +188,30 @@ impl Motion {
         Ok(self)
     }
 
+    /// Adds a plot for each unit: curves with their unit, a name, and a value for each sample.
+    ///
+    /// # Errors
+    ///
+    /// As those of [`plot`](Self::plot).
+    pub fn plots<U: Into<String>, N: Into<String>>(
+        mut self,
+        title: &str,
+        curves: impl IntoIterator<Item = (U, N, Vec<f64>)>,
+    ) -> Result<Motion, Error> {
+        let mut units: Vec<(String, Vec<(String, Vec<f64>)>)> = Vec::new();
+        for (unit, name, values) in curves {
+            let (unit, curve) = (unit.into(), (name.into(), values));
+            match units.iter_mut().find(|(known, _)| *known == unit) {
+                Some((_, others)) => others.push(curve),
+                None => units.push((unit, vec![curve])),
+            }
+        }
+        for (unit, curves) in units {
+            self = self.plot(title, &unit, curves)?;
+        }
+        Ok(self)
+    }
+
     /// Removes all plots: those of coordinates as well.
     pub fn without_plots(mut self) -> Motion {
         self.plots.clear();
@@ -274,10 +300,11 @@ impl Motion {
     /// The samples that are shown: of those that follow each other faster than a screen shows, some are left out.
     fn shown(&self) -> Vec<usize> {
         let last = self.times.len() - 1;
+        let apart = (1.0 / RATE).min((self.times[last] - self.times[0]) / SHOWN);
         let mut shown = vec![0];
         for k in 1..last {
             let before = self.times[shown[shown.len() - 1]];
-            if self.times[k] - before >= (1.0 - 1e-6) / RATE {
+            if self.times[k] - before >= (1.0 - 1e-6) * apart {
                 shown.push(k);
             }
         }
@@ -399,6 +426,17 @@ fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mu
 /// All digits of a number.
 fn exact(x: f64) -> String {
     format!("{x:e}")
+}
+
+/// Units of coordinates, of those of their rates: a quaternion has none and moves with three velocities.
+fn units(names: &[&str], of_rates: &[&'static str]) -> Vec<&'static str> {
+    let (mut units, mut rates) = (Vec::new(), of_rates.iter());
+    for name in names {
+        let is_turn = [".qx", ".qy", ".qz", ".qw"].iter().any(|end| name.ends_with(end));
+        let rate = if name.ends_with(".qw") { "" } else { rates.next().copied().unwrap_or("") };
+        units.push(rate.strip_suffix("/s").filter(|unit| !is_turn && *unit != "1").unwrap_or(""));
+    }
+    units
 }
 
 fn check(what: &str, expected: usize, found: usize) -> Result<(), Error> {

@@ -487,8 +487,9 @@ function start(root) {
   const play = element("button", { class: "play", type: "button" });
   const slider = element("input", { type: "range", min: 0, max: duration, step: "any", value: 0, "aria-label": "time" });
   const clock = element("output");
-  const speeds = [0.1, 0.25, 0.5, 1, 2, 4, 10];
-  const speed = element("select", { "aria-label": "speed" }, ...speeds.map(x => element("option", x === 1 ? { value: x, selected: "" } : { value: x }, x + " ×")));
+  // What is over within a second begins slowly.
+  const speeds = [0.01, 0.1, 0.25, 0.5, 1, 2, 4, 10], begun = live ? 1 : speeds.findLast(x => x <= 1 && duration >= x) ?? speeds[0];
+  const speed = element("select", { "aria-label": "speed" }, ...speeds.map(x => element("option", x === begun ? { value: x, selected: "" } : { value: x }, x + " ×")));
   const toggle = (text, on) => { const b = element("button", { type: "button", "aria-pressed": on }, text); b.on = on; return b; };
   const frames = toggle("Frames", false), follow = toggle("Follow", motions.some(m => m.radius > 2.5 * m.size));
   const reset = element("button", { type: "button" }, "Reset view");
@@ -704,7 +705,7 @@ function start(root) {
 
 // ---- Plots
 
-const digits = x => x === 0 ? "0" : Math.abs(x) >= 1e5 || Math.abs(x) < 1e-3 ? x.toExponential(2) : String(+x.toPrecision(4));
+const digits = x => x === 0 ? "0" : Math.abs(x) >= 1e5 || Math.abs(x) < 1e-3 ? x.toExponential(2).replace(/\.?0+e/, "e") : String(+x.toPrecision(4));
 function ticks(low, high, count) {
   const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw)), step = power * [1, 2, 5, 10].find(f => f * power >= raw);
   const list = [];
@@ -725,7 +726,7 @@ function figure(plot, span, seek) {
     [low, high, [from, to]] = [Infinity, -Infinity, span()];
     for (const { values } of curves) for (const x of values) if (!Number.isNaN(x)) { low = Math.min(low, x); high = Math.max(high, x); }
     if (!(low <= high)) [low, high] = [-1, 1];
-    const slack = high > low ? 0.06 * (high - low) : Math.max(1e-9, Math.abs(low)) * 0.5;
+    const size = Math.max(Math.abs(low), Math.abs(high)), slack = high - low > 1e-12 * size ? 0.06 * (high - low) : Math.max(1e-9, size) * 0.5;
     [low, high] = [low - slack, high + slack];
   };
   measure();
@@ -747,11 +748,15 @@ function figure(plot, span, seek) {
     pen.font = "11px system-ui, sans-serif";
     pen.fillStyle = soft; pen.strokeStyle = line; pen.lineWidth = 1;
     pen.textAlign = "right"; pen.textBaseline = "middle";
-    for (const x of ticks(low, high, 4)) {
+    // Values that hardly differ are told by what they are more than the lowest mark, which stands in the picture.
+    const marks = ticks(low, high, 4), close = high - low < 1e-3 * Math.max(Math.abs(low), Math.abs(high)), base = close ? marks[0] : 0;
+    for (const x of marks) {
       const y = rise(x, h);
       pen.beginPath(); pen.moveTo(left, y); pen.lineTo(w - 8, y); pen.stroke();
-      pen.fillText(digits(x), left - 6, y);
+      if (!close) pen.fillText(digits(x), left - 6, y);
+      else if (x > base) pen.fillText("+" + digits(+(x - base).toPrecision(3)), left - 6, y);
     }
+    if (close) { pen.textAlign = "left"; pen.textBaseline = "bottom"; pen.fillText(String(+base.toPrecision(12)), left + 4, rise(base, h) - 2); }
     pen.textAlign = "center"; pen.textBaseline = "top";
     for (const t of ticks(from, to, w / 80)) pen.fillText(digits(motion.start + t), across(t, w), h - bottom + 5);
     curves.forEach(({ values }, k) => {
