@@ -212,7 +212,7 @@ const UNCLOSED: &str = "this is never closed, closes nothing, or is no word of R
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
     let parsed = syn::parse_file(&text).map_err(|error| {
-        Stop::Syntax(Mistake {
+        Stop::Syntax(Box::new(Mistake {
             file: path.display().to_string(),
             at: Some(start(error.span())),
             message: match text.trim_start_matches('\u{feff}').parse::<TokenStream>() {
@@ -220,7 +220,7 @@ fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
                 Err(_) => UNCLOSED.to_string(),
             },
             ..Mistake::default()
-        })
+        }))
     })?;
     let whole = path.canonicalize()?;
     let package = whole.ancestors().find(|folder| folder.join("Cargo.toml").is_file());

@@ -27,7 +27,7 @@ enum Stop {
     /// The mechanism has mistakes, which were printed.
     Mistakes,
     /// A file cannot be read as what it is, at a place.
-    Syntax(input::Mistake),
+    Syntax(Box<input::Mistake>),
     /// It cannot be carried out.
     Failure(String),
 }

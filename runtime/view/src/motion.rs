@@ -198,16 +198,16 @@ impl Motion {
         title: &str,
         curves: impl IntoIterator<Item = (U, N, Vec<f64>)>,
     ) -> Result<Motion, Error> {
-        let mut units: Vec<(String, Vec<(String, Vec<f64>)>)> = Vec::new();
+        let mut plots: Vec<Plot> = Vec::new();
         for (unit, name, values) in curves {
             let (unit, curve) = (unit.into(), (name.into(), values));
-            match units.iter_mut().find(|(known, _)| *known == unit) {
-                Some((_, others)) => others.push(curve),
-                None => units.push((unit, vec![curve])),
+            match plots.iter_mut().find(|plot| plot.unit == unit) {
+                Some(plot) => plot.curves.push(curve),
+                None => plots.push(Plot { title: title.to_string(), unit, curves: vec![curve] }),
             }
         }
-        for (unit, curves) in units {
-            self = self.plot(title, &unit, curves)?;
+        for Plot { title, unit, curves } in plots {
+            self = self.plot(&title, &unit, curves)?;
         }
         Ok(self)
     }
