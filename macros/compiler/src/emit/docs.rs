@@ -122,12 +122,12 @@ fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &
 
 /// A table of what the functions cost, and of what a worst case is reckoned from; nothing where they cost nothing.
 pub fn operations(functions: &[Function]) -> String {
-    let mut rows = String::new();
+    let mut lines = String::new();
     let mut row = |name: &str, program: &Program| {
         let c = program.counts;
         let (held, branches) = (program.most_live(), program.branches());
         let _ = writeln!(
-            rows,
+            lines,
             "| {name} | {} | {} | {} | {} | {held} | {branches} |",
             c.mul, c.add, c.div, c.calls
         );
@@ -147,11 +147,11 @@ pub fn operations(functions: &[Function]) -> String {
             row("the same in lanes", program);
         }
     }
-    if rows.is_empty() {
-        return rows;
+    if lines.is_empty() {
+        return lines;
     }
     format!(
-        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | held | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{rows}\nStraight lines without loops and recursion. *Held* are the most numbers at once beside the arguments, those that are returned among them; with 8 bytes each (`f64`) they are what an optimised build needs of the stack, apart from copies of what is returned. *Branches* are taken for angles beyond 10⁵ rad (one for all of them), in tables and in functions of the library; none where it says 0. The chapter `speed` of the guide says how a worst case is reckoned.\n"
+        "\n# Operations\n\n| method | multiplications | additions | divisions | functions | held | branches |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n{lines}\nStraight lines without loops and recursion. *Held* are the most numbers at once beside the arguments, those that are returned among them; with 8 bytes each (`f64`) they are what an optimised build needs of the stack, apart from copies of what is returned. *Branches* are taken for angles beyond 10⁵ rad (one for all of them), in tables and in functions of the library; none where it says 0. The chapter `speed` of the guide says how a worst case is reckoned.\n"
     )
 }
 
