@@ -199,6 +199,12 @@ impl VisitMut for Mutator<'_> {
         visit_mut::visit_block_mut(self, block);
     }
 
+    /// A field that is named like its value is written out, or it would stay what it is.
+    fn visit_field_value_mut(&mut self, field: &mut syn::FieldValue) {
+        field.colon_token.get_or_insert_default();
+        visit_mut::visit_field_value_mut(self, field);
+    }
+
     fn visit_type_mut(&mut self, _: &mut syn::Type) {}
     fn visit_pat_mut(&mut self, _: &mut syn::Pat) {}
     fn visit_path_mut(&mut self, _: &mut syn::Path) {}

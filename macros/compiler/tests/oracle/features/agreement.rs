@@ -398,7 +398,27 @@ impl Case<'_, '_> {
         }
     }
 
+    /// What the regressors make of any mass properties, and of those of the mechanism.
+    fn check_regressors(&mut self) {
+        let (regressor, base) = (self.here("joint_torque_regressor"), self.here("base_regressor"));
+        if regressor.is_empty() {
+            return;
+        }
+        let nv = self.values.v.len();
+        let any = self.values.given[..regressor.len() / nv].to_vec();
+        let forces = product(&regressor, &any);
+        let bound = SAME * (1.0 + size(&regressor) * size(&any));
+        self.close("base regressor", &product(&base, &self.here("base_parameters")), &forces, bound);
+        // Springs and other elements act beside the bodies.
+        if ["#[acts", "#[energy", "#[dissipation"].iter().all(|element| !self.name.contains(element)) {
+            let own = self.here("standard_parameters");
+            let bound = SAME * (1.0 + size(&regressor) * size(&own));
+            self.close("regressor", &product(&regressor, &own), &self.here("inverse_dynamics"), bound);
+        }
+    }
+
     fn check_requested(&mut self) {
+        self.check_regressors();
         let output = self.output;
         let Values { v, a, .. } = self.values.clone();
         if let Some(momentum) = self.function("momentum").cloned() {
