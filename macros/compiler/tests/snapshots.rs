@@ -39,9 +39,26 @@ const SLIDING: &str = "friction: f64,
     #[constraint(slips(rod.at(-0.5 * x).sphere(0.01), ground.plane(y)), friction = friction, speed = 0.001)]
     floor: Slipping,";
 
+/// Forces of time, and nothing that commands it.
+const DRIVEN: &str = "#[body(mass = 2, inertia = sphere(2, 0.3))] ball: Body,
+    #[joint(ground -> ball, about = z)] pose: Planar,
+    #[acts(on = ball, value = sin(t) * ground.x)] wind: Force,
+    #[contact(ball.sphere(0.3), ground.plane(y), friction = 0.3)] floor: Contact,
+    #[limit(on = pose.x, max_speed = 3)] stop: Limit,
+    #[output(contact_force(floor))] push: Vector,
+    #[output(ball, resolved_in = ground)] diagram: FreeBody,";
+
+/// A sleigh whose motor's force depends on its velocity.
+const GOVERNED: &str = "command: Input,
+    #[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] sleigh: Body,
+    #[joint(ground -> sleigh, about = z)] pose: Planar,
+    #[acts(on = pose.x, value = command * rate(pose.x) + sin(t))] motor: Force,
+    #[constraint(dot(v(sleigh.at(0.7 * x) / ground / ground), sleigh.y) = 0)] blade: Nonholonomic,
+    #[output(reaction_force(pose))] load: Vector,";
+
 /// Name, arguments of the attribute, fields, and what is shown: functions with their bodies, or with traits (`Trait::*`), of which
 /// what is a call of the function of the same name is left out.
-const MECHANISMS: [(&str, &str, &str, &[&str]); 9] = [
+const MECHANISMS: [(&str, &str, &str, &[&str]); 11] = [
     (
         "pendulum",
         "gravity = -9.81 * y",
@@ -143,6 +160,8 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 9] = [
             "Constraints::*",
         ],
     ),
+    ("driven", "gravity = -9.81 * y", DRIVEN, &["push", "diagram", "diagram_under", "Limits::*"]),
+    ("governed", "gravity = -9.81 * y, batch", GOVERNED, &["load", "forward_dynamics_lanes", "Mechanism::*"]),
     (
         "f32",
         "gravity = -9.81 * y, scalar = f32",
@@ -226,7 +245,9 @@ fn generated_code() {
 }
 
 /// Mechanisms whose structs' documentation has, between them, every part.
-const DOCUMENTED: [(&str, &str); 4] = [
+const DOCUMENTED: [(&str, &str); 6] = [
+    ("gravity = -9.81 * y", "#[body(mass = 1)] arm: Body, #[joint(ground -> arm)] held: Weld,"),
+    ("gravity = -9.81 * y", DRIVEN),
     ("gravity = -9.81 * y, equations = structure, batch, conserved", BUOY),
     ("gravity = -9.81 * y, batch", SLIDING),
     ("gravity = -9.81 * y, second_derivatives, conserved, equations = hamilton", CART_POLE),

@@ -1,7 +1,7 @@
 //! Mechanisms with what random ones seldom have together.
 
 /// Arguments of the attribute, fields, and functions that must be among those that are compared.
-pub const MECHANISMS: [(&str, &str, &[&str]); 3] = [
+pub const MECHANISMS: [(&str, &str, &[&str]); 4] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
         "m: f64, l: f64,
@@ -39,6 +39,17 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 3] = [
             "inverse_dynamics_second_derivatives",
             "generalized_forces_second_derivatives",
         ],
+    ),
+    (
+        "gravity = -9.81 * y, derivatives, batch",
+        "#[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] block: Body,
+        #[joint(ground -> block, about = z)] pose: Planar,
+        #[contact(block.sphere(0.3), ground.plane(y), friction = 0.3)] floor: Contact,
+        #[speed(rate(pose.x) * cos(pose.angle) + rate(pose.y) * sin(pose.angle))] ahead: Speed,
+        #[speed(rate(pose.y) * cos(pose.angle) - rate(pose.x) * sin(pose.angle))] aside: Speed,
+        #[speed(0.7 * rate(pose.angle))] turn: Speed,
+        #[output(atan2(sin(pose.x), 2 + cos(pose.angle)))] angle: Scalar,",
+        &["contact_rates", "contact_jacobian", "angle_derivatives"],
     ),
     // Limbs as lanes, whose results go into matrices in pairs.
     (
