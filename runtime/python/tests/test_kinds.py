@@ -1,0 +1,179 @@
+"""Tables, constraints, contacts, robots: mechanisms of all kinds."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import linkwork
+
+from mechanisms import BALL, BEAD, PENDULUM, ROBOT, SLIDER, compiled
+
+
+class WithTables(unittest.TestCase):
+    """A parabola as a smooth table: the spring of that energy."""
+
+    def test_figures_are_those_that_are_given(self):
+        figures = ([[-2.0, 0.0, 2.0]], [16.0, 0.0, 16.0], "smooth")
+        m = compiled(SLIDER, tables={"energy": figures})(mass=2.0)
+        x = np.linspace(-2, 2, 7)[:, None]
+        np.testing.assert_allclose(m.potential_energy(x), 4 * x[:, 0] ** 2, atol=1e-13)
+        run = m.simulate([1.0], duration=3.0, tolerance=1e-11)
+        np.testing.assert_allclose(run.q[:, 0], np.cos(2 * run.t), atol=1e-8)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "energy.csv"
+            file.write_text("x,energy\n2,16\n-2,16\n0,0\n")
+            again = compiled(SLIDER, tables={"energy": (file, "smooth")})(mass=2.0)
+            self.assertEqual(again.potential_energy([0.5]), m.potential_energy([0.5]))
+            page = run.view(Path(folder) / "slider.html")
+            self.assertGreater(page.path.stat().st_size, 1000)
+
+    def test_what_is_no_table_is_told(self):
+        for tables, kind, words in [
+            ({}, linkwork.Error, "tables without figures"),
+            ({"enrgy": ([[0, 1]], [0, 1])}, linkwork.Error, "there is no table `enrgy`, but energy"),
+            ({"energy": ([[0, 1]], [0, 1, 2])}, ValueError, "the axes have"),
+            ({"energy": ([[0, 0]], [0, 1])}, linkwork.Error, "stands there twice"),
+            ({"energy": 3.0}, TypeError, "expected a path"),
+            ({"energy": "nowhere.csv"}, FileNotFoundError, "nowhere.csv"),
+        ]:
+            with self.subTest(tables), self.assertRaisesRegex(kind, words):
+                compiled(SLIDER, tables=tables)
+
+
+class UnderConstraints(unittest.TestCase):
+    """A bead on a wire: forces of constraints, assembling, and where it cannot go."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.m = compiled(BEAD)(mass=3.0)
+
+    def test_it_hangs_and_is_held(self):
+        acceleration, multipliers = self.m.constrained_dynamics([0.0, -1.0], [0.0, 0.0], [0.0, 0.0])
+        np.testing.assert_allclose(acceleration, [0.0, 0.0], atol=1e-12)
+        jacobian = self.m.constraint_jacobian([0.0, -1.0])
+        np.testing.assert_allclose(jacobian.T @ multipliers, [0.0, 3.0 * 9.81], rtol=1e-12, atol=1e-12)
+
+    def test_assembling(self):
+        q = self.m.assemble([0.6, -0.7], ["plane.x"])
+        np.testing.assert_allclose(q, [0.6, -0.8], rtol=1e-12)
+        with self.assertRaises(linkwork.Error):
+            self.m.assemble([1.5, 0.0], ["plane.x"])
+        named = self.m.assemble({"plane.x": 0.6, "plane.y": -0.7}, "plane.x")
+        np.testing.assert_array_equal(named, q)
+        for held, kind in [("plane.z", KeyError), ([2], IndexError), ([-1], IndexError), ([0.5], IndexError)]:
+            with self.assertRaises(kind):
+                self.m.assemble(q, held)
+
+    def test_documentation_is_for_python(self):
+        text = self.m.assemble.__doc__
+        self.assertIn("\nRaises:\n    Error: where none is found, for an index that is none.\n", text)
+        self.assertIn("    q: shape (2,), or values by name\n    held: names of velocities, or their indices\n", text)
+        for name in self.m._functions:
+            text = getattr(self.m, name).__doc__
+            self.assertNotRegex(text, r"\]\(|\[`|::|# Errors|None\b", name)
+
+    def test_what_has_no_inputs_has_no_controller(self):
+        with self.assertRaisesRegex(TypeError, "Bead has no inputs that `control` could give"):
+            self.m.simulate([1.0, 0.0], duration=1.0, control=lambda t, q, v: [])
+
+    def test_a_failure_in_a_batch_names_its_state(self):
+        q = np.array([[0.6, -0.7], [1.5, 0.0], [0.0, -0.9]])
+        with self.assertRaisesRegex(linkwork.Error, "state 1"):
+            self.m.assemble(q, [0])
+
+    def test_it_swings_on_the_wire(self):
+        run = self.m.simulate([1.0, 0.0], duration=5.0, every=0.05, tolerance=1e-11)
+        np.testing.assert_allclose(np.hypot(*run.q.T), 1.0, rtol=1e-12)
+        energy = self.m.kinetic_energy(run.q, run.v) + self.m.potential_energy(run.q)
+        self.assertLess(np.ptp(energy), 1e-7)
+
+    def test_its_equilibria(self):
+        np.testing.assert_allclose(self.m.equilibrium([0.3, -0.8]), [0.0, -1.0], atol=1e-9)
+        # At the side, where nothing holds it up, there is none.
+        with self.assertRaisesRegex(linkwork.Error, "no equilibrium"):
+            self.m.equilibrium([1.0, 0.0], held=["plane.x"])
+        # Held in x it hangs from its holder and the wire.
+        np.testing.assert_allclose(self.m.equilibrium([0.6, -0.7], held=["plane.x"]), [0.6, -0.8], atol=1e-9)
+
+    def test_its_linear_system(self):
+        system = self.m.linear_system([0.0, -1.0])
+        np.testing.assert_allclose(np.linalg.eigvals(system.a).imag, [np.sqrt(9.81), -np.sqrt(9.81)], rtol=1e-10)
+        self.assertEqual(system.states, ["plane.x", "plane.x.rate"])
+        with self.assertRaisesRegex(linkwork.Error, "off the constraints by 0.1"):
+            self.m.linear_system([0.0, -0.9])
+
+
+class WithContacts(unittest.TestCase):
+    """A ball that bounces."""
+
+    def test_it_comes_to_rest_and_rises_half_as_fast(self):
+        m = compiled(BALL)()
+        run = m.simulate([1.0], duration=1.2, every=0.001)
+        landing = np.sqrt(2 / 9.81)
+        self.assertGreaterEqual(run.q.min(), -1e-12)
+        top = run.q[run.t > landing].max()
+        self.assertAlmostEqual(top, 0.25, places=5)
+        rest = m.simulate([1.0], duration=4.0)
+        np.testing.assert_allclose([rest.q[-1, 0], rest.v[-1, 0]], [0.0, 0.0], atol=1e-9)
+        stepped = m.simulate([1.0], duration=4.0, method="time_stepping", step=1e-3)
+        self.assertAlmostEqual(stepped.q[-1, 0], 0.0, places=6)
+        with self.assertRaisesRegex(linkwork.Error, "has contacts"):
+            m.simulate([1.0], duration=1.0, method="rk4", step=1e-3)
+
+
+class OfRobots(unittest.TestCase):
+    """A file."""
+
+    def test_a_file_and_its_frames(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "two-links.urdf"
+            path.write_text(ROBOT)
+            arm = linkwork.compile(path, quiet=True)()
+            heavy = linkwork.compile(str(path), options="parameters = inertial(\"upper\")", quiet=True)
+            broken = Path(folder) / "broken.urdf"
+            broken.write_text(ROBOT.replace('link="upper"/><axis', 'link="uper"/><axis'))
+            with self.assertRaisesRegex(linkwork.Error, r"broken\.urdf:6.*uper"):
+                linkwork.compile(broken, quiet=True)
+        self.assertEqual(arm.frames, ["base", "upper", "tool"])
+        placement = arm.frame_placement("tool", [np.pi / 2])
+        np.testing.assert_allclose(placement @ [0, 0, 0, 1], [-1, 0, 0, 1], atol=1e-15)
+        np.testing.assert_allclose(arm.frame_jacobian("tool", [0.0])[:, 0], [-1, 0, 0, 0, 1, 0], atol=1e-15)
+        np.testing.assert_allclose(arm.mass_matrix([0.0]), [[0.1 + 2 * 0.25]])
+        with self.assertRaisesRegex(KeyError, "did you mean 'tool'"):
+            arm.frame_jacobian("tol", [0.0])
+        np.testing.assert_array_equal(arm.lower_limits(), [-2.0])
+        np.testing.assert_array_equal(arm.clamp_effort([[60.0], [-70.0], [3.0]]), [[50.0], [-50.0], [3.0]])
+        m = heavy()
+        self.assertEqual(m.parameters["upper.mass"], 2.0)
+        np.testing.assert_allclose(m.replace({"upper.mass": 4.0}).mass_matrix([0.0]), [[0.1 + 4 * 0.25]])
+
+    def test_mistakes_have_their_places(self):
+        with self.assertRaisesRegex(linkwork.Error, r"mechanism\.rs:\d+:\d+: error: .*massa"):
+            compiled(PENDULUM.replace("mass = mass, com", "massa = mass, com"))
+        with self.assertRaisesRegex(linkwork.Error, "choose one with `name=`: Pendulum, Bead"):
+            compiled(PENDULUM + BEAD)
+        with self.assertRaisesRegex(linkwork.Error, "expected a path, or a declaration"):
+            linkwork.compile("#[nothing]")
+        for empty in ("", " \n"):
+            with self.assertRaisesRegex(linkwork.Error, "a declaration: a struct .* found an empty text"):
+                linkwork.compile(empty)
+        with self.assertRaisesRegex(FileNotFoundError, "no file nowhere.urdf$"):
+            linkwork.compile("nowhere.urdf")
+        with self.assertRaisesRegex(FileNotFoundError, r"`linkwork\.gallery\('CartPole'\)`"):
+            linkwork.compile("CartPole")
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "robot.urdf").write_text(ROBOT)
+            with self.assertRaisesRegex(FileNotFoundError, "did you mean robot.urdf"):
+                linkwork.compile(Path(folder) / "robbot.urdf")
+            with self.assertRaisesRegex(FileNotFoundError, "is a folder"):
+                linkwork.compile(folder)
+        with self.assertRaisesRegex(TypeError, r"compile\(\) has no argument 'optoins': did you mean 'options'"):
+            linkwork.compile(PENDULUM, optoins="batch")
+        with self.assertRaises(TypeError):
+            linkwork.compile(3)
+
+
+if __name__ == "__main__":
+    unittest.main()
