@@ -145,6 +145,23 @@ pub fn compile_with<'g>(
         check_rest(source, graph, cx);
         return None;
     }
+    let compiled = model_and_functions(source, graph, passes, cx);
+    if graph.is_full() {
+        // What else is said is of expressions that are not all there.
+        *cx = Diagnostics::new();
+        cx.error(source.mechanism.description.name.place.clone(), "the equations of this mechanism would be too long")
+            .help("code without loops has a line for each of millions of operations: leave words out that ask for derivatives, or hold the bodies by shorter chains of joints and fewer elements");
+        return None;
+    }
+    compiled
+}
+
+fn model_and_functions<'g>(
+    source: &Source,
+    graph: &'g Graph,
+    passes: passes::Passes,
+    cx: &mut Diagnostics,
+) -> Option<(mechanism::Model<'g>, derive::Output)> {
     let model = resolve::build_model(&source.mechanism.description, graph, cx)?;
     let requests = source.mechanism.requests;
     let mut output = derive_with(&model, requests, passes, cx)?;

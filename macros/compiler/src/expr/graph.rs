@@ -16,9 +16,17 @@ struct Store {
     nodes: Vec<Node>,
     /// Open addressing, power of two, `EMPTY` where free.
     table: Vec<Id>,
+    /// How many nodes there may be.
+    most: usize,
+    /// There would be more.
+    is_full: bool,
 }
 
 const EMPTY: Id = Id::MAX;
+
+/// How many nodes a graph may have. Derivatives of a chain of 64 skew pins have 1.3 million; with four million the compiler takes a
+/// gibibyte of memory and tens of seconds, and rustc several times that for what comes out.
+const MOST_NODES: usize = 4_000_000;
 
 impl Store {
     fn intern(&mut self, node: Node) -> Id {
@@ -33,6 +41,10 @@ impl Store {
                 return id;
             }
             slot = (slot + 1) & mask;
+        }
+        if self.nodes.len() >= self.most {
+            self.is_full = true;
+            return ZERO;
         }
         let id = self.nodes.len() as Id;
         self.nodes.push(node);
@@ -88,7 +100,13 @@ const ONE: Id = 1;
 impl Graph {
     /// An empty graph.
     pub fn new() -> Graph {
-        let mut store = Store { nodes: Vec::new(), table: vec![EMPTY; 1024] };
+        Graph::with_room_for(MOST_NODES)
+    }
+
+    /// An empty graph that can have so many nodes.
+    pub fn with_room_for(most: usize) -> Graph {
+        let mut store =
+            Store { nodes: Vec::new(), table: vec![EMPTY; 1024], most: most.max(2), is_full: false };
         store.intern(Node::Const(0.0));
         store.intern(Node::Const(1.0));
         Graph {
@@ -103,6 +121,12 @@ impl Graph {
     /// Number of nodes made so far.
     pub fn len(&self) -> usize {
         self.store.borrow().nodes.len()
+    }
+
+    /// Expressions were made that it has no room for. They count as zero, so that no work is spent on them: whatever was derived is of
+    /// no use.
+    pub fn is_full(&self) -> bool {
+        self.store.borrow().is_full
     }
 
     /// Never true: zero and one are always there.

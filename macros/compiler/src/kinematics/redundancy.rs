@@ -30,7 +30,13 @@ pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
     };
     let sizes: Vec<Vec<f64>> =
         samples.iter().map(|j| j.iter().map(|row| dot(row, row).sqrt()).collect()).collect();
-    let idle = |row| rows.is_constant(row) || sizes.iter().all(|sizes| is_small(sizes, row));
+    let zeros = |seed| rows.may_be_zero(&random_configuration(model, seed), seed);
+    let zeros: Vec<Vec<bool>> = (0..SAMPLES).map(zeros).collect();
+    let idle = |row| {
+        rows.is_constant(row)
+            || zeros.iter().all(|zeros| zeros[row])
+            || sizes.iter().all(|sizes| is_small(sizes, row))
+    };
     (0..model.constraints.len()).map(idle).collect()
 }
 

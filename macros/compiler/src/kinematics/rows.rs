@@ -62,6 +62,16 @@ impl<'g> Rows<'g> {
         }
         rows
     }
+
+    /// By row, whether all of its coefficients in a configuration may be what rounding has left of zero.
+    pub fn may_be_zero(&self, q: &[f64], seed: u64) -> Vec<bool> {
+        let mut may_be = vec![true; self.size.0];
+        let entries = self.entries.rounded(&|s| value_of(s, q, seed));
+        for ((row, _), entry) in self.at.iter().zip(entries) {
+            may_be[*row] &= entry.may_be_zero();
+        }
+        may_be
+    }
 }
 
 /// The value of a symbol at rest, parameters sampled by `seed`.

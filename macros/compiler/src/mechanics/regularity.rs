@@ -6,12 +6,6 @@ use crate::expr::eval::{Rounded, Tape};
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
-/// A pivot is `zᵀ M z` of a motion `z` in which one velocity is 1 and those before it are what leaves the least energy. If
-/// the entries of `M` are off by `E`, the pivot is by up to `|z|ᵀ E |z|` (Higham, *Accuracy and Stability of Numerical Algorithms*,
-/// 2002, § 10.1), however small it is beside the diagonal of `M`. `E` is what rounding does on the way to each entry, so that levers
-/// which cancel leave less than it, too. Pivots below so many times that are zero. Masses may lie twelve powers of ten apart.
-const TOLERANCE: f64 = 32.0;
-
 /// The entries of `v` at which the factorisation fails, from the root on. None if it does not fail in every one of several
 /// random configurations; those where it fails in all of them, if there are such.
 pub fn singular_velocities(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>) -> Vec<usize> {
@@ -27,6 +21,10 @@ pub fn singular_velocities(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matri
     found
 }
 
+/// A pivot is `zᵀ M z` of a motion `z` in which one velocity is 1 and those before it are what leaves the least energy. If
+/// the entries of `M` are off by `E`, the pivot is by up to `|z|ᵀ E |z|` (Higham, *Accuracy and Stability of Numerical Algorithms*,
+/// 2002, § 10.1), however small it is beside the diagonal of `M`. `E` is what rounding does on the way to each entry, so that levers
+/// which cancel leave less than it, too. Masses may lie twelve powers of ten apart.
 fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, seed: u64) -> Vec<usize> {
     let n = model.nv();
     let q = random_configuration(model, seed);
@@ -53,7 +51,8 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let mut eliminated = Vec::new();
     for (step, &k) in order.iter().enumerate() {
         // Parameters at random may make an inertia that no body has: then a pivot is negative, and not zero all the same.
-        if m[k][k].abs() <= TOLERANCE * rounding(&whole, &m, &eliminated, k) {
+        let pivot = Rounded { value: m[k][k], error: rounding(&whole, &m, &eliminated, k) };
+        if pivot.may_be_zero() {
             failing.push(k);
             continue;
         }

@@ -42,3 +42,14 @@ fn what_restricts_some_components_is_not() {
         counts(&[("", &fields(constraint), 0)]);
     }
 }
+
+/// A product that is zero wherever the bodies are, which no simplification sees: rounding is all that is left of its row.
+#[test]
+fn what_is_nothing_but_rounding_is_dropped() {
+    let fields = "#[body(mass = 2, com = x, inertia = rod(2, 1, x))] arm: Body,
+        #[joint(ground -> arm, about = z)] collar: Collar,
+        #[body(mass = 0.9, com = 0.3 * x, inertia = cuboid(0.9, 0.1, 0.2, 0.3))] hand: Body,
+        #[joint(arm -> hand, about = y)] wrist: Collar,
+        #[constraint(dot(wrist.turn * ground.y, cross(r(hand.at(0.3 * x) / arm.at([0.7, -1.2, 0.4])), ground.y)))] none: Holonomic,";
+    counts(&[("", fields, 0), ("formulation = speeds", fields, 0)]);
+}

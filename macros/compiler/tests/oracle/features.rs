@@ -9,7 +9,9 @@ mod source;
 mod values;
 
 use crate::seeds;
-use linkwork_compiler::expand;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::{compile, expand, read};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -73,6 +75,29 @@ fn combinations_compile_or_are_answered() {
         std::fs::write(path, modules).expect("the file is written");
     }
     assert!(4 * compiled > all.end - all.start, "only {compiled} compile");
+}
+
+/// However many expressions there is room for, a mechanism that needs more is answered as one whose equations are too long.
+#[test]
+fn what_is_too_long_is_answered() {
+    let tokens = |text: &str| text.parse().expect("the source is Rust");
+    let (mut long, all) = (0, seeds(60));
+    for seed in all.clone() {
+        let (arguments, item) = source::source(seed);
+        let mut cx = Diagnostics::new();
+        let Some(source) = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx) else { continue };
+        for room in [40, 300 + 40 * (seed as usize % 100)] {
+            let (graph, mut cx) = (Graph::with_room_for(room), Diagnostics::new());
+            let compiled = compile(&source, &graph, &mut cx);
+            assert!(graph.len() <= room);
+            if graph.is_full() {
+                long += 1;
+                assert!(compiled.is_none() && cx.len() == 1, "seed {seed}: {:?}", cx.messages());
+                assert!(cx.messages()[0].contains("would be too long"), "seed {seed}: {:?}", cx.messages());
+            }
+        }
+    }
+    assert!(long > all.end - all.start, "only {long} are too long");
 }
 
 #[test]
