@@ -2,6 +2,9 @@
 //!
 //! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin batches`, or without the flag for the
 //! default target. Nanoseconds per state: the least over many rounds, in which all take turns.
+//!
+//! Behind it states in arrays that no cache near the processor holds, on one thread: what `runtime/python/benches/calls.py` measures from
+//! Python.
 
 use linkwork::Rheonomic;
 use linkwork::nalgebra::SVector;
@@ -15,6 +18,9 @@ const BUDGET: Duration = Duration::from_millis(400);
 
 /// Number of states that the calls go through: few enough for the fastest cache.
 const STATES: usize = 64;
+
+/// Number of states of the arrays.
+const ARRAYS: usize = 4096;
 
 #[mechanism(urdf = "../models/urdf/ur5.urdf", batch)]
 struct Ur5;
@@ -35,6 +41,11 @@ fn main() {
     robot("Panda", &Panda);
     robot("Solo 12", &Solo12);
     robot("humanoid", &Humanoid);
+    println!();
+    println!("| robot | function of {ARRAYS} states in arrays | eight lanes, ns per state |");
+    println!("| --- | --- | ---: |");
+    arrays("UR5", &Ur5);
+    arrays("Panda", &Panda);
 }
 
 /// `L` states in lanes each.
@@ -93,4 +104,34 @@ fn measure(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
         }
     }
     best.map(|time| time.as_secs_f64() * 1e9 / STATES as f64)
+}
+
+/// A robot whose configurations are as long as its velocities.
+fn arrays<M, const N: usize, const NU: usize>(name: &str, m: &M)
+where
+    M: Batch<N, N, NU, Scalar = f64>,
+{
+    let mut random = Random::new(2);
+    let mut numbers = || (0..N * ARRAYS).map(|_| random.within(2.0)).collect::<Vec<f64>>();
+    let (q, v, a) = (numbers(), numbers(), numbers());
+    let (mut matrices, mut vectors) = (vec![0.0; N * N * ARRAYS], vec![0.0; N * ARRAYS]);
+    let m = m.lanes::<8>();
+    let mut row = |text: &str, call: &mut dyn FnMut(&mut [f64], &mut [f64])| {
+        let mut best = Duration::MAX;
+        let start = Instant::now();
+        while start.elapsed() < BUDGET {
+            let start = Instant::now();
+            call(black_box(&mut matrices), black_box(&mut vectors));
+            best = best.min(start.elapsed());
+        }
+        println!("| {name} | {text} | {:.1} |", best.as_secs_f64() * 1e9 / ARRAYS as f64);
+    };
+    let fits = "arrays have the lengths of the states";
+    row("mass matrix", &mut |mass, _| m.mass_matrix_all(0.0, black_box(&q), mass).expect(fits));
+    row("inverse dynamics", &mut |_, tau| {
+        m.inverse_dynamics_all(0.0, black_box(&q), &v, &a, tau).expect(fits)
+    });
+    row("forward dynamics", &mut |_, a_out| {
+        m.forward_dynamics_all(0.0, black_box(&q), &v, &a, a_out).expect(fits);
+    });
 }
