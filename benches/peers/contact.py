@@ -171,8 +171,9 @@ ROWS = [
 def main():
     folder, program = sys.argv[1:3]
     ours = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
-    columns = [ours, measured(folder) | measured_humanoid(folder), contact_drake.measured(folder)]
-    print(f"| | Linkwork | MuJoCo {mujoco.__version__} | Drake {version('drake')} |\n| --- | ---: | ---: | ---: |")
+    columns = [ours["midpoint"], ours["classical"], measured(folder) | measured_humanoid(folder), contact_drake.measured(folder)]
+    others = f"MuJoCo {mujoco.__version__} | Drake {version('drake')}"
+    print(f"| | Linkwork, midpoint | Linkwork | {others} |\n| --- | ---: | ---: | ---: | ---: |")
     for text, key, unit, factor in ROWS:
         figures = " | ".join(f"{column[key] * factor:.3g}" if key in column else "–" for column in columns)
         print(f"| {text}, {unit} | {figures} |")

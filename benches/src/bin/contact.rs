@@ -36,6 +36,7 @@ struct Humanoid {
     right_heel: [Contact; 2],
 }
 
+type Stepping = TimeStepping<f64>;
 type End = Sample<f64, 19, 18, 12>;
 
 /// What the joints are driven to.
@@ -47,15 +48,21 @@ fn drives(q: &SVector<f64, 19>, v: &SVector<f64, 18>, stiffness: f64) -> SVector
 }
 
 /// Where `duration` seconds lead.
-fn end(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, h: f64, duration: f64) -> End {
+fn end(
+    m: &Solo,
+    start: (SVector<f64, 19>, SVector<f64, 18>),
+    stiffness: f64,
+    method: Stepping,
+    duration: f64,
+) -> End {
     let run = simulate(m).from(start.0, start.1).inputs(|_, q, v| drives(q, v, stiffness));
-    run.method(TimeStepping::step(h)).duration(duration).finish().expect("the robot moves")
+    run.method(method).duration(duration).finish().expect("the robot moves")
 }
 
-/// Microseconds of the process in a step of the quadruped.
-fn time(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, h: f64, duration: f64) -> f64 {
-    least(duration / h, || {
-        end(m, start, stiffness, h, duration);
+/// Microseconds of the process in a step of a millisecond of the quadruped.
+fn time(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, method: Stepping) -> f64 {
+    least(500.0, || {
+        end(m, start, stiffness, method, 0.5);
     })
 }
 
@@ -75,7 +82,7 @@ fn least(steps: f64, run: impl Fn()) -> f64 {
 
 /// Times of the humanoid while it stands, collapses and is in the air, and its creep in metres a second. Each link turns about its own
 /// joint with 1 kg·m² and more, so that its drives may be stiff.
-fn humanoid() -> [f64; 4] {
+fn humanoid(method: Stepping) -> [f64; 4] {
     let m = Humanoid {};
     let high = m.neutral();
     let mut low = high;
@@ -84,8 +91,7 @@ fn humanoid() -> [f64; 4] {
         let drives = |q: &SVector<f64, 36>, v: &SVector<f64, 35>| {
             SVector::from_fn(|k, _| -stiffness * (q[7 + k] + 0.05 * v[6 + k]))
         };
-        let run =
-            simulate(&m).from(q, v).inputs(move |_, q, v| drives(q, v)).method(TimeStepping::step(1e-3));
+        let run = simulate(&m).from(q, v).inputs(move |_, q, v| drives(q, v)).method(method);
         let end = run.duration(duration).finish().expect("the robot moves");
         (end.q, end.v)
     };
@@ -102,40 +108,52 @@ fn humanoid() -> [f64; 4] {
     [time(stands, 1e4), time((low, still), 0.0), time((up, still), 1e4), creep]
 }
 
-fn main() {
+/// What the table says of steps of one kind, as JSON.
+fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
     let posed = |m: &Solo, height: f64| {
         let mut q = m.neutral();
         q[2] = height;
         (0..12).for_each(|k| q[7 + k] = POSTURE[k % 3]);
         (q, SVector::zeros())
     };
+    let method = stepping(1e-3);
     let (level, inclined) = (Solo { slope: 0.0 }, Solo { slope: 10.0_f64.to_radians() });
     let drop = posed(&level, 0.26);
     let settled = |m: &Solo| {
-        let end = end(m, drop, 6.0, 1e-3, 8.0);
+        let end = end(m, drop, 6.0, method, 8.0);
         (end.q, end.v)
     };
     // Metres a second over the second that follows.
     let creep = |m: &Solo| {
         let from = settled(m);
-        (end(m, from, 6.0, 1e-3, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0)).norm()
+        (end(m, from, 6.0, method, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0)).norm()
     };
     let stands = settled(&level);
     let depth = -level.contact_gaps(&stands.0).min();
     let difference = |h: f64| {
-        let [coarse, fine] = [h, h / 10.0].map(|h| end(&level, drop, 6.0, h, 0.2).q);
+        let [coarse, fine] = [h, h / 10.0].map(|h| end(&level, drop, 6.0, stepping(h), 0.2).q);
         (coarse - fine).fixed_rows::<3>(0).norm()
     };
-    let [humanoid_standing, humanoid_collapsing, humanoid_free, humanoid_creep] = humanoid();
-    println!(
-        "{{\"humanoid_standing\": {humanoid_standing}, \"humanoid_collapsing\": {humanoid_collapsing}, \"humanoid_free\": {humanoid_free}, \"humanoid_creep\": {humanoid_creep}, \"standing\": {}, \"collapsing\": {}, \"free\": {}, \"depth\": {}, \"creep\": {}, \"inclined\": {}, \"one\": {}, \"two\": {}}}",
-        time(&level, stands, 6.0, 1e-3, 0.5),
-        time(&level, drop, 0.0, 1e-3, 0.5),
-        time(&level, posed(&level, 100.0), 6.0, 1e-3, 0.5),
-        depth,
-        creep(&level),
-        creep(&inclined),
-        difference(1e-3),
-        difference(2e-3)
-    );
+    let [humanoid_standing, humanoid_collapsing, humanoid_free, humanoid_creep] = humanoid(method);
+    let all = [
+        ("humanoid_standing", humanoid_standing),
+        ("humanoid_collapsing", humanoid_collapsing),
+        ("humanoid_free", humanoid_free),
+        ("humanoid_creep", humanoid_creep),
+        ("standing", time(&level, stands, 6.0, method)),
+        ("collapsing", time(&level, drop, 0.0, method)),
+        ("free", time(&level, posed(&level, 100.0), 6.0, method)),
+        ("depth", depth),
+        ("creep", creep(&level)),
+        ("inclined", creep(&inclined)),
+        ("one", difference(1e-3)),
+        ("two", difference(2e-3)),
+    ];
+    let all = all.map(|(name, value)| format!("\"{name}\": {value}"));
+    format!("{{{}}}", all.join(", "))
+}
+
+fn main() {
+    let midpoint = measured(|h| TimeStepping::step(h).midpoint());
+    println!("{{\"midpoint\": {midpoint}, \"classical\": {}}}", measured(TimeStepping::step));
 }

@@ -29,8 +29,8 @@ use nalgebra::SVector;
 ///
 /// `Λ₀` are those of the step before where they have hardly changed, and found anew where they have.
 ///
-/// A step takes four evaluations of the dynamics, and with contacts that are closed one of gaps, rates, Jacobian and mass matrix, or
-/// two where the contacts have changed.
+/// A step takes four evaluations of the dynamics, or [two](Self::midpoint), and with contacts that are closed one of gaps, rates,
+/// Jacobian and mass matrix, or two where the contacts have changed.
 /// Its matrices are on the stack, up to six of `R × R` numbers for the `R` rates of all contacts, open ones too, and several times
 /// that in unoptimised builds: 5 KiB for two feet, 2.5 MiB for the 240 rates of ten boxes on each other, where a thread needs
 /// [more stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than it has by default.
@@ -40,12 +40,48 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeStepping<T> {
     step: T,
+    midpoint: bool,
 }
 
 impl<T: Real> TimeStepping<T> {
     /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
     pub const fn step(step: T) -> Self {
-        Self { step }
+        Self { step, midpoint: false }
+    }
+
+    /// Two evaluations of the dynamics per step in place of four: as in Moreau's own scheme half a step along the velocity at its start
+    /// to the midpoint, the accelerations there, and half a step along the velocity at its end.
+    ///
+    /// ```text
+    /// q_m = q ⊕ (h/2) v,   v_m = v + (h/2) a(q, v),   v_f = v + h a(q_m, v_m),   q_f = q_m ⊕ (h/2) v_f
+    /// ```
+    ///
+    /// Impulses and displacements are those of every other step. Between impacts the order is 2, with declared speeds 1; where forces
+    /// and inertia do not depend on velocities, the method is the leapfrog, whose energy does not drift. Robots on their feet, whose impacts
+    /// leave order 1 in any case, move hardly less exactly. Source: Moreau, *Numerical aspects of the sweeping process*, Comput. Methods
+    /// Appl. Mech. Eng. 177 (1999), with `v_m` in place of `v` in the accelerations.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    ///
+    /// #[mechanism(gravity = -9.81 * z)]
+    /// pub struct Ball {
+    ///     #[particle(mass = 0.1)]
+    ///     ball: Particle,
+    ///     #[joint(ground -> ball, along = z)]
+    ///     height: Sleeve,
+    ///     #[contact(ball, ground.plane(z), restitution = 0.5)]
+    ///     bounce: Contact,
+    /// }
+    ///
+    /// // Dropped from 1 m, it has bounced to 0.25 m after 1.5 times the fall.
+    /// let fall = (2.0 / 9.81_f64).sqrt();
+    /// let run = simulate(&Ball {}).from([1.0], [0.0]).method(TimeStepping::step(1e-4).midpoint());
+    /// let end = run.duration(1.5 * fall).finish().expect("it bounces");
+    /// assert!((end.q[0] - 0.25).abs() < 1e-3);
+    /// ```
+    pub const fn midpoint(self) -> Self {
+        Self { midpoint: true, ..self }
     }
 }
 
@@ -111,7 +147,10 @@ impl<T: Real> Method<T> for TimeStepping<T> {
             true => memory.rate,
             false => holding(system, start, &before, h).map_err(reported)?,
         };
-        let (free, given) = guided(system, start, (&before, &rate), h, t);
+        let (free, given) = match self.midpoint {
+            true => through_middle(system, start, (&before, &rate), h, t),
+            false => guided(system, start, (&before, &rate), h, t),
+        };
         let free = settled(system, free, start.t)?;
         let v = free.v - given;
         let Touched { q, v: end } =
@@ -153,4 +192,24 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     let (displacement, change) = through(system, start, h, *before, added);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
     (end, added.map_or(still, |rate| system.carry(start.t, &start.q, &displacement, &(*rate * h))))
+}
+
+/// The same through the [midpoint](TimeStepping::midpoint).
+fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &mut D,
+    start: &State<T, NQ, NV>,
+    (before, rate): (&SVector<T, NV>, &SVector<T, NV>),
+    h: T,
+    t: T,
+) -> (State<T, NQ, NV>, SVector<T, NV>) {
+    let half = h * constant(0.5);
+    let middle = system.integrate(&start.q, &(start.v * half));
+    let at_middle = system.acceleration(start.t + half, &middle, &(start.v + (before + rate) * half));
+    let still = SVector::zeros();
+    let given = match *rate == still {
+        true => still,
+        false => system.carry(start.t, &start.q, &(start.v * h), &(*rate * h)),
+    };
+    let v = start.v + at_middle * h + given;
+    (State { t, q: system.integrate(&middle, &(v * half)), v }, given)
 }

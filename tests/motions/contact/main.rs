@@ -12,6 +12,7 @@ mod gains;
 mod gallery;
 mod laws;
 mod mechanisms;
+mod midpoint;
 mod orders;
 mod piles;
 mod poisson;
