@@ -195,12 +195,14 @@ fn read_numbers<const N: usize>(
     good.then_some(Placed { value, place })
 }
 
-/// Largest angle that is taken for one in radians: a full turn, and more than any rounding adds to it.
+/// Largest angle that is taken for one in radians however it is written: a full turn, and more than any rounding adds to it.
 const LARGEST_TURN: f64 = 7.0;
 
-/// Reports angles of an orientation that are most likely degrees; `help` says what the format takes.
+/// Reports angles of an orientation that are most likely degrees, whole and half ones beyond a full turn: files have multiples of π too.
+/// `help` says what the format takes.
 pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, cx: &mut Cx<'_>) {
-    let Some(n) = angles.iter().find(|n| n.abs() > LARGEST_TURN) else { return };
+    let is_likely = |n: &&f64| n.abs() > LARGEST_TURN && (2.0 * **n).fract() == 0.0;
+    let Some(n) = angles.iter().find(is_likely) else { return };
     let (degrees, turned) = (n.to_radians(), n % std::f64::consts::TAU);
     let message = format!(
         "an angle of {n} rad is more than a full turn: {n}° are {degrees} rad, {n} rad turn like {turned} rad"
