@@ -115,6 +115,9 @@ fn chosen_mechanisms_agree_with_themselves() {
         let compared = agreement::check_all(arguments, &item, functions, 0);
         assert!(compared > 20, "{compared} comparisons of #[mechanism({arguments})]\n{item}");
     }
+    let item = format!("pub struct Any {{ {} }}", chosen::limbs(2, 3));
+    let functions = ["inverse_dynamics_derivatives_into", "mass_matrix_into"];
+    assert!(agreement::check_all("gravity = -9.81 * y, derivatives, packed", &item, &functions, 0) > 20);
 }
 
 /// Forces of many springs are computed once, and called by all that they are in.
@@ -158,12 +161,16 @@ const BODIES: [&str; 13] = [
 #[test]
 fn bodies_compute_what_their_programs_do() {
     let mut run = BTreeSet::new();
-    for seed in seeds(12) {
+    for seed in seeds(8) {
         let (arguments, item) = source::source(seed);
         run.extend(bodies::check(&format!("{arguments}, batch"), &item, seed));
     }
     for (arguments, fields, _) in chosen::MECHANISMS {
         run.extend(bodies::check(arguments, &format!("pub struct Any {{ {fields} }}"), 0));
+    }
+    for fields in [chosen::chain(6), chosen::limbs(4, 2)] {
+        let item = format!("pub struct Any {{ {fields} }}");
+        run.extend(bodies::check("gravity = -9.81 * y, derivatives, packed", &item, 0));
     }
     let never: Vec<&str> = BODIES.into_iter().filter(|body| !run.contains(*body)).collect();
     assert_eq!(never, Vec::<&str>::new(), "these are not run");

@@ -1,7 +1,7 @@
 //! Mechanisms with what random ones seldom have together.
 
 /// Arguments of the attribute, fields, and functions that must be among those that are compared.
-pub const MECHANISMS: [(&str, &str, &[&str]); 4] = [
+pub const MECHANISMS: [(&str, &str, &[&str]); 3] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
         "m: f64, l: f64,
@@ -51,26 +51,40 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 4] = [
         #[output(atan2(sin(pose.x), 2 + cos(pose.angle)))] angle: Scalar,",
         &["contact_rates", "contact_jacobian", "angle_derivatives"],
     ),
-    // Limbs as lanes, whose results go into matrices in pairs.
-    (
-        "gravity = -9.81 * y, derivatives, packed",
-        LIMBS,
-        &["inverse_dynamics_derivatives_into", "mass_matrix_into"],
-    ),
 ];
 
-const LIMBS: &str = "
-    #[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body,
-    #[joint(ground -> trunk)] base: Free,
-    #[body(mass = 2, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] left0: Body,
-    #[body(mass = 1, com = 0.3 * z, inertia = diagonal(0.02, 0.03, 0.04))] left1: Body,
-    #[body(mass = 0.7, com = 0.1 * x, inertia = diagonal(0.02, 0.01, 0.02))] left2: Body,
-    #[body(mass = 2, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] right0: Body,
-    #[body(mass = 1, com = 0.3 * z, inertia = diagonal(0.02, 0.03, 0.04))] right1: Body,
-    #[body(mass = 0.7, com = 0.1 * x, inertia = diagonal(0.02, 0.01, 0.02))] right2: Body,
-    #[joint(trunk.at(0.2 * x) -> left0, about = x)] left_joint0: Pin,
-    #[joint(left0.at(0.4 * z) -> left1, about = y)] left_joint1: Pin,
-    #[joint(left1.at(0.4 * z) -> left2, about = z)] left_joint2: Pin,
-    #[joint(trunk.at(-0.2 * x) -> right0, about = x)] right_joint0: Pin,
-    #[joint(right0.at(0.4 * z) -> right1, about = y)] right_joint1: Pin,
-    #[joint(right1.at(0.4 * z) -> right2, about = z)] right_joint2: Pin,";
+/// A chain of pins whose columns go to the root as lanes.
+pub fn chain(joints: usize) -> String {
+    (0..joints)
+        .map(|k| {
+            let (axis, place) = (["z", "y", "y"][k % 3], ["x", "z"][k % 2]);
+            let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(0.3 * {place})", k - 1) };
+            format!(
+                "#[body(mass = {}, com = [0.01, 0.02, 0.1], inertia = diagonal(0.03, 0.04, 0.02))] link{k}: Body,
+                #[joint({parent} -> link{k}, about = {axis})] joint{k}: Pin,\n",
+                2.0 - 0.2 * k as f64
+            )
+        })
+        .collect()
+}
+
+/// A body that carries alike limbs, which are lanes.
+pub fn limbs(count: usize, joints: usize) -> String {
+    let mut fields =
+        "#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,\n"
+            .to_string();
+    for limb in 0..count {
+        let side = |k: usize| if k % 2 == 0 { 1.0 } else { -1.0 };
+        let mut parent = format!("trunk.at([{}, {}, 0])", 0.2 * side(limb), 0.1 * side(limb / 2));
+        for k in 0..joints {
+            fields += &format!(
+                "#[body(mass = {}, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] part{limb}{k}: Body,
+                #[joint({parent} -> part{limb}{k}, about = {})] joint{limb}{k}: Pin,\n",
+                2.0 - 0.3 * k as f64,
+                ["x", "y", "z"][k % 3]
+            );
+            parent = format!("part{limb}{k}.at(0.4 * z)");
+        }
+    }
+    fields
+}
