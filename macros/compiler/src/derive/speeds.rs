@@ -77,9 +77,6 @@ impl<'g> Derivation<'_, 'g> {
         let of = |e: &[Expr<'g>]| force_columns(&symbolic::derivatives(model, e));
         match id {
             Id::MassMatrixInverse => Some(self.inverse_of(speeds, false)),
-            Id::AccelerationsAndInverse => {
-                Some([self.free_accelerations(speeds), self.inverse_of(speeds, true)].concat())
-            }
             Id::CoriolisMatrix => {
                 let (coriolis, mass) =
                     (analytic::coriolis_matrix(native, joints, &v, 1), crba::mass_matrix(native, joints));
