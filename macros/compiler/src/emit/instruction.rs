@@ -1,6 +1,6 @@
 //! Instructions and their operands as expressions of Rust.
 
-use super::pieces::{Piece, Statement};
+use super::pieces::{Level, Piece, Statement};
 use super::scalar::ScalarSpelling;
 use crate::catalogue::Argument;
 use crate::expr::{Lookup, Symbol};
@@ -72,11 +72,11 @@ impl Writer<'_> {
             Some(splat) => format!("{splat}({})", piece.text),
             None => format!("Ops::splat::<_, {lanes}>({})", piece.text),
         };
-        Piece { text, needs: piece.needs, level: 3 }
+        Piece { text, needs: piece.needs, level: Level::Whole }
     }
 
     pub fn operand(&mut self, o: Operand) -> Piece {
-        let plain = |text| Piece { text, needs: Vec::new(), level: 3 };
+        let plain = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
         match o {
             Operand::Const(c) => plain(self.constant(c)),
             Operand::Symbol(s) => plain(self.symbol(s)),
@@ -97,7 +97,7 @@ impl Writer<'_> {
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
-                level: 3,
+                level: Level::Whole,
             }),
         }
     }
@@ -106,7 +106,11 @@ impl Writer<'_> {
     pub fn output(&mut self, o: Operand) -> Piece {
         let piece = self.operand(o);
         match self.scalar.is_in_lanes() {
-            true => Piece { text: format!("{}.lanes()", wrap(&piece, 3)), level: 3, ..piece },
+            true => Piece {
+                text: format!("{}.lanes()", wrap(&piece, Level::Whole)),
+                level: Level::Whole,
+                ..piece
+            },
             false => piece,
         }
     }
@@ -137,13 +141,13 @@ impl Writer<'_> {
         match op {
             Op::Neg(a) => {
                 let a = self.operand(a);
-                let text = format!("-{}", wrap(&a, 3));
-                Piece { text, needs: a.needs, level: 2 }
+                let text = format!("-{}", wrap(&a, Level::Whole));
+                Piece { text, needs: a.needs, level: Level::Product }
             }
-            Op::Add(a, b) => self.infix([a, b], "+", lanes, (1, 2)),
-            Op::Sub(a, b) => self.infix([a, b], "-", lanes, (1, 2)),
-            Op::Mul(a, b) => self.infix([a, b], "*", lanes, (2, 3)),
-            Op::Div(a, b) => self.infix([a, b], "/", lanes, (2, 3)),
+            Op::Add(a, b) => self.infix([a, b], "+", lanes, [Level::Sum, Level::Product]),
+            Op::Sub(a, b) => self.infix([a, b], "-", lanes, [Level::Sum, Level::Product]),
+            Op::Mul(a, b) => self.infix([a, b], "*", lanes, [Level::Product, Level::Whole]),
+            Op::Div(a, b) => self.infix([a, b], "/", lanes, [Level::Product, Level::Whole]),
             Op::MulAdd(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "+", c),
             Op::MulSub(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "-", c),
             Op::NegMulAdd(a, b, c) if self.build == Build::Debug => self.less_product(c, [a, b]),
@@ -164,17 +168,17 @@ impl Writer<'_> {
                     1 => format!("Ops::lanes([{}, {}])", a.text, b.text),
                     _ => format!("Ops::join::<_, {n}, {}>({}, {})", 2 * n, a.text, b.text),
                 };
-                Piece { text, needs: [a.needs, b.needs].concat(), level: 3 }
+                Piece { text, needs: [a.needs, b.needs].concat(), level: Level::Whole }
             }
         }
     }
 
     fn suffix(&mut self, a: Operand, suffix: &str) -> Piece {
         let a = self.operand(a);
-        Piece { text: format!("{}{suffix}", wrap(&a, 3)), needs: a.needs, level: 3 }
+        Piece { text: format!("{}{suffix}", wrap(&a, Level::Whole)), needs: a.needs, level: Level::Whole }
     }
 
-    fn infix(&mut self, [a, b]: [Operand; 2], op: &str, lanes: usize, (level, right): (u8, u8)) -> Piece {
+    fn infix(&mut self, [a, b]: [Operand; 2], op: &str, lanes: usize, [level, right]: [Level; 2]) -> Piece {
         if op == "*"
             && let Some(scaled) = self.scaled([a, b], lanes)
         {
@@ -190,18 +194,18 @@ impl Writer<'_> {
 
     /// `a * b + c` or `a * b - c`.
     fn product_and(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
-        let product = self.infix(product, "*", 1, (2, 3));
+        let product = self.infix(product, "*", 1, [Level::Product, Level::Whole]);
         let c = self.operand(c);
-        let text = format!("{} {op} {}", product.text, wrap(&c, 2));
-        Piece { text, needs: [product.needs, c.needs].concat(), level: 1 }
+        let text = format!("{} {op} {}", product.text, wrap(&c, Level::Product));
+        Piece { text, needs: [product.needs, c.needs].concat(), level: Level::Sum }
     }
 
     /// `c - a * b`.
     fn less_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
         let c = self.operand(c);
-        let product = self.infix(product, "*", 1, (2, 3));
-        let text = format!("{} - {}", wrap(&c, 1), product.text);
-        Piece { text, needs: [c.needs, product.needs].concat(), level: 1 }
+        let product = self.infix(product, "*", 1, [Level::Product, Level::Whole]);
+        let text = format!("{} - {}", wrap(&c, Level::Sum), product.text);
+        Piece { text, needs: [c.needs, product.needs].concat(), level: Level::Sum }
     }
 
     /// A call of an operation that large bodies name. A number times lanes has an operation of its own: a call less for rustc
@@ -282,10 +286,10 @@ impl Writer<'_> {
             needs.extend(piece.needs);
             list.push(piece.text);
         }
-        Piece { text: format!("{function}({})", list.join(", ")), needs, level: 3 }
+        Piece { text: format!("{function}({})", list.join(", ")), needs, level: Level::Whole }
     }
 }
 
-fn wrap(piece: &Piece, level: u8) -> String {
+fn wrap(piece: &Piece, level: Level) -> String {
     if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
 }

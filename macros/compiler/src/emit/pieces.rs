@@ -15,6 +15,18 @@ pub struct Statement {
     pub needs: Vec<usize>,
 }
 
+/// How closely the parts of a text hold together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// A sum or a difference.
+    #[default]
+    Sum,
+    /// A product, a quotient or a negative.
+    Product,
+    /// What needs no parentheses.
+    Whole,
+}
+
 /// Text of a value that is not bound.
 #[derive(Clone, Default)]
 pub struct Piece {
@@ -22,8 +34,8 @@ pub struct Piece {
     pub text: String,
     /// Values that it names.
     pub needs: Vec<usize>,
-    /// 1 for a sum, 2 for a product, 3 for what needs no parentheses.
-    pub level: u8,
+    /// Whether it needs parentheses.
+    pub level: Level,
 }
 
 /// The outputs of a program as texts.
