@@ -56,9 +56,31 @@ const GOVERNED: &str = "command: Input,
     #[constraint(dot(v(sleigh.at(0.7 * x) / ground / ground), sleigh.y) = 0)] blade: Nonholonomic,
     #[output(reaction_force(pose))] load: Vector,";
 
+/// Outputs of every shape, and a state of first order.
+const MEASURED: &str = "command: Input, lag: f64,
+    #[body(mass = 1, inertia = sphere(1, 0.2))] ball: Body,
+    #[joint(ground -> ball)] pose: Free,
+    #[state(rate = (command - filtered) / lag)] filtered: State,
+    #[acts(on = ball, value = filtered * ground.x)] push: Force,
+    #[output(filtered)] level: Scalar,
+    #[output(r(ball / ground))] place: Vector,
+    #[output(rotation(ball / ground))] turn: Matrix,
+    #[output(dot(a(ball / ground / ground), ground.x))] felt: Scalar,";
+
+/// Declared speeds beside a ball joint.
+const SPEEDS: &str = "
+    #[body(mass = 2)] cart: Body,
+    #[body(mass = 1, com = x, inertia = rod(1, 2, x))] arm: Body,
+    #[body(mass = 1, inertia = sphere(1, 0.2))] ball: Body,
+    #[joint(ground -> ball)] socket: Ball,
+    #[joint(ground -> cart, along = x)] rail: Sleeve,
+    #[joint(cart -> arm, about = z)] hinge: Pin,
+    #[speed(rate(rail) * cos(hinge) + 0.3 * rate(hinge))] along: Speed,
+    #[speed(1.5 * rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,";
+
 /// Name, arguments of the attribute, fields, and what is shown: functions with their bodies, or with traits (`Trait::*`), of which
 /// what is a call of the function of the same name is left out.
-const MECHANISMS: [(&str, &str, &str, &[&str]); 11] = [
+const MECHANISMS: [(&str, &str, &str, &[&str]); 14] = [
     (
         "pendulum",
         "gravity = -9.81 * y",
@@ -163,6 +185,40 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 11] = [
     ("driven", "gravity = -9.81 * y", DRIVEN, &["push", "diagram", "diagram_under", "Limits::*"]),
     ("governed", "gravity = -9.81 * y, batch", GOVERNED, &["load", "forward_dynamics_lanes", "Mechanism::*"]),
     (
+        "measured",
+        "gravity = -9.81 * y, derivatives",
+        MEASURED,
+        &[
+            "Outputs::*",
+            "OutputDerivatives::*",
+            "OutputsByStates::*",
+            "Sensitivities::*",
+            "FirstOrder::*",
+            "FirstOrderDerivatives::*",
+        ],
+    ),
+    (
+        "speeds",
+        "gravity = -9.81 * y, derivatives, second_derivatives",
+        SPEEDS,
+        &[
+            "integrate",
+            "difference",
+            "tangent_rate",
+            "displacement_rate",
+            "integrate_derivatives",
+            "Mechanism::*",
+            "Derivatives::*",
+            "SecondDerivatives::*",
+        ],
+    ),
+    (
+        "file",
+        "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial, placement], regressor",
+        "",
+        &["from_file", "inertials", "set_inertials", "set_base_parameters", "Identifiable::*"],
+    ),
+    (
         "f32",
         "gravity = -9.81 * y, scalar = f32",
         // What follows from the figures is no normal number any more.
@@ -244,7 +300,7 @@ macro_rules! snapshots {
     };
 }
 
-snapshots!(pendulum closed limbs prepare batch derivatives charts slipping driven governed f32);
+snapshots!(pendulum closed limbs prepare batch derivatives charts slipping driven governed measured speeds file f32);
 
 fn is_as_written(name: &str) {
     let of = MECHANISMS.iter().find(|(known, ..)| *known == name);
