@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Prints a line for each mutant: its number, the file and line of the original, what stood there and what stands there now.
-//! Expressions of constants are left alone, and what stands in macros.
+//! Expressions of constants are left alone, what stands in macros, and comparisons with limits of `machine`: on which side of these
+//! code is does not change what it computes, and what it costs is counted by other tests.
 use proc_macro2::Span;
 use quote::{ToTokens, quote};
 use std::path::{Path, PathBuf};
@@ -43,6 +44,8 @@ pub fn is(mutant: usize) -> bool {
 /// Walks through a file's expressions and gives each place that can change a number.
 struct Mutator<'a> {
     file: PathBuf,
+    /// The limits of `machine` that it imports.
+    limits: Vec<String>,
     next: usize,
     left_out: &'a [usize],
 }
@@ -58,6 +61,11 @@ impl Mutator<'_> {
         let (line, before, after) = (at.start().line, short(shown), short(instead));
         println!("{number}\t{}:{line}\t{before}\t{after}", self.file.display());
         Some(parse_quote!((if crate::mutant::is(#number) { #instead } else { #original })))
+    }
+
+    /// True for a limit of `machine`.
+    fn is_limit(&self, expr: &Expr) -> bool {
+        matches!(expr, Expr::Path(path) if self.limits.iter().any(|limit| path.path.is_ident(limit)))
     }
 
     /// What an expression may become, before anything in it is changed.
@@ -105,6 +113,21 @@ impl Mutator<'_> {
     }
 }
 
+/// The names that a file imports from `machine`.
+fn limits(file: &syn::File) -> Vec<String> {
+    let of_machine = |item: &syn::Item| match item {
+        syn::Item::Use(item) => {
+            let text = item.tree.to_token_stream().to_string();
+            text.strip_prefix("crate :: machine ::").map(|names| {
+                names.split(|c: char| !(c.is_ascii_uppercase() || c == '_')).map(str::to_string).collect()
+            })
+        }
+        _ => None,
+    };
+    let names: Vec<Vec<String>> = file.items.iter().filter_map(of_machine).collect();
+    names.concat().into_iter().filter(|name| !name.is_empty()).collect()
+}
+
 /// What a name is taken for by mistake.
 fn other(name: &str) -> Option<&'static str> {
     Some(match name {
@@ -139,6 +162,11 @@ fn short(tokens: &dyn ToTokens) -> String {
 
 impl VisitMut for Mutator<'_> {
     fn visit_expr_mut(&mut self, expr: &mut Expr) {
+        if let Expr::Binary(binary) = expr
+            && [&binary.left, &binary.right].iter().any(|side| self.is_limit(side))
+        {
+            return;
+        }
         let (original, instead) = (expr.clone(), Self::changed(expr));
         match expr {
             // A place that is written to, or a function that is called, stays what it is; so does a condition with `let`.
@@ -241,7 +269,8 @@ fn main() {
         let text = std::fs::read_to_string(&path).expect("a file of Rust");
         let mut parsed = syn::parse_file(&text).expect("Rust");
         let file = path.strip_prefix(&copy).expect("a file of the copy").to_path_buf();
-        let mut mutator = Mutator { file, next, left_out: &left_out };
+        let limits = limits(&parsed);
+        let mut mutator = Mutator { file, limits, next, left_out: &left_out };
         mutator.visit_file_mut(&mut parsed);
         next = mutator.next;
         std::fs::write(&path, prettyplease::unparse(&parsed)).expect("written");
