@@ -74,7 +74,7 @@ pub fn limbs(count: usize, joints: usize) -> String {
         "#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,\n"
             .to_string();
     for limb in 0..count {
-        let side = |k: usize| if k % 2 == 0 { 1.0 } else { -1.0 };
+        let side = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut parent = format!("trunk.at([{}, {}, 0])", 0.2 * side(limb), 0.1 * side(limb / 2));
         for k in 0..joints {
             fields += &format!(
