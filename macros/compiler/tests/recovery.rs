@@ -211,3 +211,78 @@ fn kinematics_alone_say_what_they_lack() {
     let twice = kinematic.absent.keys().find(|name| kinematic.present.contains_key(*name));
     assert_eq!(twice, None);
 }
+
+const STOPPED: &str = "
+    #[body(mass = 1)] cart: Body,
+    #[joint(ground -> cart, along = x)] rail: Sleeve,
+    #[limit(on = rail, from = -1, to = 1)] stops: Limit,
+    #[acts(on = rail)] push: Force,
+    #[equilibrium(rail = 0)] rest: Equilibrium,";
+
+const SPED: &str = "
+    #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
+    #[joint(ground -> ball, along = (x, y))] plane: Stage,
+    #[speed(rate(plane.x) + rate(plane.y))] both: Speed,
+    #[speed(rate(plane.x) - rate(plane.y))] apart: Speed,";
+
+/// A contact of one rate.
+const SMOOTH: &str = "
+    #[particle(mass = 1)] bead: Particle,
+    #[joint(ground -> bead, along = z)] rod: Sleeve,
+    #[contact(bead, ground.plane(z))] floor: Contact,";
+
+/// A contact beside a constraint.
+const HELD: &str = "
+    #[particle(mass = 1)] bead: Particle,
+    #[joint(ground -> bead, along = (x, z))] plane: Stage,
+    #[constraint(plane.x * plane.x + plane.z * plane.z = 1)] ring: Holonomic,
+    #[contact(bead, ground.plane(z))] floor: Contact,";
+
+const WELDED: &str = "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,";
+
+/// Names of functions and constants, those for the runtime alone too: what is there, and by reason what is not.
+fn names(arguments: &str, name: &str, fields: &str) -> String {
+    let item = format!("pub struct {name} {{ {fields} }}");
+    let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
+    let mut by: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for item in file.items {
+        let Item::Impl(block) = item else { continue };
+        if block.trait_.is_some() {
+            continue;
+        }
+        for item in &block.items {
+            let name = match item {
+                ImplItem::Fn(f) => f.sig.ident.to_string(),
+                ImplItem::Const(c) => c.ident.to_string(),
+                _ => continue,
+            };
+            let list = reason(&block).map_or("there".to_string(), |reason| format!("not there, {reason}"));
+            by.entry(list).or_default().insert(name);
+        }
+    }
+    let lists = by.into_iter().map(|(list, names)| {
+        let names: Vec<String> = names.into_iter().collect();
+        format!("{list}: {}\n", names.join(" "))
+    });
+    format!("== {name}, {arguments}\n{}\n", lists.collect::<String>())
+}
+
+/// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test recovery` writes the file anew; read the difference.
+#[test]
+fn names_are_those_of_the_table() {
+    let others =
+        [("Stopped", STOPPED), ("Sped", SPED), ("Smooth", SMOOTH), ("Held", HELD), ("Welded", WELDED)];
+    let kinematic = ("inertia = none", "Stopped", &STOPPED[..STOPPED.find("#[acts").unwrap()]);
+    let all = MECHANISMS.into_iter().chain(others);
+    let all = all.flat_map(|(name, fields)| [("", name, fields), ("derivatives", name, fields)]);
+    let text: String =
+        all.chain([kinematic]).map(|(arguments, name, fields)| names(arguments, name, fields)).collect();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recovery/names.txt");
+    if std::env::var_os("LINKWORK_WRITE").is_some() {
+        std::fs::write(&path, &text).unwrap();
+    }
+    let expected = std::fs::read_to_string(&path).unwrap_or_default();
+    let differs = text.lines().zip(expected.lines()).find(|(now, before)| now != before);
+    assert_eq!((differs, text.len()), (None, expected.len()));
+}
