@@ -141,15 +141,16 @@ impl Lookup {
         (self.order(variable) < 3).then(|| Lookup(self.0 + (1 << (2 * variable))))
     }
 
-    /// The value of a function that stands for the table where its figures are not known: a product of waves, different for
-    /// every table, with all their derivatives.
+    /// The value of a function that stands for the table where its figures are not known: a product of cubics as tables are, the first
+    /// terms of waves, different for every table, with all their derivatives.
     pub fn apply(self, x: [f64; 3]) -> f64 {
-        let wave = |(k, x): (usize, f64)| {
-            let pace = 0.7 + 0.2 * k as f64;
-            let quarter = std::f64::consts::FRAC_PI_2 * self.order(k) as f64;
-            pace.powi(self.order(k) as i32) * (pace * x + 0.4 + 0.3 * self.table() as f64 + quarter).sin()
+        let cubic = |(k, x): (usize, f64)| {
+            let (order, pace, phase) = (self.order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table() as f64);
+            let derivative =
+                |n: usize| pace.powi(n as i32) * (phase + std::f64::consts::FRAC_PI_2 * n as f64).sin();
+            (order..=3).rev().fold(0.0, |sum, n| derivative(n) + sum * x / (n + 1 - order) as f64)
         };
-        x.into_iter().take(self.variables()).enumerate().map(wave).product()
+        x.into_iter().take(self.variables()).enumerate().map(cubic).product()
     }
 }
 
