@@ -157,7 +157,7 @@ impl<'a> Struct<'a> {
         name
     }
 
-    /// The same for what has a name in the file.
+    /// A field for what has a name in the file: its own name says which if it must be another.
     fn named(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
         let field = self.element(attribute, name, kind);
         self.rename(what, name, &field);

@@ -49,14 +49,15 @@ impl<T: Real> TimeStepping<T> {
         Self { step, midpoint: false }
     }
 
-    /// Two evaluations of the dynamics per step in place of four: as in Moreau's own scheme half a step along the velocity at its start
-    /// to the midpoint, the accelerations there, and half a step along the velocity at its end.
+    /// Steps with two evaluations of the dynamics in place of four: as in Moreau's own scheme half a step along the velocity at its start
+    /// to the midpoint, the accelerations `a` there, and half a step along the velocity at its end. Of a step of `h` seconds from the
+    /// configuration `q` and the velocity `v` this makes
     ///
     /// ```text
     /// q_m = q ⊕ (h/2) v,   v_m = v + (h/2) a(q, v),   v_f = v + h a(q_m, v_m),   q_f = q_m ⊕ (h/2) v_f
     /// ```
     ///
-    /// Impulses and displacements are those of every other step. Between impacts the order is 2, with declared speeds 1; where forces
+    /// to which `Λ₀` adds as to the velocities of any step of [`TimeStepping`]; what follows, `v₁` and `q₁`, is the same. Between impacts the order is 2, with declared speeds 1; where forces
     /// and inertia do not depend on velocities, the method is the leapfrog, whose energy does not drift. Robots on their feet, whose impacts
     /// leave order 1 in any case, move hardly less exactly. Source: Moreau, *Numerical aspects of the sweeping process*, Comput. Methods
     /// Appl. Mech. Eng. 177 (1999), with `v_m` in place of `v` in the accelerations.
@@ -194,7 +195,8 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     (end, added.map_or(still, |rate| system.carry(start.t, &start.q, &displacement, &(*rate * h))))
 }
 
-/// The same through the [midpoint](TimeStepping::midpoint).
+/// Where a step through the [midpoint](TimeStepping::midpoint) leads from the accelerations `before`, under impulses that add `rate` to
+/// the velocity per second, and what they add in all.
 fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,

@@ -61,8 +61,8 @@ struct Plot {
 }
 
 impl Motion {
-    /// The motion that samples tell. Up to twelve coordinates are plotted, those of each unit together. Terrain that contacts touch is drawn as far as the motion
-    /// goes.
+    /// The motion that samples tell. Up to twelve coordinates are plotted, those of each unit together. Terrain that contacts touch is
+    /// drawn as far as the motion goes.
     ///
     /// # Errors
     ///

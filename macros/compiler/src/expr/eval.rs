@@ -130,9 +130,9 @@ pub struct Rounded {
 }
 
 impl Rounded {
-    /// So many errors are no more than rounding. Pivots of the mass matrices of random mechanisms that are zero are 0.4 of their error at
-    /// most, others `1e9` and more, `1e6` where masses lie twelve powers of ten apart.
-    pub const MOST_ERRORS: f64 = 32.0;
+    /// How many times its error a value may be if rounding alone has made it. Pivots of the mass matrices of random mechanisms that are
+    /// zero are 0.4 of their error at most, others `1e9` and more, `1e6` where masses lie twelve powers of ten apart.
+    const MOST_ERRORS: f64 = 32.0;
 
     /// True if rounding alone may have made the value out of zero.
     pub fn may_be_zero(self) -> bool {

@@ -69,7 +69,7 @@ pub fn check(spec: &Spec, seed: u64) {
     assert!(checked || kane::sizes(spec).1 > 40, "seed {seed}");
 }
 
-/// The same with a word for derivatives; false where what it asks for is too long.
+/// Compares the functions of a mechanism that asks for derivatives by `word` with the oracle; false where they are too long.
 fn check_with(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
     let (arguments, item) = words::source(spec, "Random", word);
     let tokens = |text: &str| text.parse().expect("the generated source is Rust");
