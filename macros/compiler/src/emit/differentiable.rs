@@ -18,7 +18,7 @@ pub fn write_methods(
     i: &Interface<'_>,
     s: &Signature<'_>,
 ) {
-    if i.facts.kinematic || !i.facts.requests.derivatives {
+    if !i.facts.requests.derivatives {
         return;
     }
     let direct = functions.iter().find(|f| f.id == Id::InputDerivatives).and_then(|f| direct_inputs(f, s));
@@ -96,14 +96,11 @@ pub fn write_methods(
     );
 }
 
-/// The velocity along which each input pushes, if each is one entry of the generalized forces and nothing else.
+/// The velocity along which each input pushes, if each is one entry of the generalized forces and nothing else: without inputs there
+/// are no such forces, so that those with constant derivatives by the inputs depend on no state.
 fn direct_inputs(f: &Function, s: &Signature<'_>) -> Option<Vec<usize>> {
-    let outputs = f.program.outputs.get(s.nv..)?;
-    let (by_state, by_inputs) = outputs.split_at_checked(2 * s.nv * s.nv)?;
+    let by_inputs = f.program.outputs.get(s.nv + 2 * s.nv * s.nv..)?;
     let is = |o: &Operand, x: f64| *o == Operand::Const(x);
-    if !by_state.iter().all(|o| is(o, 0.0)) {
-        return None;
-    }
     let columns = (0..s.nu).map(|k| {
         let column = by_inputs.get(k * s.nv..(k + 1) * s.nv)?;
         let place = column.iter().position(|o| is(o, 1.0))?;
@@ -161,7 +158,7 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
 /// True if there are second derivatives of forward dynamics: forces of contacts that slip have none.
 pub fn has_second(i: &Interface<'_>) -> bool {
     let slips = i.facts.constraints.is_some_and(|c| c.slipping > 0);
-    !i.facts.kinematic && i.facts.requests.second_derivatives && !slips
+    i.facts.requests.second_derivatives && !slips
 }
 
 /// True if displacements of the configuration do not simply add up, and their rates have second derivatives that are given.

@@ -1,35 +1,43 @@
 //! What is written computes what its programs compute: bodies are run as the Rust that they are, for one state, for one in debug
-//! builds, and for several at once.
+//! builds, and for several at once. So do constants say what their functions compute.
 
-use super::agreement::{SAME, size};
+use super::agreement::{SAME, size, sum};
 use super::values::Values;
 use crate::emitted::{Machine, Stop, Value};
 use linkwork_compiler::catalogue::{Argument, Shape};
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::mechanism::{Model, Quantity};
+use linkwork_compiler::mechanism::{Chart, Model, Quantity};
 use linkwork_compiler::{compile, expand, read};
 use proc_macro2::TokenStream;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{Block, Expr, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, Pat, Stmt};
 
-/// The functions of the mechanism's own implementations, and the bodies that those of a number dispatch to.
+/// The functions and constants of the mechanism's own implementations, and the bodies that those of a number dispatch to.
 struct Written {
     functions: BTreeMap<String, ImplItemFn>,
+    constants: BTreeMap<String, Expr>,
     bodies: BTreeMap<String, Vec<ImplItemFn>>,
 }
 
 fn written(text: &str) -> Written {
-    let mut all = Written { functions: BTreeMap::new(), bodies: BTreeMap::new() };
+    let mut all = Written { functions: BTreeMap::new(), constants: BTreeMap::new(), bodies: BTreeMap::new() };
     for item in syn::parse_file(text).expect("Rust").items {
         let Item::Impl(block) = item else { continue };
         // Of those with bounds the functions say that they are missing.
         let (number, other) =
             (number_of(&block), block.trait_.is_some() || block.generics.where_clause.is_some());
         for member in block.items {
-            let ImplItem::Fn(function) = member else { continue };
+            let function = match member {
+                ImplItem::Fn(function) => function,
+                ImplItem::Const(constant) if !other => {
+                    all.constants.insert(constant.ident.to_string(), constant.expr);
+                    continue;
+                }
+                _ => continue,
+            };
             match &number {
                 Some(number) => all.bodies.entry(number.clone()).or_default().push(function),
                 None if !other => drop(all.functions.insert(function.sig.ident.to_string(), function)),
@@ -129,6 +137,7 @@ pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
     };
     let emitted = expand(tokens(arguments), tokens(item), Path::new(""));
     let written = written(&emitted.text);
+    check_places(&model, &output, &written, seed, &format!("seed {seed}\n#[mechanism({arguments})]\n{item}"));
     let mut run = BTreeSet::new();
     for f in &output.functions {
         for (suffix, states) in [("", 1), ("_lanes", 2)] {
@@ -142,6 +151,58 @@ pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
         }
     }
     run
+}
+
+/// Which entries of the generalized forces the inputs are, and which velocities those of ball and free joints, as constants say.
+fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64, about: &str) {
+    let constant = |name: &str| written.constants.get(name).map(places);
+    let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
+    let (Some(direct), Some(turned), Some(forces)) =
+        (constant("__DIRECT_INPUTS"), constant("__TURNED"), forces)
+    else {
+        return;
+    };
+    let ends = model.charts.iter().filter_map(|chart| match *chart {
+        Chart::Plain(..) => None,
+        Chart::Ball(_, v) => Some([v.0, v.0 + 3]),
+        Chart::Free(_, v) => Some([v.0, v.0 + 6]),
+    });
+    let ends: Vec<usize> = ends.flatten().collect();
+    let range = [ends.iter().min(), ends.iter().max()].map(|end| end.copied().unwrap_or(0));
+    assert_eq!(turned, model.speeds.is_none().then(|| range.to_vec()), "velocities that turn, {about}");
+
+    // Elsewhere, with other parameters, and for other inputs, the forces change like the inputs, or they do not.
+    let all = [seed, seed + 1000].map(|seed| Values::random(model, seed));
+    let u = all[0].u.clone();
+    let unit = |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
+    let by_input = |values: &Values, k: usize| -> Vec<f64> {
+        let changed = Values { u: sum(&values.u, &unit(k, u.len())), ..values.clone() };
+        let (after, before) = (changed.run(output, forces), values.run(output, forces));
+        after.iter().zip(before).map(|(a, b)| a - b).collect()
+    };
+    let is_near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
+    let place = |k: usize| {
+        (0..model.nv())
+            .find(|v| all.iter().all(|values| is_near(&by_input(values, k), &unit(*v, model.nv()))))
+    };
+    let [here, there] = all.each_ref().map(|values| {
+        let values = Values { u: u.clone(), t: all[0].t, ..values.clone() };
+        Values { parameters: all[0].parameters.clone(), ..values }.run(output, forces)
+    });
+    let expected: Option<Vec<usize>> = (0..u.len()).map(place).collect();
+    assert_eq!(direct, expected.filter(|_| is_near(&here, &there)), "places of inputs, {about}");
+}
+
+/// The numbers in `Some([…])` or `Some((…))`; nothing for `None`.
+fn places(expr: &Expr) -> Option<Vec<usize>> {
+    let Expr::Call(call) = expr else { return None };
+    let list = match &call.args[0] {
+        Expr::Array(array) => &array.elems,
+        Expr::Tuple(tuple) => &tuple.elems,
+        other => panic!("{}", quote::quote!(#other)),
+    };
+    let number = |expr: &Expr| quote::quote!(#expr).to_string().parse().expect("a number");
+    Some(list.iter().map(number).collect())
 }
 
 /// True if a body calls nothing else.

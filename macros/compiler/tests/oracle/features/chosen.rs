@@ -1,7 +1,7 @@
 //! Mechanisms with what random ones seldom have together.
 
 /// Arguments of the attribute, fields, and functions that must be among those that are compared.
-pub const MECHANISMS: [(&str, &str, &[&str]); 3] = [
+pub const MECHANISMS: [(&str, &str, &[&str]); 5] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
         "m: f64, l: f64,
@@ -50,6 +50,30 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 3] = [
         #[speed(0.7 * rate(pose.angle))] turn: Speed,
         #[output(atan2(sin(pose.x), 2 + cos(pose.angle)))] angle: Scalar,",
         &["contact_rates", "contact_jacobian", "angle_derivatives"],
+    ),
+    // Inputs that are entries of the generalized forces, beside and behind joints of every chart.
+    (
+        "gravity = -9.81 * y, derivatives",
+        "#[body(mass = 1)] cart: Body,
+        #[body(mass = 2, inertia = sphere(2, 0.3))] hull: Body,
+        #[body(mass = 1, inertia = sphere(1, 0.2))] eye: Body,
+        #[body(mass = 1, com = 0.1 * y, inertia = sphere(1, 0.2))] flag: Body,
+        #[joint(ground -> cart, along = x)] rail: Sleeve,
+        #[joint(ground -> hull)] flight: Free,
+        #[joint(hull -> eye)] socket: Ball,
+        #[joint(eye -> flag, about = z)] pole: Pin,
+        #[acts(on = pole)] motor: Torque,
+        #[acts(on = rail)] push: Force,",
+        &["__input_derivatives"],
+    ),
+    // An input that is two entries.
+    (
+        "gravity = -9.81 * y, derivatives",
+        "push: Input,
+        #[body(mass = 2, com = 0.2 * x, inertia = diagonal(0.3, 0.4, 0.5))] block: Body,
+        #[joint(ground -> block, about = z)] pose: Planar,
+        #[acts(on = block, value = push * (ground.x + ground.y))] oblique: Force,",
+        &["__input_derivatives"],
     ),
 ];
 
