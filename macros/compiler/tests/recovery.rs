@@ -235,20 +235,42 @@ const SMOOTH: &str = "
 const HELD: &str = "
     #[particle(mass = 1)] bead: Particle,
     #[joint(ground -> bead, along = (x, z))] plane: Stage,
-    #[constraint(plane.x * plane.x + plane.z * plane.z = 1)] ring: Holonomic,
+    #[constraint(plane.x * plane.x + plane.y * plane.y = 1)] ring: Holonomic,
     #[contact(bead, ground.plane(z))] floor: Contact,";
+
+/// Rolling contact that presses by another contact, and a limit on one side.
+const PRESSED: &str = "
+    #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
+    #[joint(ground -> ball, about = z)] pose: Planar,
+    #[contact(ball.sphere(1), ground.plane(y), friction = 0.3, rolling = 0.01)] floor: Contact,
+    #[limit(on = pose.angle, from = -1)] stop: Limit,";
+
+/// A state of first order beside a constraint.
+const LAGGED: &str = "command: Input, lag: f64,
+    #[particle(mass = 1)] bead: Particle,
+    #[joint(ground -> bead, along = (x, z))] plane: Stage,
+    #[constraint(plane.x * plane.x + plane.y * plane.y = 1)] ring: Holonomic,
+    #[state(rate = (command - lagging) / lag)] lagging: State,
+    #[acts(on = plane.x, value = lagging)] push: Force,
+    #[output(lagging * plane.x)] felt: Scalar,";
 
 const WELDED: &str = "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,";
 
-/// Names of functions and constants, those for the runtime alone too: what is there, and by reason what is not.
+/// Names of functions and constants, those for the runtime alone too: what is there, and by reason what is not. Beside them the
+/// traits that are implemented, those of frames and of bodies of functions left out.
 fn names(arguments: &str, name: &str, fields: &str) -> String {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
     let mut by: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for item in file.items {
         let Item::Impl(block) = item else { continue };
-        if block.trait_.is_some() {
+        if let Some((path, _)) = &block.trait_ {
+            let of = path.segments.last().unwrap().ident.to_string();
+            if !["NamedFrame", "Evaluate", "Body"].contains(&of.as_str()) {
+                by.entry("traits".to_string()).or_default().insert(of);
+            }
             continue;
         }
         for item in &block.items {
@@ -271,9 +293,18 @@ fn names(arguments: &str, name: &str, fields: &str) -> String {
 /// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test recovery` writes the file anew; read the difference.
 #[test]
 fn names_are_those_of_the_table() {
-    let others =
-        [("Stopped", STOPPED), ("Sped", SPED), ("Smooth", SMOOTH), ("Held", HELD), ("Welded", WELDED)];
-    let kinematic = ("inertia = none", "Stopped", &STOPPED[..STOPPED.find("#[acts").unwrap()]);
+    let others = [
+        ("Stopped", STOPPED),
+        ("Sped", SPED),
+        ("Smooth", SMOOTH),
+        ("Held", HELD),
+        ("Pressed", PRESSED),
+        ("Lagged", LAGGED),
+        ("Welded", WELDED),
+    ];
+    let stopped = &STOPPED[..STOPPED.find("#[acts").unwrap()];
+    let led = format!("{stopped} #[state(rate = rate(rail))] way: State, #[output(way)] late: Scalar,");
+    let kinematic = ("inertia = none", "Led", &led[..]);
     let all = MECHANISMS.into_iter().chain(others);
     let all = all.flat_map(|(name, fields)| [("", name, fields), ("derivatives", name, fields)]);
     let text: String =

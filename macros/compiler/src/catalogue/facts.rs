@@ -222,9 +222,7 @@ impl Facts {
             Need::Calls => self.calls,
             Need::PassiveCalls => self.passive.is_some(),
             Need::FewContacts => {
-                self.nv > 0
-                    && self.constraints.is_none()
-                    && (1..=FEW_CONTACT_RATES).contains(&self.contacts[1])
+                self.constraints.is_none() && (1..=FEW_CONTACT_RATES).contains(&self.contacts[1])
             }
         }
     }

@@ -90,7 +90,7 @@ impl ManifoldFunction {
             let list: Vec<String> = (first..first + n).map(|k| format!("{name}{k}")).collect();
             format!("[{}]", list.join(", "))
         };
-        for (name, n) in self.arguments.iter().filter(|(_, n)| *n > 0) {
+        for (name, n) in &self.arguments {
             let _ = writeln!(out, "let [{}] = {name}.data.0;", range(0, *n, name));
         }
         let [(first, _), (second, _)] = self.arguments;

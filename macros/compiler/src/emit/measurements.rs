@@ -46,7 +46,7 @@ pub fn write_impls(
     }
     measurements.write_derivatives(out);
     // As of the derivatives of the states themselves.
-    if !(i.states.is_empty() || i.facts.kinematic || i.facts.constraints.is_some()) {
+    if !i.states.is_empty() && i.facts.constraints.is_none() {
         measurements.write_by_states(out);
     }
 }

@@ -9,11 +9,7 @@ use std::fmt::Write;
 pub fn write_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
     let facts = &i.facts;
-    if !facts.requests.sensitivities
-        || facts.kinematic
-        || facts.constraints.is_some()
-        || facts.parameters == 0
-    {
+    if !facts.requests.sensitivities || facts.constraints.is_some() || facts.parameters == 0 {
         return;
     }
     let Head { generics, arguments, bounds } = &Head::new(i, s);
