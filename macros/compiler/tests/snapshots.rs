@@ -43,8 +43,9 @@ const SLIDING: &str = "friction: f64,
 const DRIVEN: &str = "#[body(mass = 2, inertia = sphere(2, 0.3))] ball: Body,
     #[joint(ground -> ball, about = z)] pose: Planar,
     #[acts(on = ball, value = sin(t) * ground.x)] wind: Force,
-    #[contact(ball.sphere(0.3), ground.plane(y), friction = 0.3)] floor: Contact,
+    #[contact(ball.sphere(0.3), ground.plane(y), friction = 0.3, rolling = 0.01)] floor: Contact,
     #[limit(on = pose.x, max_speed = 3)] stop: Limit,
+    #[limit(on = pose.angle, from = -1)] bound: Limit,
     #[output(contact_force(floor))] push: Vector,
     #[output(ball, resolved_in = ground)] diagram: FreeBody,";
 
@@ -182,7 +183,12 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 14] = [
             "Constraints::*",
         ],
     ),
-    ("driven", "gravity = -9.81 * y", DRIVEN, &["push", "diagram", "diagram_under", "Limits::*"]),
+    (
+        "driven",
+        "gravity = -9.81 * y",
+        DRIVEN,
+        &["push", "diagram", "diagram_under", "Limits::*", "Contacts::*"],
+    ),
     ("governed", "gravity = -9.81 * y, batch", GOVERNED, &["load", "forward_dynamics_lanes", "Mechanism::*"]),
     (
         "measured",
