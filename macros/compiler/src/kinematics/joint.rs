@@ -31,7 +31,7 @@ pub struct Joint<'g> {
     pub translation: Vec3<'g>,
     /// Degrees of freedom, parent side first.
     pub dofs: Vec<Dof<'g>>,
-    /// What a link placed by expressions adds.
+    /// What is added where the motion subspace is not constant, or the link is driven in time: a link placed by expressions.
     pub drift: Option<Drift<'g>>,
     /// How many limbs side by side hang from the parent by this joint, one in each lane of its expressions; one for a
     /// joint that stands for itself.

@@ -8,7 +8,7 @@ use super::{accelerations, rnea, velocities};
 use crate::expr::Expr;
 use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
-use crate::mechanism::{Model, Motion, Quantity};
+use crate::mechanism::{Model, Quantity};
 
 pub mod analytic;
 mod columns;
@@ -124,5 +124,5 @@ pub fn subtract<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
 pub fn is_analytic(model: &Model<'_>) -> bool {
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()
-        && model.links.iter().all(|link| !matches!(link.motion, Motion::Placed))
+        && model.links.iter().all(|link| link.motion.has_constant_subspace())
 }

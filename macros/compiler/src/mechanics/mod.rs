@@ -3,7 +3,7 @@
 //! axes, where motion subspaces are constant. Knows no tokens.
 
 use crate::expr::Expr;
-use crate::mechanism::{Coordinate, Model, Motion, Quantity};
+use crate::mechanism::{Coordinate, Model, Quantity};
 
 pub mod aba;
 pub mod added_mass;
@@ -51,6 +51,6 @@ pub fn is_plain_tree(model: &Model<'_>) -> bool {
         && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| {
             let mut own = |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v.0], true);
-            !matches!(link.motion, Motion::Placed) && link.motion.coordinate().is_none_or(&mut own)
+            link.motion.has_constant_subspace() && link.motion.coordinate().is_none_or(&mut own)
         })
 }

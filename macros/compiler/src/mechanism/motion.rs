@@ -104,7 +104,20 @@ impl Motion<'_> {
         }
     }
 
-    /// A number for each kind of motion that alike limbs may have: those of one kind have the same number of degrees of freedom.
+    /// True if its motion subspace is constant in link axes.
+    pub fn has_constant_subspace(&self) -> bool {
+        match self {
+            Motion::Turn { .. }
+            | Motion::Slide { .. }
+            | Motion::Helix { .. }
+            | Motion::Ball { .. }
+            | Motion::Free { .. } => true,
+            Motion::Placed => false,
+        }
+    }
+
+    /// A number for each kind of motion that alike limbs may have: those of one kind have the same number of degrees of freedom, and a
+    /// constant subspace.
     pub fn kind_in_limbs(&self) -> Option<usize> {
         match self {
             Motion::Turn { .. } => Some(1),

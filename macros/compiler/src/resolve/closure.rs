@@ -87,21 +87,31 @@ impl<'g> Builder<'_, 'g> {
             let e = self.direction(on_parent, parent.pose.rotation.to_parent(direction));
             self.push(ends, word, gap.dot(&e), (Measure::Length, e.value));
         }
-        if let [Elementary::Helix(axis, pitch)] = motions {
-            let n = self.direction(on_parent, parent.pose.rotation.to_parent(*axis)).value;
-            let [(_, first), (_, second)] = perpendicular(*axis);
-            let on = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v)).value;
-            let turned = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
-            let (sine, cosine) = (on(second).dot(turned), on(first).dot(turned));
-            let advance = gap.value.dot(n) / *pitch;
-            let value = *pitch * (sine * advance.cos() - cosine * advance.sin());
-            let rate = time_derivative(self.model.space(), value);
-            let second = time_derivative(self.model.space(), rate);
-            // It pushes the child back along the axis and turns it by the pitch.
-            self.push(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
-            let turned = self.transmission(ends, true, n * *pitch);
-            self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(turned));
+        for motion in motions {
+            match motion {
+                Elementary::Helix(axis, pitch) => self.advance_row(ends, (*axis, *pitch), gap.value),
+                // Their rows are those of what slides and of what turns.
+                Elementary::Turn(_) | Elementary::Slide(_) | Elementary::Ball | Elementary::Free => {}
+            }
         }
+    }
+
+    /// Along the axis of a screw the child's joint frame is where its turn leads: `gap` is from the parent's to it.
+    fn advance_row(&mut self, ends: &Closing<'g>, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) {
+        let Closing { parent, child, on_parent, on_child, .. } = ends;
+        let n = self.direction(on_parent, parent.pose.rotation.to_parent(axis)).value;
+        let [(_, first), (_, second)] = perpendicular(axis);
+        let on = |v| self.direction(on_parent, parent.pose.rotation.to_parent(v)).value;
+        let turned = self.direction(on_child, child.pose.rotation.to_parent(first)).value;
+        let (sine, cosine) = (on(second).dot(turned), on(first).dot(turned));
+        let advance = gap.dot(n) / pitch;
+        let value = pitch * (sine * advance.cos() - cosine * advance.sin());
+        let rate = time_derivative(self.model.space(), value);
+        let second = time_derivative(self.model.space(), rate);
+        // It pushes the child back along the axis and turns it by the pitch.
+        self.push(ends, "advance", Jet { value, rate, second }, (Measure::Length, -n));
+        let turned = self.transmission(ends, true, n * pitch);
+        self.model.constraints.last_mut().iter_mut().for_each(|c| c.transmits.push(turned));
     }
 
     /// The child's joint axes are turned as the turns of the joint let them be.
