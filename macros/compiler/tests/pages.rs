@@ -1,0 +1,79 @@
+//! What pages for readers and lists of tests name is what the compiler has: joints, words that ask for functions, passes of programs.
+
+use linkwork_compiler::lower::pipeline::{DRAFT, FINISH};
+use linkwork_compiler::syntax::{Word, joint_kind};
+use std::path::Path;
+
+/// Files, by their paths in the repository, and how `NAME` stands in each.
+type Places = &'static [(&'static str, &'static str)];
+
+/// Fails with the files in which names are missing.
+fn check(names: &[String], places: Places) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut missing = Vec::new();
+    for (path, form) in places {
+        let text = std::fs::read_to_string(root.join(path)).unwrap();
+        let absent = names.iter().map(|name| form.replace("NAME", name)).filter(|form| !text.contains(form));
+        missing.extend(absent.map(|form| format!("{path} lacks {form}")));
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+/// The page of the language, the runtime's tables, the book's joints, what is said to the word `Joint`, and the lists that random
+/// mechanisms are made from.
+#[test]
+fn joints_are_listed() {
+    let names: Vec<String> = joint_kind::names().map(ToString::to_string).collect();
+    check(
+        &names,
+        &[
+            ("runtime/guide/language.md", "| [`NAME`](crate::elements::NAME) |"),
+            ("runtime/src/elements.rs", "[`NAME`]"),
+            ("runtime/src/elements/joints.rs", "pub enum NAME {}"),
+            ("runtime/src/lib.rs", " NAME,"),
+            ("models/src/lib.rs", "`NAME`"),
+            ("macros/compiler/src/syntax/words/tables.rs", "`NAME`"),
+            ("macros/compiler/tests/model/main.rs", "(\"NAME\","),
+            ("macros/compiler/tests/oracle/spec.rs", "Kind::NAME,"),
+            ("macros/compiler/tests/oracle/features/source.rs", "(\"NAME\","),
+            ("tests/random_tree/mod.rs", "\"NAME\""),
+        ],
+    );
+}
+
+/// A word as it is written, from the trait that says that it is missing: `AsksForSecondDerivatives` of `second_derivatives`.
+fn written(word: Word) -> String {
+    let name = word.reason().trim_start_matches("AsksFor");
+    let lower = |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
+    name.chars().map(lower).collect::<String>().trim_start_matches('_').to_string()
+}
+
+#[test]
+fn words_are_listed() {
+    let names: Vec<String> = Word::ALL.into_iter().map(written).collect();
+    check(
+        &names,
+        &[
+            ("macros/src/lib.rs", "/// | `NAME` |"),
+            ("runtime/guide/functions.md", "| `NAME` |"),
+            ("runtime/src/absent.rs", "does not ask for `NAME`"),
+            ("macros/compiler/tests/catalogue.rs", "NAME"),
+        ],
+    );
+    // This one is refused where no coordinate is cyclic.
+    let any: Vec<String> = names.into_iter().filter(|name| name != "routh").collect();
+    check(
+        &any,
+        &[
+            ("macros/compiler/tests/oracle/features/source.rs", "    \"NAME\","),
+            ("macros/compiler/tests/recovery.rs", "NAME"),
+        ],
+    );
+}
+
+#[test]
+fn passes_are_listed() {
+    let rows: Vec<String> =
+        DRAFT.iter().chain(FINISH).map(|pass| format!("| `{}` | {} |", pass.name, pass.about)).collect();
+    check(&rows, &[("macros/compiler/README.md", "NAME")]);
+}
