@@ -315,5 +315,9 @@ fn names_are_those_of_the_table() {
     }
     let expected = std::fs::read_to_string(&path).unwrap_or_default();
     let differs = text.lines().zip(expected.lines()).find(|(now, before)| now != before);
-    assert_eq!((differs, text.len()), (None, expected.len()));
+    assert_eq!(
+        (differs, text.len()),
+        (None, expected.len()),
+        "names.txt is not what mechanisms have now; with `LINKWORK_WRITE=1` it is written anew"
+    );
 }

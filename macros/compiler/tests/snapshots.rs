@@ -314,7 +314,11 @@ fn is_as_written(name: &str) {
     let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
     let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
     assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
-    assert_eq!(difference(name, &shown(&emitted.text, functions)), None, "generated code differs");
+    assert_eq!(
+        difference(name, &shown(&emitted.text, functions)),
+        None,
+        "generated code differs; with `LINKWORK_WRITE=1` it is written anew"
+    );
 }
 
 #[test]

@@ -126,5 +126,10 @@ fn messages_and_their_tokens() {
             }
         }
     }
-    assert!(wrong.is_empty(), "{} of {count}:\n\n{}", wrong.len(), wrong.join("\n\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} of {count}, which `LINKWORK_WRITE=1` writes anew:\n\n{}",
+        wrong.len(),
+        wrong.join("\n\n")
+    );
 }
