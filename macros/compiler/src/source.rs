@@ -168,6 +168,10 @@ impl Source {
         let facts = self.guess(&outline);
         let mut functions = catalogue::before_outputs(&facts);
         for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
+            if output.touched && !catalogue::has(&output.name, &facts) {
+                functions.push(catalogue::touched(&output.name, output.size, &facts));
+                continue;
+            }
             for f in catalogue::output(&output.name, output.size, output.uses, &facts) {
                 // An output may have the wrong name.
                 if !catalogue::has(&f.name, &facts) && functions.iter().all(|known| known.name != f.name) {
@@ -208,7 +212,11 @@ impl Source {
             velocities: outline.velocities,
             inputs: outline.inputs,
             frames: outline.frames,
-            diagrams: outline.diagrams.into_iter().filter(|(name, _)| can_be_a_function(name)).collect(),
+            diagrams: outline
+                .diagrams
+                .into_iter()
+                .filter(|(name, _)| can_be_a_function(name) && !catalogue::has(name, &facts))
+                .collect(),
             constraints: if outline.constrained {
                 Constraints::unknown(outline.slipping)
             } else {

@@ -21,7 +21,8 @@ const CART_POLE: &str = "
     #[output(r(pole / ground))] place: Vector,
     #[output(dot(v(pole / ground / ground), y))] climb: Scalar,
     #[output(dot(a(pole / ground / ground), y))] lift: Scalar,
-    #[output(reaction_force(hinge))] load: Vector,";
+    #[output(reaction_force(hinge))] load: Vector,
+    #[output(pole)] diagram: FreeBody,";
 
 const DRIVEN: &str = "
     m: f64, radius: f64, spin: f64,
@@ -52,7 +53,9 @@ const SLIDING: &str = "
 const BOUNCING: &str = "mu: f64,
     #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
     #[joint(ground -> ball)] pose: Free,
-    #[contact(ball.sphere(1), ground.plane(z), friction = mu)] floor: Contact,";
+    #[contact(ball.sphere(1), ground.plane(z), friction = mu)] floor: Contact,
+    #[output(contact_force(floor))] push: Vector,
+    #[output(ball)] diagram: FreeBody,";
 
 const MECHANISMS: [(&str, &str); 5] = [
     ("CartPole", CART_POLE),
@@ -62,8 +65,8 @@ const MECHANISMS: [(&str, &str); 5] = [
     ("Bouncing", BOUNCING),
 ];
 
-/// By name, the number of arguments (none for constants).
-type Names = BTreeMap<String, Option<usize>>;
+/// By name, the arguments and the result (nothing for constants), without the sizes, which a mistake may hide.
+type Names = BTreeMap<String, Option<String>>;
 
 struct Generated {
     /// What can be called, of all structs.
@@ -85,6 +88,15 @@ fn generated(arguments: &str, name: &str, fields: &str) -> Generated {
         }
     }
     all
+}
+
+fn signature(f: &syn::ImplItemFn) -> String {
+    let (inputs, output) = (&f.sig.inputs, &f.sig.output);
+    // After a mistake it is not known which frames there are.
+    let text = quote::quote!((#inputs) #output).to_string().replace(":: linkwork :: FrameIndex < I >", "F");
+    let is_size = |word: &str| word.trim_end_matches([']', ')']).parse::<usize>().is_ok();
+    let words = text.split(' ').map(|word| if is_size(word) { "_" } else { word });
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// The bound of what is absent: the only one over a lifetime.
@@ -111,7 +123,7 @@ impl Generated {
         let reason = reason(block);
         for item in &block.items {
             let (name, arguments) = match item {
-                ImplItem::Fn(f) => (f.sig.ident.to_string(), Some(f.sig.inputs.len())),
+                ImplItem::Fn(f) => (f.sig.ident.to_string(), Some(signature(f))),
                 ImplItem::Const(c) => (c.ident.to_string(), None),
                 _ => continue,
             };

@@ -129,7 +129,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     for f in functions {
         write_function(&mut methods, f, &s, true);
     }
-    reactions::write_unknown(&mut methods, interface, &s);
+    reactions::write_unknown(&mut methods, interface, functions, &s);
     constraints::write_constants(&mut methods, &interface.constraints);
     contacts::write_constants(&mut methods, &interface.contacts);
     if !interface.facts.kinematic {

@@ -50,8 +50,13 @@ pub fn write_prepared(
     constraints::write_constants(&mut methods, &i.constraints);
     contacts::write_constants(&mut methods, &i.contacts);
     constraints::write_methods(&mut methods, &i.constraints, functions, s);
-    reactions::write_methods(&mut methods, i, functions, s);
-    reactions::write_touched(&mut methods, i, functions, s);
+    match content.numbers {
+        Some(_) => {
+            reactions::write_methods(&mut methods, i, functions, s);
+            reactions::write_touched(&mut methods, i, functions, s);
+        }
+        None => reactions::write_unknown(&mut methods, i, functions, s),
+    }
     write_manifold(&mut methods, content.charts, i.facts.speeds, s);
     if !i.contacts.is_empty() {
         write_carry(&mut methods, content.charts, s);

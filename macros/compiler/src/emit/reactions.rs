@@ -106,12 +106,21 @@ fn write_touched_diagram(
     );
 }
 
-/// Free-body diagrams of a mechanism that failed to compile: what acts is not known.
-pub fn write_unknown(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
+/// What a mechanism that failed to compile has of outputs that name forces at contacts, and free-body diagrams: what acts is not
+/// known.
+pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
+    let mut arguments = vec![Argument::Q, Argument::V];
+    arguments.extend((s.nu > 0).then_some(Argument::U));
+    let parameters = s.parameters(&s.timed(&arguments));
+    for f in functions {
+        let Some(name) = f.name.strip_prefix(TOUCHED) else { continue };
+        let shape = s.shape(f.shape);
+        let _ = writeln!(
+            out,
+            "pub fn {name}({parameters}) -> ::core::result::Result<{shape}, ::linkwork::ConstraintError> {{ loop {{}} }}"
+        );
+    }
     for (name, diagram) in &i.diagrams {
-        let mut arguments = vec![Argument::Q, Argument::V];
-        arguments.extend((s.nu > 0).then_some(Argument::U));
-        let parameters = s.parameters(&s.timed(&arguments));
         let kind = diagram_type(diagram, s);
         if i.contacts.is_empty() {
             let _ = writeln!(out, "pub fn {name}({parameters}) -> {kind} {{ loop {{}} }}");

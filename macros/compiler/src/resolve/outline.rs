@@ -45,6 +45,8 @@ pub struct OutlinedOutput {
     pub size: usize,
     /// What it depends on.
     pub uses: Uses,
+    /// It names forces at contacts, which may contradict each other.
+    pub touched: bool,
 }
 
 /// Outlines a description that may be wrong.
@@ -122,7 +124,15 @@ fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
         Rank::Matrix => 9,
         Rank::FreeBody => return None,
     };
-    Some(OutlinedOutput { name: output.name.text.clone(), size, uses: uses(d, &output.value) })
+    let names_force = |part: &&Expr| match &part.kind {
+        ExprKind::Call(function, arguments) => {
+            ["contact_force", "contact_moment", "power"].contains(&function.text.as_str())
+                && arguments.iter().any(|argument| names_contact(d, argument))
+        }
+        _ => false,
+    };
+    let touched = with_definitions(d, &output.value).iter().any(names_force);
+    Some(OutlinedOutput { name: output.name.text.clone(), size, uses: uses(d, &output.value), touched })
 }
 
 fn diagram(output: &Definition) -> Option<(String, Diagram)> {
