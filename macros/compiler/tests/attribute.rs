@@ -92,3 +92,41 @@ fn doc_comments_stand_beside_what_they_describe() {
         assert!(text.contains(expected), "{expected}\n{text}");
     }
 }
+
+#[test]
+fn functions_say_what_determines_the_motion() {
+    let fields =
+        "#[body(mass = 1, inertia = sphere(1, 1))] stone: Body, #[joint(ground -> stone)] flight: Free,
+        #[output(stone)] diagram: FreeBody, #[output(reaction_force(flight))] load: Vector,";
+    let text = code("", fields);
+    for expected in [
+        "thefree-bodydiagramof`stone`inthemotionthatthestatedetermines:nothingacts.",
+        "Theoutput`load`,inthemotionthatthestatedetermines:",
+    ] {
+        assert!(text.contains(expected), "{expected}\n{text}");
+    }
+    let text = code("", &format!("{fields} #[acts(on = stone, along = x)] push: Force,"));
+    for expected in [
+        "thefree-bodydiagramof`stone`inthemotionundertheinputs:`push`.",
+        "Theoutput`load`,inthemotionundertheinputs:",
+    ] {
+        assert!(text.contains(expected), "{expected}\n{text}");
+    }
+}
+
+/// The figures of a file are constants, unless the struct is generic.
+#[test]
+fn a_mechanism_of_a_file_is_a_constant() {
+    let of = |item: &str| {
+        let arguments = "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial]";
+        let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+        emitted.into_tokens().unwrap().to_string().replace(' ', "")
+    };
+    let plain = of("pub struct S;");
+    assert!(plain.contains("pubconstFILE:Self=") && plain.contains("pubconstfnfrom_file()->Self"), "{plain}");
+    let generic = of("pub struct S<T>;");
+    assert!(
+        !generic.contains("pubconstFILE:Self=") && generic.contains("pubfnfrom_file()->Self"),
+        "{generic}"
+    );
+}

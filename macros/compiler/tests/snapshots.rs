@@ -327,12 +327,13 @@ fn every_mechanism_has_a_test() {
 }
 
 /// Mechanisms whose structs' documentation has, between them, every part.
-const DOCUMENTED: [(&str, &str); 6] = [
+const DOCUMENTED: [(&str, &str); 7] = [
     ("gravity = -9.81 * y", "#[body(mass = 1)] arm: Body, #[joint(ground -> arm)] held: Weld,"),
     ("gravity = -9.81 * y", DRIVEN),
     ("gravity = -9.81 * y, equations = structure, batch, conserved", BUOY),
     ("gravity = -9.81 * y, batch", SLIDING),
     ("gravity = -9.81 * y, second_derivatives, conserved, equations = hamilton", CART_POLE),
+    ("equations = kane", GOVERNED),
     (
         "inertia = none",
         "#[body] arm: Body,

@@ -152,6 +152,10 @@ fn long_passive_forces_agree() {
     let item = format!("pub struct Any {{ {fields} }}");
     let functions = ["__passive_forces", "__passive_derivatives", "inverse_dynamics_derivatives"];
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives", &item, &functions, 0) > 20);
+    let text = expanded("gravity = -9.81 * y, derivatives", &item);
+    for row in ["| passive forces, which others call |", "| derivatives of these, which others call |"] {
+        assert!(text.contains(row), "{row}");
+    }
 }
 
 /// As many as have a function of their own.
