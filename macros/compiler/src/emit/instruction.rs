@@ -39,14 +39,6 @@ pub struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// The text of a value from those of its lanes.
-    fn in_lanes(&mut self, lanes: &[String]) -> String {
-        match lanes {
-            [one] => one.clone(),
-            _ => format!("Ops::lanes([{}])", lanes.join(", ")),
-        }
-    }
-
     pub fn gathered(&self, gather: &[Symbol]) -> String {
         let symbols: Vec<String> = gather.iter().map(|s| self.symbol(*s)).collect();
         format!("Ops::lanes([{}])", symbols.join(", "))
@@ -83,7 +75,7 @@ impl Writer<'_> {
             Operand::Tuple(k) => {
                 let tuple: Vec<String> =
                     self.program.tuples[k].iter().map(|c| self.scalar.constant(*c)).collect();
-                plain(self.in_lanes(&tuple))
+                plain(format!("Ops::lanes([{}])", tuple.join(", ")))
             }
             Operand::Gather(k) => {
                 let gather = &self.program.gathers[k];

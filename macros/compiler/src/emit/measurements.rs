@@ -155,11 +155,10 @@ fn rows(f: &Function) -> usize {
     }
 }
 
-/// The names of an output's entries: its components in space, or numbers.
+/// The names of an output's entries: its own, or those of its components in space.
 fn entries(f: &Function) -> Vec<String> {
-    match rows(f) {
-        1 => vec![f.name.clone()],
-        3 => ["x", "y", "z"].map(|axis| format!("{}.{axis}", f.name)).to_vec(),
-        n => (0..n).map(|k| format!("{}[{k}]", f.name)).collect(),
+    match f.shape {
+        Shape::Vector(_) => ["x", "y", "z"].map(|axis| format!("{}.{axis}", f.name)).to_vec(),
+        _ => vec![f.name.clone()],
     }
 }
