@@ -58,3 +58,23 @@ fn debug_builds_compute_one_state_after_another() {
         assert!(bodies.iter().any(|(debug, other)| debug.contains(&one) && !other.contains(&one)), "{call}");
     }
 }
+
+/// Of second derivatives by configuration, velocities and inputs there are six.
+#[test]
+fn debug_builds_have_all_second_derivatives() {
+    let mut item = "struct S {".to_string();
+    for (k, axis) in ["x", "y", "z"].iter().enumerate() {
+        let parent = if k == 0 { "ground".to_string() } else { format!("arm{}.at(x)", k - 1) };
+        item += &format!(
+            "#[body(mass = 1, com = x, inertia = diagonal(1, 2, 2))] arm{k}: Body, #[joint({parent} -> arm{k}, about = {axis})] pin{k}: Pin,
+            #[acts(on = arm{k}.at(x + y), along = ground.x)] jet{k}: Force,"
+        );
+    }
+    item += "}";
+    let emitted = expand("batch, second_derivatives".parse().unwrap(), item.parse().unwrap(), Path::new(""));
+    let code = format!("{}{}", emitted.tokens, emitted.text);
+    let call = "|k| self.generalized_forces_second_derivatives(&lane(q, k), &lane(v, k)";
+    let bodies = bodies(&code);
+    let (debug, _) = bodies.iter().find(|(debug, _)| debug.contains(call)).expect(call);
+    assert!(debug.contains("all[k].5") && !debug.contains("all[k].6"), "{debug}");
+}

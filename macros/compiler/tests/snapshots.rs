@@ -81,7 +81,7 @@ const SPEEDS: &str = "
 
 /// Name, arguments of the attribute, fields, and what is shown: functions with their bodies, or with traits (`Trait::*`), of which
 /// what is a call of the function of the same name is left out.
-const MECHANISMS: [(&str, &str, &str, &[&str]); 14] = [
+const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
     (
         "pendulum",
         "gravity = -9.81 * y",
@@ -112,6 +112,14 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 14] = [
             "constrained_dynamics",
             "__constrained_dynamics",
         ],
+    ),
+    (
+        "independent",
+        "gravity = -9.81 * y, formulation = speeds, batch",
+        "#[particle(mass = 2)] bead: Particle,
+        #[joint(ground -> bead, along = (x, y))] plane: Stage,
+        #[constraint(plane.y = 0.3 * plane.x * plane.x)] wire: Holonomic,",
+        &["forward_dynamics", "constrained_dynamics", "__constrained_dynamics", "forward_dynamics_lanes"],
     ),
     (
         "limbs",
@@ -306,7 +314,7 @@ macro_rules! snapshots {
     };
 }
 
-snapshots!(pendulum closed limbs prepare batch derivatives charts slipping driven governed measured speeds file f32);
+snapshots!(pendulum closed independent limbs prepare batch derivatives charts slipping driven governed measured speeds file f32);
 
 fn is_as_written(name: &str) {
     let of = MECHANISMS.iter().find(|(known, ..)| *known == name);

@@ -47,6 +47,11 @@ fn mechanisms_without_a_form_say_which_they_have() {
             "there are no derivatives by parameters with speeds that contain parameters",
             "the configuration would move otherwise with other parameters",
         ),
+        (
+            "inertia = none|#[output(reaction_force(hinge))] load: Vector,",
+            "the output `load` names a reaction, which needs inertia",
+            "without inertia there are no dynamics",
+        ),
     ];
     answers(setting, ROWS);
 }
@@ -88,4 +93,73 @@ fn contacts_that_slip_have_no_equations_of_kane() {
         "write `equations = lagrange`",
     )];
     answers(setting, ROWS);
+}
+
+/// Momenta leave forces out that depend on accelerations.
+#[test]
+fn forces_of_accelerations_leave_no_momenta() {
+    fn own(words: &str) -> (String, String) {
+        setting(&format!(
+            "{words}|#[acts(on = rail, value = -m * dot(a(arm / ground / ground), x))] added: Force,"
+        ))
+    }
+    const HAMILTON: &str = "a force that depends on accelerations leaves no Hamilton's equations";
+    const ROUTH: &str = "a force that depends on accelerations leaves no Routh's equations";
+    const SECOND: &str = "a force that depends on accelerations leaves no second derivatives";
+    const MOMENTA: &str = "a force that depends on accelerations leaves no derivatives of momenta";
+    const HELP: &str = "leave the word out that asks for them, or these terms of the force";
+    const ROWS: &[Row] = &[
+        ("hamilton", HAMILTON, HELP),
+        ("equations = hamilton", HAMILTON, HELP),
+        ("routh", ROUTH, HELP),
+        ("equations = routh", ROUTH, HELP),
+        ("second_derivatives", SECOND, HELP),
+        ("momentum_derivatives", MOMENTA, HELP),
+    ];
+    answers(own, ROWS);
+}
+
+/// Carts on rails of their own, with so many forces.
+fn carts(count: usize, forces: usize) -> String {
+    let cart = |k: usize| {
+        format!(
+            "m{k}: f64, #[body(mass = m{k})] cart{k}: Body, #[joint(ground -> cart{k}, along = x)] rail{k}: Sleeve,"
+        )
+    };
+    let push = |k: usize| format!("#[acts(on = rail{k}, value = -3 * rail{k})] push{k}: Force,");
+    (0..count).map(cart).chain((0..forces).map(push)).collect()
+}
+
+#[test]
+fn what_would_be_too_long_is_not_written() {
+    const HELP: &str = "ask for it of a smaller mechanism";
+    answers(
+        |words| (words.to_string(), carts(68, 68)),
+        &[
+            ("sensitivities", "the derivatives by so many parameters would be too long", HELP),
+            ("derivatives", "the derivatives of so many elements would be too long", HELP),
+        ],
+    );
+}
+
+#[test]
+fn equations_of_thousands_of_terms_are_not_printed() {
+    let setting = |words: &str| {
+        let link = |k: usize| {
+            let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(x)", k - 1) };
+            format!(
+                "#[body(mass = 1, com = y, inertia = diagonal(1, 2, 2.5))] link{k}: Body,
+                #[joint({parent} -> link{k}, about = unit([1, {k}, 2]))] pin{k}: Pin,"
+            )
+        };
+        (words.to_string(), (0..5).map(link).collect::<String>())
+    };
+    answers(
+        setting,
+        &[(
+            "equations = lagrange",
+            "the equations of this mechanism have thousands of terms, or more symbols and functions than are multiplied out",
+            "`equations = structure` says how they are made up",
+        )],
+    );
 }
