@@ -26,6 +26,8 @@ pub enum Way<N> {
     /// Contacts by impulses in steps. Surfaces that overlap at the start stay so: callers go on from where steps have left them in each
     /// other.
     TimeStepping(N),
+    /// The same with two evaluations of the dynamics per step in place of four.
+    TimeSteppingMidpoint(N),
 }
 
 /// When inputs are asked for.
@@ -83,7 +85,7 @@ where
         Way::Rodas(e) => go(m, motion, Rodas::new().tolerance(e, e)),
         Way::Rk4(h) => go(m, motion, Rk4::step(h)),
         Way::ImplicitMidpoint(h) => go(m, motion, ImplicitMidpoint::step(h)),
-        Way::EventDriven(_) | Way::TimeStepping(_) => {
+        Way::EventDriven(_) | Way::TimeStepping(_) | Way::TimeSteppingMidpoint(_) => {
             Err(Failure::of("the mechanism has no contacts: choose a method for smooth motions"))
         }
     }
@@ -105,7 +107,10 @@ where
     match motion.way {
         Way::EventDriven(e) => go(m, motion, EventDriven::new().tolerance(e, e)),
         Way::TimeStepping(h) => go(m, motion, TimeStepping::step(h)),
-        _ => Err(Failure::of("the mechanism has contacts: choose `event_driven` or `time_stepping`")),
+        Way::TimeSteppingMidpoint(h) => go(m, motion, TimeStepping::step(h).midpoint()),
+        _ => Err(Failure::of(
+            "the mechanism has contacts: choose `event_driven`, `time_stepping` or `time_stepping_midpoint`",
+        )),
     }
 }
 
@@ -122,7 +127,7 @@ where
     let q = SVector::<N, NQ>::from_fn(|k, _| motion.q.get(k).copied().unwrap_or(N::NAN));
     let v = SVector::<N, NV>::from_fn(|k, _| motion.v.get(k).copied().unwrap_or(N::NAN));
     let overlaps = match motion.way {
-        Way::TimeStepping(_) => Overlaps::Keep,
+        Way::TimeStepping(_) | Way::TimeSteppingMidpoint(_) => Overlaps::Keep,
         _ => Overlaps::Refuse,
     };
     let begun = simulate::simulate(m)

@@ -123,7 +123,7 @@ pub struct Settings<N> {
     /// Time between samples, s.
     pub interval: N,
     /// The method by name: `dormand_prince`, `dormand_prince8`, `rodas`, `event_driven`, each with its tolerance; `rk4`,
-    /// `implicit_midpoint`, `time_stepping`, each with its step, s.
+    /// `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`, each with its step, s.
     pub method: *const c_char,
     /// The tolerance or the step.
     pub setting: N,
@@ -266,9 +266,10 @@ fn way<N>(method: &CStr, setting: N) -> Result<Way<N>, Failure> {
         "implicit_midpoint" => Way::ImplicitMidpoint(setting),
         "event_driven" => Way::EventDriven(setting),
         "time_stepping" => Way::TimeStepping(setting),
+        "time_stepping_midpoint" => Way::TimeSteppingMidpoint(setting),
         other => {
             return Err(Failure(format!(
-                "there is no method `{other}`, but dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, event_driven, time_stepping"
+                "there is no method `{other}`, but dormand_prince, dormand_prince8, rodas, rk4, implicit_midpoint, event_driven, time_stepping, time_stepping_midpoint"
             )));
         }
     })

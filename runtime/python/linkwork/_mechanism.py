@@ -22,6 +22,7 @@ _METHODS = {
     "rk4": "step",
     "implicit_midpoint": "step",
     "time_stepping": "step",
+    "time_stepping_midpoint": "step",
 }
 
 
@@ -227,7 +228,8 @@ class Mechanism:
             period: time between calls of `control`, s; its inputs are held in between. Without it `control` is called whenever
                 the method evaluates the dynamics, and must be continuous.
             method: `"dormand_prince"`, `"dormand_prince8"`, `"rodas"` (stiff), by tolerance; `"rk4"`, `"implicit_midpoint"`, by
-                step. With contacts `"event_driven"`, by tolerance, or `"time_stepping"`, by step. By default
+                step. With contacts `"event_driven"`, by tolerance, or `"time_stepping"`, by step, or
+                `"time_stepping_midpoint"` with two evaluations of the dynamics per step in place of four. By default
                 `"dormand_prince"` and `"event_driven"`; with a `step` `"rk4"` and `"time_stepping"`.
             tolerance: error of a step, relative and absolute, of methods by tolerance; 1e-8 if it is not given.
             step: length of a step, s, of methods by step.

@@ -117,8 +117,9 @@ class WithContacts(unittest.TestCase):
         self.assertAlmostEqual(top, 0.25, places=5)
         rest = m.simulate([1.0], duration=4.0)
         np.testing.assert_allclose([rest.q[-1, 0], rest.v[-1, 0]], [0.0, 0.0], atol=1e-9)
-        stepped = m.simulate([1.0], duration=4.0, method="time_stepping", step=1e-3)
-        self.assertAlmostEqual(stepped.q[-1, 0], 0.0, places=6)
+        for method in ["time_stepping", "time_stepping_midpoint"]:
+            stepped = m.simulate([1.0], duration=4.0, method=method, step=1e-3)
+            self.assertAlmostEqual(stepped.q[-1, 0], 0.0, places=6)
         with self.assertRaisesRegex(linkwork.Error, "has contacts"):
             m.simulate([1.0], duration=1.0, method="rk4", step=1e-3)
 
