@@ -6,14 +6,13 @@ use linkwork_programs::cargo;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Builds the program with these features.
-fn build(features: &str) -> Output {
-    cargo(&["build", "--features", features], "no_std", env!("CARGO_TARGET_TMPDIR"))
+fn build(program: &str) -> Output {
+    cargo(&["build", "--bin", program], "no_std", env!("CARGO_TARGET_TMPDIR"))
 }
 
 #[test]
 fn control_step_has_no_way_to_panic() {
-    let output = build("");
+    let output = build("linkwork-no-std");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("packages/release/linkwork-no-std");
     let status = Command::new(program).status().expect("the program starts");
@@ -22,7 +21,7 @@ fn control_step_has_no_way_to_panic() {
 
 #[test]
 fn a_way_to_panic_would_be_seen() {
-    let output = build("panic");
+    let output = build("panics");
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success(), "a program that can panic was linked");
     assert!(text.contains("linkwork_panic_path_reached"), "{text}");

@@ -1,12 +1,14 @@
 //! A computed-torque controller of a seven-axis arm with the arm that it moves, a body in flight with every
-//! integrator, an engine with a closed loop, and a sledge that strikes the ground and comes to rest there, without the standard library, without an allocator and without any way to panic: the panic handler
-//! calls a function that does not exist, so that a program with a panic left in it cannot be linked.
+//! integrator, an engine with a closed loop, and a sledge that strikes the ground and comes to rest there, without the standard library,
+//! without an allocator and without any way to panic: the panic handler calls a function that does not exist, so that a program with a
+//! panic left in it cannot be linked.
 
 #![no_std]
 #![no_main]
 
+mod handler;
+
 use core::hint::black_box;
-use core::panic::PanicInfo;
 use linkwork::batch::{Rollout, unwatched};
 use linkwork::frame;
 use linkwork::prelude::*;
@@ -167,15 +169,10 @@ fn rests(friction: f64) -> bool {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
-    let _ = arguments;
+extern "C" fn main(_: i32, _: *const *const u8) -> i32 {
     let mut q: Joints = black_box(Joints::from([0.1, -0.5, 0.2, -1.9, 0.1, 1.5, 0.7]));
     let mut v: Joints = black_box(Joints::zeros());
     let target: Joints = black_box(Joints::from([0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8]));
-    #[cfg(feature = "panic")]
-    {
-        q[arguments as usize] = 0.0;
-    }
     let mut sound = true;
     let mut remaining = 3000;
     while remaining > 0 {
@@ -188,16 +185,3 @@ extern "C" fn main(arguments: i32, _: *const *const u8) -> i32 {
     let alone = flies(black_box(0.5)) && turns(black_box(0.13)) && rests(black_box(0.4));
     i32::from(!(sound && arrived && side_by_side(&q, &v) && alone))
 }
-
-#[panic_handler]
-fn panic(_: &PanicInfo<'_>) -> ! {
-    unsafe extern "C" {
-        fn linkwork_panic_path_reached() -> !;
-    }
-    // SAFETY: the program cannot be linked with this call in it, so it is never made.
-    unsafe { linkwork_panic_path_reached() }
-}
-
-// The C library starts the program.
-#[link(name = "c")]
-unsafe extern "C" {}
