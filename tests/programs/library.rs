@@ -16,11 +16,12 @@ fn a_program_in_c_moves_a_bead_on_a_wire() {
     let (target, own) = (Path::new(env!("CARGO_TARGET_TMPDIR")), Path::new(env!("CARGO_MANIFEST_DIR")));
     // Beside these tests: without optimisation it is there sooner.
     let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--offline", "-p", "linkwork-cli", "--target-dir"]).arg(target.join(".."));
+    let beside = target.parent().expect("it is in a folder for what is built");
+    build.args(["build", "--offline", "-p", "linkwork-cli", "--target-dir"]).arg(beside);
     is_done("the command is built", &build.current_dir(own).output().unwrap());
     let folder = target.join("bead");
     let arguments = ["export", "library", "bead.rs", "--linkwork", "../../..", "--out"];
-    let command = target.join("../debug/linkwork");
+    let command = beside.join("debug/linkwork");
     let home = own.join("library");
     let mut export = Command::new(command);
     is_done(
