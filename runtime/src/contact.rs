@@ -392,7 +392,7 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let mut problem = Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
+    let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
     problem.weigh(&mechanism.contact_responses(t, q, &closed).rates);
     let impulses = problem.solve().map_err(|contact| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
@@ -433,12 +433,7 @@ where
     let after = mechanism.contact_rates(t, q, free);
     let laws = lawful(mechanism)?;
     let problem = &mut acted.problem;
-    problem.select(
-        Layout::new(M::CONTACT_ROWS, M::PRESSED_BY),
-        &laws,
-        |k| closed.get(k) == Some(&true),
-        &after,
-    );
+    problem.select(Layout::new(M::CONTACT_ROWS, M::PRESSED_BY), &laws, closed, &after);
     let is_loaded = problem.is_loaded();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
         true => SVector::zeros(),

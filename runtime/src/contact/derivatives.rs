@@ -295,7 +295,7 @@ where
     }
     add_product(&mut found.by_q, &found.by_tau, &parts.forces_by_q);
     let closed = touches.map(|touch| touch != Touch::Open);
-    let mut problem = Problem::new(layout, &laws, |k| closed.get(k) == Some(&true), &SVector::zeros());
+    let mut problem = Problem::new(layout, &laws, &closed, &SVector::zeros());
     problem.weigh(&responses.rates);
     // How the forces answer to the rates, which all of the derivatives share; those of contacts that are open do nothing.
     let answer = problem.answers(touches, &along);

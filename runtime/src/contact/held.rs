@@ -128,7 +128,7 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let responses = mechanism.contact_responses(t, q, &closed);
-    let mut problem = Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
+    let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
     problem.weigh(&responses.rates);
     let forces = problem.hold(touches, along).map_err(|k| ConstraintError::Contact {
         constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),

@@ -79,7 +79,7 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
-    let mut problem = Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
+    let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
     let responses = mechanism.contact_responses(t, q, &closed);
     problem.weigh(&responses.rates);
     let impulses = problem.hold(touches, &SVector::zeros()).map_err(|k| ConstraintError::Contact {

@@ -122,7 +122,7 @@ where
         let moved = responses.rates * pushes;
         let mut free = SVector::<T, NR>::zeros();
         layout.gaps().for_each(|(k, first)| put(&mut free, first, entry(&gaps, k) - entry(&moved, first)));
-        let mut problem = Problem::new(layout, &smooth, |k| closed.get(k) == Some(&true), &free);
+        let mut problem = Problem::new(layout, &smooth, &closed, &free);
         problem.weigh(&responses.rates);
         let found = problem.solve().map_err(|_| left)?;
         let all = problem.spread(&found);

@@ -4,6 +4,7 @@ use super::held::held;
 use super::lawful::lawful;
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
+use super::total::Total;
 use super::{Contacts, Law, Touch, impact, near};
 use crate::constraint::ConstraintError;
 use crate::forward::each_function;
@@ -141,8 +142,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
             if free.iter().any(|rate| !rate.is_finite()) {
                 return Err(ConstraintError::NotFinite);
             }
-            let mut problem =
-                Problem::new(layout, &lawful(mechanism)?, |k| closed.get(k) == Some(&true), &free);
+            let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
             let responses = mechanism.contact_responses(t, q, &closed);
             problem.weigh(&responses.rates);
             let forces = problem.solve().map_err(|k| ConstraintError::Contact {
@@ -410,9 +410,9 @@ where
     }
     let responses = mechanism.contact_responses(t, q, &closed);
     let undone = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
-        let mut problem = Problem::new(layout, laws, |k| closed.get(k) == Some(&true), left);
+        let mut problem = Problem::new(layout, laws, &closed, left);
         problem.weigh(&responses.rates);
-        responses.velocities * problem.spread(&problem.together(|_| true))
+        responses.velocities * problem.spread(&problem.together(&Total::repeat(true)))
     };
     let (gaps, mut left) = (mechanism.contact_gaps(t, q), SVector::<T, NR>::zeros());
     for (k, first) in layout.gaps() {

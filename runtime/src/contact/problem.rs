@@ -98,11 +98,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     pub(super) fn new(
         layout: Layout<NK>,
         laws: &[Law<T>; NK],
-        is_closed: impl Fn(usize) -> bool,
+        closed: &[bool; NK],
         free: &SVector<T, NR>,
     ) -> Self {
         let mut problem = Self::none();
-        problem.select(layout, laws, is_closed, free);
+        problem.select(layout, laws, closed, free);
         problem
     }
 
@@ -111,11 +111,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         &mut self,
         layout: Layout<NK>,
         laws: &[Law<T>; NK],
-        is_closed: impl Fn(usize) -> bool,
+        closed: &[bool; NK],
         free: &SVector<T, NR>,
     ) {
         let problem = self;
-        for (k, law) in laws.iter().enumerate().filter(|(k, _)| is_closed(*k)) {
+        for (k, (law, is_closed)) in laws.iter().zip(closed).enumerate() {
+            if !is_closed {
+                continue;
+            }
             let (c, first) = (problem.count, problem.size);
             let (by, _) = layout.pressing(k);
             let known = || (0..c).find(|known| problem.contacts[*known].0 == by);
@@ -361,7 +364,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let rates = self.rates(impulses);
         // Which of several that share an impulse bear it decides nothing, and what is left of the rates neither.
         let rest = self.rounding(impulses).max(self.residual(impulses).0) * constant(ROUNDINGS);
-        let mut kept = Self::none();
+        let (mut kept, mut stay) = (Self::none(), Total::<_, NK>::repeat(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
         let enough = Self::enough(near);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
@@ -369,14 +372,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let (contact, Rows { first, .. }) = self.contacts[k];
             let gap = entry(gaps, contact);
             // What is farther away has come to touch elsewhere.
-            if gap <= reach && rates[n] <= rest {
+            if gap <= reach {
                 let c = kept.count;
-                (overlap, distance) = (overlap.max(-gap), distance.max(gap));
+                stay[c] = rates[n] <= rest;
+                if stay[c] {
+                    (overlap, distance) = (overlap.max(-gap), distance.max(gap));
+                }
                 kept.contacts[c] = (contact, Rows { first, count: 1 });
                 kept.rows[c] = Rows { first: n, count: 1 };
                 kept.pressed_by[c] = c;
                 kept.free[c] = gap;
-                (kept.least[c], kept.step[c]) = (T::zero(), self.step[k]);
+                // Surfaces that part are not pushed, but into each other they must not be.
+                kept.least[c] = if stay[c] { T::zero() } else { gap.min(T::zero()) };
+                kept.step[c] = self.step[k];
                 kept.count += 1;
             }
         }
@@ -407,14 +415,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             rows.fold(T::zero(), |most, row| most.max(along(row).abs()))
         };
         let most = overlap.max(distance) * constant(FARTHEST);
-        let mut pushes = kept.together(|_| true);
+        let mut pushes = kept.together(&stay);
         // Points that contradict each other are not worth a long way.
         let is_long = farthest(&pushes) > most;
         if is_long {
             pushes = List::repeat(T::zero());
         }
         let left = kept.rates(&pushes);
-        if left.iter().take(kept.size).any(|gap| *gap < -enough) {
+        if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
             let mut rest = kept.with(left);
             let more = rest.solve().ok()?;
             pushes.iter_mut().zip(more.iter()).for_each(|(push, more)| *push += *more);

@@ -186,7 +186,7 @@ where
     let before = came.rates(mechanism, t, q);
     let speed = before.iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
     match problem.close(impulses, &gaps, (near(), near::<T>() + speed * h)) {
-        Some(pushes) => Ok(pushed(mechanism, t, &touched, &(responses * pushes), most)),
+        Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most)),
         None => Ok(touched),
     }
 }
@@ -245,11 +245,12 @@ where
 }
 
 /// The state after a displacement, or the part of it after which the energy is no more than `most`, which is asked for where it grows, or
-/// than before.
+/// than before, and no surfaces are deeper in each other than any were, those of contacts that were open among them; `gaps` are those
+/// before.
 fn pushed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
-    from: &Touched<T, NQ, NV>,
+    (from, gaps): (&Touched<T, NQ, NV>, &SVector<T, NK>),
     push: &SVector<T, NV>,
     most: impl Fn() -> T,
 ) -> Touched<T, NQ, NV>
@@ -259,12 +260,20 @@ where
 {
     let before = energy(mechanism, t, from);
     let (mut part, mut allowed) = (T::one(), None);
+    let deepest = gaps.iter().fold(T::zero(), |deepest, gap| deepest.min(*gap));
     for _ in 0..PARTS {
         let push = push * part;
         let to = Touched {
             q: mechanism.integrate(&from.q, &push),
             v: mechanism.carry(t, &from.q, &push, &from.v),
         };
+        // What is near is not pushed far.
+        if deepest < -near::<T>()
+            && mechanism.contact_gaps(t, &to.q).iter().any(|gap| *gap < deepest - near::<T>())
+        {
+            part *= constant(0.5);
+            continue;
+        }
         let after = energy(mechanism, t, &to);
         if after <= before + rounding(before) {
             return to;

@@ -16,11 +16,11 @@ const PASSES: usize = 3;
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
-    pub(in super::super) fn together(&self, is_kept: impl Fn(usize) -> bool) -> List<T, NR> {
+    pub(in super::super) fn together(&self, kept: &Total<bool, NK>) -> List<T, NR> {
         // Which rates are held, and at what.
         let (mut held, mut wanted, mut size) =
             (List::<_, NR>::repeat(0), List::<_, NR>::repeat(T::zero()), 0);
-        for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && is_kept(*k)) {
+        for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && kept[*k]) {
             let (n, _) = self.of(k);
             let holds = self.friction[k] > T::zero();
             for i in self.all_of(k).filter(|i| *i == n || holds) {
@@ -121,7 +121,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let slips = self.slipping(touches);
         let mut forces = List::repeat(T::zero());
         if !slips.contains(&true) {
-            forces = self.together(|_| true);
+            forces = self.together(&Total::repeat(true));
             let (accelerations, most) = (self.rates(&forces), self.rounding(&forces));
             if accelerations.iter().take(self.size).all(|left| left.abs() <= most) {
                 return Ok(forces);

@@ -65,7 +65,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     fn search(&mut self, given: &dyn Fn() -> Option<SVector<T, NR>>) -> Result<List<T, NR>, usize> {
         // Where all stick that approach, there is nothing to search for.
-        let mut impulses = self.together(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
+        let mut impulses =
+            self.together(&self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]));
         if self.is_solved(&impulses) {
             return Ok(impulses);
         }
@@ -105,7 +106,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         // Where friction is strong, which contacts stay closed is all there is to find.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
-            let guess = self.newton_twice(self.together(|k| k >= GUESSED || kept >> k & 1 == 1));
+            let guess = self.newton_twice(self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1)));
             if self.is_solved(&guess) {
                 return Ok(guess);
             }
@@ -116,6 +117,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let (left, worst) = self.residual(&impulses);
         let size = self.speed() * epsilon::<T>().sqrt();
         if left <= size { Ok(impulses) } else { Err(worst) }
+    }
+
+    /// The contacts of which this is so.
+    fn those(&self, is_so: impl Fn(usize) -> bool) -> Total<bool, NK> {
+        let mut those = Total::repeat(false);
+        for k in 0..self.count {
+            those[k] = is_so(k);
+        }
+        those
     }
 
     /// Whether no contact has friction.
@@ -140,7 +150,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let Some(entering) = entering.1 else { break };
             is_in[entering] = true;
             for _ in 0..self.count {
-                let wanted = self.together(|k| is_in[k]);
+                let wanted = self.together(&is_in);
                 // How far the way there leads until the first would pull.
                 let mut part = T::one();
                 for k in (0..self.count).filter(|k| is_in[*k]) {
@@ -217,7 +227,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let mut best: Option<(T, List<T, NR>)> = None;
         for one in 0..self.count {
             for other in one..self.count {
-                let found = self.newton_twice(self.together(|k| k == one || k == other));
+                let found = self.newton_twice(self.together(&self.those(|k| k == one || k == other)));
                 if !self.is_solved(&found) {
                     continue;
                 }
