@@ -1,7 +1,7 @@
 //! Mechanisms with what random ones seldom have together.
 
 /// Arguments of the attribute, fields, and functions that must be among those that are compared.
-pub const MECHANISMS: [(&str, &str, &[&str]); 5] = [
+pub const MECHANISMS: [(&str, &str, &[&str]); 6] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
         "m: f64, l: f64,
@@ -50,6 +50,16 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 5] = [
         #[speed(0.7 * rate(pose.angle))] turn: Speed,
         #[output(atan2(sin(pose.x), 2 + cos(pose.angle)))] angle: Scalar,",
         &["contact_rates", "contact_jacobian", "angle_derivatives"],
+    ),
+    (
+        "gravity = -9.81 * z, derivatives",
+        "m: f64, p: f64,
+        #[body(mass = m, com = 0.1 * x, inertia = diagonal(0.3, 0.4, 0.5))] nut: Body,
+        #[body(mass = 2, com = 0.1 * y, inertia = diagonal(0.6, 0.4, 0.5))] ram: Body,
+        #[joint(ground -> nut, about = z)] bearing: Pin,
+        #[joint(ground.at(0.3 * x).rotated(y(0.1)) -> ram)] guide: Free,
+        #[joint(nut.at(0.2 * x).rotated(x(0.3)) -> ram.at(0.1 * y), about = z, pitch = p)] thread: Screw,",
+        &["constraint_residuals", "constraint_jacobian", "constraint_bias"],
     ),
     // Inputs that are entries of the generalized forces, beside and behind joints of every chart.
     (

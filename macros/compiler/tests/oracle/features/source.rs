@@ -430,8 +430,15 @@ impl Source {
                 let other = self.bodies.first().cloned().unwrap_or_else(|| "ground".to_string());
                 let kind = self.one_of(&[
                     "about = z)] loop{k}: Pin",
+                    "along = x)] loop{k}: Sleeve",
+                    "about = z, pitch = 0.4)] loop{k}: Screw",
+                    "about = z)] loop{k}: Collar",
+                    "along = x, about = z)] loop{k}: Slot",
                     "about = (x, y))] loop{k}: Universal",
                     ")] loop{k}: Ball",
+                    "about = y)] loop{k}: Planar",
+                    "along = (x, z))] loop{k}: Stage",
+                    ")] loop{k}: Weld",
                 ]);
                 let comma = if kind.starts_with('a') { ", " } else { "" };
                 let (here, there) = (self.one_of(&VECTORS), self.one_of(&VECTORS));
