@@ -59,9 +59,9 @@ fn debug_builds_compute_one_state_after_another() {
     }
 }
 
-/// Of second derivatives by configuration, velocities and inputs there are six.
+/// Derivatives of outputs have names; of second derivatives by configuration, velocities and inputs there are six.
 #[test]
-fn debug_builds_have_all_second_derivatives() {
+fn debug_builds_have_all_derivatives_of_each_state() {
     let mut item = "struct S {".to_string();
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
         let parent = if k == 0 { "ground".to_string() } else { format!("arm{}.at(x)", k - 1) };
@@ -70,11 +70,17 @@ fn debug_builds_have_all_second_derivatives() {
             #[acts(on = arm{k}.at(x + y), along = ground.x)] jet{k}: Force,"
         );
     }
-    item += "}";
+    item += "#[output(a(arm2.at(x) / ground / ground))] felt: Vector, }";
     let emitted = expand("batch, second_derivatives".parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let code = format!("{}{}", emitted.tokens, emitted.text);
     let call = "|k| self.generalized_forces_second_derivatives(&lane(q, k), &lane(v, k)";
     let bodies = bodies(&code);
     let (debug, _) = bodies.iter().find(|(debug, _)| debug.contains(call)).expect(call);
     assert!(debug.contains("all[k].5") && !debug.contains("all[k].6"), "{debug}");
+    let call = "|k| self.felt_derivatives(&lane(q, k), &lane(v, k), &lane(a, k))";
+    let (debug, _) = bodies.iter().find(|(debug, _)| debug.contains(call)).expect(call);
+    let fields =
+        ["by_q", "by_v", "by_a", "by_u"].map(|name| format!("{name}: lane_by_lane(|k| all[k].{name})"));
+    let record = format!("::linkwork::OutputJacobians {{ {} }}", fields.join(", "));
+    assert!(debug.contains(&format!(";\n{record}")), "{debug}");
 }
