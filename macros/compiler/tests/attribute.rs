@@ -130,3 +130,30 @@ fn a_mechanism_of_a_file_is_a_constant() {
         "{generic}"
     );
 }
+
+#[test]
+fn what_has_no_equations_says_why() {
+    let about = |arguments: &str, fields: &str| {
+        let text = code(arguments, fields);
+        let before = text.split("pubconstEQUATIONS:&'staticstr=").next().unwrap().to_string();
+        before.rsplit("#[doc=").next().unwrap().to_string()
+    };
+    assert!(
+        about("", "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,")
+            .contains("Empty:nothingmoves.")
+    );
+    let kinematic = CART.replace("mass = 1", "");
+    assert!(about("inertia = none", &kinematic).contains("Empty:withoutinertiatherearenoequationsofmotion."));
+    assert!(!about("", CART).contains("Empty"));
+    assert!(
+        code("equations = structure", CART).contains("Theargument`equations=structure`leavesthetermsout.")
+    );
+}
+
+/// After a mistake it is not known which frames there are.
+#[test]
+fn a_mistake_leaves_every_frame() {
+    let any = "None=>::core::option::Option::Some(0)";
+    assert!(!code("", CART).contains(any));
+    assert!(code("", &format!("{CART} #[output(unknown)] mistake: Scalar,")).contains(any));
+}

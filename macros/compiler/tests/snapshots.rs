@@ -195,7 +195,15 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
         "driven",
         "gravity = -9.81 * y",
         DRIVEN,
-        &["push", "diagram", "diagram_under", "Limits::*", "Contacts::*"],
+        &[
+            "push",
+            "__touched_push",
+            "diagram",
+            "__reaction_diagram",
+            "diagram_under",
+            "Limits::*",
+            "Contacts::*",
+        ],
     ),
     ("governed", "gravity = -9.81 * y, batch", GOVERNED, &["load", "forward_dynamics_lanes", "Mechanism::*"]),
     (

@@ -84,7 +84,8 @@ fn equations_of_routh_that_are_too_long_are_not_printed() {
 fn contacts_that_slip_have_no_equations_of_kane() {
     fn setting(words: &str) -> (String, String) {
         let fields = "#[body(mass = 1, inertia = disk(1, 0.2, z))] disk: Body, #[joint(ground -> disk, about = z)] pose: Planar,
-            #[constraint(slips(disk.circle(0.2, z), ground.plane(y)), friction = 0.3, speed = 0.01)] contact: Slipping,";
+            #[constraint(slips(disk.circle(0.2, z), ground.plane(y)), friction = 0.3, speed = 0.01)] contact: Slipping,
+            #[constraint(pose.x = 0.1 * pose.angle)] wire: Holonomic,";
         (format!("gravity = -9.81 * y, {words}"), fields.to_string())
     }
     const ROWS: &[Row] = &[(
