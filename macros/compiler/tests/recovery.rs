@@ -65,7 +65,7 @@ const MECHANISMS: [(&str, &str); 5] = [
     ("Bouncing", BOUNCING),
 ];
 
-/// By name, the arguments and the result (nothing for constants), without the sizes, which a mistake may hide.
+/// By name, the arguments and the result; nothing for constants.
 type Names = BTreeMap<String, Option<String>>;
 
 struct Generated {
@@ -90,10 +90,30 @@ fn generated(arguments: &str, name: &str, fields: &str) -> Generated {
     all
 }
 
+/// How names of functions begin whose sizes a mistake may hide: how many constraints, contacts and conserved quantities there are, only
+/// the equations tell.
+const UNSIZED: [&str; 12] = [
+    "base_",
+    "conserved",
+    "constrained_",
+    "constraint_",
+    "contact_",
+    "diagram",
+    "drawing_",
+    "joint_torque_",
+    "linearize",
+    "mass_matrix_packed",
+    "multiplier_",
+    "standard_",
+];
+
 fn signature(f: &syn::ImplItemFn) -> String {
-    let (inputs, output) = (&f.sig.inputs, &f.sig.output);
+    let (name, inputs, output) = (f.sig.ident.to_string(), &f.sig.inputs, &f.sig.output);
     // After a mistake it is not known which frames there are.
     let text = quote::quote!((#inputs) #output).to_string().replace(":: linkwork :: FrameIndex < I >", "F");
+    if !UNSIZED.iter().any(|start| name.starts_with(start)) {
+        return text;
+    }
     let is_size = |word: &str| word.trim_end_matches([']', ')']).parse::<usize>().is_ok();
     let words = text.split(' ').map(|word| if is_size(word) { "_" } else { word });
     words.collect::<Vec<_>>().join(" ")
