@@ -124,6 +124,11 @@ fn a_mechanism_of_a_file_is_a_constant() {
     };
     let plain = of("pub struct S;");
     assert!(plain.contains("pubconstFILE:Self=") && plain.contains("pubconstfnfrom_file()->Self"), "{plain}");
+    let own = of("pub struct S { gain: f64, #[acts(on = joint1, damping = gain)] drag: Dashpot }");
+    assert!(
+        !own.contains("pubconstFILE:Self=") && own.contains("pubconstfnfrom_file(gain:f64)->Self"),
+        "{own}"
+    );
     let generic = of("pub struct S<T>;");
     assert!(
         !generic.contains("pubconstFILE:Self=") && generic.contains("pubfnfrom_file()->Self"),

@@ -46,6 +46,7 @@ const DRIVEN: &str = "#[body(mass = 2, inertia = sphere(2, 0.3))] ball: Body,
     #[contact(ball.sphere(0.3), ground.plane(y), friction = 0.3, rolling = 0.01)] floor: Contact,
     #[limit(on = pose.x, max_speed = 3)] stop: Limit,
     #[limit(on = pose.angle, from = -1)] bound: Limit,
+    #[output(reaction_force(pose))] load: Vector,
     #[output(contact_force(floor))] push: Vector,
     #[output(ball, resolved_in = ground)] diagram: FreeBody,";
 
@@ -55,7 +56,8 @@ const GOVERNED: &str = "command: Input,
     #[joint(ground -> sleigh, about = z)] pose: Planar,
     #[acts(on = pose.x, value = command * rate(pose.x) + sin(t))] motor: Force,
     #[constraint(dot(v(sleigh.at(0.7 * x) / ground / ground), sleigh.y) = 0)] blade: Nonholonomic,
-    #[output(reaction_force(pose))] load: Vector,";
+    #[output(reaction_force(pose))] load: Vector,
+    #[output(sleigh)] diagram: FreeBody,";
 
 /// Outputs of every shape, and a state of first order.
 const MEASURED: &str = "command: Input, lag: f64,
@@ -196,6 +198,8 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
         "gravity = -9.81 * y",
         DRIVEN,
         &[
+            "load",
+            "__reaction_load",
             "push",
             "__touched_push",
             "diagram",
@@ -205,7 +209,12 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
             "Contacts::*",
         ],
     ),
-    ("governed", "gravity = -9.81 * y, batch", GOVERNED, &["load", "forward_dynamics_lanes", "Mechanism::*"]),
+    (
+        "governed",
+        "gravity = -9.81 * y, batch",
+        GOVERNED,
+        &["load", "diagram", "forward_dynamics_lanes", "Mechanism::*"],
+    ),
     (
         "measured",
         "gravity = -9.81 * y, derivatives",

@@ -92,7 +92,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
         get.join(", "),
         set.join("\n")
     );
-    if i.facts.meet(Need::Asks(Word::Regressor)) && i.facts.meet(Need::Inertia) {
+    if i.facts.meet(Need::Asks(Word::Regressor)) {
         let _ = writeln!(
             out,
             "/// Puts identified base parameters back: gives all of `LINKS` the mass properties with these base parameters that
@@ -115,10 +115,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
 
 /// What puts base parameters back.
 pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarSpelling) {
-    if ![Need::FileInertials, Need::Asks(Word::Regressor), Need::Inertia]
-        .iter()
-        .all(|need| i.facts.meet(*need))
-    {
+    if ![Need::FileInertials, Need::Asks(Word::Regressor)].iter().all(|need| i.facts.meet(*need)) {
         return;
     }
     let Head { generics, arguments, bounds } = head;

@@ -48,6 +48,11 @@ fn mechanisms_without_a_form_say_which_they_have() {
             "the configuration would move otherwise with other parameters",
         ),
         (
+            "sensitivities|#[speed(m * cos(hinge) * rate(rail))] u: Speed,",
+            "there are no derivatives by parameters with speeds that contain parameters",
+            "the configuration would move otherwise with other parameters",
+        ),
+        (
             "inertia = none|#[output(reaction_force(hinge))] load: Vector,",
             "the output `load` names a reaction, which needs inertia",
             "without inertia there are no dynamics",
