@@ -26,7 +26,7 @@ pub enum Way<N> {
     /// Contacts by impulses in steps. Surfaces that overlap at the start stay so: callers go on from where steps have left them in each
     /// other.
     TimeStepping(N),
-    /// The same with two evaluations of the dynamics per step in place of four.
+    /// Contacts by impulses in steps through the middle of each: two evaluations of the dynamics in place of four.
     TimeSteppingMidpoint(N),
 }
 
