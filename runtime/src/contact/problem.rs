@@ -353,8 +353,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together and are apart by no more
-    /// than `reach`; where they cannot all be at once those that overlap then are pushed apart. `None` if
-    /// distances are no more than a little of what is `near`.
+    /// than `reach`, and those that part no deeper into each other than they are; where the former cannot all be at once those that
+    /// overlap then are pushed apart. `None` if distances are no more than a little of what is `near`.
     pub(super) fn close(
         &self,
         impulses: &List<T, NR>,

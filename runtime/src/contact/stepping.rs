@@ -245,8 +245,8 @@ where
 }
 
 /// The state after a displacement, or the part of it after which the energy is no more than `most`, which is asked for where it grows, or
-/// than before, and no surfaces are deeper in each other than any were, those of contacts that were open among them; `gaps` are those
-/// before.
+/// than before. Where surfaces overlap before, as `gaps` say, none do so deeper after it than the deepest, those of contacts that were
+/// open among them.
 fn pushed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -267,7 +267,7 @@ where
             q: mechanism.integrate(&from.q, &push),
             v: mechanism.carry(t, &from.q, &push, &from.v),
         };
-        // What is near is not pushed far.
+        // Without overlaps there is little to be pushed.
         if deepest < -near::<T>()
             && mechanism.contact_gaps(t, &to.q).iter().any(|gap| *gap < deepest - near::<T>())
         {

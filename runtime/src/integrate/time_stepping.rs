@@ -57,10 +57,11 @@ impl<T: Real> TimeStepping<T> {
     /// q_m = q ⊕ (h/2) v,   v_m = v + (h/2) a(q, v),   v_f = v + h a(q_m, v_m),   q_f = q_m ⊕ (h/2) v_f
     /// ```
     ///
-    /// to which `Λ₀` adds as to the velocities of any step of [`TimeStepping`]; what follows, `v₁` and `q₁`, is the same. Between impacts the order is 2, with declared speeds 1; where forces
-    /// and inertia do not depend on velocities, the method is the leapfrog, whose energy does not drift. Robots on their feet, whose impacts
-    /// leave order 1 in any case, move hardly less exactly. Source: Moreau, *Numerical aspects of the sweeping process*, Comput. Methods
-    /// Appl. Mech. Eng. 177 (1999), with `v_m` in place of `v` in the accelerations.
+    /// to which `Λ₀` adds as to the velocities of any step of [`TimeStepping`]; what follows, `v₁` and `q₁`, is the same. Between impacts
+    /// the order is 2, with declared speeds 1; where forces and inertia do not depend on velocities, the method is the leapfrog, whose
+    /// energy does not drift. Robots on their feet, whose impacts leave order 1 in any case, move hardly less exactly. Source: Moreau,
+    /// *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999), with `v_m` in place of `v` in the
+    /// accelerations.
     ///
     /// ```
     /// use linkwork::prelude::*;
