@@ -269,18 +269,26 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
             Weak::Known(_) | Weak::Dropped => {}
         }
         let free = span.forward(&metric.half(force));
-        let mut x = match weak {
-            Weak::Known(a) if !regular => span.forward(&metric.upper(&a.data.0[0])),
-            _ => free,
+        // Known accelerations fulfil weak rows as well: only what they lack of the strong ones is left to find. (The biases
+        // themselves contain the part of each row that is weak.)
+        let (mut x, bias) = match weak {
+            Weak::Known(a) if !regular => (
+                span.forward(&metric.upper(&a.data.0[0])),
+                (self.jacobian * a + SVector::from(self.bias)).data.0[0],
+            ),
+            _ => (free, self.bias),
         };
         let triangle = Triangle::of(&span);
-        let known = triangle.particular(&span, &self.bias);
+        let known = triangle.particular(&span, &bias);
         let mut lacking = [T::zero(); NC];
         for (k, ((x, free), known)) in x.iter_mut().zip(&free).zip(&known).enumerate().take(span.rank) {
+            *x = match weak {
+                Weak::Known(_) if !regular => *x + *known,
+                _ => *known,
+            };
             if let Some(slot) = lacking.get_mut(k) {
-                *slot = *known - *free;
+                *slot = *x - *free;
             }
-            *x = *known;
         }
         let a = metric.back(span.backward(x));
         ((SVector::from(a), SVector::from(triangle.multipliers(&span, &lacking))), regular)
