@@ -1,6 +1,8 @@
 //! Operations of the generated functions. Twenty-four are counted exactly: of a small chain with parameters, of a robot, and of one
-//! whose limbs are lanes, so that a change of any pass is seen. All others are at most so many, with two per cent for what
-//! tuning changes; what saves more may lower the bounds.
+//! whose limbs are lanes, so that a change of any pass is seen. Those of the gallery stand in a table. All others are at most so many,
+//! with two per cent for what tuning changes; what saves more may lower the bounds.
+
+mod gallery;
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -75,7 +77,7 @@ fn instructions(program: &Program) -> usize {
 /// Multiplications, additions and divisions of the main functions of a robot together, sines and cosines apart, and the
 /// instructions that are left of them when products are fused into sums; of lanes if its limbs are alike and `lanes` says so.
 fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
-    let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
+    let arguments = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
     let all = programs(&arguments, "pub struct Robot;", &MAIN);
     let all: Vec<&Program> =
         all.iter().map(|p| if lanes { p.simd.as_deref().expect("its limbs are alike") } else { p }).collect();
@@ -126,7 +128,7 @@ fn contacts_of_legs() {
     }";
     let functions =
         ["contact_rates", "contact_jacobian", "contact_bias", "__contact_responses", "__contact_derivatives"];
-    let arguments = "urdf = \"../models/urdf/solo12.urdf\", base = free, gravity = -9.81 * z, limits = ignore, derivatives";
+    let arguments = "urdf = \"../../models/urdf/solo12.urdf\", base = free, gravity = -9.81 * z, limits = ignore, derivatives";
     let all = programs(arguments, item, &functions);
     let in_lanes: Vec<usize> =
         all.iter().map(|p| instructions(p.simd.as_deref().expect("its limbs are alike"))).collect();
@@ -285,7 +287,7 @@ fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
         ("kinova", "", "inertial"),
         ("panda", locked, "inertial(\"panda_hand\")"),
     ] {
-        let file = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
+        let file = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
         let plain: [usize; 4] = of_robot(name, options, false)[0];
         let all = prepared(&format!("{file}, prepare, parameters = {parameters}"));
         let within = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);

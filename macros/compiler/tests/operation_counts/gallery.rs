@@ -1,0 +1,115 @@
+//! Operations of all functions of the mechanisms in the gallery, with all that can be asked for by a word, as `gallery.txt` says.
+
+use linkwork_compiler::derive::{Output, Prepared};
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::lower::{Counts, Program};
+use linkwork_compiler::{compile, read};
+use proc_macro2::TokenStream;
+use quote::ToTokens;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const WORDS: [&str; 7] =
+    ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
+
+/// Columns of the table.
+const WIDTH: usize = 120;
+
+/// A mechanism of a file: its name, what the attribute is given, and the struct without it.
+fn mechanisms(path: &Path) -> Vec<(String, TokenStream, TokenStream)> {
+    let file = syn::parse_file(&fs::read_to_string(path).expect("it can be read")).expect("it is Rust");
+    let taken = |item: syn::Item| {
+        let syn::Item::Struct(mut item) = item else { return None };
+        let is_it = |attribute: &syn::Attribute| attribute.path().is_ident("mechanism");
+        let attribute = item.attrs.iter().find(|attribute| is_it(attribute))?;
+        let given = attribute.meta.require_list().map(|list| list.tokens.clone()).unwrap_or_default();
+        item.attrs.retain(|attribute| !is_it(attribute));
+        Some((item.ident.to_string(), given, item.to_token_stream()))
+    };
+    file.items.into_iter().filter_map(taken).collect()
+}
+
+/// Multiplications, additions and divisions, sines, cosines and the like, and the instructions that are left where products are fused
+/// into sums: those of lanes in brackets. Nothing where there are none.
+fn operations(name: &str, program: &Program) -> Option<String> {
+    if program.counts == Counts::default() {
+        return None;
+    }
+    let of = |p: &Program| format!("{}+{}/{}", p.counts.total(), p.counts.calls, super::instructions(p));
+    let lanes = program.simd.as_deref().map(|lanes| format!("[{}]", of(lanes))).unwrap_or_default();
+    Some(format!("{name} {}{lanes}", of(program)))
+}
+
+fn counted(Output { functions, links, frames, prepared, .. }: &Output) -> Vec<String> {
+    let mut all: Vec<Option<String>> = functions.iter().map(|f| operations(&f.name, &f.program)).collect();
+    if let Some(Prepared { numbers, functions }) = prepared {
+        all.push(operations("prepared", numbers));
+        all.extend(functions.iter().map(|f| operations(&format!("prepared.{}", f.name), &f.program)));
+    }
+    for (k, link) in links.iter().enumerate() {
+        let parts = [&link.placement, &link.twist, &link.acceleration, &link.columns];
+        all.extend(parts.map(|part| operations(&format!("link{k}"), part)));
+    }
+    for frame in frames {
+        let parts = [&frame.placement, &frame.twist, &frame.acceleration];
+        all.extend(parts.map(|part| operations(&frame.name, part)));
+    }
+    all.into_iter().flatten().collect()
+}
+
+fn output(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
+    let (mut cx, graph) = (Diagnostics::new(), Graph::new());
+    let compiled =
+        read(arguments, item, folder, &mut cx).and_then(|source| compile(&source, &graph, &mut cx));
+    let Some((_, output)) = compiled else { return cx.messages() };
+    counted(&output)
+}
+
+/// The table of a file.
+fn table(path: &Path, folder: &Path) -> String {
+    let mut text = String::new();
+    for (name, arguments, item) in mechanisms(path) {
+        let given: Vec<String> = arguments.clone().into_iter().map(|token| token.to_string()).collect();
+        let more: Vec<&str> =
+            WORDS.into_iter().filter(|word| !given.iter().any(|given| given == word)).collect();
+        let comma = if given.last().is_none_or(|last| last == ",") { "" } else { "," };
+        let words: TokenStream = format!("{comma}{}", more.join(",")).parse().expect("words are tokens");
+        let whole = TokenStream::from_iter([arguments, words]);
+        writeln!(text, "{name}").expect("a string takes all");
+        let mut line = String::from(" ");
+        for entry in output(whole, item, folder) {
+            if line.len() + entry.len() >= WIDTH {
+                writeln!(text, "{line}").expect("a string takes all");
+                line = String::from(" ");
+            }
+            write!(line, " {entry},").expect("a string takes all");
+        }
+        writeln!(text, "{}", line.trim_end_matches(',')).expect("a string takes all");
+    }
+    text
+}
+
+/// What a change of any pass, of its order, or of a choice among candidates costs or saves shows up in the table. It is written anew with
+/// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test operation_counts`, and its difference is for reading.
+#[test]
+fn the_gallery_costs_what_its_table_says() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let models = here.join("../../models");
+    let mut files: Vec<PathBuf> = fs::read_dir(models.join("src"))
+        .expect("the gallery has sources")
+        .map(|entry| entry.expect("it can be read").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .collect();
+    files.sort();
+    let found: String = files.iter().map(|path| table(path, &models)).collect();
+    let path = here.join("tests/operation_counts/gallery.txt");
+    if std::env::var_os("LINKWORK_WRITE").is_some() {
+        fs::write(&path, &found).expect("the table can be written");
+    }
+    let expected = fs::read_to_string(&path).expect("there is a table");
+    let differs = found.lines().zip(expected.lines()).find(|(now, before)| now != before);
+    assert_eq!(differs, None, "now and before");
+    assert_eq!(found.lines().count(), expected.lines().count(), "lines");
+}
