@@ -12,6 +12,9 @@ mod linear;
 mod newton;
 mod restitution;
 mod search;
+mod trial;
+
+use trial::{Mode, Trial};
 
 /// A number for each rate.
 type List<T, const NR: usize> = Total<T, NR>;
@@ -57,17 +60,6 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     step: Total<T, NK>,
     /// A factor of all steps, with which Newton's method may come nearer.
     scale: T,
-}
-
-/// What the natural map makes of a contact.
-#[derive(Clone, Copy)]
-enum Mode<T> {
-    /// No impulse.
-    Open,
-    /// No slip.
-    Stick,
-    /// Impulses along the tangents of this size, in this direction, before they were brought onto the cone.
-    Slip { size: T, direction: [T; 2] },
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
@@ -223,40 +215,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.step[self.pressed_by[k]] * self.scale
     }
 
-    /// What the natural map makes of a contact: the impulse of its gap before it is made zero or more, and what follows.
-    fn mode(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
-        self.mode_with(self.friction[k], k, impulses, rates)
-    }
-
-    /// [`mode`](Self::mode) with this friction.
-    fn mode_with(&self, friction: T, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
-        let (n, tangents) = self.of(k);
-        let step = self.step[k] * self.scale;
-        let normal = impulses[n] - self.press(k) * (rates[n] - self.least[self.pressed_by[k]]);
-        let bearing = self.bearing(k, normal);
-        if bearing <= T::zero() || step == T::zero() {
-            return (normal, Mode::Open);
-        }
-        let mut direction = [T::zero(); 2];
-        for (d, i) in direction.iter_mut().zip(tangents) {
-            *d = impulses[i] - step * rates[i];
-        }
-        let [x, y] = direction;
-        let size = (x * x + y * y).sqrt();
-        if size <= friction * bearing {
-            return (normal, Mode::Stick);
-        }
-        (normal, Mode::Slip { size, direction: [x / size, y / size] })
-    }
-
     /// What contacts do under impulses that fulfil their laws, and of those that slip where to, as unit vectors at the places of their
     /// rates.
     pub(super) fn touches(&self, impulses: &List<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
         let (mut touches, mut along) = (Total::<_, NK>::repeat(Touch::Open), SVector::<T, NR>::zeros());
-        let rates = self.rates(impulses);
+        let modes = self.modes(&self.friction, impulses, &self.rates(impulses));
         for k in 0..self.count {
             let (contact, rows) = self.contacts[k];
-            touches[contact] = match self.mode(k, impulses, &rates).1 {
+            touches[contact] = match modes[k].1 {
                 Mode::Open => Touch::Open,
                 Mode::Slip { direction, .. } if self.friction[k] > T::zero() => {
                     let start = usize::from(self.is_gap(k));
@@ -269,53 +235,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             };
         }
         (touches.entries(), along)
-    }
-
-    /// The natural map of a contact: its impulses without what they are by their law. Friction that is stronger than what presses
-    /// counts by what would press it, so that rounding of the latter is not taken for more than it is.
-    fn map(&self, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> [T; 3] {
-        let (n, tangents) = self.of(k);
-        let (normal, mode) = self.mode(k, impulses, rates);
-        let pressed = if self.is_gap(k) { impulses[n] - normal.max(T::zero()) } else { T::zero() };
-        let mut map = [pressed, T::zero(), T::zero()];
-        for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {
-            *entry = match mode {
-                Mode::Open => impulses[i],
-                Mode::Stick => self.step[k] * self.scale * rates[i],
-                Mode::Slip { direction, .. } => {
-                    let friction = self.friction[k];
-                    let most = friction * self.bearing(k, normal);
-                    (impulses[i] - component(&direction, c) * most) / friction.max(T::one())
-                }
-            };
-        }
-        map
-    }
-
-    /// What is left of the equations, as a rate, and of which contact.
-    fn residual(&self, impulses: &List<T, NR>) -> (T, usize) {
-        let rates = self.rates(impulses);
-        let mut worst = (T::zero(), 0);
-        for k in 0..self.count {
-            let step = self.step[k] * self.scale;
-            let left = if step == T::zero() {
-                // Nothing that impulses could do.
-                if self.is_gap(k) {
-                    (self.least[k] - rates[self.rows[k].first]).max(T::zero())
-                } else {
-                    T::zero()
-                }
-            } else {
-                let [normal, x, y] = self.map(k, impulses, &rates);
-                normal.abs().max((x * x + y * y).sqrt()) / step
-            };
-            // What is not a number is worst of all.
-            let less = left <= worst.0;
-            if !less {
-                worst = (left, k);
-            }
-        }
-        worst
     }
 
     /// What rounding leaves of the rates.
@@ -333,12 +252,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     pub(super) fn speed(&self) -> T {
         let most = self.free.iter().take(self.size).fold(T::zero(), |most, rate| most.max(rate.abs()));
         (0..self.count).fold(most, |most, k| most.max(self.least[k]))
-    }
-
-    /// Whether no more is left of the laws than rounding of the impulses makes; impulses without bounds solve nothing.
-    fn is_solved(&self, impulses: &List<T, NR>) -> bool {
-        let left = self.residual(impulses).0;
-        left <= self.speed() * epsilon::<T>().sqrt() && left <= self.rounding(impulses)
     }
 
     /// Distances that are worth no displacement.
@@ -361,9 +274,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         gaps: &SVector<T, NK>,
         (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
-        let rates = self.rates(impulses);
+        let Trial { rates, worst, .. } = self.tried(*impulses);
         // Which of several that share an impulse bear it decides nothing, and what is left of the rates neither.
-        let rest = self.rounding(impulses).max(self.residual(impulses).0) * constant(ROUNDINGS);
+        let rest = self.rounding(impulses).max(worst.0) * constant(ROUNDINGS);
         let (mut kept, mut stay) = (Self::none(), Total::<_, NK>::repeat(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
         let enough = Self::enough(near);
@@ -450,9 +363,4 @@ pub(super) fn put<T: Real, const N: usize>(vector: &mut SVector<T, N>, k: usize,
     if let Some(entry) = vector.get_mut(k) {
         *entry = value;
     }
-}
-
-/// A component of a direction of slip.
-fn component<T: Copy>([x, y]: &[T; 2], c: usize) -> T {
-    if c == 0 { *x } else { *y }
 }

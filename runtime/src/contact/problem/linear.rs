@@ -17,6 +17,15 @@ const PASSES: usize = 3;
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
     pub(in super::super) fn together(&self, kept: &Total<bool, NK>) -> List<T, NR> {
+        self.together_with(kept, &mut { self.weights }).0
+    }
+
+    /// [`together`](Self::together), and whether `system`, which is `W` before, has its factors after it.
+    pub(super) fn together_with(
+        &self,
+        kept: &Total<bool, NK>,
+        system: &mut Square<T, NR>,
+    ) -> (List<T, NR>, bool) {
         // Which rates are held, and at what.
         let (mut held, mut wanted, mut size) =
             (List::<_, NR>::repeat(0), List::<_, NR>::repeat(T::zero()), 0);
@@ -29,21 +38,23 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        let mut system = self.weights;
-        self.among(&held, size, &mut system);
+        let is_whole = size == self.size;
+        if !is_whole {
+            self.among(&held, size, system);
+        }
         let mut impulses = List::repeat(T::zero());
-        if factorise(&mut system, size, false) {
+        if factorise(system, size, false) {
             let mut right = List::repeat(T::zero());
             for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
                 *r = wanted - self.free[*i];
             }
-            substitute(&system, size, &mut right);
+            substitute(system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, impulse)| impulses[*i] = impulse);
-            return impulses;
+            return (impulses, is_whole);
         }
-        self.among(&held, size, &mut system);
-        if !factorise(&mut system, size, true) {
-            return impulses;
+        self.among(&held, size, system);
+        if !factorise(system, size, true) {
+            return (impulses, false);
         }
         // Impulses that move nothing stay small, and what they leave is made up for.
         for _ in 0..3 {
@@ -52,23 +63,29 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
                 *r = wanted - rates[*i];
             }
-            substitute(&system, size, &mut right);
+            substitute(system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
         }
-        impulses
+        (impulses, false)
     }
 
-    /// The impulses that add these rates, if the motion tells all of them apart.
-    pub(super) fn answering(&self, rates: &SVector<T, NR>) -> Option<List<T, NR>> {
-        let mut system = self.weights;
-        if !factorise(&mut system, self.size, false) {
-            return None;
-        }
+    /// The impulses that add these rates, if the motion tells all of them apart; `factors` are those of `W`, if they are known.
+    pub(super) fn answering(
+        &self,
+        rates: &SVector<T, NR>,
+        factors: Option<&Square<T, NR>>,
+    ) -> Option<List<T, NR>> {
+        let mut own = self.weights;
+        let system = match factors {
+            Some(factors) => factors,
+            None if factorise(&mut own, self.size, false) => &own,
+            None => return None,
+        };
         let mut impulses = List::repeat(T::zero());
         for (impulse, place) in impulses.iter_mut().zip(self.places().iter()).take(self.size) {
             *impulse = entry(rates, *place);
         }
-        substitute(&system, self.size, &mut impulses);
+        substitute(system, self.size, &mut impulses);
         impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
         Some(impulses)
     }
@@ -325,18 +342,21 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 system.exchange(best, column);
                 right.exchange(best, column);
             }
-            let (pivots, value) = (system[column], right[column]);
+            let (done, rows) = system.split_at_mut_checked(column + 1).unwrap_or_default();
+            let (values, others) = right.split_at_mut_checked(column + 1).unwrap_or_default();
+            let (Some(pivots), Some(value)) = (done.last(), values.last()) else { break };
             if pivots[column] == T::zero() {
                 continue;
             }
             let inverse = T::one() / pivots[column];
-            for row in column + 1..size {
-                let factor = system[row][column] * inverse;
+            for (row, other) in rows.iter_mut().zip(others).take(size - column - 1) {
+                let factor = row[column] * inverse;
                 if factor == T::zero() {
                     continue;
                 }
-                take(&mut system[row], factor, &pivots, column + 1..size);
-                subtract(&mut right[row], factor, &value);
+                // Whole rows, whose number of entries is known: what stands before the pivot is not read again.
+                subtract(row, factor, pivots);
+                subtract(other, factor, value);
             }
         }
         for row in (0..size).rev() {
@@ -380,10 +400,11 @@ fn factorise<T: Real, const NR: usize>(u: &mut Square<T, NR>, size: usize, is_li
         }
         let reciprocal = T::one() / pivot;
         u[j][j] = reciprocal;
-        let row = u[j];
-        for i in j + 1..size {
-            if row[i] != T::zero() {
-                take(&mut u[i], row[i] * reciprocal, &row, i..size);
+        let (done, rows) = u.split_at_mut_checked(j + 1).unwrap_or_default();
+        let Some(row) = done.last() else { break };
+        for (below, part) in rows.iter_mut().zip(row.iter().skip(j + 1)).take(size - j - 1) {
+            if *part != T::zero() {
+                subtract(below, *part * reciprocal, row);
             }
         }
     }

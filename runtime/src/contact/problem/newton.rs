@@ -2,7 +2,8 @@
 
 use super::super::total::Total;
 use super::linear::{identify, square};
-use super::{List, Mode, Problem, Square, component};
+use super::trial::{Mode, Trial, component};
+use super::{List, Problem, Square};
 use crate::Real;
 use crate::private::{constant, epsilon};
 
@@ -19,65 +20,52 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// Where several contacts share what one alone could bear, small changes of the equations are large ones of who bears it, so that
     /// rows are told apart by much first.
-    pub(super) fn newton_twice(&self, start: List<T, NR>) -> List<T, NR> {
+    pub(super) fn newton_twice(&self, start: List<T, NR>) -> Trial<T, NK, NR> {
+        let start = self.tried(start);
         let mut best = start;
         for lift in APART {
             best = self.newton(best, constant(lift));
-            if self.is_solved(&best) {
+            if self.solves(&best) {
                 return best;
             }
         }
         let other = self.newton(start, self.lift());
-        if self.residual(&other).0 < self.residual(&best).0 { other } else { best }
+        if other.worst.0 < best.worst.0 { other } else { best }
     }
 
     /// [`newton_twice`](Self::newton_twice) from impulses that fulfil the laws with other friction, `before`: what contacts do then
     /// they are taken to do still at first.
-    pub(super) fn follow(&self, start: List<T, NR>, before: &Total<T, NK>) -> List<T, NR> {
-        let mut system = square();
-        let mut right =
-            self.linearise(&start, before, constant(APART[1]), &mut system).each(|change| [change]);
-        self.eliminate(&mut system, &mut right);
-        let mut next = start;
-        next.iter_mut().zip(right.iter()).for_each(|(next, [change])| *next += *change);
-        self.newton_twice(next)
+    pub(super) fn follow(&self, start: List<T, NR>, before: &Total<T, NK>) -> Trial<T, NK, NR> {
+        let mut trial = self.tried(start);
+        trial.modes = self.modes(before, &start, &trial.rates);
+        self.newton_twice(self.stepped(&trial, constant(APART[1]), &mut square()))
     }
 
     /// Impulses that fulfil the laws as far as rounding of the fastest rate goes, after one more step if the slowest that press need it.
-    pub(super) fn refined(&self, impulses: List<T, NR>, lift: T) -> List<T, NR> {
-        let left = self.residual(&impulses).0;
+    pub(super) fn refined(&self, trial: &Trial<T, NK, NR>, lift: T) -> List<T, NR> {
+        let Trial { impulses, left, worst, .. } = trial;
         let half = epsilon::<T>().sqrt();
         let little = half * half.sqrt();
         let pressed = (0..self.count).filter(|k| self.is_gap(*k) && impulses[self.of(*k).0] > T::zero());
-        if pressed.map(|k| self.free[self.of(k).0].abs() * little).all(|most| left <= most) {
-            return impulses;
+        if pressed.map(|k| self.free[self.of(k).0].abs() * little).all(|most| worst.0 <= most) {
+            return *impulses;
         }
-        let mut system = self.weights;
-        let mut right = self.linearise(&impulses, &self.friction, lift, &mut system).each(|change| [change]);
-        self.eliminate(&mut system, &mut right);
-        let mut next = impulses;
-        next.iter_mut().zip(right.iter()).for_each(|(next, [change])| *next += *change);
-        if self.size_of_map(&next) < self.size_of_map(&impulses) { next } else { impulses }
+        let next = self.tried(self.stepped(trial, lift, &mut square()));
+        if next.left < *left { next.impulses } else { *impulses }
     }
 
-    pub(super) fn newton(&self, start: List<T, NR>, lift: T) -> List<T, NR> {
-        let mut impulses = start;
-        let mut left = self.size_of_map(&impulses);
+    pub(super) fn newton(&self, start: Trial<T, NK, NR>, lift: T) -> Trial<T, NK, NR> {
+        let mut trial = start;
         let mut system = square();
         // With more left of the map they are no solution.
         let (speed, parts) = (self.speed(), (0..self.count).fold(T::zero(), |sum, _| sum + constant(3.0)));
         let most = speed * speed * epsilon() * parts;
         for _ in 0..NEWTON {
-            let mut right =
-                self.linearise(&impulses, &self.friction, lift, &mut system).each(|change| [change]);
-            self.eliminate(&mut system, &mut right);
+            let change = self.change(&trial, lift, &mut system);
             let mut part = T::one();
             let next = loop {
-                let mut next = impulses;
-                next.iter_mut().zip(right.iter()).for_each(|(next, [change])| *next += *change * part);
-                let size = self.size_of_map(&next);
-                if size < left {
-                    left = size;
+                let next = self.tried(moved(&trial.impulses, &change, part));
+                if next.left < trial.left {
                     break Some(next);
                 }
                 part *= constant(0.5);
@@ -86,41 +74,36 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 }
             };
             let Some(next) = next else { break };
-            impulses = next;
-            if left <= most && self.is_solved(&impulses) {
+            trial = next;
+            if trial.left <= most && self.solves(&trial) {
                 break;
             }
         }
-        impulses
+        trial
     }
 
-    /// The square of what is left of the natural map, as rates.
-    fn size_of_map(&self, impulses: &List<T, NR>) -> T {
-        let rates = self.rates(impulses);
-        (0..self.count).filter(|k| self.step[*k] > T::zero()).fold(T::zero(), |sum, k| {
-            let [n, x, y] = self.map(k, impulses, &rates);
-            let step = self.step[k] * self.scale;
-            sum + (n * n + x * x + y * y) / (step * step)
-        })
+    /// A whole step of Newton's method, with room for its equations.
+    fn stepped(&self, trial: &Trial<T, NK, NR>, lift: T, system: &mut Square<T, NR>) -> List<T, NR> {
+        moved(&trial.impulses, &self.change(trial, lift, system), T::one())
+    }
+
+    /// What such a step adds to the impulses.
+    fn change(&self, trial: &Trial<T, NK, NR>, lift: T, system: &mut Square<T, NR>) -> List<T, NR> {
+        let mut right = self.linearise(trial, lift, system).each(|change| [change]);
+        self.eliminate(system, &mut right);
+        right.each(|[change]| change)
     }
 
     /// Makes `system` the natural map's derivative; what takes its value away.
-    /// With what contacts do by the friction `judged`.
-    fn linearise(
-        &self,
-        impulses: &List<T, NR>,
-        judged: &Total<T, NK>,
-        lift: T,
-        system: &mut Square<T, NR>,
-    ) -> List<T, NR> {
-        let rates = self.rates(impulses);
+    fn linearise(&self, trial: &Trial<T, NK, NR>, lift: T, system: &mut Square<T, NR>) -> List<T, NR> {
+        let Trial { impulses, rates, modes, .. } = trial;
         identify(system);
         let mut right = List::repeat(T::zero());
         for k in 0..self.count {
             let (step, press) = (self.step[k] * self.scale, self.press(k));
             let friction = self.friction[k];
             let (n, tangents) = self.of(k);
-            let (normal, mode) = self.mode_with(judged[k], k, impulses, &rates);
+            let (normal, mode) = modes[k];
             if let Mode::Open = mode {
                 self.all_of(k).for_each(|i| right[i] = -impulses[i]);
                 continue;
@@ -162,4 +145,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         right
     }
+}
+
+/// Impulses after a part of a change.
+fn moved<T: Real, const NR: usize>(from: &List<T, NR>, change: &List<T, NR>, part: T) -> List<T, NR> {
+    let mut to = *from;
+    to.iter_mut().zip(change.iter()).for_each(|(to, change)| *to += *change * part);
+    to
 }

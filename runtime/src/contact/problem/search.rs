@@ -1,6 +1,7 @@
 //! How impulses are found that fulfil the laws of all contacts.
 
 use super::super::total::Total;
+use super::trial::Trial;
 use super::{List, Problem};
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -65,17 +66,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     fn search(&mut self, given: &dyn Fn() -> Option<SVector<T, NR>>) -> Result<List<T, NR>, usize> {
         // Where all stick that approach, there is nothing to search for.
-        let mut impulses =
-            self.together(&self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]));
-        if self.is_solved(&impulses) {
+        let mut factors = self.weights;
+        let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
+        let (mut impulses, is_factorised) = self.together_with(&approach, &mut factors);
+        let stuck = self.tried(impulses);
+        if self.solves(&stuck) {
             return Ok(impulses);
         }
         // Mostly few slip or part, or do what they did before.
-        let start = given().and_then(|rates| self.answering(&rates));
-        let found = self.newton(start.unwrap_or(impulses), self.lift());
-        if self.is_solved(&found) {
+        let start = given().and_then(|rates| self.answering(&rates, is_factorised.then_some(&factors)));
+        let found = self.newton(start.map_or(stuck, |start| self.tried(start)), self.lift());
+        if self.solves(&found) {
             // Beside fast slip little is left of what presses slowly.
-            return Ok(self.refined(found, self.lift()));
+            return Ok(self.refined(&found, self.lift()));
         }
         if self.is_smooth() {
             impulses = self.press_in_turn();
@@ -85,21 +88,23 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         for round in 0..ROUNDS {
             self.relax(&mut impulses, SWEEPS + round);
-            if self.is_solved(&impulses) {
+            let relaxed = self.tried(impulses);
+            if self.solves(&relaxed) {
                 return Ok(impulses);
             }
             // Which steps of the map lead to the solution differs.
             let found = self.newton_scaled(impulses, SCALES[round % SCALES.len()]);
-            if self.is_solved(&found) {
-                return Ok(found);
+            if self.solves(&found) {
+                return Ok(found.impulses);
             }
-            if self.residual(&found).0 < self.residual(&impulses).0 {
-                impulses = found;
+            if found.worst.0 < relaxed.worst.0 {
+                impulses = found.impulses;
             }
         }
+        let (left, worst) = self.tried(impulses).worst;
         if self.rebounds() {
             // With less restitution there is an answer.
-            return Err(self.residual(&impulses).1);
+            return Err(worst);
         }
         if let Some(found) = self.by_degrees() {
             return Ok(found);
@@ -107,16 +112,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         // Where friction is strong, which contacts stay closed is all there is to find.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
             let guess = self.newton_twice(self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1)));
-            if self.is_solved(&guess) {
-                return Ok(guess);
+            if self.solves(&guess) {
+                return Ok(guess.impulses);
             }
         }
         if let Some(found) = self.in_pairs() {
             return Ok(found);
         }
-        let (left, worst) = self.residual(&impulses);
         let size = self.speed() * epsilon::<T>().sqrt();
         if left <= size { Ok(impulses) } else { Err(worst) }
+    }
+
+    fn is_solved(&self, impulses: &List<T, NR>) -> bool {
+        self.solves(&self.tried(*impulses))
     }
 
     /// The contacts of which this is so.
@@ -181,11 +189,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Newton's method with steps of the map by this factor.
-    fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> List<T, NR> {
+    fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> Trial<T, NK, NR> {
         self.scale = constant(scale);
-        let found = self.newton_twice(impulses);
+        let found = self.newton_twice(impulses).impulses;
         self.scale = T::one();
-        found
+        self.tried(found)
     }
 
     /// The impulses by way of those with less friction.
@@ -199,20 +207,22 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 if part < DEGREES { friction.each(|friction| part_of(friction, share)) } else { friction };
             // What is near already is not left for gradients of strong friction.
             let near = self.follow(impulses, if part > 1 { &before } else { &self.friction });
-            if self.is_solved(&near) {
-                impulses = near;
+            if self.solves(&near) {
+                impulses = near.impulses;
                 continue;
             }
             self.relax(&mut impulses, SWEEPS);
+            let mut best = self.tried(impulses);
             for scale in SCALES {
-                let found = self.newton_scaled(impulses, scale);
-                if self.residual(&found).0 < self.residual(&impulses).0 {
-                    impulses = found;
+                let found = self.newton_scaled(best.impulses, scale);
+                if found.worst.0 < best.worst.0 {
+                    best = found;
                 }
-                if self.is_solved(&impulses) {
+                if self.solves(&best) {
                     break;
                 }
             }
+            impulses = best.impulses;
         }
         self.is_solved(&impulses).then_some(impulses)
     }
@@ -228,15 +238,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for one in 0..self.count {
             for other in one..self.count {
                 let found = self.newton_twice(self.together(&self.those(|k| k == one || k == other)));
-                if !self.is_solved(&found) {
+                if !self.solves(&found) {
                     continue;
                 }
-                let rates = self.rates(&found);
-                let all = found.iter().zip(rates.iter().zip(self.free.iter())).take(self.size);
+                let Trial { impulses, rates, .. } = found;
+                let all = impulses.iter().zip(rates.iter().zip(self.free.iter())).take(self.size);
                 let work = all
                     .fold(T::zero(), |sum, (impulse, (after, before))| sum + *impulse * (*after + *before));
                 if best.is_none_or(|(least, _)| work < least) {
-                    best = Some((work, found));
+                    best = Some((work, impulses));
                 }
             }
         }
