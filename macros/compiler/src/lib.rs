@@ -22,7 +22,7 @@ pub mod vectorise;
 
 use catalogue::{BY_PARAMETERS, DERIVATIVES, Facts, JACOBIAN};
 use diag::{Diagnostic, Diagnostics};
-use emit::{Emitted, emit_mechanism};
+use emit::Emitted;
 use expr::Graph;
 use proc_macro2::TokenStream;
 use source::can_be_a_function;
@@ -44,7 +44,7 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     let graph = Graph::new();
     let output = compile(&source, &graph, &mut cx);
     if let Some((model, output)) = &output {
-        return emit_mechanism(&source.interface(model, output), output);
+        return source.emit(model, output);
     }
     // Of a robot whose file cannot be read even the sizes are unknown: whatever is said of them would be a second mistake.
     if !source.imported {

@@ -107,8 +107,13 @@ impl Source {
         self.mechanism.description.joints.iter().map(structure_line).collect()
     }
 
+    /// The code of the mechanism that was compiled.
+    pub fn emit(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Emitted {
+        emit::emit_mechanism(&self.interface(m, output), output)
+    }
+
     /// What the outside sees of the mechanism.
-    pub(crate) fn interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
+    fn interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
         let bare = self.bare_interface();
         let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
         let base = base.map_or(0, |constant| constant.list.len());

@@ -1,4 +1,5 @@
-//! Operations of all functions of the mechanisms in the gallery, with all that can be asked for by a word, as `gallery.txt` says.
+//! Operations of all functions of the mechanisms in the gallery, and how long their code is, with all that can be asked for by a word, as
+//! `gallery.txt` says.
 
 use linkwork_compiler::derive::{Output, Prepared};
 use linkwork_compiler::diag::Diagnostics;
@@ -11,8 +12,9 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const WORDS: [&str; 7] =
-    ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
+const WORDS: [&str; 5] = ["derivatives", "centroidal", "regressor", "packed", "batch"];
+/// Those that have a meaning where there are parameters.
+const OF_PARAMETERS: [&str; 2] = ["sensitivities", "prepare"];
 
 /// Columns of the table.
 const WIDTH: usize = 120;
@@ -59,12 +61,14 @@ fn counted(Output { functions, links, frames, prepared, .. }: &Output) -> Vec<St
     all.into_iter().flatten().collect()
 }
 
-fn output(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
+/// The bytes of code without its documentation, and what its functions cost.
+fn costs(arguments: TokenStream, item: TokenStream, folder: &Path) -> Option<(usize, Vec<String>)> {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let compiled =
-        read(arguments, item, folder, &mut cx).and_then(|source| compile(&source, &graph, &mut cx));
-    let Some((_, output)) = compiled else { return cx.messages() };
-    counted(&output)
+    let source = read(arguments, item, folder, &mut cx)?;
+    let (model, output) = compile(&source, &graph, &mut cx)?;
+    let text = source.emit(&model, &output).text;
+    let is_code = |line: &&str| !["///", "#[doc"].iter().any(|start| line.trim_start().starts_with(start));
+    Some((text.lines().filter(is_code).map(|line| line.len() + 1).sum(), counted(&output)))
 }
 
 /// The table of a file.
@@ -72,14 +76,18 @@ fn table(path: &Path, folder: &Path) -> String {
     let mut text = String::new();
     for (name, arguments, item) in mechanisms(path) {
         let given: Vec<String> = arguments.clone().into_iter().map(|token| token.to_string()).collect();
-        let more: Vec<&str> =
-            WORDS.into_iter().filter(|word| !given.iter().any(|given| given == word)).collect();
         let comma = if given.last().is_none_or(|last| last == ",") { "" } else { "," };
-        let words: TokenStream = format!("{comma}{}", more.join(",")).parse().expect("words are tokens");
-        let whole = TokenStream::from_iter([arguments, words]);
-        writeln!(text, "{name}").expect("a string takes all");
+        let with = |words: &[&str]| {
+            let more: Vec<&str> =
+                words.iter().copied().filter(|word| !given.iter().any(|given| given == word)).collect();
+            let words: TokenStream = format!("{comma}{}", more.join(",")).parse().expect("words are tokens");
+            costs(TokenStream::from_iter([arguments.clone(), words]), item.clone(), folder)
+        };
+        let all = with(&[&WORDS[..], &OF_PARAMETERS].concat()).or_else(|| with(&WORDS));
+        let (bytes, functions) = all.expect("the gallery has no mistakes");
+        writeln!(text, "{name}, {bytes} bytes").expect("a string takes all");
         let mut line = String::from(" ");
-        for entry in output(whole, item, folder) {
+        for entry in functions {
             if line.len() + entry.len() >= WIDTH {
                 writeln!(text, "{line}").expect("a string takes all");
                 line = String::from(" ");
