@@ -1,6 +1,10 @@
 //! Generated code of small mechanisms, as a reviewer of a change of the compiler reads it. A difference is no mistake by itself:
 //! look at it, and write the files anew with `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test snapshots`.
 
+#[path = "oracle/features/chosen.rs"]
+mod chosen;
+mod measure;
+
 use linkwork_compiler::expand;
 use proc_macro2::TokenTree;
 use quote::ToTokens;
@@ -393,4 +397,27 @@ fn documentation_of_structs() {
         }
     }
     assert_eq!(difference("documentation", &text), None, "documentation differs");
+}
+
+/// All code of the mechanisms that are shown here in part, of those that have what is seldom together, and of lanes: too long to be
+/// read, it is measured, and a difference is looked at with the command `expand` of the examples.
+#[test]
+fn whole_code() {
+    let shown = MECHANISMS.map(|(name, attribute, fields, _)| (name, attribute, fields.to_string()));
+    let documented = DOCUMENTED.map(|(attribute, fields)| ("documented", attribute, fields.to_string()));
+    let chosen = chosen::MECHANISMS.map(|(attribute, fields, _)| ("chosen", attribute, fields.to_string()));
+    let all = "gravity = -g * y, derivatives, second_derivatives, packed, batch, sensitivities, centroidal, regressor, prepare";
+    let lanes = [
+        ("chain", all, format!("g: f64, {}", chosen::chain(6))),
+        ("limbs", all, format!("g: f64, {}", chosen::limbs(4, 2))),
+        ("legs", "gravity = -9.81 * y, derivatives, packed, batch", chosen::limbs(4, 3)),
+    ];
+    let mut text = String::new();
+    for (name, attribute, fields) in shown.into_iter().chain(documented).chain(chosen).chain(lanes) {
+        let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
+        let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
+        assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
+        text += &format!("{name}, {attribute}: {}\n", measure::measure(&emitted.text));
+    }
+    assert_eq!(difference("whole_code", &text), None, "generated code differs");
 }

@@ -1,6 +1,7 @@
 //! Operations of all functions of the mechanisms in the gallery, and how long their code is, with all that can be asked for by a word, as
 //! `gallery.txt` says.
 
+use crate::measure::measure;
 use linkwork_compiler::derive::{Output, Prepared};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -61,14 +62,12 @@ fn counted(Output { functions, links, frames, prepared, .. }: &Output) -> Vec<St
     all.into_iter().flatten().collect()
 }
 
-/// The bytes of code without its documentation, and what its functions cost.
-fn costs(arguments: TokenStream, item: TokenStream, folder: &Path) -> Option<(usize, Vec<String>)> {
+/// The code, measured, and what its functions cost.
+fn costs(arguments: TokenStream, item: TokenStream, folder: &Path) -> Option<(String, Vec<String>)> {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let source = read(arguments, item, folder, &mut cx)?;
     let (model, output) = compile(&source, &graph, &mut cx)?;
-    let text = source.emit(&model, &output).text;
-    let is_code = |line: &&str| !["///", "#[doc"].iter().any(|start| line.trim_start().starts_with(start));
-    Some((text.lines().filter(is_code).map(|line| line.len() + 1).sum(), counted(&output)))
+    Some((measure(&source.emit(&model, &output).text), counted(&output)))
 }
 
 /// The table of a file.
@@ -84,8 +83,8 @@ fn table(path: &Path, folder: &Path) -> String {
             costs(TokenStream::from_iter([arguments.clone(), words]), item.clone(), folder)
         };
         let all = with(&[&WORDS[..], &OF_PARAMETERS].concat()).or_else(|| with(&WORDS));
-        let (bytes, functions) = all.expect("the gallery has no mistakes");
-        writeln!(text, "{name}, {bytes} bytes").expect("a string takes all");
+        let (code, functions) = all.expect("the gallery has no mistakes");
+        writeln!(text, "{name}, {code}").expect("a string takes all");
         let mut line = String::from(" ");
         for entry in functions {
             if line.len() + entry.len() >= WIDTH {
@@ -103,20 +102,20 @@ fn table(path: &Path, folder: &Path) -> String {
 /// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test operation_counts`, and its difference is for reading.
 #[test]
 fn the_gallery_costs_what_its_table_says() {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let models = here.join("../../models");
+    // Relative, for the code has the paths of files.
+    let models = Path::new("../../models");
     let mut files: Vec<PathBuf> = fs::read_dir(models.join("src"))
         .expect("the gallery has sources")
         .map(|entry| entry.expect("it can be read").path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
         .collect();
     files.sort();
-    let found: String = files.iter().map(|path| table(path, &models)).collect();
-    let path = here.join("tests/operation_counts/gallery.txt");
+    let found: String = files.iter().map(|path| table(path, models)).collect();
+    let path = "tests/operation_counts/gallery.txt";
     if std::env::var_os("LINKWORK_WRITE").is_some() {
-        fs::write(&path, &found).expect("the table can be written");
+        fs::write(path, &found).expect("the table can be written");
     }
-    let expected = fs::read_to_string(&path).expect("there is a table");
+    let expected = fs::read_to_string(path).expect("there is a table");
     let differs = found.lines().zip(expected.lines()).find(|(now, before)| now != before);
     assert_eq!(differs, None, "now and before");
     assert_eq!(found.lines().count(), expected.lines().count(), "lines");

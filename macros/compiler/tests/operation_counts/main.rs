@@ -3,6 +3,8 @@
 //! with two per cent for what tuning changes; what saves more may lower the bounds.
 
 mod gallery;
+#[path = "../measure/mod.rs"]
+mod measure;
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
