@@ -407,10 +407,15 @@ fn whole_code() {
     let documented = DOCUMENTED.map(|(attribute, fields)| ("documented", attribute, fields.to_string()));
     let chosen = chosen::MECHANISMS.map(|(attribute, fields, _)| ("chosen", attribute, fields.to_string()));
     let all = "gravity = -g * y, derivatives, second_derivatives, packed, batch, sensitivities, centroidal, regressor, prepare";
+    let arm = |k: usize| chosen::limb(k, format!("link12.at({} * x)", [-0.2, 0.2][k]), 6);
     let lanes = [
         ("chain", all, format!("g: f64, {}", chosen::chain(6))),
         ("limbs", all, format!("g: f64, {}", chosen::limbs(4, 2))),
         ("legs", "gravity = -9.81 * y, derivatives, packed, batch", chosen::limbs(4, 3)),
+        // Whose inverse is found in loops: of a tree, of one with lanes and a long trunk, and of a chain.
+        ("tree", "gravity = -9.81 * y, derivatives, skip_passes = [limbs]", chosen::limbs(4, 5)),
+        ("torso", "gravity = -9.81 * y, derivatives, batch", chosen::chain(13) + &arm(0) + &arm(1)),
+        ("long chain", "gravity = -9.81 * y, derivatives, batch", chosen::chain(14)),
     ];
     let mut text = String::new();
     for (name, attribute, fields) in shown.into_iter().chain(documented).chain(chosen).chain(lanes) {

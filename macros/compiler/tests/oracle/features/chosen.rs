@@ -96,7 +96,7 @@ pub fn chain(joints: usize) -> String {
             format!(
                 "#[body(mass = {}, com = [0.01, 0.02, 0.1], inertia = diagonal(0.03, 0.04, 0.02))] link{k}: Body,
                 #[joint({parent} -> link{k}, about = {axis})] joint{k}: Pin,\n",
-                2.0 - 0.2 * k as f64
+                2.0 - 0.1 * k as f64
             )
         })
         .collect()
@@ -109,16 +109,23 @@ pub fn limbs(count: usize, joints: usize) -> String {
             .to_string();
     for limb in 0..count {
         let side = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let mut parent = format!("trunk.at([{}, {}, 0])", 0.2 * side(limb), 0.1 * side(limb / 2));
-        for k in 0..joints {
-            fields += &format!(
-                "#[body(mass = {}, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] part{limb}{k}: Body,
-                #[joint({parent} -> part{limb}{k}, about = {})] joint{limb}{k}: Pin,\n",
-                2.0 - 0.3 * k as f64,
-                ["x", "y", "z"][k % 3]
-            );
-            parent = format!("part{limb}{k}.at(0.4 * z)");
-        }
+        let parent = format!("trunk.at([{}, {}, 0])", 0.2 * side(limb), 0.1 * side(limb / 2));
+        fields += &self::limb(limb, parent, joints);
+    }
+    fields
+}
+
+/// A limb of pins that hangs from a point; those of other numbers are like it.
+pub fn limb(number: usize, mut parent: String, joints: usize) -> String {
+    let mut fields = String::new();
+    for k in 0..joints {
+        fields += &format!(
+            "#[body(mass = {}, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] part{number}_{k}: Body,
+            #[joint({parent} -> part{number}_{k}, about = {})] joint{number}_{k}: Pin,\n",
+            2.0 - 0.3 * k as f64,
+            ["x", "y", "z"][k % 3]
+        );
+        parent = format!("part{number}_{k}.at(0.4 * z)");
     }
     fields
 }
