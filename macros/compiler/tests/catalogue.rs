@@ -1,115 +1,17 @@
 //! What is generated is what the catalogue says, and a program that does not fit its row is no code.
 
+mod mechanisms;
+
 use linkwork_compiler::catalogue::{self, Facts};
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::{compile, expand, read};
+use mechanisms::MECHANISMS;
 use proc_macro2::TokenStream;
 use std::collections::BTreeSet;
 use std::path::Path;
-
-/// Attribute, name and fields of mechanisms that have, between them, every function.
-const MECHANISMS: [(&str, &str, &str); 11] = [
-    (
-        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
-        "Plain",
-        "m: f64,
-        #[joint(ground -> arm, about = z)] hinge: Pin,
-        #[body(mass = m, com = x, inertia = rod(m, 2, x))] arm: Body,
-        #[acts(on = hinge)] motor: Torque,
-        #[output(hinge)] angle: Scalar,",
-    ),
-    (
-        "gravity = -9.81 * y, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing",
-        "Closed",
-        "m: f64,
-        #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,
-        #[body(mass = m, com = x, inertia = rod(m, 2, x))] coupler: Body,
-        #[body(mass = m, com = x, inertia = rod(m, 2, x))] rocker: Body,
-        #[joint(ground -> crank, about = z)] input: Pin,
-        #[joint(crank.at(x) -> coupler, about = z)] middle: Pin,
-        #[joint(ground.at(2 * x) -> rocker, about = z)] output: Pin,
-        #[joint(coupler.at(2 * x) -> rocker.at(2 * x), about = z)] last: Pin,",
-    ),
-    (
-        "gravity = -9.81 * z, second_derivatives, momentum_derivatives, batch",
-        "Sliding",
-        "mu: f64,
-        #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
-        #[joint(ground -> ball)] pose: Free,
-        #[constraint(slips(ball.sphere(1), ground.plane(z)), friction = mu)] lane: Slipping,",
-    ),
-    (
-        "gravity = -9.81 * z, prepare, batch",
-        "Bouncing",
-        "mu: f64,
-        #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
-        #[joint(ground -> ball)] pose: Free,
-        #[contact(ball.sphere(1), ground.plane(z), friction = mu)] floor: Contact,",
-    ),
-    (
-        "drawing",
-        "Hilly",
-        "#[body(mass = 1)] ball: Body,
-        #[joint(ground -> ball, along = z)] height: Sleeve,
-        #[contact(ball.sphere(1), ground.terrain(0.1 * u - 3))] hills: Contact,",
-    ),
-    (
-        "second_derivatives, momentum_derivatives, batch",
-        "Driven",
-        "#[joint(ground -> bead, along = x)] slide: Sleeve,
-        #[particle(mass = 1)] bead: Particle,
-        #[acts(on = slide, value = sin(t) - 3 * slide)] pull: Force,",
-    ),
-    (
-        "gravity = -9.81 * y, derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, packed, prepare, batch",
-        "InSpeeds",
-        "m: f64,
-        #[joint(ground -> cart, along = x)] rail: Sleeve,
-        #[joint(cart -> arm, about = z)] hinge: Pin,
-        #[body(mass = m)] cart: Body,
-        #[body(mass = m, com = x, inertia = rod(m, 2, x))] arm: Body,
-        #[acts(on = hinge)] motor: Torque,
-        #[speed(rate(rail) * cos(hinge))] along: Speed,
-        #[speed(rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,
-        #[output(along)] speed: Scalar,",
-    ),
-    (
-        "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = [inertial, placement], regressor, prepare",
-        "OfAFile",
-        "",
-    ),
-    (
-        "gravity = -9.81 * y, batch",
-        "Overdetermined",
-        "#[body(mass = 1, com = y / 2, inertia = rod(1, 1, y))] one: Body,
-        #[body(mass = 1, com = y / 2, inertia = rod(1, 1, y))] two: Body,
-        #[body(mass = 1, com = y / 2, inertia = rod(1, 1, y))] three: Body,
-        #[body(mass = 1, com = x, inertia = rod(1, 2, x))] plate: Body,
-        #[joint(ground -> one, about = z)] a: Pin,
-        #[joint(ground.at(x) -> two, about = z)] b: Pin,
-        #[joint(ground.at(2 * x) -> three, about = z)] c: Pin,
-        #[joint(one.at(y) -> plate, about = z)] d: Pin,
-        #[joint(two.at(y) -> plate.at(x), about = z)] e: Pin,
-        #[joint(three.at(y) -> plate.at(2 * x), about = z)] f: Pin,",
-    ),
-    (
-        "routh, prepare, batch",
-        "Cyclic",
-        "m: f64,
-        #[body(mass = m, inertia = sphere(m, 1))] cart: Body, #[particle(mass = m)] bob: Particle,
-        #[joint(ground -> cart, along = x)] rail: Sleeve,
-        #[joint(cart -> bob, along = x)] slide: Sleeve,",
-    ),
-    (
-        "inertia = none",
-        "Kinematic",
-        "#[joint(ground -> arm, about = y)] hinge: Pin,
-        #[body] arm: Body,",
-    ),
-];
 
 fn tokens((attribute, name, fields): (&str, &str, &str)) -> (TokenStream, TokenStream) {
     (attribute.parse().unwrap(), format!("pub struct {name} {{ {fields} }}").parse().unwrap())

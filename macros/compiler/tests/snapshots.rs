@@ -4,6 +4,7 @@
 #[path = "oracle/features/chosen.rs"]
 mod chosen;
 mod measure;
+mod mechanisms;
 
 use linkwork_compiler::expand;
 use proc_macro2::TokenTree;
@@ -399,8 +400,35 @@ fn documentation_of_structs() {
     assert_eq!(difference("documentation", &text), None, "documentation differs");
 }
 
-/// All code of the mechanisms that are shown here in part, of those that have what is seldom together, and of lanes: too long to be
-/// read, it is measured, and a difference is looked at with the command `expand` of the examples.
+const MOTOR: &str = "#[acts(on = joint0_0)] motor: Torque,";
+
+/// Alike limbs that touch the ground, in declared speeds.
+const FEET: &str = "
+    #[body(mass = 2, inertia = sphere(2, 0.3))] trunk: Body,
+    #[body(mass = 0.5, com = -0.2 * y, inertia = rod(0.5, 0.4, y))] left: Body,
+    #[body(mass = 0.5, com = -0.2 * y, inertia = rod(0.5, 0.4, y))] right: Body,
+    #[joint(ground -> trunk, about = z)] pose: Planar,
+    #[joint(trunk.at(-0.3 * x) -> left, about = z)] one: Pin,
+    #[joint(trunk.at(0.3 * x) -> right, about = z)] other: Pin,
+    #[contact(left.at(-0.4 * y), ground.plane(y), friction = 0.7)] first: Contact,
+    #[contact(right.at(-0.4 * y), ground.plane(y), friction = 0.7)] second: Contact,
+    #[speed(rate(pose.x) * cos(pose.angle) + rate(pose.y) * sin(pose.angle))] ahead: Speed,
+    #[speed(rate(pose.y) * cos(pose.angle) - rate(pose.x) * sin(pose.angle))] aside: Speed,
+    #[speed(rate(pose.angle))] turn: Speed,
+    #[speed(rate(one))] swing: Speed,
+    #[speed(rate(other))] back: Speed,";
+
+/// Where a ball touches a surface are coordinates without inertia, which follow from the others.
+const ROLLING: &str = "
+    u: Coordinate,
+    w: Coordinate,
+    #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
+    #[joint(ground -> ball)] pose: Free,
+    #[constraint(rolls(ball.sphere(1), ground.surface(u, w, u * x + w * y + 0.1 * u * u * z)))] contact: Rolling,";
+
+/// All code of the mechanisms that are shown here in part, of those that have every function or what is seldom together, and of lanes: too long to be
+/// read, it is measured, and a difference is looked at with the
+/// command `expand` of the examples.
 #[test]
 fn whole_code() {
     let shown = MECHANISMS.map(|(name, attribute, fields, _)| (name, attribute, fields.to_string()));
@@ -411,14 +439,23 @@ fn whole_code() {
     let lanes = [
         ("chain", all, format!("g: f64, {}", chosen::chain(6))),
         ("limbs", all, format!("g: f64, {}", chosen::limbs(4, 2))),
-        ("legs", "gravity = -9.81 * y, derivatives, packed, batch", chosen::limbs(4, 3)),
+        ("legs", "gravity = -9.81 * y, derivatives, packed, batch", chosen::limbs(4, 3) + MOTOR),
+        // Of ten velocities and eleven coordinates, up to which number things are compared.
+        ("ten", "gravity = -9.81 * y, derivatives, batch", chosen::limbs(2, 2) + MOTOR),
+        ("feet", "gravity = -9.81 * y, derivatives, batch", FEET.to_string()),
+        ("rolling", "gravity = -9.81 * z, derivatives, batch", ROLLING.to_string()),
         // Whose inverse is found in loops: of a tree, of one with lanes and a long trunk, and of a chain.
         ("tree", "gravity = -9.81 * y, derivatives, skip_passes = [limbs]", chosen::limbs(4, 5)),
         ("torso", "gravity = -9.81 * y, derivatives, batch", chosen::chain(13) + &arm(0) + &arm(1)),
+        // Whose passive forces have functions of their own.
+        ("springs", "gravity = -9.81 * y, derivatives, batch", chosen::springs(120)),
         ("long chain", "gravity = -9.81 * y, derivatives, batch", chosen::chain(14)),
     ];
+    let every = mechanisms::MECHANISMS.map(|(attribute, name, fields)| (name, attribute, fields.to_string()));
     let mut text = String::new();
-    for (name, attribute, fields) in shown.into_iter().chain(documented).chain(chosen).chain(lanes) {
+    for (name, attribute, fields) in
+        shown.into_iter().chain(documented).chain(every).chain(chosen).chain(lanes)
+    {
         let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
         let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
         assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);

@@ -139,16 +139,7 @@ fn chosen_mechanisms_agree_with_themselves() {
 /// Forces of many springs are computed once, and called by all that they are in.
 #[test]
 fn long_passive_forces_agree() {
-    let mut fields = "#[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] block: Body,
-        #[joint(ground -> block, about = z)] pose: Planar,"
-        .to_string();
-    for k in 0..SPRINGS {
-        fields += &format!(
-            "#[acts(between = (block.at([0.{k}1, {}, 0]), ground.at([{k}, 2, 1])), stiffness = {}, free_length = 0.3)] spring{k}: Spring,",
-            k % 3,
-            k + 2
-        );
-    }
+    let fields = chosen::springs(SPRINGS);
     let item = format!("pub struct Any {{ {fields} }}");
     let functions = ["__passive_forces", "__passive_derivatives", "inverse_dynamics_derivatives"];
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives", &item, &functions, 0) > 20);

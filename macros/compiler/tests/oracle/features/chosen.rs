@@ -129,3 +129,18 @@ pub fn limb(number: usize, mut parent: String, joints: usize) -> String {
     }
     fields
 }
+
+/// A body that hangs from so many springs.
+pub fn springs(count: usize) -> String {
+    let mut fields = "#[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] block: Body,
+        #[joint(ground -> block, about = z)] pose: Planar,"
+        .to_string();
+    for k in 0..count {
+        fields += &format!(
+            "#[acts(between = (block.at([0.{k}1, {}, 0]), ground.at([{k}, 2, 1])), stiffness = {}, free_length = 0.3)] spring{k}: Spring,",
+            k % 3,
+            k + 2
+        );
+    }
+    fields
+}
