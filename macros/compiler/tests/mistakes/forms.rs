@@ -101,6 +101,30 @@ fn contacts_that_slip_have_no_equations_of_kane() {
     answers(setting, ROWS);
 }
 
+/// Pins about skew axes, with a blade at their end.
+#[test]
+fn equations_of_kane_that_are_too_long_are_not_printed() {
+    fn pins(words: &str) -> (String, String) {
+        let link = |k: usize| {
+            let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(0.4 * x)", k - 1) };
+            format!(
+                "#[body(mass = 1, com = [0.1, 0.2, 0.05], inertia = diagonal(0.3, 0.4, 0.5))] link{k}: Body,
+                #[joint({parent} -> link{k}, about = {})] joint{k}: Pin,",
+                ["z", "y", "x"][k % 3]
+            )
+        };
+        let blade =
+            "#[constraint(dot(v(link4.at(0.4 * x) / ground / ground), link4.y) = 0)] blade: Nonholonomic,";
+        (format!("gravity = -9.81 * z, {words}"), (0..5).map(link).collect::<String>() + blade)
+    }
+    const ROWS: &[Row] = &[(
+        "equations = kane",
+        "Kane's equations of this mechanism have thousands of terms",
+        "or declare generalized speeds in which they are short",
+    )];
+    answers(pins, ROWS);
+}
+
 /// Momenta leave forces out that depend on accelerations.
 #[test]
 fn forces_of_accelerations_leave_no_momenta() {
