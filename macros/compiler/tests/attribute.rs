@@ -112,6 +112,10 @@ fn functions_say_what_determines_the_motion() {
     ] {
         assert!(text.contains(expected), "{expected}\n{text}");
     }
+    let text = code("", &format!("{fields} #[contact(stone.sphere(1), ground.plane(z))] floor: Contact,"));
+    let expected =
+        "Theoutput`load`,inthemotionthatthestatedetermineswithouttheforcesofcontactsthatopenandclose:";
+    assert!(text.contains(expected), "{expected}\n{text}");
 }
 
 /// The figures of a file are constants, unless the struct is generic.

@@ -42,7 +42,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
         let call = format!("self.{}({t}{pass})", f.name);
         let (docs, shape, result) = match diagram {
             Some(diagram) => (diagram_docs(diagram, s), diagram_type(diagram, s), made(diagram, &call)),
-            None => (about(s), s.shape(f.shape), call),
+            None => (about(i, s), s.shape(f.shape), call),
         };
         let _ = writeln!(
             out,
@@ -170,13 +170,17 @@ fn diagram_docs(diagram: &Diagram, s: &Signature<'_>) -> String {
 }
 
 /// What the function of a reaction's output gives.
-fn about(s: &Signature<'_>) -> String {
+fn about(i: &Interface<'_>, s: &Signature<'_>) -> String {
     let motion = match s.nu {
         0 => "in the motion that the state determines",
         _ => "in the motion under the inputs",
     };
+    let contacts = match i.contacts.is_empty() {
+        true => "",
+        false => " without the forces of contacts that open and close",
+    };
     format!(
-        "{motion}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no derivatives yet."
+        "{motion}{contacts}: reactions are what the parent of a joint exerts on its child, at the origin of the joint's frame; on a joint's own coordinate with the forces of its motor, springs and dashpots. It has no derivatives yet."
     )
 }
 
