@@ -110,13 +110,20 @@ fn the_gallery_costs_what_its_table_says() {
         .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
         .collect();
     files.sort();
-    let found: String = files.iter().map(|path| table(path, models)).collect();
     let path = "tests/operation_counts/gallery.txt";
-    if std::env::var_os("LINKWORK_WRITE").is_some() {
-        fs::write(path, &found).expect("the table can be written");
-    }
+    let writes = std::env::var_os("LINKWORK_WRITE").is_some();
     let expected = fs::read_to_string(path).expect("there is a table");
-    let differs = found.lines().zip(expected.lines()).find(|(now, before)| now != before);
-    assert_eq!(differs, None, "now and before");
-    assert_eq!(found.lines().count(), expected.lines().count(), "lines");
+    let mut found = String::new();
+    for file in files {
+        found += &table(&file, models);
+        if !writes && !expected.starts_with(&found) {
+            let differs = found.lines().zip(expected.lines()).find(|(now, before)| now != before);
+            panic!("{}, now and before: {differs:?}", file.display());
+        }
+    }
+    if writes {
+        fs::write(path, &found).expect("the table can be written");
+    } else {
+        assert_eq!(found.len(), expected.len(), "there are mechanisms no more");
+    }
 }
