@@ -115,13 +115,14 @@ pub fn limbs(count: usize, joints: usize) -> String {
     fields
 }
 
-/// A limb of pins that hangs from a point; those of other numbers are like it.
+/// A limb of pins with springs that hangs from a point; those of other numbers are like it.
 pub fn limb(number: usize, mut parent: String, joints: usize) -> String {
     let mut fields = String::new();
     for k in 0..joints {
         fields += &format!(
             "#[body(mass = {}, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] part{number}_{k}: Body,
-            #[joint({parent} -> part{number}_{k}, about = {})] joint{number}_{k}: Pin,\n",
+            #[joint({parent} -> part{number}_{k}, about = {})] joint{number}_{k}: Pin,
+            #[acts(on = joint{number}_{k}, stiffness = 7, free_angle = 0.1)] spring{number}_{k}: Spring,\n",
             2.0 - 0.3 * k as f64,
             ["x", "y", "z"][k % 3]
         );
