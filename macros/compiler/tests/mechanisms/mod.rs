@@ -91,7 +91,8 @@ pub const MECHANISMS: [(&str, &str, &str); 11] = [
         "m: f64,
         #[body(mass = m, inertia = sphere(m, 1))] cart: Body, #[particle(mass = m)] bob: Particle,
         #[joint(ground -> cart, along = x)] rail: Sleeve,
-        #[joint(cart -> bob, along = x)] slide: Sleeve,",
+        #[joint(cart -> bob, along = x)] slide: Sleeve,
+        #[acts(on = slide, stiffness = 3)] spring: Spring,",
     ),
     (
         "inertia = none",

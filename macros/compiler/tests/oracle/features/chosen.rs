@@ -1,7 +1,7 @@
 //! Mechanisms with what random ones seldom have together.
 
 /// Arguments of the attribute, fields, and functions that must be among those that are compared.
-pub const MECHANISMS: [(&str, &str, &[&str]); 6] = [
+pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
         "m: f64, l: f64,
@@ -84,6 +84,16 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 6] = [
         #[joint(ground -> block, about = z)] pose: Planar,
         #[acts(on = block, value = push * (ground.x + ground.y))] oblique: Force,",
         &["__input_derivatives"],
+    ),
+    (
+        "gravity = -9.81 * y, second_derivatives",
+        "command: Input,
+        #[body(mass = 2)] cart: Body,
+        #[body(mass = 1, com = 0.4 * x, inertia = rod(1, 1.2, x))] arm: Body,
+        #[joint(ground -> cart, along = x)] rail: Sleeve,
+        #[joint(cart -> arm, about = z)] hinge: Pin,
+        #[acts(on = hinge, value = command * command * rate(rail) * sin(hinge) + command * rate(hinge))] motor: Torque,",
+        &["generalized_forces_second_derivatives"],
     ),
 ];
 
