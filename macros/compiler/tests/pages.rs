@@ -57,7 +57,7 @@ fn words_are_listed() {
             ("macros/src/lib.rs", "/// | `NAME` |"),
             ("runtime/guide/functions.md", "| `NAME` |"),
             ("runtime/src/absent.rs", "does not ask for `NAME`"),
-            ("macros/compiler/tests/catalogue.rs", "NAME"),
+            ("macros/compiler/tests/mechanisms/mod.rs", "NAME"),
         ],
     );
     // This one is refused where no coordinate is cyclic.
