@@ -1,17 +1,6 @@
-//! Mechanisms with constraints.
+//! Long motions of mechanisms with constraints, near singular positions and through them among them.
 
 mod branches;
-mod contacts;
-mod counts;
-mod embedded;
-mod formulations;
-mod impacts;
-mod invariants;
 mod lanes;
 mod long_runs;
-mod massless;
-mod overdetermined;
-mod planar;
-mod reactions;
 mod singular;
-mod slipping;

@@ -57,7 +57,7 @@ fn a_chain_of_loops_costs_in_proportion_to_its_length() {
 
 /// The mechanism of a file of the models, with the arguments of its attribute.
 fn model(name: &str) -> (String, String) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../models/src/{name}.rs"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/src/{name}.rs"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let file = syn::parse_file(&text).expect("it is Rust");
     let mechanism = file.items.into_iter().find_map(|item| {

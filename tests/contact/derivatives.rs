@@ -7,7 +7,7 @@ use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;
 
 /// A quadruped, with a coefficient of friction for each foot.
-#[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
 struct Solo {
     #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
     front_left: Contact,
@@ -232,7 +232,7 @@ fn a_table_shares_its_weight() {
 }
 
 /// Points as feet, which other engines know, too.
-#[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
+#[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
 pub struct OnPoints {
     #[contact(FL_FOOT, ground.plane(z), friction = 0.8)]
     front_left: Contact,

@@ -2,7 +2,7 @@
 
 use linkwork::prelude::*;
 
-#[mechanism(urdf = "../data/urdf/shapes.urdf", base = free, inputs = none)]
+#[mechanism(urdf = "data/urdf/shapes.urdf", base = free, inputs = none)]
 struct FromTheFile {
     #[contact(hull.collision(), ground.plane(z), friction = 0.5)]
     below: Contact,
@@ -12,7 +12,7 @@ struct FromTheFile {
     reach: Contact,
 }
 
-#[mechanism(urdf = "../data/urdf/shapes.urdf", base = free, inputs = none)]
+#[mechanism(urdf = "data/urdf/shapes.urdf", base = free, inputs = none)]
 struct ByHand {
     #[body]
     tilted: Body,

@@ -1,0 +1,13 @@
+//! Mechanisms with constraints; their long motions are in `motions/constraints`.
+
+mod contacts;
+mod counts;
+mod embedded;
+mod formulations;
+mod impacts;
+mod invariants;
+mod massless;
+mod overdetermined;
+mod planar;
+mod reactions;
+mod slipping;

@@ -1,0 +1,21 @@
+//! Contacts that open and close: closed forms, laws that always hold, and what engines get wrong. Piles, robots and random states are
+//! in `motions/contact`.
+
+mod bodies;
+mod both;
+mod boxes;
+mod derivatives;
+mod events;
+mod files;
+mod forces;
+mod gains;
+mod gallery;
+mod laws;
+mod mechanisms;
+mod orders;
+mod poisson;
+mod ratchet;
+mod soft;
+mod starts;
+mod terrain;
+mod turning;
