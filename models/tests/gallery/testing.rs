@@ -1,8 +1,8 @@
 //! What the tests of the mechanisms share.
 
 use linkwork::integrate::DormandPrince;
-use linkwork::nalgebra::{Isometry3, Rotation3, SMatrix, SVector, Translation3, Vector3};
-use linkwork::prelude::{Constrained, Error, Mechanism, Rk4, Sample, simulate};
+use linkwork::nalgebra::{Isometry3, Rotation3, SMatrix, Translation3, Vector3};
+
 use std::f64::consts::FRAC_PI_2;
 
 /// Holds what was generated against the closed form: relative to the largest entry, or absolute below one.
@@ -26,40 +26,6 @@ pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
 /// Integration to nearly all digits.
 pub fn precisely() -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e-12, 1e-12)
-}
-
-/// Takes steps of `Rk4`, and holds the constraints after every one to the tolerance of the projection: 16 times the
-/// machine's precision, relative to entries of the state beyond one. Gives the largest change of the energy, in a first
-/// tenth and in all, J.
-pub fn drift<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
-    m: &M,
-    q: &SVector<f64, NQ>,
-    v: &SVector<f64, NV>,
-    h: f64,
-    steps: usize,
-) -> Result<[f64; 2], Error>
-where
-    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
-{
-    let energy = |q: &_, v: &_| Mechanism::kinetic_energy(m, q, v) + Mechanism::potential_energy(m, q);
-    let start = energy(q, v);
-    let run = simulate(m).from(*q, *v).method(Rk4::step(h)).duration(h * steps as f64).sample_every(h);
-    let (mut changes, mut count) = ([0.0_f64; 2], 0);
-    for sample in run {
-        let Sample { t, q, v, .. } = sample?;
-        let rounding = 16.0 * f64::EPSILON;
-        let (residual, rate) = (m.constraint_residuals(t, &q).amax(), m.constraint_rates(t, &q, &v).amax());
-        assert!(residual <= rounding * q.amax().max(1.0), "{residual:e} in step {count}");
-        assert!(rate <= rounding * v.amax().max(1.0), "{rate:e} in step {count}");
-        let change = (energy(&q, &v) - start).abs();
-        changes[1] = changes[1].max(change);
-        if 10 * count <= steps {
-            changes[0] = changes[0].max(change);
-        }
-        count += 1;
-    }
-    assert_eq!(count, steps + 1);
-    Ok(changes)
 }
 
 /// Complete elliptic integral of the first kind by the arithmetic–geometric mean: `K(k) = ½π / agm(1, √(1 − k²))`,

@@ -1,0 +1,77 @@
+//! Mechanisms of the gallery for a million steps, and the longest of its examples.
+
+#[path = "../../models/src/four_bar.rs"]
+mod four_bar;
+#[path = "../../models/examples/passive_walker.rs"]
+mod passive_walker;
+#[path = "../../models/src/rolling_disk.rs"]
+mod rolling_disk;
+
+use four_bar::FourBar;
+use linkwork::prelude::*;
+use rolling_disk::RollingDisk;
+
+/// Takes steps of `Rk4`, and holds the constraints after every one to the tolerance of the projection: 16 times the
+/// machine's precision, relative to entries of the state beyond one. Gives the largest change of the energy, in a first
+/// tenth and in all, J.
+pub fn drift<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+    v: &SVector<f64, NV>,
+    h: f64,
+    steps: usize,
+) -> Result<[f64; 2], Error>
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
+{
+    let energy = |q: &_, v: &_| Mechanism::kinetic_energy(m, q, v) + Mechanism::potential_energy(m, q);
+    let start = energy(q, v);
+    let run = simulate(m).from(*q, *v).method(Rk4::step(h)).duration(h * steps as f64).sample_every(h);
+    let (mut changes, mut count) = ([0.0_f64; 2], 0);
+    for sample in run {
+        let Sample { t, q, v, .. } = sample?;
+        let rounding = 16.0 * f64::EPSILON;
+        let (residual, rate) = (m.constraint_residuals(t, &q).amax(), m.constraint_rates(t, &q, &v).amax());
+        assert!(residual <= rounding * q.amax().max(1.0), "{residual:e} in step {count}");
+        assert!(rate <= rounding * v.amax().max(1.0), "{rate:e} in step {count}");
+        let change = (energy(&q, &v) - start).abs();
+        changes[1] = changes[1].max(change);
+        if 10 * count <= steps {
+            changes[0] = changes[0].max(change);
+        }
+        count += 1;
+    }
+    assert_eq!(count, steps + 1);
+    Ok(changes)
+}
+
+/// A million steps leave the loop as closed as the first one. The energy drifts in proportion to time, and less by the
+/// power of the step that the order says.
+#[test]
+fn a_linkage() -> Result<(), Error> {
+    let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
+    let q = m.assemble(&[0.7, 0.2, 1.8].into(), &[0]).expect("the crank goes all the way round");
+    let still = SVector::zeros();
+    let [tenth, all] = drift(&m, &q, &still, 1e-3, 1_000_000)?;
+    assert!(all < 12.0 * tenth && all < 1e-6, "{tenth:e} J, then {all:e} J");
+    let [[_, coarse], [_, fine]] =
+        [drift(&m, &q, &still, 8e-3, 5_000)?, drift(&m, &q, &still, 4e-3, 10_000)?];
+    assert!(coarse > 15.0 * fine, "{coarse:e} J and {fine:e} J");
+    Ok(())
+}
+
+/// Nodding about the steady circle, a million steps long: it keeps touching the table and does not slip.
+#[test]
+fn a_disk() -> Result<(), Error> {
+    let m = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
+    // The angular velocity in the axes that lean but do not roll.
+    let ((s, c), r, u) = (0.35_f64.sin_cos(), m.radius, [0.4, -1.5, 2.4]);
+    let rates = [u[2] / c, u[0], u[1] - u[2] * s / c];
+    let q = [0.0, 0.0, r * c, 0.0, 0.35, 0.7].into();
+    let v = [r * u[1], -r * u[0] * c, -r * u[0] * s, rates[0], rates[1], rates[2]].into();
+    let [tenth, all] = drift(&m, &q, &v, 1e-3, 1_000_000)?;
+    assert!(all < 12.0 * tenth && all < 1e-6, "{tenth:e} J, then {all:e} J");
+    let [[_, coarse], [_, fine]] = [drift(&m, &q, &v, 8e-3, 5_000)?, drift(&m, &q, &v, 4e-3, 10_000)?];
+    assert!(coarse > 15.0 * fine, "{coarse:e} J and {fine:e} J");
+    Ok(())
+}
