@@ -11,7 +11,7 @@ use super::written::{filled, name, names_with, rate_name, rates};
 use super::{Limits, Short, quaternions, rank};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
-use crate::diag::all_of;
+use crate::diag::{Diagnostics, all_of};
 use crate::equations::print::aligned::aligned;
 use crate::equations::print::mathml::page;
 use crate::equations::print::names::primed;
@@ -19,8 +19,10 @@ use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap
 use crate::expr::eval::Tape;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
+use crate::kinematics::mobility::sample_configurations;
+use crate::kinematics::redundancy::Basis;
 use crate::kinematics::speeds::{inverse, shortened};
-use crate::kinematics::{Joint, random_configuration, time_derivative, value_of};
+use crate::kinematics::{Joint, Rows, random_configuration, time_derivative, value_of};
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::speeds::InSpeeds;
 use crate::mechanics::{accelerations, constraints, forces, rnea, velocities};
@@ -34,6 +36,8 @@ const CHOICES: usize = 20_000;
 const SAMPLES: u64 = 4;
 /// Determinants that differ by less are the same everywhere.
 const SAME: f64 = 1e-9;
+/// What is left of a row beside others, as a part of it, where it does not follow from them.
+const INDEPENDENT: f64 = 1e-7;
 
 /// Kane's equations as polynomials of one ring.
 pub struct Kane {
@@ -74,7 +78,7 @@ pub fn kane<'g>(
         Some(pivots) if speeds.is_none() && pivots.len() == rows.len() => {
             pivots.iter().map(|pivot| pivot.velocity.0).collect()
         }
-        _ => chosen(own, &rows).ok_or(Without::Choice)?,
+        _ => chosen(model, own, &rows).ok_or(Without::Choice)?,
     };
     let solved = Solved::of(own, &rows, dependent).ok_or(Without::Choice)?;
     let v = velocities(model);
@@ -121,16 +125,27 @@ fn polynomials<'g, const N: usize>(
 }
 
 /// The dependent velocities that constraints are solved for: those whose determinant has one value in all configurations, or
-/// varies least. `None` if the constraints depend on each other.
-fn chosen<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
-    let (nc, nv) = (rows.len(), model.nv());
+/// varies least, and is not zero wherever the constraints hold, as that of a parallelogram's crank and rocker by its coupler. `None` if
+/// the constraints depend on each other. The rows are those of the constraints for the velocities of `own`, which may be declared ones.
+fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
+    let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::of(&rows.concat());
-    let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES)
-        .map(|seed| {
-            let q = random_configuration(model, seed);
-            tape.values(&|s| value_of(s, &q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
+    let at = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
+        tape.values(&|s| value_of(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
+    };
+    let samples: Vec<Vec<Vec<f64>>> =
+        (0..SAMPLES).map(|seed| at(&random_configuration(model, seed), seed)).collect();
+    let closed = sample_configurations(model, &Rows::of(model), &mut Diagnostics::new());
+    let closed: Vec<Vec<Vec<f64>>> = closed.iter().map(|(q, seed)| at(q, *seed)).collect();
+    let is_regular = |columns: &[usize]| {
+        closed.iter().all(|rows| {
+            let mut basis = Basis::default();
+            rows.iter().for_each(|row| {
+                basis.add(&columns.iter().map(|k| row[*k]).collect::<Vec<f64>>(), INDEPENDENT);
+            });
+            basis.rank() == nc
         })
-        .collect();
+    };
     let mut best: Option<((f64, usize), Vec<usize>)> = None;
     let mut columns: Vec<usize> = (0..nc).collect();
     for _ in 0..CHOICES {
@@ -140,7 +155,7 @@ fn chosen<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
         let even = if even > 1.0 - SAME { 1.0 } else { even };
         let filled = columns.iter().map(|k| rows.iter().filter(|row| !row[*k].is_zero()).count()).sum();
         let better = best.as_ref().is_none_or(|((e, f), _)| even > *e || (even == *e && filled < *f));
-        if even > SAME && better {
+        if even > SAME && better && is_regular(&columns) {
             best = Some(((even, filled), columns.clone()));
         }
         // The next choice in the order of a dictionary.

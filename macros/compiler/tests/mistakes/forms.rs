@@ -125,6 +125,32 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
     answers(pins, ROWS);
 }
 
+/// A plate on three cranks that stay parallel: one is redundant wherever they are, and none of them may be left out where they part.
+#[test]
+fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
+    fn cranks(words: &str) -> (String, String) {
+        let cranks = (0..3).map(|k| {
+            format!(
+                "#[body(mass = 1, com = y / 2, inertia = rod(1, 1, y))] crank{k}: Body,
+                #[joint(ground.at({k} * x) -> crank{k}, about = z)] foot{k}: Pin,"
+            )
+        });
+        let ends =
+            (0..3).map(|k| format!("#[joint(crank{k}.at(y) -> plate.at({k} * x), about = z)] end{k}: Pin,"));
+        let plate = "#[body(mass = 1, com = x, inertia = rod(1, 2, x))] plate: Body,";
+        (
+            format!("gravity = -9.81 * y, {words}"),
+            cranks.collect::<String>() + plate + &ends.collect::<String>(),
+        )
+    }
+    const ROWS: &[Row] = &[(
+        "equations = kane",
+        "no velocities of this mechanism follow from the others by its constraints everywhere",
+        "write `equations = lagrange`, which keeps all constraints with multipliers",
+    )];
+    answers(cranks, ROWS);
+}
+
 /// Momenta leave forces out that depend on accelerations.
 #[test]
 fn forces_of_accelerations_leave_no_momenta() {
