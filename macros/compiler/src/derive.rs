@@ -278,11 +278,11 @@ fn has_massless(model: &Model<'_>) -> bool {
 
 impl<'g> Extras<'_, 'g> {
     fn facts(&self, model: &Model<'g>, requests: Requests) -> Facts {
-        let [bodies, base] = self.identification.as_ref().map_or([0, 0], Identification::counts);
+        let [bodies, base] = self.identification.as_ref().map(Identification::counts).unwrap_or_default();
         let entries = self.entries.clone().unwrap_or_default();
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
-        let conserved = self.conserved.as_ref().map_or(0, Vec::len);
-        let cyclic = self.routh.as_ref().map_or(0, |routh| routh.cyclic.len());
+        let conserved = self.conserved.as_ref().map(Vec::len).unwrap_or_default();
+        let cyclic = self.routh.as_ref().map(|routh| routh.cyclic.len()).unwrap_or_default();
         Facts { bodies, base, entries, passive, conserved, cyclic, ..Facts::of(model, requests) }
     }
 }

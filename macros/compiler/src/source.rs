@@ -1,6 +1,6 @@
 //! A mechanism as it was read, with its file, and what the outside sees of it.
 
-use crate::catalogue::{self, ConstraintFacts, Facts};
+use crate::catalogue::{self, ConstraintFacts, ContactSizes, Facts};
 use crate::diag::Diagnostics;
 use crate::emit::{self, Constraints, Emitted, Interface, emit_failed};
 use crate::syntax::{self, Mechanism};
@@ -227,7 +227,7 @@ impl Source {
             } else {
                 Constraints::default()
             },
-            contacts: if facts.contacts[0] > 0 { vec![emit::Touching::unknown()] } else { Vec::new() },
+            contacts: if facts.contacts.count > 0 { vec![emit::Touching::unknown()] } else { Vec::new() },
             facts,
             ..bare
         };
@@ -261,7 +261,11 @@ impl Source {
                 false => requests,
             },
             constraints,
-            contacts: if description.contacts.iter().all(|c| c.soft.is_some()) { [0; 2] } else { [1; 2] },
+            contacts: if description.contacts.iter().all(|c| c.soft.is_some()) {
+                ContactSizes::default()
+            } else {
+                ContactSizes { count: 1, rates: 1 }
+            },
             bodies: outline.bodies.len(),
             // How many base parameters there are, only the equations could tell.
             base: 7 * nv,

@@ -402,7 +402,7 @@ fn documentation_of_structs() {
 
 const MOTOR: &str = "#[acts(on = joint0_0)] motor: Torque,";
 
-/// Alike limbs that touch the ground, in declared speeds.
+/// Alike limbs that touch the ground.
 const FEET: &str = "
     #[body(mass = 2, inertia = sphere(2, 0.3))] trunk: Body,
     #[body(mass = 0.5, com = -0.2 * y, inertia = rod(0.5, 0.4, y))] left: Body,
@@ -411,7 +411,10 @@ const FEET: &str = "
     #[joint(trunk.at(-0.3 * x) -> left, about = z)] one: Pin,
     #[joint(trunk.at(0.3 * x) -> right, about = z)] other: Pin,
     #[contact(left.at(-0.4 * y), ground.plane(y), friction = 0.7)] first: Contact,
-    #[contact(right.at(-0.4 * y), ground.plane(y), friction = 0.7)] second: Contact,
+    #[contact(right.at(-0.4 * y), ground.plane(y), friction = 0.7)] second: Contact,";
+
+/// Speeds of these.
+const FEET_SPEEDS: &str = "
     #[speed(rate(pose.x) * cos(pose.angle) + rate(pose.y) * sin(pose.angle))] ahead: Speed,
     #[speed(rate(pose.y) * cos(pose.angle) - rate(pose.x) * sin(pose.angle))] aside: Speed,
     #[speed(rate(pose.angle))] turn: Speed,
@@ -426,9 +429,9 @@ const ROLLING: &str = "
     #[joint(ground -> ball)] pose: Free,
     #[constraint(rolls(ball.sphere(1), ground.surface(u, w, u * x + w * y + 0.1 * u * u * z)))] contact: Rolling,";
 
-/// All code of the mechanisms that are shown here in part, of those that have every function or what is seldom together, and of lanes: too long to be
-/// read, it is measured, and a difference is looked at with the
-/// command `expand` of the examples.
+/// All that is emitted for the mechanisms that are shown here in part, for those that have every function or what is seldom together, and
+/// for lanes: too long to be read, it is measured, code alone and with its documentation, and a difference is looked at with the command
+/// `expand` of the examples.
 #[test]
 fn whole_code() {
     let shown = MECHANISMS.map(|(name, attribute, fields, _)| (name, attribute, fields.to_string()));
@@ -443,6 +446,15 @@ fn whole_code() {
         // Of ten velocities and eleven coordinates, up to which number things are compared.
         ("ten", "gravity = -9.81 * y, derivatives, batch", chosen::limbs(2, 2) + MOTOR),
         ("feet", "gravity = -9.81 * y, derivatives, batch", FEET.to_string()),
+        ("feet in speeds", "gravity = -9.81 * y, derivatives, batch", FEET.to_string() + FEET_SPEEDS),
+        ("feet without inertia", "inertia = none", FEET.to_string()),
+        (
+            "placements",
+            "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = placement",
+            String::new(),
+        ),
+        ("numbers", "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = damping", String::new()),
+        ("many legs", "gravity = -9.81 * y, derivatives", chosen::limbs(4, 5)),
         ("rolling", "gravity = -9.81 * z, derivatives, batch", ROLLING.to_string()),
         // Whose inverse is found in loops: of a tree, of one with lanes and a long trunk, and of a chain.
         ("tree", "gravity = -9.81 * y, derivatives, skip_passes = [limbs]", chosen::limbs(4, 5)),
@@ -461,7 +473,10 @@ fn whole_code() {
         let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();
         let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
         assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
-        text += &format!("{name}, {attribute}: {}\n", measure::measure(&emitted.text));
+        // Fields and documentation as well, but for the space between tokens.
+        let all = emitted.tokens.to_string();
+        let whole = measure::number(all.bytes().filter(|byte| !byte.is_ascii_whitespace()));
+        text += &format!("{name}, {attribute}: {}, {whole:016x}\n", measure::measure(&emitted.text));
         // Large ones come last.
         assert!(writes || expected.starts_with(&text), "other code of {name}, {attribute}");
     }

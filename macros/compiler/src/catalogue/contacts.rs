@@ -12,7 +12,7 @@ const TOUCHING: &[Need] = &[Need::Contacts];
 pub const ROWS: &[Row] = &[
     Row::derived(Id::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {
         arguments: vec![Q],
-        shape: Shape::Vector(f.contacts[0]),
+        shape: Shape::Vector(f.contacts.count),
         docs: vec![
             "Distance of the surfaces of each contact, m, or rad from a stop about an axis: zero where they touch, negative where they overlap. In the order of `CONTACTS`.",
         ],
@@ -20,7 +20,7 @@ pub const ROWS: &[Row] = &[
     }),
     Row::derived(Id::ContactRates, "contact_rates", TOUCHING, |f| Declaration {
         arguments: vec![Q, V],
-        shape: Shape::Vector(f.contacts[1]),
+        shape: Shape::Vector(f.contacts.rates),
         docs: vec![
             "Rates at the contacts, m/s and rad/s: of each first the rate of its gap, then the slip of the first surface over the second one along one or two tangents, if it has friction; of moments of friction the relative angular velocity about the normal (`.spin`) or the tangents (`.roll`) alone. `CONTACT_ROWS` tells where those of a contact begin.",
         ],
@@ -28,7 +28,7 @@ pub const ROWS: &[Row] = &[
     }),
     Row::derived(Id::ContactJacobian, "contact_jacobian", TOUCHING, |f| Declaration {
         arguments: vec![Q],
-        shape: Shape::Matrix(f.contacts[1], f.nv),
+        shape: Shape::Matrix(f.contacts.rates, f.nv),
         docs: vec![
             "Jacobian of the contacts: how their rates change with the velocities. A force `f` at a contact, N, with its rows `G`, contributes `Gᵀ f` to the generalized forces.",
         ],
@@ -36,7 +36,7 @@ pub const ROWS: &[Row] = &[
     }),
     Row::derived(Id::ContactBias, "contact_bias", TOUCHING, |f| Declaration {
         arguments: vec![Q, V],
-        shape: Shape::Vector(f.contacts[1]),
+        shape: Shape::Vector(f.contacts.rates),
         docs: vec![
             "Bias `b(q, v)` of the contacts, m/s² and rad/s²: where surfaces touch, their rates change by `G v̇ + b`.",
         ],
@@ -44,7 +44,7 @@ pub const ROWS: &[Row] = &[
     }),
     Row::derived(Id::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
         timeless: true,
-        shape: Shape::Array(2 * f.contacts[0]),
+        shape: Shape::Array(2 * f.contacts.count),
         ..Declaration::default()
     })
     .alone(),
@@ -54,7 +54,7 @@ pub const ROWS: &[Row] = &[
         &[Need::Contacts, Need::Inertia, Need::FewContacts],
         |f| Declaration {
             arguments: vec![Q],
-            shape: Shape::Array(f.contacts[1] * (f.nv + f.contacts[1])),
+            shape: Shape::Array(f.contacts.rates * (f.nv + f.contacts.rates)),
             ..Declaration::default()
         },
     )
@@ -64,8 +64,8 @@ pub const ROWS: &[Row] = &[
         "__contact_derivatives",
         &[Need::Contacts, Need::Inertia, Need::Asks(Word::Derivatives)],
         |f| Declaration {
-            arguments: vec![Q, V, A, Argument::Given(CONTACT_FORCES, 0, f.contacts[1])],
-            shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts[1])),
+            arguments: vec![Q, V, A, Argument::Given(CONTACT_FORCES, 0, f.contacts.rates)],
+            shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts.rates)),
             ..Declaration::default()
         },
     )

@@ -220,7 +220,7 @@ pub const SECOND_ROWS: &[Row] = &[
 ];
 
 fn constraints(f: &Facts) -> usize {
-    f.constraints.map_or(0, |c| c.all)
+    f.constraints.map(|c| c.all).unwrap_or_default()
 }
 
 fn forward(f: &Facts) -> Shape {

@@ -137,8 +137,8 @@ pub struct Facts {
     pub cyclic: usize,
     /// How many quantities are conserved.
     pub conserved: usize,
-    /// How many contacts open and close, and how many rates they have.
-    pub contacts: [usize; 2],
+    /// The contacts that open and close.
+    pub contacts: ContactSizes,
     /// How many bounds limits have.
     pub limits: usize,
     /// How many numbers the drawing has.
@@ -151,6 +151,15 @@ pub struct Facts {
     pub parameters: usize,
     /// Row and column of the entries of the mass matrix in its lower triangle that are not always zero, column by column.
     pub entries: Vec<(usize, usize)>,
+}
+
+/// The contacts that open and close.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactSizes {
+    /// `NK`.
+    pub count: usize,
+    /// `NR`.
+    pub rates: usize,
 }
 
 /// What they depend on where there are constraints.
@@ -189,7 +198,7 @@ impl Facts {
             speeds: model.speeds.is_some(),
             requests,
             constraints,
-            contacts: [model.contacts.len(), model.contact_rates().len()],
+            contacts: ContactSizes { count: model.contacts.len(), rates: model.contact_rates().len() },
             limits: model.limit_values().len(),
             equilibria: model.equilibria.len(),
             drawing: model.drawing_numbers().len(),
@@ -210,7 +219,7 @@ impl Facts {
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
             Need::NoSlipping => self.constraints.is_none_or(|c| c.slipping == 0),
-            Need::Contacts => self.contacts[0] > 0,
+            Need::Contacts => self.contacts.count > 0,
             Need::Parameters => self.parameters > 0,
             Need::FileParameters => self.requests.file_parameters,
             Need::FileInertials => self.requests.file_inertials,
@@ -222,7 +231,7 @@ impl Facts {
             Need::Calls => self.calls,
             Need::PassiveCalls => self.passive.is_some(),
             Need::FewContacts => {
-                self.constraints.is_none() && (1..=FEW_CONTACT_RATES).contains(&self.contacts[1])
+                self.constraints.is_none() && (1..=FEW_CONTACT_RATES).contains(&self.contacts.rates)
             }
         }
     }

@@ -17,7 +17,7 @@ mod speeds;
 mod written;
 
 pub use constants::{absent_constants, is_constant};
-pub use facts::{ConstraintFacts, Facts, Need};
+pub use facts::{ConstraintFacts, ContactSizes, Facts, Need};
 pub use outputs::{BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, output, reaction, touched};
 pub use row::{Declaration, Declared, Id, Made, Row};
 pub use shape::{Argument, CONTACT_FORCES, Called, InverseForm, Record, RecordField, Shape, Structure};

@@ -98,8 +98,8 @@ pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declare
     let mut arguments = vec![Q, V, A];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", 0, c.all)));
-    let touched = is_diagram && f.contacts[0] > 0;
-    arguments.extend(touched.then_some(Argument::Given(CONTACT_FORCES, 0, f.contacts[1])));
+    let touched = is_diagram && f.contacts.count > 0;
+    arguments.extend(touched.then_some(Argument::Given(CONTACT_FORCES, 0, f.contacts.rates)));
     declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
 }
 
@@ -107,6 +107,6 @@ pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declare
 pub fn touched(name: &str, size: usize, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));
-    arguments.push(Argument::Given(CONTACT_FORCES, 0, f.contacts[1]));
+    arguments.push(Argument::Given(CONTACT_FORCES, 0, f.contacts.rates));
     declared(Id::Touched, format!("{TOUCHED}{name}"), &arguments, of_size(size), Vec::new(), f)
 }

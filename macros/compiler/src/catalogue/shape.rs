@@ -96,9 +96,10 @@ impl Argument {
 }
 
 /// The result of a generated function, and how it is put together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shape {
     /// A number.
+    #[default]
     Scalar,
     /// A column vector.
     Vector(usize),
@@ -138,13 +139,6 @@ pub enum Shape {
     Record(Record),
     /// A square matrix of so many rows that is given: the outputs go to both sides of its diagonal.
     Symmetric(usize),
-}
-
-impl Default for Shape {
-    /// Nothing.
-    fn default() -> Shape {
-        Shape::Array(0)
-    }
 }
 
 impl Shape {

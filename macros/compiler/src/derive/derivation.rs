@@ -142,7 +142,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         plain: Program,
         outputs: impl FnOnce(&mut LimbContacts<'_, 'g>) -> Option<Vec<Expr<'g>>>,
     ) -> Program {
-        match self.facts.kinematic || self.speeds.is_some() {
+        match self.facts.kinematic {
             true => plain,
             false => {
                 self.dynamics().with_limb_contacts(plain, &constraints::contact_rows(self.model), outputs)

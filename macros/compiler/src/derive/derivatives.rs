@@ -244,8 +244,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     fn forward_dynamics(&self) -> Program {
-        let g = self.model.graph;
-        let tau: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Force(k).expr(g)).collect();
+        let tau = mechanics::efforts(self.model);
         let program = |mass: &crba::Matrix<'g>, method: Method| {
             let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
             self.known.replace(&mut found.forces);
@@ -340,8 +339,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     fn unbalanced(&self) -> Vec<Expr<'g>> {
         let (model, v) = (self.model, mechanics::velocities(self.model));
         let bias = rnea::inverse_dynamics(model, &self.joints, &v, None);
-        let tau = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph));
-        tau.zip(bias).map(|(tau, h)| tau - h).collect()
+        mechanics::efforts(model).into_iter().zip(bias).map(|(tau, h)| tau - h).collect()
     }
 
     /// True if a single function of all is too large.
@@ -428,8 +426,8 @@ impl<'a, 'g> Parts<'a, 'g> {
 
 /// A matrix column by column.
 pub(super) fn columns<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
-    let width = m.first().map_or(0, Vec::len);
-    (0..width).flat_map(|j| m.iter().map(move |row| row[j])).collect()
+    let [any, ..] = m.as_slice() else { return Vec::new() };
+    (0..any.len()).flat_map(|j| m.iter().map(move |row| row[j])).collect()
 }
 
 fn force_columns<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {

@@ -53,7 +53,7 @@ impl<'g> Dynamics<'g> {
         if model.nv() > COMPARED_VELOCITIES {
             all.truncate(1);
         }
-        let least = all.first().map_or(0, |choice| choice.size);
+        let least = all.iter().map(|choice| choice.size).min().unwrap_or_default();
         let most = least + least / SIMILAR;
         let (mut masses, mut recursions, mut choices) = (Vec::new(), Vec::new(), Vec::new());
         for choice in all {

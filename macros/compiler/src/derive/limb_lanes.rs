@@ -70,7 +70,7 @@ pub fn unbalanced<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
 
 /// The inverse of the mass matrix of the whole mechanism in its parts: a matrix, and columns beside it.
 pub fn inverse<'g>(limbs: &Limbs<'g>, [matrix, beside]: &[crba::Matrix<'g>; 2]) -> [crba::Matrix<'g>; 2] {
-    let width = beside.first().map_or(0, Vec::len);
+    let width = beside.iter().map(Vec::len).max().unwrap_or_default();
     let column = |k: usize| limbs.scattered(&beside.iter().map(|row| row[k]).collect::<Vec<_>>());
     let columns: Vec<Vec<Expr<'g>>> = (0..width).map(column).collect();
     let rows = scattered_rows(limbs, matrix);

@@ -5,8 +5,8 @@ use crate::expr::Expr;
 use crate::kinematics;
 use crate::lower::Program;
 use crate::machine::DERIVATIVES_COMPARED;
-use crate::mechanics::derivatives::parameters;
-use crate::mechanism::{Model, Quantity};
+use crate::mechanics::{self, derivatives::parameters};
+use crate::mechanism::Model;
 use crate::passes::{self, Passes, Variant};
 
 /// What both functions are derived from: the model as it is or one of its variants, whichever costs less.
@@ -59,6 +59,5 @@ impl<'g> Sensitivities<'g> {
 
 fn accelerations<'g>(variant: &Variant<'g>) -> Vec<Vec<Expr<'g>>> {
     let model = &variant.model;
-    let tau: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
-    parameters::forward_dynamics(model, &variant.joints, &tau)
+    parameters::forward_dynamics(model, &variant.joints, &mechanics::efforts(model))
 }

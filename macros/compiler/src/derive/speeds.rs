@@ -140,8 +140,7 @@ impl<'g> Derivation<'_, 'g> {
     fn free_accelerations(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let native = &speeds.native;
         let bias = rnea::inverse_dynamics(native, self.joints, &mechanics::velocities(native), None);
-        let tau = (0..native.nv()).map(|k| Quantity::Force(k).expr(native.graph));
-        let lacking = tau.zip(bias).map(|(tau, h)| tau - h).collect();
+        let lacking = mechanics::efforts(native).into_iter().zip(bias).map(|(tau, h)| tau - h).collect();
         speeds.results(Role::Accelerations(0), &self.factor(speeds, true).solve(lacking))
     }
 

@@ -87,7 +87,7 @@ impl Calls {
             let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
             let (sines, cosines, angles) = (list('s'), list('c'), angles.join(", "));
             let _ = write!(text, "let ([{sines}], [{cosines}]) = Ops::sin_cos_all([{angles}]); ");
-            for (_, numbers) in group.iter().filter(|(_, numbers)| numbers.len() > 1) {
+            for (_, numbers) in group.iter().filter(|(_, numbers)| matches!(numbers.as_slice(), [_, _, ..])) {
                 for letter in ['s', 'c'] {
                     let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
                     let _ = write!(text, "let [{}] = {}.lanes().0; ", names.join(", "), names[0]);
@@ -98,10 +98,13 @@ impl Calls {
 
     /// One call, padded to whole registers; of several states one for every few angles, since each fills registers by itself.
     fn write_numbers(&mut self, text: &mut String) {
+        if self.arguments.is_empty() {
+            return;
+        }
         if self.padded {
             self.pad();
         }
-        let together = if self.padded { self.arguments.len().max(1) } else { TOGETHER };
+        let together = if self.padded { self.arguments.len() } else { TOGETHER };
         for group in self.arguments.chunks(together) {
             let list = |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
             let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();

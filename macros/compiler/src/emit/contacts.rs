@@ -2,7 +2,7 @@
 
 use super::interface::Interface;
 use super::signature::Signature;
-use crate::catalogue::{Need, Shape};
+use crate::catalogue::{ContactSizes, Need, Shape};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
@@ -73,7 +73,7 @@ pub fn write_constants(out: &mut String, contacts: &[Touching]) {
 
 /// The runtime's trait of mechanisms with contacts.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    let [count, rows] = i.facts.contacts;
+    let ContactSizes { count, rates: rows } = i.facts.contacts;
     let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
     let pass = if s.time { "t, " } else { "" };
     let (gaps, rates) = (s.vector(count), s.vector(rows));
@@ -130,7 +130,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 
 /// The runtime's trait of their derivatives.
 pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    let [_, rows] = i.facts.contacts;
+    let rows = i.facts.contacts.rates;
     let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
     let pass = if s.time { "t, " } else { "" };
     let _ = writeln!(

@@ -3,7 +3,7 @@
 use super::interface::{ALLOW, Head, Interface, needed};
 use super::signature::Signature;
 use super::{constraints, contacts, differentiable, lanes, limits};
-use crate::catalogue;
+use crate::catalogue::{self, ContactSizes};
 use std::fmt::Write;
 
 /// The inherent functions of a type of this name, and the trait's.
@@ -77,11 +77,12 @@ fn begin_with(
 
 /// The traits of contacts.
 fn write_contacts(head: &Head, out: &mut String, name: &str, i: &Interface<'_>, s: &Signature<'_>) {
-    begin_with(head, out, name, "Contacts", s, i.facts.contacts);
+    let ContactSizes { count, rates } = i.facts.contacts;
+    begin_with(head, out, name, "Contacts", s, [count, rates]);
     contacts::write_trait(out, i, s);
     out.push_str("}\n");
     if i.facts.requests.derivatives {
-        begin_with(head, out, name, "contact::ContactDerivatives", s, i.facts.contacts);
+        begin_with(head, out, name, "contact::ContactDerivatives", s, [count, rates]);
         contacts::write_derivatives(out, i, s);
         out.push_str("}\n");
     }

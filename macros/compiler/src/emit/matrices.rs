@@ -202,7 +202,7 @@ impl Beside<'_> {
         }
         let runs = together(used.iter().enumerate().filter_map(|(k, used)| Some((k, (*used)?, k))));
         let neighbours = |limb: &Vec<usize>| {
-            let runs = together(limb.iter().map(|k| (*k, (0, 0), *k)));
+            let runs = together(limb.iter().map(|k| (*k, Span::default(), *k)));
             format!("&{:?}", runs.iter().map(|run| run.0).collect::<Vec<Span>>())
         };
         let limbs: Vec<String> = limbs.iter().map(neighbours).collect();

@@ -36,7 +36,7 @@ pub fn write_prepared(
 ) {
     let (ident, head) = (&i.shell.ident, Head::new(i, s));
     let name = format!("Prepared{}", ident.to_string().trim_start_matches("r#"));
-    let count = content.numbers.map_or(0, |numbers| numbers.outputs.len());
+    let count = content.numbers.map(|numbers| numbers.outputs.len()).unwrap_or_default();
     write_struct(out, i, s, &name, count, functions);
     let mut methods = String::new();
     write_sizes(&mut methods, i);

@@ -101,7 +101,7 @@ fn write_touched_diagram(
         }}",
         output_docs(i, name, &acting),
         output_docs(i, name, &under),
-        s.vector(i.facts.contacts[1]),
+        s.vector(i.facts.contacts.rates),
         made(diagram, call)
     );
 }
@@ -125,7 +125,7 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
         if i.contacts.is_empty() {
             let _ = writeln!(out, "pub fn {name}({parameters}) -> {kind} {{ loop {{}} }}");
         } else {
-            let forces = s.vector(i.facts.contacts[1]);
+            let forces = s.vector(i.facts.contacts.rates);
             let _ = writeln!(
                 out,
                 "pub fn {name}({parameters}) -> ::core::result::Result<{kind}, ::linkwork::ConstraintError> {{ loop {{}} }}

@@ -61,7 +61,7 @@ impl Signature<'_> {
             Argument::Standard(n) | Argument::Factors(n) | Argument::Momenta(n) => n,
             Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
             Argument::Into(_, n) => return format!("&mut {}", self.shape(Shape::Square(n))),
-            Argument::Called(_) => 0,
+            Argument::Called(_) => return String::new(),
         };
         format!("&{}", self.vector(n))
     }
@@ -86,7 +86,6 @@ impl Signature<'_> {
                 let (name, [m, n]) = record.name();
                 format!("::linkwork::__private::{name}<{s}, {m}, {n}>")
             }
-            Shape::Symmetric(_) => "()".to_string(),
             Shape::Pair(_)
             | Shape::Hessian(_)
             | Shape::Jacobians(..)
@@ -95,7 +94,8 @@ impl Signature<'_> {
             | Shape::Linear(..)
             | Shape::Accelerated(_)
             | Shape::CalledForward(_)
-            | Shape::CalledLinear(..) => several(shape, self),
+            | Shape::CalledLinear(..)
+            | Shape::Symmetric(_) => several(shape, self),
         }
     }
 

@@ -46,7 +46,7 @@ pub fn with_stores(
 fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
     let given = given(f);
     let Some(&matrix) = given.first() else { return Vec::new() };
-    let (before, forces, n) = match f.shape {
+    let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {
             let both = |&(row, column): &(usize, usize)| {
                 let mut places =
@@ -56,8 +56,8 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
             };
             return f.structure.entries.iter().map(both).collect();
         }
-        Shape::Accelerated(n) => (n, 0, n),
-        Shape::Pair(n) | Shape::Forward(n) => (0, 2 * n * n, n),
+        Shape::Accelerated(n) => (n, false, n),
+        Shape::Pair(n) | Shape::Forward(n) => (0, true, n),
         _ => return Vec::new(),
     };
     let square = |matrix: &'static str| (0..n * n).map(move |k| Entry { matrix, column: k / n, row: k % n });
@@ -67,7 +67,8 @@ fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
         _ => &[],
     };
     let kept = all.map(|(k, place)| {
-        let goes_nowhere = (k < forces && outputs.is_zero(k)) || overwritten.contains(&place.column);
+        let goes_nowhere =
+            (has_forces && k < 2 * n * n && outputs.is_zero(k)) || overwritten.contains(&place.column);
         if goes_nowhere { vec![] } else { vec![place] }
     });
     (0..before).map(|_| Vec::new()).chain(kept).collect()

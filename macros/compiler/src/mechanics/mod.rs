@@ -44,6 +44,11 @@ pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Acceleration(k).expr(model.graph)).collect()
 }
 
+/// All generalized forces as symbols.
+pub fn efforts<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+    (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect()
+}
+
 /// True if every velocity belongs to one joint coordinate, so that the articulated-body algorithm applies.
 pub fn is_plain_tree(model: &Model<'_>) -> bool {
     let mut seen = vec![false; model.nv()];

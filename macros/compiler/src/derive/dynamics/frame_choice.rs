@@ -69,7 +69,7 @@ impl<'g> FrameChoice<'g> {
     fn new(variants: Variants<'g>) -> FrameChoice<'g> {
         let masses: Vec<Candidate<'g>> = variants.mass_matrices().collect();
         let recursions: Vec<Candidate<'g>> = variants.recursions(true).collect();
-        let size = smallest(&masses).unwrap_or(0) + smallest(&recursions).unwrap_or(0);
+        let size = smallest(&masses).unwrap_or_default() + smallest(&recursions).unwrap_or_default();
         FrameChoice { variants, masses, recursions, size }
     }
 }

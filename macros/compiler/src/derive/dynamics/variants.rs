@@ -9,7 +9,7 @@ use crate::mechanics::derivatives::Factor;
 use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::{InSpeeds, Role};
 use crate::mechanics::{self, aba, added_mass, constraints, crba, friction, ldl, massless, rnea};
-use crate::mechanism::{Model, Quantity};
+use crate::mechanism::Model;
 use crate::passes::{Passes, Variant};
 use crate::vectorise::{self, Limbs};
 use std::rc::Rc;
@@ -43,10 +43,11 @@ impl<'g> Variants<'g> {
         specialisation: Specialisation,
         speeds: Option<Rc<InSpeeds<'g>>>,
     ) -> Variants<'g> {
-        let joints = all.first().map_or(Vec::new(), |variant| variant.joints.clone());
-        let groups = match all.first() {
-            Some(variant) if passes.lanes && specialisation == Specialisation::None && speeds.is_none() => {
-                vectorise::find(&variant.model, &joints)
+        // All have the same joints.
+        let joints = all.iter().map(|variant| variant.joints.clone()).next().unwrap_or_default();
+        let groups = match all.as_slice() {
+            [any, ..] if passes.lanes && specialisation == Specialisation::None && speeds.is_none() => {
+                vectorise::find(&any.model, &joints)
             }
             _ => Vec::new(),
         };
@@ -138,7 +139,7 @@ impl<'g> Variants<'g> {
         };
         let v = mechanics::velocities(bias);
         let wrenches = rnea::wrenches(bias, &self.joints, &v, None);
-        let tau = efforts(bias);
+        let tau = mechanics::efforts(bias);
         let all = self.plain().filter_map(|model| {
             let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
             Some(self.candidate(Role::Accelerations(0), list))
@@ -172,7 +173,7 @@ impl<'g> Variants<'g> {
             return Vec::new();
         };
         let h = rnea::inverse_dynamics(bias, &self.joints, &mechanics::velocities(bias), None);
-        efforts(bias).iter().zip(h).map(|(tau, h)| *tau - h).collect()
+        mechanics::efforts(bias).iter().zip(h).map(|(tau, h)| *tau - h).collect()
     }
 }
 
@@ -181,15 +182,10 @@ fn answers(model: &Model<'_>) -> usize {
     if model.is_overdetermined() { model.constraints.len() } else { 0 }
 }
 
-/// `τ`.
-fn efforts<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect()
-}
-
 impl<'g> Variants<'g> {
     /// Accelerations and multipliers under the forces `tau`.
     pub fn constrained_dynamics(&self) -> Program {
-        let Some(variant) = self.all.first() else { return Program::default() };
+        let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, biases) = (self.unbalanced(), constraints::biases(&variant.model));
         if !friction::slipping(&variant.model).is_empty() {
             return self.slipping(Role::Accelerations(0), &force, &biases);
@@ -206,14 +202,14 @@ impl<'g> Variants<'g> {
 
     /// The response of constraints to given forces and biases.
     pub fn constraint_response(&self) -> Program {
-        let Some(variant) = self.all.first() else { return Program::default() };
+        let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::given(&variant.model);
         self.multipliers(Role::Answers(answers(&variant.model)), &force, &bias)
     }
 
     /// The response of constraints that slip, with friction, to given forces and biases.
     pub fn slipping_response(&self) -> Program {
-        let Some(variant) = self.all.first() else { return Program::default() };
+        let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::given(&variant.model);
         self.slipping(Role::Answers(0), &force, &bias)
     }
