@@ -125,7 +125,20 @@ fn what_is_not_there_has_a_reason() {
 /// A number too many or too few in the program of any function, of a link or of a frame does not go unnoticed.
 #[test]
 fn a_program_that_does_not_fit_is_found() {
-    for mechanism in MECHANISMS {
+    let mut in_lanes = 0;
+    let limb = |k: usize| {
+        format!(
+            "#[body(mass = 1, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] thigh{k}: Body,
+            #[body(mass = 1, com = 0.2 * y, inertia = diagonal(0.03, 0.04, 0.02))] shank{k}: Body,
+            #[joint(trunk.at({k} * x) -> thigh{k}, about = x)] hip{k}: Pin,
+            #[joint(thigh{k}.at(y) -> shank{k}, about = z)] knee{k}: Pin,"
+        )
+    };
+    let trunk =
+        "#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,";
+    let limbs = trunk.to_string() + &(0..4).map(limb).collect::<String>();
+    let alike = ("gravity = -9.81 * y", "Alike", limbs.as_str());
+    for mechanism in MECHANISMS.into_iter().chain([alike]) {
         compiled(mechanism, |_, _, mut output| {
             assert_eq!(output.misfit(), None, "{}", mechanism.1);
             for k in 0..output.functions.len() {
@@ -133,6 +146,11 @@ fn a_program_that_does_not_fit_is_found() {
                 let name = output.functions[k].name.clone();
                 assert_eq!(output.misfit(), Some(name.as_str()), "{}", mechanism.1);
                 output.functions[k].program.outputs.push(last);
+                let Some(lanes) = &mut output.functions[k].program.simd else { continue };
+                let last = lanes.outputs.pop().unwrap();
+                assert_eq!(output.misfit(), Some(name.as_str()), "lanes of {}", mechanism.1);
+                output.functions[k].program.simd.as_mut().unwrap().outputs.push(last);
+                in_lanes += 1;
             }
             let last = output.links[0].columns.outputs.pop().unwrap();
             assert!(output.misfit().is_some(), "{}", mechanism.1);
@@ -141,4 +159,5 @@ fn a_program_that_does_not_fit_is_found() {
             assert!(output.misfit().is_some(), "{}", mechanism.1);
         });
     }
+    assert!(in_lanes > 0, "programs in lanes are looked at: {in_lanes}");
 }

@@ -400,6 +400,7 @@ fn documentation_of_structs() {
     assert_eq!(difference("documentation", &text), None, "documentation differs");
 }
 
+const ROPE: &str = "#[acts(on = trunk.at(0.3 * x), along = y)] rope: Force,";
 const MOTOR: &str = "#[acts(on = joint0_0)] motor: Torque,";
 
 /// Alike limbs that touch the ground.
@@ -455,6 +456,8 @@ fn whole_code() {
         ),
         ("numbers", "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = damping", String::new()),
         ("many legs", "gravity = -9.81 * y, derivatives", chosen::limbs(4, 5)),
+        // What an input does depends on some coordinates alone.
+        ("towed legs", "gravity = -9.81 * y, derivatives", chosen::limbs(4, 5) + ROPE),
         ("rolling", "gravity = -9.81 * z, derivatives, batch", ROLLING.to_string()),
         // Whose inverse is found in loops: of a tree, of one with lanes and a long trunk, and of a chain.
         ("tree", "gravity = -9.81 * y, derivatives, skip_passes = [limbs]", chosen::limbs(4, 5)),

@@ -30,6 +30,23 @@ fn figures_leave_room() {
     );
 }
 
+/// Functions in which they do not occur are finite.
+#[test]
+fn products_of_figures_leave_room() {
+    const ROWS: &[Row] = &[(
+        "1e200 * hinge * 1e200",
+        "the figures of this mechanism are too large",
+        "a product of masses, lengths or forces in its equations is not a finite number",
+    )];
+    answers(
+        |said| {
+            let arm = "#[body(mass = 1, com = x)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin";
+            (String::new(), format!("{arm}, #[acts(on = hinge, value = {said})] push: Torque"))
+        },
+        ROWS,
+    );
+}
+
 const SINGLE: &[Row] = &[
     ("mass = 1e25, inertia = sphere(1, 1)", "this figure is too large for `f32`: 1e25", "leave room"),
     ("mass = 1, com = 1e20 * x", "this length is too large for `f32`: 1e20", "leave room"),
