@@ -74,7 +74,7 @@ pub fn derive_with<'g>(
     if !singular::check(model, &joints, &mass, cx) || !singular::check_effective(model, &joints, &mass, cx) {
         return None;
     }
-    if let Some((force, what)) = model.acceleration_forces.first().zip(without_momentum(requests)) {
+    if let ([force, ..], Some(what)) = (model.acceleration_forces.as_slice(), without_momentum(requests)) {
         cx.error(force.place.clone(), format!("a force that depends on accelerations leaves no {what}"))
             .help("leave the word out that asks for them, or these terms of the force");
         return None;

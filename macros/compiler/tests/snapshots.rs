@@ -422,6 +422,36 @@ const FEET_SPEEDS: &str = "
     #[speed(rate(one))] swing: Speed,
     #[speed(rate(other))] back: Speed,";
 
+/// Rolling without slipping.
+const BALL: &str = "
+    #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
+    #[joint(ground -> ball)] pose: Free,
+    #[constraint(rolls(ball.sphere(1), ground.plane(z)))] contact: Rolling,";
+
+/// A linkage whose rocker strikes the ground, and what it exerts on its bearing.
+const BOUNDED: &str = "
+    m: f64,
+    #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,
+    #[body(mass = m, com = x, inertia = rod(m, 2, x))] coupler: Body,
+    #[body(mass = m, com = x, inertia = rod(m, 2, x))] rocker: Body,
+    #[joint(ground -> crank, about = z)] input: Pin,
+    #[joint(crank.at(x) -> coupler, about = z)] middle: Pin,
+    #[joint(ground.at(2 * x) -> rocker, about = z)] output: Pin,
+    #[joint(coupler.at(2 * x) -> rocker.at(2 * x), about = z)] last: Pin,
+    #[contact(rocker.at(x), ground.plane(y))] stop: Contact,
+    #[output(norm(reaction_force(input)))] load: Scalar,
+    #[output(contact_force(stop))] push: Vector,";
+
+/// Three pins about parallel axes.
+const PARALLEL: &str = "
+    m: f64,
+    #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] one: Body,
+    #[body(mass = 2, com = x / 2 + y / 3, inertia = rod(m, 1, x))] two: Body,
+    #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] three: Body,
+    #[joint(ground -> one, about = z)] a: Pin,
+    #[joint(one.at(x) -> two, about = z)] b: Pin,
+    #[joint(two.at(x + y) -> three, about = z)] c: Pin,";
+
 /// Where a ball touches a surface are coordinates without inertia, which follow from the others.
 const ROLLING: &str = "
     u: Coordinate,
@@ -449,6 +479,13 @@ fn whole_code() {
         ("feet", "gravity = -9.81 * y, derivatives, batch", FEET.to_string()),
         ("feet in speeds", "gravity = -9.81 * y, derivatives, batch", FEET.to_string() + FEET_SPEEDS),
         ("feet without inertia", "inertia = none", FEET.to_string()),
+        ("packed feet in speeds", "gravity = -9.81 * y, packed", FEET.to_string() + FEET_SPEEDS),
+        ("speeds in lanes", "gravity = -9.81 * y, batch", SPEEDS.to_string()),
+        ("ball", "gravity = -9.81 * z, second_derivatives", BALL.to_string()),
+        ("bounded linkage", "gravity = -9.81 * y, prepare", BOUNDED.to_string()),
+        // What passes do for chains of axes that are parallel or skew, with numbers or parameters, is left out.
+        ("skipped", "gravity = -9.81 * y, skip_passes = [frames, regroup, parallel]", chosen::chain(4)),
+        ("skipped", "gravity = -9.81 * y, skip_passes = [frames, regroup, parallel]", PARALLEL.to_string()),
         (
             "placements",
             "urdf = \"../../models/urdf/double_pendulum.urdf\", parameters = placement",
@@ -477,7 +514,7 @@ fn whole_code() {
         let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
         assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
         // Fields and documentation as well, but for the space between tokens.
-        let all = emitted.tokens.to_string();
+        let all = emitted.text.clone() + &emitted.tokens.to_string();
         let whole = measure::number(all.bytes().filter(|byte| !byte.is_ascii_whitespace()));
         text += &format!("{name}, {attribute}: {}, {whole:016x}\n", measure::measure(&emitted.text));
         // Large ones come last.

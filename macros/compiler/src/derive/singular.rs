@@ -46,7 +46,7 @@ pub fn check_effective<'g>(
     mass: &crba::Matrix<'g>,
     cx: &mut Diagnostics,
 ) -> bool {
-    let Some(force) = model.acceleration_forces.first() else { return true };
+    let [force, ..] = model.acceleration_forces.as_slice() else { return true };
     let singular = regularity::singular_velocities(model, joints, &added_mass::effective(model, mass));
     let names: Vec<String> = singular.iter().map(|k| format!("`{}`", model.velocities[*k].0)).collect();
     if names.is_empty() {

@@ -238,7 +238,7 @@ fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<Stri
 
 fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signature<'_>) {
     match f.shape {
-        Shape::Scalar => out.push_str(outputs.pieces.first().map_or("", |p| p.text.as_str())),
+        Shape::Scalar => outputs.pieces.iter().for_each(|piece| out.push_str(&piece.text)),
         Shape::Array(_) => out.push_str(&outputs.list(0..outputs.pieces.len())),
         Shape::Vector(n) => {
             let _ = writeln!(out, "{}", storage(&format!("[{}]", outputs.list(0..n)), "SVector"));

@@ -45,7 +45,7 @@ pub fn with_stores(
 /// columns of it that are still to come.
 fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
     let given = given(f);
-    let Some(&matrix) = given.first() else { return Vec::new() };
+    let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
         Shape::Symmetric(_) => {
             let both = |&(row, column): &(usize, usize)| {
