@@ -122,8 +122,8 @@ pub enum Shape {
     /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
     /// themselves, those of `Inverse`, and the accelerations, which are returned where the derivatives go into given matrices.
     Forward(usize),
-    /// A linear system in `q` and `v` with inputs; after the outputs of `Forward` come the derivatives by the inputs, and
-    /// what turns displacements.
+    /// A linear system in `q` and `v` with inputs; after derivatives of forces and the whole inverse come the derivatives by the
+    /// inputs, and what turns displacements.
     Linear(usize, usize),
     /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations, or `M` times them
     /// where the inverse is divided, and those of `Inverse`.
@@ -161,7 +161,7 @@ impl Shape {
             Shape::InputHessian(n, m) => 3 * n * n + 2 * n * m + m * m,
             Shape::Inverse(n) => n * n + parts(n),
             Shape::Forward(n) => 3 * n * n + parts(n) + n,
-            Shape::Linear(n, m) => 4 * n * n + parts(n) + n * m,
+            Shape::Linear(n, m) => 4 * n * n + n * m,
             Shape::Accelerated(n) => n + n * n + parts(n),
             Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
             Shape::CalledLinear(n, m) => n + 3 * n * n + n * m,

@@ -84,8 +84,8 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
         Shape::Linear(0, m) => format!("({}, {})\n", outputs.matrix(0, 0, 0), outputs.matrix(0, 0, m)),
         Shape::Linear(n, m) => {
             format!(
-                "{}let (mut by_q, mut by_v) = ({}, {});\n{}{}",
-                inverse(f, n, 2 * n * n, s, outputs),
+                "let inverse = {};\nlet (mut by_q, mut by_v) = ({}, {});\n{}{}",
+                square(2, n),
                 square(0, n),
                 square(1, n),
                 solved(["by_q", "by_v"], "inverse", n, s, &f.structure),
