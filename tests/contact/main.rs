@@ -1,4 +1,4 @@
-//! Contacts that open and close: closed forms, laws that always hold, and what engines get wrong. Piles, robots and random states are
+//! Contacts that open and close: closed forms, laws that always hold, and what engines get wrong. A tower, robots and random states are
 //! in `motions/contact`.
 
 mod bodies;
@@ -13,6 +13,7 @@ mod gallery;
 mod laws;
 mod mechanisms;
 mod orders;
+mod piles;
 mod poisson;
 mod ratchet;
 mod soft;

@@ -5,5 +5,5 @@ mod impacts;
 #[path = "../../contact/laws.rs"]
 mod laws;
 mod midpoint;
-mod piles;
 mod robots;
+mod tower;

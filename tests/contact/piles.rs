@@ -3,45 +3,6 @@
 use linkwork::prelude::*;
 use std::thread;
 
-/// Ten boxes; each stands with the corners of its base on the top of the one below.
-#[mechanism(gravity = -9.81 * z)]
-struct Tower {
-    #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
-    block: [Body; 10],
-    #[joint(ground -> block[i])]
-    pose: [Free; 10],
-    #[contact(block[0].cuboid(0.2, 0.2, 0.1), ground.plane(z), friction = 0.6)]
-    base: Contact,
-    #[contact(block[i + 1].cuboid(0.2, 0.2, 0.1), block[i].at(0.05 * z).plane(z), friction = 0.6)]
-    seat: [Contact; 9],
-}
-
-/// Eighty corners of which forty touch, ten more impulses than the bodies' equilibrium determines.
-fn tower() {
-    let m = Tower {};
-    let mut q = m.neutral();
-    for k in 0..10 {
-        q[7 * k] = 0.02 * ((k % 3) as f64 - 1.0);
-        q[7 * k + 2] = 0.05 + 0.1 * k as f64;
-    }
-    let mut samples = 0;
-    for sample in
-        simulate(&m).from(q, [0.0; 60]).method(TimeStepping::step(1e-2)).sample_every(0.5).duration(2.0)
-    {
-        let sample = sample.unwrap();
-        let moved = (sample.q - q).norm();
-        assert!(moved < 1e-10, "{moved:e} m at {} s", sample.t);
-        samples += 1;
-    }
-    assert_eq!(samples, 5);
-}
-
-/// The matrices of 240 rates are on the stack: an unoptimised build takes more than the two megabytes of a test's thread.
-#[test]
-fn a_tower_of_ten_boxes_stands() {
-    thread::Builder::new().stack_size(32 << 20).spawn(tower).unwrap().join().unwrap();
-}
-
 /// Four boxes, each on the faces of the one below.
 #[mechanism(gravity = -9.81 * z)]
 struct Stack {
