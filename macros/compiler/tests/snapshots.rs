@@ -400,7 +400,7 @@ fn documentation_of_structs() {
     assert_eq!(difference("documentation", &text), None, "documentation differs");
 }
 
-const ROPE: &str = "#[acts(on = trunk.at(0.3 * x), along = y)] rope: Force,";
+const ROPE: &str = "#[acts(between = (trunk.at(0.3 * x), ground.at(2 * z)))] rope: Force,";
 const MOTOR: &str = "#[acts(on = joint0_0)] motor: Torque,";
 
 /// Alike limbs that touch the ground.
@@ -470,6 +470,18 @@ fn whole_code() {
     let chosen = chosen::MECHANISMS.map(|(attribute, fields, _)| ("chosen", attribute, fields.to_string()));
     let all = "gravity = -g * y, derivatives, second_derivatives, packed, batch, sensitivities, centroidal, regressor, prepare";
     let arm = |k: usize| chosen::limb(k, format!("link12.at({} * x)", [-0.2, 0.2][k]), 6);
+    let on_rails = chosen::limbs(4, 5)
+        .replace("base: Free", "base: Stage")
+        .replace("ground -> trunk", "ground -> trunk, along = (x, y, z)");
+    let toe = |limb: usize, k: usize| {
+        let (parent, axis) = (format!("part{limb}_1.at(0.4 * z + {k} * x)"), ["x", "y"][k]);
+        format!(
+            "#[body(mass = 0.3, com = 0.1 * z, inertia = diagonal(0.03, 0.04, 0.02))] toe{limb}_{k}: Body,
+            #[joint({parent} -> toe{limb}_{k}, about = {axis})] ball{limb}_{k}: Pin,"
+        )
+    };
+    let toes: String =
+        (0..4).flat_map(|limb| (0..2).map(move |k| (limb, k))).map(|(limb, k)| toe(limb, k)).collect();
     let lanes = [
         ("chain", all, format!("g: f64, {}", chosen::chain(6))),
         ("limbs", all, format!("g: f64, {}", chosen::limbs(4, 2))),
@@ -498,6 +510,10 @@ fn whole_code() {
         ("rolling", "gravity = -9.81 * z, derivatives, batch", ROLLING.to_string()),
         // Whose inverse is found in loops: of a tree, of one with lanes and a long trunk, and of a chain.
         ("tree", "gravity = -9.81 * y, derivatives, skip_passes = [limbs]", chosen::limbs(4, 5)),
+        // A trunk whose first velocity the first joint of each limb does not feel.
+        ("tree on rails", "gravity = -9.81 * y, derivatives, skip_passes = [limbs]", on_rails),
+        // Limbs that branch.
+        ("toes", "gravity = -9.81 * y, derivatives", chosen::limbs(4, 2) + &toes),
         ("torso", "gravity = -9.81 * y, derivatives, batch", chosen::chain(13) + &arm(0) + &arm(1)),
         // Whose passive forces have functions of their own.
         ("springs", "gravity = -9.81 * y, derivatives, batch", chosen::springs(120)),
