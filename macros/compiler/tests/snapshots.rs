@@ -428,16 +428,8 @@ const BALL: &str = "
     #[joint(ground -> ball)] pose: Free,
     #[constraint(rolls(ball.sphere(1), ground.plane(z)))] contact: Rolling,";
 
-/// A linkage whose rocker strikes the ground, and what it exerts on its bearing.
+/// Of the linkage that has every function: its rocker strikes the ground, and its crank loads its bearing.
 const BOUNDED: &str = "
-    m: f64,
-    #[body(mass = m, com = x / 2, inertia = rod(m, 1, x))] crank: Body,
-    #[body(mass = m, com = x, inertia = rod(m, 2, x))] coupler: Body,
-    #[body(mass = m, com = x, inertia = rod(m, 2, x))] rocker: Body,
-    #[joint(ground -> crank, about = z)] input: Pin,
-    #[joint(crank.at(x) -> coupler, about = z)] middle: Pin,
-    #[joint(ground.at(2 * x) -> rocker, about = z)] output: Pin,
-    #[joint(coupler.at(2 * x) -> rocker.at(2 * x), about = z)] last: Pin,
     #[contact(rocker.at(x), ground.plane(y))] stop: Contact,
     #[output(norm(reaction_force(input)))] load: Scalar,
     #[output(contact_force(stop))] push: Vector,";
@@ -470,6 +462,7 @@ fn whole_code() {
     let chosen = chosen::MECHANISMS.map(|(attribute, fields, _)| ("chosen", attribute, fields.to_string()));
     let all = "gravity = -g * y, derivatives, second_derivatives, packed, batch, sensitivities, centroidal, regressor, prepare";
     let arm = |k: usize| chosen::limb(k, format!("link12.at({} * x)", [-0.2, 0.2][k]), 6);
+    let (.., closed) = mechanisms::MECHANISMS.into_iter().find(|(_, name, _)| *name == "Closed").unwrap();
     let on_rails = chosen::limbs(4, 5)
         .replace("base: Free", "base: Stage")
         .replace("ground -> trunk", "ground -> trunk, along = (x, y, z)");
@@ -494,7 +487,7 @@ fn whole_code() {
         ("packed feet in speeds", "gravity = -9.81 * y, packed", FEET.to_string() + FEET_SPEEDS),
         ("speeds in lanes", "gravity = -9.81 * y, batch", SPEEDS.to_string()),
         ("ball", "gravity = -9.81 * z, second_derivatives", BALL.to_string()),
-        ("bounded linkage", "gravity = -9.81 * y, prepare", BOUNDED.to_string()),
+        ("bounded linkage", "gravity = -9.81 * y, prepare", closed.to_string() + BOUNDED),
         // What passes do for chains of axes that are parallel or skew, with numbers or parameters, is left out.
         ("skipped", "gravity = -9.81 * y, skip_passes = [frames, regroup, parallel]", chosen::chain(4)),
         ("skipped", "gravity = -9.81 * y, skip_passes = [frames, regroup, parallel]", PARALLEL.to_string()),

@@ -1,6 +1,6 @@
 //! Distances of surfaces that may touch, and how fast they approach and slip.
 
-use super::facts::Need;
+use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};
 use super::shape::Argument::{self, A, Q, V};
 use super::shape::{CONTACT_FORCES, Record, Shape};
@@ -64,10 +64,15 @@ pub const ROWS: &[Row] = &[
         "__contact_derivatives",
         &[Need::Contacts, Need::Inertia, Need::Asks(Word::Derivatives)],
         |f| Declaration {
-            arguments: vec![Q, V, A, Argument::Given(CONTACT_FORCES, 0, f.contacts.rates)],
+            arguments: vec![Q, V, A, contact_forces(f)],
             shape: Shape::Record(Record::ContactDerivatives(f.nv, f.contacts.rates)),
             ..Declaration::default()
         },
     )
     .alone(),
 ];
+
+/// The forces at all contacts, which are given.
+pub(super) fn contact_forces(f: &Facts) -> Argument {
+    Argument::Given(CONTACT_FORCES, 0, f.contacts.rates)
+}

@@ -1,9 +1,10 @@
 //! The functions of a mechanism's outputs.
 
+use super::contacts::contact_forces;
 use super::facts::Facts;
 use super::row::{Declared, Id};
 use super::shape::Argument::{A, Q, T, U, V};
-use super::shape::{Argument, CONTACT_FORCES, Shape};
+use super::shape::{Argument, Shape};
 use crate::mechanism::Uses;
 
 /// What the hidden function of a reaction's output is called, after which the output is.
@@ -99,7 +100,7 @@ pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declare
     arguments.extend((f.nu > 0).then_some(U));
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", 0, c.all)));
     let touched = is_diagram && f.contacts.count > 0;
-    arguments.extend(touched.then_some(Argument::Given(CONTACT_FORCES, 0, f.contacts.rates)));
+    arguments.extend(touched.then_some(contact_forces(f)));
     declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
 }
 
@@ -107,6 +108,6 @@ pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declare
 pub fn touched(name: &str, size: usize, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));
-    arguments.push(Argument::Given(CONTACT_FORCES, 0, f.contacts.rates));
+    arguments.push(contact_forces(f));
     declared(Id::Touched, format!("{TOUCHED}{name}"), &arguments, of_size(size), Vec::new(), f)
 }

@@ -125,8 +125,8 @@ fn polynomials<'g, const N: usize>(
 }
 
 /// The dependent velocities that constraints are solved for: those whose determinant has one value in all configurations, or
-/// varies least, and is not zero wherever the constraints hold, as that of a parallelogram's crank and rocker by its coupler. `None` if
-/// the constraints depend on each other. The rows are those of the constraints for the velocities of `own`, which may be declared ones.
+/// varies least, and which the constraints leave regular where they hold: the coupler of a parallelogram keeps its direction, so that the
+/// others do not follow from its rate. `None` if the constraints depend on each other there. The rows are those of the constraints for the velocities of `own`, which may be declared ones.
 fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
     let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::of(&rows.concat());

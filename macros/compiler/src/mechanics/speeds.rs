@@ -10,7 +10,7 @@
 
 use super::crba::Matrix;
 use super::derivatives::symbolic;
-use super::{accelerations, constraints, velocities};
+use super::{accelerations, constraints, efforts, velocities};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::time_derivative;
@@ -70,8 +70,7 @@ impl<'g> InSpeeds<'g> {
         let change: Vec<Expr<'g>> = rates.iter().map(|rate| time_derivative(model.space(), *rate)).collect();
         let a = accelerations(model);
         let accelerations = times(&speeds.rates, &a).iter().zip(&change).map(|(a, c)| *a + *c).collect();
-        let tau: Vec<Expr<'g>> = (0..n).map(|k| Quantity::Force(k).expr(g)).collect();
-        let efforts = transposed_times(&speeds.of_rates, &tau);
+        let efforts = transposed_times(&speeds.of_rates, &efforts(model));
         let model = Model { gradients: Gradients::default(), passive: None, ..model.clone() };
         let mut found = InSpeeds { native, model, speeds, rates, accelerations, change, efforts };
         found.exchange_constraints();

@@ -44,7 +44,10 @@ impl<'g> Variants<'g> {
         speeds: Option<Rc<InSpeeds<'g>>>,
     ) -> Variants<'g> {
         // All have the same joints.
-        let joints = all.iter().map(|variant| variant.joints.clone()).next().unwrap_or_default();
+        let joints = match all.as_slice() {
+            [any, ..] => any.joints.clone(),
+            [] => Vec::new(),
+        };
         let groups = match all.as_slice() {
             [any, ..] if passes.lanes && specialisation == Specialisation::None && speeds.is_none() => {
                 vectorise::find(&any.model, &joints)

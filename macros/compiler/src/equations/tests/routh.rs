@@ -61,8 +61,8 @@ pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let momenta = crate::mechanics::momentum::generalized_momentum(model, &joints, &velocities(model));
     // The whole, by Lagrange's equations.
-    let tau: Vec<Expr<'_>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
     let lagrange = lagrange::derive(model, &joints);
+    let tau = crate::mechanics::efforts(model);
     let force = tau.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias).collect();
     let whole = crate::mechanics::ldl::solve(lagrange.mass_matrix, force, &joints);
     for seed in 1..12 {
