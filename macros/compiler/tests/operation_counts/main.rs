@@ -1,10 +1,6 @@
-//! Operations of the generated functions. Twenty-four are counted exactly: of a small chain with parameters, of a robot, and of one
-//! whose limbs are lanes, so that a change of any pass is seen. Those of the gallery stand in a table. All others are at most so many,
-//! with two per cent for what tuning changes; what saves more may lower the bounds.
-
-mod gallery;
-#[path = "../measure/mod.rs"]
-mod measure;
+//! Operation counts of generated functions. Twenty-four counts are exact: those of a small chain with parameters, of
+//! a robot, and of a robot whose limbs are SIMD lanes. All other counts are bounds with a margin of two per cent for
+//! changes of the cost model; a change that saves more than that may lower them.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
