@@ -80,24 +80,31 @@ impl<'a, 'g> Scope<'a, 'g> {
         }
     }
 
-    /// The value of an expression; a number that is not finite is a mistake.
+    /// Returns the value of an expression, or reports an error; a value that is not finite is an error as well.
+    ///
+    /// The left operands of a chain of operators, such as a long sum, are visited in a loop: the depth of the recursion
+    /// is the nesting of brackets and signs, which `syntax::guard` bounds.
     pub fn value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let value = self.any_value(e, cx)?;
-        let infinite = |s: &Expr<'g>| s.value().is_some_and(|n| !n.is_finite());
-        let bad = match &value {
-            Value::Scalar(s) => infinite(s),
-            Value::Vector(terms) => terms.iter().any(|(_, v)| v.0.iter().any(infinite)),
-            Value::Matrix(m) => m.entries.0.iter().flatten().any(infinite),
-        };
-        if bad {
-            cx.error(e.place.clone(), "the value of this is not a finite number")
-                .help("the largest number is about 1e308: use smaller figures");
-            return None;
+        let mut operations = Vec::new();
+        let mut first = e;
+        while let ExprKind::Binary(op, left, right, _) = &first.kind
+            && self.deciding(first).is_none()
+        {
+            operations.push((*op, &**right, first));
+            first = left;
         }
-        Some(value)
+        let mut value = self.operand(first, cx).and_then(|value| finite(value, first, cx));
+        for (op, right, whole) in operations.into_iter().rev() {
+            let right = self.value(right, cx);
+            let both = value.zip(right);
+            value = both.and_then(|(left, right)| self.binary(op, left, right, whole, cx));
+            value = value.and_then(|value| finite(value, whole, cx));
+        }
+        value
     }
 
-    fn any_value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    /// Returns the value of an expression that is no binary operation.
+    fn operand(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         if let Some(symbol) = self.deciding(e) {
             return Some(Value::Scalar(symbol));
         }
@@ -119,10 +126,7 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Value::Vector(v) => Value::Vector(v.into_iter().map(|(a, v)| (a, -v)).collect()),
                 Value::Matrix(m) => Value::Matrix(m.map(|entry| -entry)),
             }),
-            ExprKind::Binary(op, left, right, _) => {
-                let (left, right) = (self.value(left, cx), self.value(right, cx));
-                self.binary(*op, left?, right?, e, cx)
-            }
+            ExprKind::Binary(..) => self.value(e, cx),
             ExprKind::Call(function, arguments) => self.call(function, arguments, cx),
             ExprKind::Array(items)
                 if !items.is_empty() && items.iter().all(|item| matches!(item.kind, ExprKind::Array(_))) =>
@@ -402,6 +406,21 @@ fn check_power(function: &Name, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Dia
     let help = "the first argument of `pow` is the base, the second the exponent: a base that may be negative takes a whole number";
     cx.error(function.place.clone(), what).help(help);
     false
+}
+
+/// Returns the value if it is finite, else reports an error at the expression.
+fn finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    let is_finite = |s: &Expr<'g>| s.value().is_none_or(f64::is_finite);
+    let is_valid = match &value {
+        Value::Scalar(s) => is_finite(s),
+        Value::Vector(terms) => terms.iter().all(|(_, v)| v.0.iter().all(is_finite)),
+        Value::Matrix(m) => m.entries.0.iter().flatten().all(is_finite),
+    };
+    if !is_valid {
+        cx.error(e.place.clone(), "the value of this is not a finite number")
+            .help("the largest number is about 1e308: use smaller figures");
+    }
+    is_valid.then_some(value)
 }
 
 /// A sum of vectors by their axes.

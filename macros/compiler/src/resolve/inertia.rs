@@ -33,20 +33,51 @@ const SMALLEST: f64 = 1e-16;
 /// Relative tolerance of the checks: published figures are rounded.
 const TOLERANCE: f64 = 1e-6;
 
+/// An operation on the inertia that is written to the left of it.
+enum Operation<'a> {
+    Add(&'a syntax::Expr),
+    Rotate(&'a [syntax::Expr]),
+}
+
 impl<'g> Scope<'_, 'g> {
-    /// An inertia about the centre of mass, in body axes.
+    /// Returns an inertia about the centre of mass, in body axes, or reports an error.
+    ///
+    /// The left operands of a chain of sums and rotations are visited in a loop, as in `Scope::value`.
     pub fn inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+        let mut operations = Vec::new();
+        let mut first = e;
+        loop {
+            let (inner, operation) = match &first.kind {
+                ExprKind::Binary(BinaryOp::Add, left, right, _) => (left, Operation::Add(right)),
+                ExprKind::Method(inner, method, steps) if method.text == "rotated" => {
+                    (inner, Operation::Rotate(steps))
+                }
+                _ => break,
+            };
+            operations.push(operation);
+            first = inner;
+        }
+        let mut inertia = self.single_inertia(first, cx);
+        for operation in operations.into_iter().rev() {
+            inertia = match operation {
+                Operation::Add(right) => {
+                    let right = self.inertia(right, cx);
+                    inertia.zip(right).map(|(left, right)| left + right)
+                }
+                Operation::Rotate(steps) => {
+                    let rotation = self.rotation(steps, cx);
+                    inertia.zip(rotation).map(|(inertia, rotation)| rotation.sym_to_parent(inertia))
+                }
+            };
+        }
+        inertia
+    }
+
+    /// Returns the inertia of one solid or matrix, or reports an error.
+    fn single_inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
         match &e.kind {
             ExprKind::Number(0.0) => Some(Sym3::zero(self.graph)),
             ExprKind::Array(_) => self.symmetric(e, cx),
-            ExprKind::Binary(BinaryOp::Add, a, b, _) => {
-                let (a, b) = (self.inertia(a, cx), self.inertia(b, cx));
-                Some(a? + b?)
-            }
-            ExprKind::Method(inner, method, steps) if method.text == "rotated" => {
-                let (inertia, rotation) = (self.inertia(inner, cx), self.rotation(steps, cx));
-                Some(rotation?.sym_to_parent(inertia?))
-            }
             ExprKind::Method(_, method, _) => {
                 cx.error(method.place.clone(), format!("unknown method `.{}(…)` of an inertia", method.text))
                     .suggest(&method.text, ["rotated"]);
