@@ -4,13 +4,12 @@
 mod sizes;
 
 use linkwork_compiler::expand;
+use linkwork_compiler::syntax::guard::MAX_STACK;
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use sizes::with_mass;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Stack of the thread that expands: a fourth of what rustc has.
-const STACK: usize = 2 << 20;
 /// Longest time that one expansion may take in a debug build, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -194,9 +193,9 @@ fn try_expand(arguments: TokenStream, item: TokenStream, text: &str) {
     }
 }
 
-/// Runs with little stack.
+/// Runs on a thread that has as much stack as the compiler may use.
 fn with_little_stack(run: impl FnOnce() + Send + 'static) {
-    let thread = std::thread::Builder::new().stack_size(STACK).spawn(run).unwrap();
+    let thread = std::thread::Builder::new().stack_size(MAX_STACK).spawn(run).unwrap();
     if let Err(panic) = thread.join() {
         std::panic::resume_unwind(panic);
     }

@@ -230,6 +230,67 @@ fn sum_of_parameters(sums: usize, terms: usize) -> String {
     with_mass(&all).replace("m: f64, ", &fields)
 }
 
+/// A field whose type is given.
+fn with_type(text: &str) -> String {
+    format!("struct S {{ a: {text} }}")
+}
+
+/// An expression that is nested `n` times in another.
+fn nested(n: usize, before: &str, inside: &str, after: &str) -> String {
+    before.repeat(n) + inside + &after.repeat(n)
+}
+
+/// What nests without brackets, or costs much stack for each level, is refused or fits the stack.
+#[test]
+fn nesting_of_every_kind_fits_the_stack() {
+    let mut cases: Vec<(String, String)> = Vec::new();
+    for n in [40, 46, 20_000] {
+        let mut add = |name: &str, item: String| cases.push((format!("{n} {name}"), item));
+        let pieces = list(n, |k| format!("if m < {k} {{ {k} }} else "));
+        add("pieces", with_mass(&format!("{pieces} {{ m }}")));
+        add("pieces in pieces", with_mass(&nested(n.min(10_000), "if m < 1 { ", "m", " } else { 1 }")));
+        add("branches in braces", with_mass(&nested(n.min(10_000), "if m < 1 { 1 } else if m < 2 { 2 } else { ", "m", " }")));
+        add("signs in brackets", with_mass(&nested(n / 2, "-(", "m", ")")));
+        add("runs of signs in brackets", with_mass(&nested(n / 4, "- - - (", "m", ")")));
+        for function in ["sin", "sqrt", "abs"] {
+            add(function, with_mass(&nested(n, &format!("{function}("), "m", ")")));
+        }
+        for (before, after) in [
+            ("max(m, ", ")"),
+            ("pow(", ", 2)"),
+            ("atan2(", ", 2)"),
+            ("norm([", ", m, 1])"),
+            ("norm(unit([m, 1, ", "]))"),
+            ("dot(x, [1, 2, ", "])"),
+            ("norm(cross(x, [1, 2, ", "]))"),
+            ("trace(skew([1, 2, ", "]))"),
+            ("angle(x, [1, 2, ", "])"),
+            ("1 / (1 + m * (2 - ", "))"),
+            ("dot(transpose([[1, 2, 3], [4, 5, 6], [7, 8, ", "]]) * x, y)"),
+        ] {
+            // Brackets of one step count each.
+            let brackets = before.matches(['(', '[']).count();
+            add(before, with_mass(&nested(n.min(10_000) / brackets, before, "m", after)));
+        }
+        add("references", with_type(&nested(n, "&mut ", "f64", "")));
+        add("pointers", with_type(&nested(n, "*const ", "f64", "")));
+        add("functions", with_type(&nested(n / 2, "fn() -> ", "f64", "")));
+        add("lifetimes of functions", with_type(&nested(n / 8, "for<'a> fn() -> ", "f64", "")));
+        add("generics in tuples", with_type(&nested(n / 4, "Vec<(", "f64", ")>")));
+        for operand in ["1 + ", "return ", "|a| ", "!", "&mut ", "1 .. ", "a = ", "if a {} else ", "break 'a "] {
+            add(operand, with_type(&format!("[f64; {} 1]", operand.repeat(n))));
+            add(operand, with_type(&format!("Foo<{{ {} 1 }}>", operand.repeat(n))));
+        }
+        add("methods", with_type(&format!("[f64; a{}]", ".b()?".repeat(n))));
+        add("members", with_type(&format!("[f64; a{}]", ".b".repeat(n))));
+        add("bounds", format!("struct S<T> where T: {} A {{ a: T }}", "A + ".repeat(n)));
+        add("closures", format!("struct S<T> where {} f64: A {{ a: T }}", "fn() -> ".repeat(n)));
+    }
+    for (name, item) in cases {
+        with_little_stack(move || try_expand(TokenStream::new(), item.parse().unwrap(), &name));
+    }
+}
+
 fn run_cases(cases: Vec<(&'static str, String)>) {
     for (name, item) in cases {
         let run = move || {

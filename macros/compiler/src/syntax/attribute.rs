@@ -19,7 +19,7 @@ use syn::{Fields, GenericParam, Ident, Item, ItemStruct};
 
 /// Parses `#[mechanism(arguments)] item`. `None` if there is no struct to speak of; all mistakes are in `cx`.
 pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagnostics) -> Option<Mechanism> {
-    if !guard::check_tokens(&arguments, cx) || !guard::check_tokens(&item, cx) {
+    if !guard::check_arguments(&arguments, cx) || !guard::check_item(&item, cx) {
         return None;
     }
     let fields = declaration::fields(&item);

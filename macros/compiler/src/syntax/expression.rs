@@ -1,23 +1,50 @@
 //! Expressions: Rust's own grammar of numbers, names, calls, fields and the four operations, in a parser whose depth
 //! is bounded.
 
-use super::{BinaryOp, Expr, ExprKind, Name};
+use super::{BinaryOp, Expr, ExprKind, Name, guard};
 use crate::diag::{Place, syn_error};
 use proc_macro2::{Span, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{Ident, Lit, Token, braced, bracketed, parenthesized, token};
 
-/// Deepest expression; a sum of this many terms counts as deep.
-const MAX_DEPTH: usize = 400;
+/// Maximum length of a chain of operators or members.
+const MAX_LENGTH: usize = 400;
 
 /// The name of calls that stand for laws in two pieces, which no function can have.
 pub const IF: &str = "if";
 
 const PIECES: &str = "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
-/// A parsed expression with its depth.
-struct Parsed(Expr, usize);
+/// A parsed expression with its size.
+struct Parsed(Expr, Size);
+
+/// Bounds of an expression's size, which every walk over it relies on.
+#[derive(Clone, Copy, Default)]
+struct Size {
+    /// Nesting of operands, arguments and pieces; left operands of operators are not nested in them.
+    depth: usize,
+    /// Longest path of operators, members and calls.
+    length: usize,
+}
+
+impl Size {
+    const ONE: Self = Self { depth: 1, length: 1 };
+
+    fn max(self, other: Self) -> Self {
+        Self { depth: self.depth.max(other.depth), length: self.length.max(other.length) }
+    }
+
+    /// Returns the size of an expression that these operands are nested in.
+    fn around(self) -> Self {
+        Self { depth: self.depth + 1, length: self.length + 1 }
+    }
+
+    /// Returns the size of a longer chain of the same depth.
+    fn longer(self) -> Self {
+        Self { length: self.length + 1, ..self }
+    }
+}
 
 /// Parses one expression.
 pub fn parse_expr(input: ParseStream<'_>) -> syn::Result<Expr> {
@@ -34,11 +61,15 @@ pub fn name(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
 
-fn node(kind: ExprKind, place: Place, depth: usize) -> syn::Result<Parsed> {
-    if depth > MAX_DEPTH {
-        return Err(syn_error(place.span, "this expression is too long", "name a part of it as a parameter"));
-    }
-    Ok(Parsed(Expr { kind, place }, depth))
+fn node(kind: ExprKind, place: Place, size: Size) -> syn::Result<Parsed> {
+    let message = if size.depth > guard::MAX_DEPTH {
+        "this expression is nested too deeply"
+    } else if size.length > MAX_LENGTH {
+        "this expression is too long"
+    } else {
+        return Ok(Parsed(Expr { kind, place }, size));
+    };
+    Err(syn_error(place.span, message, "define a part of it as a quantity of its own with `#[define(…)]`"))
 }
 
 fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
@@ -92,9 +123,9 @@ fn behind(
 }
 
 fn binary(op: BinaryOp, at: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
-    let depth = left.1.max(right.1) + 1;
+    let size = left.1.longer().max(right.1.around());
     let place = left.0.place.to(&right.0.place);
-    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), at.into()), place, depth)
+    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), at.into()), place, size)
 }
 
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
@@ -102,7 +133,7 @@ fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let span = input.parse::<Token![-]>()?.span;
         let inner = behind(span, input, parse_unary)?;
         let place = Place::from(span).to(&inner.0.place);
-        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1 + 1);
+        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.around());
     }
     parse_postfix(input)
 }
@@ -116,14 +147,14 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Err(syn_error(dot, "expected a name behind this dot", help));
         }
         let member = parse_name(input)?;
-        let depth = inner.1 + 1;
+        let size = inner.1.longer();
         inner = if input.peek(token::Paren) {
-            let (arguments, deepest, close) = parse_arguments(input)?;
+            let (arguments, arguments_size, close) = parse_arguments(input)?;
             let place = inner.0.place.to(&close.into());
-            node(ExprKind::Method(Box::new(inner.0), member, arguments), place, depth.max(deepest + 1))?
+            node(ExprKind::Method(Box::new(inner.0), member, arguments), place, size.max(arguments_size.around()))?
         } else {
             let place = inner.0.place.to(&member.place);
-            node(ExprKind::Field(Box::new(inner.0), member), place, depth)?
+            node(ExprKind::Field(Box::new(inner.0), member), place, size)?
         };
     }
     Ok(inner)
@@ -140,19 +171,19 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let content;
         let span = parenthesized!(content in input).span;
         let place = Place::from(span.open()).to(&span.close().into());
-        let (mut items, deepest, trailing) = parse_list(&content)?;
+        let (mut items, size, trailing) = parse_list(&content)?;
         if items.len() == 1 && !trailing {
             let item = items.remove(0);
-            return Ok(Parsed(Expr { place, ..item }, deepest + 1));
+            return Ok(Parsed(Expr { place, ..item }, size.around()));
         }
-        return node(ExprKind::Tuple(items), place, deepest + 1);
+        return node(ExprKind::Tuple(items), place, size.around());
     }
     if input.peek(token::Bracket) {
         let content;
         let span = bracketed!(content in input).span;
         let place = Place::from(span.open()).to(&span.close().into());
-        let (items, deepest, _) = parse_list(&content)?;
-        return node(ExprKind::Array(items), place, deepest + 1);
+        let (items, size, _) = parse_list(&content)?;
+        return node(ExprKind::Array(items), place, size.around());
     }
     if input.peek(Token![if]) {
         return parse_pieces(input);
@@ -162,17 +193,55 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let name = parse_name(input)?;
         let place = name.place.clone();
         if input.peek(token::Paren) {
-            let (arguments, deepest, close) = parse_arguments(input)?;
-            return node(ExprKind::Call(name, arguments), place.to(&close.into()), deepest + 1);
+            let (arguments, size, close) = parse_arguments(input)?;
+            return node(ExprKind::Call(name, arguments), place.to(&close.into()), size.around());
         }
-        return node(ExprKind::Name(name.text), place, 1);
+        return node(ExprKind::Name(name.text), place, Size::ONE);
     }
     Err(no_expression(input))
 }
 
-/// `if a < b { below } else { above }`, as a call with the operands of the comparison, then the piece where it holds and the other
-/// one, or with the pieces in the other order for `a > b`.
+/// One branch `if left < right { piece }` of a law in pieces.
+struct Branch {
+    keyword: Span,
+    left: Parsed,
+    right: Parsed,
+    is_less: bool,
+    piece: Parsed,
+}
+
+/// Parses `if a < b { below } else { above }` into a call of `IF` with the operands of the comparison, the piece below and the
+/// piece above the border; `a > b` swaps the pieces. Further branches `else if` are nested in the last argument.
 fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
+    let mut branches = vec![parse_branch(input)?];
+    let (mut last, end) = loop {
+        if !input.peek(Token![else]) {
+            let message = "an `if` needs an `else`: it has a value on both sides";
+            let keyword = branches.last().map_or(input.span(), |branch| branch.keyword);
+            return Err(syn_error(keyword, message, PIECES));
+        }
+        input.parse::<Token![else]>()?;
+        if input.peek(Token![if]) {
+            branches.push(parse_branch(input)?);
+        } else if input.peek(token::Brace) {
+            break parse_piece(input)?;
+        } else {
+            return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECES));
+        }
+    };
+    for Branch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
+        let size = left.1.max(right.1).max(piece.1).max(last.1).around();
+        let pieces = if is_less { [piece.0, last.0] } else { [last.0, piece.0] };
+        let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
+        let place = Place::from(keyword);
+        let name = Name { text: IF.to_string(), place: place.clone() };
+        last = node(ExprKind::Call(name, arguments), place.to(&end), size)?;
+    }
+    Ok(last)
+}
+
+/// Parses `if a < b { piece }`.
+fn parse_branch(input: ParseStream<'_>) -> syn::Result<Branch> {
     let keyword = input.parse::<Token![if]>()?.span;
     let left = behind(keyword, input, parse_sum)?;
     let is_less = input.peek(Token![<]) || input.peek(Token![<=]);
@@ -185,37 +254,15 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
     } else if input.peek(Token![>]) {
         input.parse::<Token![>]>()?;
     } else {
-        return Err(syn_error(
-            input.span(),
-            "expected `<` or `>`: a condition compares two quantities",
-            PIECES,
-        ));
+        let message = "expected `<` or `>`: a condition compares two quantities";
+        return Err(syn_error(input.span(), message, PIECES));
     }
     let right = parse_sum(input)?;
     if !input.peek(token::Brace) {
         return Err(syn_error(input.span(), "expected `{` and what holds where the comparison does", PIECES));
     }
-    let first = parse_piece(input)?.0;
-    if !input.peek(Token![else]) {
-        let message = "an `if` needs an `else`: it has a value on both sides";
-        return Err(syn_error(keyword, message, PIECES));
-    }
-    input.parse::<Token![else]>()?;
-    let (second, end) = match input.peek(Token![if]) {
-        true => {
-            let second = parse_pieces(input)?;
-            let end = second.0.place.clone();
-            (second, end)
-        }
-        false if input.peek(token::Brace) => parse_piece(input)?,
-        false => return Err(syn_error(input.span(), "expected `{` or `if` behind `else`", PIECES)),
-    };
-    let depth = [&left, &right, &first, &second].map(|part| part.1).into_iter().fold(0, usize::max) + 1;
-    let pieces = if is_less { [first.0, second.0] } else { [second.0, first.0] };
-    let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
-    let place = Place::from(keyword);
-    let name = Name { text: IF.to_string(), place: place.clone() };
-    node(ExprKind::Call(name, arguments), place.to(&end), depth)
+    let piece = parse_piece(input)?.0;
+    Ok(Branch { keyword, left, right, is_less, piece })
 }
 
 /// An expression in braces, and where they close.
@@ -306,7 +353,7 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         Lit::Int(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         Lit::Float(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         // Words like others: what is expected in their place says so.
-        Lit::Bool(b) => return node(ExprKind::Name(b.value.to_string()), b.span.into(), 1),
+        Lit::Bool(b) => return node(ExprKind::Name(b.value.to_string()), b.span.into(), Size::ONE),
         Lit::Str(_) | Lit::Char(_) => {
             let message = "expected an expression, found a text";
             return Err(syn_error(literal.span(), message, "write it without quotes"));
@@ -322,25 +369,25 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         ));
     }
     match digits.parse::<f64>() {
-        Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span().into(), 1),
+        Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span().into(), Size::ONE),
         _ => Err(syn_error(literal.span(), "this number is too large", "the largest is about 1e308")),
     }
 }
 
-/// Expressions in parentheses, the deepest, and the closing parenthesis.
-fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, usize, Span)> {
+/// Parses expressions in parentheses; returns their common size and the closing parenthesis with them.
+fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span)> {
     let content;
     let close = parenthesized!(content in input).span.close();
-    let (items, deepest, _) = parse_list(&content)?;
-    Ok((items, deepest, close))
+    let (items, size, _) = parse_list(&content)?;
+    Ok((items, size, close))
 }
 
-/// Comma-separated expressions to the end: the items, the deepest, whether a comma stands at the end.
-fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, usize, bool)> {
-    let (mut items, mut deepest, mut trailing) = (Vec::new(), 0, false);
+/// Parses comma-separated expressions to the end; returns their common size, and whether a comma follows the last one.
+fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, bool)> {
+    let (mut items, mut size, mut trailing) = (Vec::new(), Size::default(), false);
     while !content.is_empty() {
         let item = parse_sum(content)?;
-        deepest = deepest.max(item.1);
+        size = size.max(item.1);
         items.push(item.0);
         trailing = content.peek(Token![,]);
         if trailing {
@@ -349,5 +396,5 @@ fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, usize, bool)>
             return Err(unexpected(content));
         }
     }
-    Ok((items, deepest, trailing))
+    Ok((items, size, trailing))
 }

@@ -1,29 +1,67 @@
-//! A first look at the tokens, without recursion: input that would exhaust the stack of the parsers is refused.
+//! A first pass over the tokens, without recursion, that rejects input on which the recursive parsers could exhaust their
+//! stack. A level of recursion is a bracket, a prefix operator, or any token of a type, whose grammar is Rust's own and
+//! nests without brackets, as in `&mut &mut f64`.
 
 use crate::diag::Diagnostics;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
-/// Deepest nesting of brackets.
-const MAX_DEPTH: usize = 48;
-/// Longest run of prefix operators and opening angle brackets.
-const MAX_RUN: usize = 48;
-/// Most digits of a number.
+/// Maximum nesting of brackets, prefix operators and pieces of a law together.
+pub const MAX_DEPTH: usize = 48;
+/// Maximum number of tokens from the last separators of all open brackets, outside attributes.
+const MAX_TYPE_TOKENS: usize = 100;
+/// Maximum number of digits of a number.
 const MAX_DIGITS: usize = 1000;
-/// Most tokens in one struct.
+/// Maximum number of tokens in one struct.
 const MAX_TOKENS: usize = 400_000;
+/// Stack that an expansion may use, in bytes: a quarter of what rustc gives its threads. A nesting level of the
+/// unoptimised compiler takes at most 32 KiB of it; a test expands the deepest input of every kind within this stack.
+pub const MAX_STACK: usize = MAX_DEPTH * (32 << 10) + (512 << 10);
 
-/// Reports tokens that are nested too deeply or are too many. True if parsing may go on.
-pub fn check_tokens(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
+/// An open bracket while the tokens are visited.
+struct Level {
+    /// Tokens that are not yet visited.
+    tokens: proc_macro2::token_stream::IntoIter,
+    /// Brackets and prefix operators that its contents are nested in.
+    depth: usize,
+    /// Type tokens before the bracket that its contents are nested in.
+    outer: usize,
+    /// False within attributes, whose expressions have a parser of their own.
+    has_types: bool,
+    /// True if the token before is `#`.
+    after_hash: bool,
+}
+
+impl Level {
+    fn outermost(tokens: &TokenStream, has_types: bool) -> Self {
+        Self { tokens: tokens.clone().into_iter(), depth: 1, outer: 0, has_types, after_hash: false }
+    }
+}
+
+/// Reports an attribute's arguments that are nested too deeply or are too many. Returns true if parsing may go on.
+pub fn check_arguments(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
+    check_tokens(Level::outermost(tokens, false), cx)
+}
+
+/// Reports an item whose tokens are nested too deeply or are too many. Returns true if parsing may go on.
+pub fn check_item(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
+    check_tokens(Level::outermost(tokens, true), cx)
+}
+
+fn check_tokens(outermost: Level, cx: &mut Diagnostics) -> bool {
     let mut count = 0;
     let mut angle = 0_usize;
     let mut run = 0_usize;
-    let mut todo = vec![tokens.clone().into_iter()];
-    while let Some(stream) = todo.last_mut() {
-        let Some(token) = stream.next() else {
-            todo.pop();
+    let mut types = 0_usize;
+    let mut levels = vec![outermost];
+    while let Some(level) = levels.last_mut() {
+        let Some(token) = level.tokens.next() else {
+            types = level.outer;
+            levels.pop();
             continue;
         };
         count += 1;
+        types += usize::from(level.has_types);
+        let after_hash = std::mem::replace(&mut level.after_hash, false);
         let place = token.span();
         match &token {
             TokenTree::Punct(p) => {
@@ -34,11 +72,24 @@ pub fn check_tokens(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
                     ',' | ';' | '=' => 0,
                     _ => angle,
                 };
+                match p.as_char() {
+                    ',' | ';' => types = level.outer,
+                    '#' => level.after_hash = true,
+                    _ => {}
+                }
             }
             TokenTree::Group(g) => {
+                // The first sign of a run may stand between two operands.
+                let depth = level.depth + run.saturating_sub(1) + 1;
                 run = 0;
+                let is_attribute = after_hash && g.delimiter() == Delimiter::Bracket;
+                let has_types = level.has_types && !is_attribute;
+                if is_attribute || g.delimiter() == Delimiter::Brace {
+                    types = level.outer;
+                }
                 if g.delimiter() != Delimiter::None || !g.stream().is_empty() {
-                    todo.push(g.stream().into_iter());
+                    let tokens = g.stream().into_iter();
+                    levels.push(Level { tokens, depth, outer: types, has_types, after_hash: false });
                 }
             }
             TokenTree::Ident(_) => run = 0,
@@ -52,9 +103,15 @@ pub fn check_tokens(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
                 }
             }
         }
-        if todo.len() > MAX_DEPTH || angle > MAX_RUN || run > MAX_RUN {
+        let depth = levels.last().map_or(0, |level| level.depth) + run.saturating_sub(1);
+        if depth > MAX_DEPTH || angle > MAX_DEPTH {
             cx.error(place, "this is nested too deeply")
                 .help("name a part of it as a parameter, or simplify the expression");
+            return false;
+        }
+        if types > MAX_TYPE_TOKENS {
+            cx.error(place, format!("this type has more than {MAX_TYPE_TOKENS} tokens"))
+                .help("give it a name, `type Name = …;`, outside the struct");
             return false;
         }
         if count > MAX_TOKENS {

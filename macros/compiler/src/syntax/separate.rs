@@ -14,7 +14,7 @@ use syn::{Attribute, Token, Type, Visibility, token};
 pub fn separate(item: &TokenStream) -> Option<(TokenStream, syn::Error)> {
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };
-    if body.delimiter() != Delimiter::Brace || !guard::check_tokens(item, &mut Diagnostics::unread()) {
+    if body.delimiter() != Delimiter::Brace || !guard::check_item(item, &mut Diagnostics::unread()) {
         return None;
     }
     let (fields, first) = parse_fields.parse2(body.stream()).ok()?;
