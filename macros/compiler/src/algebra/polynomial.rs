@@ -86,6 +86,8 @@ pub struct Ring {
     pub atoms: Vec<Atom>,
     /// By atom.
     pub ranks: Vec<Rank>,
+    /// By atom: the number of terms written in its arguments.
+    written: Vec<usize>,
     /// The angles that waves are made of: multiples of monomials.
     pub angles: Vec<Term>,
     rank: fn(Symbol) -> Rank,
@@ -185,6 +187,7 @@ impl Ring {
         Ring {
             atoms: Vec::new(),
             ranks: Vec::new(),
+            written: Vec::new(),
             angles: Vec::new(),
             rank,
             squares: Vec::new(),
@@ -240,8 +243,29 @@ impl Ring {
             }
         }
         self.ranks.push(self.rank_of(&atom));
+        self.written.push(self.terms_in(&atom));
         self.atoms.push(atom);
         Some(index)
+    }
+
+    /// Returns the number of terms of a polynomial as it is written: those in the arguments of its functions, and in
+    /// theirs, are counted wherever they occur. Saturates.
+    pub fn written_terms(&self, p: &Polynomial) -> usize {
+        let nested = p.terms.iter().flat_map(|t| t.monomial.factors()).map(|(k, _)| self.written[k]);
+        nested.fold(p.terms.len(), usize::saturating_add)
+    }
+
+    fn terms_in(&self, atom: &Atom) -> usize {
+        match atom {
+            Atom::Symbol(_) | Atom::Wave(_) => 0,
+            Atom::Inverse(p) | Atom::Call(_, p) => self.written_terms(p),
+            Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => {
+                self.written_terms(p).saturating_add(self.written_terms(q))
+            }
+            Atom::Table(.., arguments) => {
+                arguments.iter().map(|p| self.written_terms(p)).fold(0, usize::saturating_add)
+            }
+        }
     }
 
     fn rank_of(&self, atom: &Atom) -> Rank {

@@ -40,6 +40,10 @@ pub struct Limits {
     long: usize,
 }
 
+/// Maximum number of written terms, those in arguments of functions and in divisors included, relative to the maximum number
+/// of terms alone. An argument that itself has functions of functions is written out wherever it occurs.
+const NESTED_TERMS: usize = 20;
+
 impl Limits {
     /// What anybody would read.
     pub const READABLE: Limits = Limits { operations: [200, 500], terms: 150, long: 400 };
@@ -226,12 +230,16 @@ struct Short {
     ring: Ring,
     quaternions: Vec<[Symbol; 4]>,
     long: usize,
+    /// Terms that may still be added.
     left: usize,
+    /// Written terms that may still be added.
+    written_left: usize,
 }
 
 impl Short {
     fn new(ring: Ring, quaternions: Vec<[Symbol; 4]>, limits: &Limits) -> Short {
-        Short { ring, quaternions, long: limits.long, left: limits.terms }
+        let written_left = limits.terms * NESTED_TERMS;
+        Short { ring, quaternions, long: limits.long, left: limits.terms, written_left }
     }
 
     fn of(&mut self, p: &Polynomial) -> Option<Polynomial> {
@@ -241,6 +249,7 @@ impl Short {
             p = on_unit_sphere(&mut self.ring, &p, quaternion)?;
         }
         self.left = self.left.checked_sub(p.terms.len())?;
+        self.written_left = self.written_left.checked_sub(self.ring.written_terms(&p))?;
         p.terms.iter().all(|t| t.coefficient.is_finite()).then_some(p)
     }
 }
