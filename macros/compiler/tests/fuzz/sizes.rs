@@ -149,7 +149,7 @@ fn too_many_loops_are_refused_with_a_reason() {
         (20, 100, "500 scalar constraints, more than 256"),
         (85, 41, "the constraints of this mechanism depend on each other too much"),
     ] {
-        let output = expand(TokenStream::new(), tied_chain(pins, ties).parse().unwrap(), Path::new("ui"));
+        let output = expand(TokenStream::new(), tied_chain(pins, ties).parse().unwrap(), Path::new("../../tests/ui"));
         let output = format!("{} {}", output.tokens, output.text);
         assert!(output.contains(reason), "{pins} pins with {ties} ties: {:.2000}", output);
     }

@@ -180,7 +180,7 @@ fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> Toke
 /// Expands and looks at the output. The text is what a failure is reported with.
 fn try_expand(arguments: TokenStream, item: TokenStream, text: &str) {
     let start = Instant::now();
-    let output = expand(arguments, item, Path::new("ui"));
+    let output = expand(arguments, item, Path::new("../../tests/ui"));
     let output = format!("{} {}", output.tokens, output.text);
     let time = start.elapsed();
     assert!(time < PATIENCE, "{time:?} for {text}");
