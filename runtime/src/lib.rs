@@ -1,4 +1,5 @@
 #![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 //! Linkwork compiles mechanisms. Annotate a struct with bodies, joints, springs and inputs, or name a URDF, MJCF or SDF file: an
 //! attribute macro checks the mechanism, derives its equations of motion, and generates functions for them, specialised
 //! for this one mechanism. They do not allocate, do not panic in release builds, and need no standard library.
