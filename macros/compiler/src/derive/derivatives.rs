@@ -206,7 +206,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
         if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {
-                (Some(limbs), Some(marked)) => limbs.alone_and(marked),
+                (Some(limbs), Some(marked)) => limbs.marked_outside_limbs(marked),
                 _ => Trunk::branching(&self.joints, self.model.nv()),
             };
             self.trunk = Trunk::of(&self.joints, &self.mass, &whole);

@@ -2,12 +2,12 @@
 
 use super::crba::Matrix;
 use crate::expr::Expr;
-use crate::vectorise::{AlikeRows, Limbs, Merge};
+use crate::vectorise::{LimbRows, Limbs, Merge};
 
 /// Contacts of alike limbs, each with as many rates.
 pub struct LimbContacts<'a, 'g> {
     limbs: &'a Limbs<'g>,
-    alike: Vec<AlikeRows>,
+    alike: Vec<LimbRows>,
     merge: Merge<'g>,
     /// How many rates there are.
     count: usize,
@@ -16,7 +16,7 @@ pub struct LimbContacts<'a, 'g> {
 impl<'a, 'g> LimbContacts<'a, 'g> {
     /// Those with a Jacobian by rows. `None` unless each rate moves one limb of several alike ones, and each of these as many.
     pub fn of(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
-        let alike = limbs.alike_rows(jacobian)?;
+        let alike = limbs.limb_rows(jacobian)?;
         Some(LimbContacts { limbs, alike, merge: Merge::new(limbs.model.graph), count: jacobian.len() })
     }
 

@@ -3,7 +3,7 @@
 use super::crba::{Matrix, mass_matrix};
 use super::ldl::elimination_order;
 use crate::expr::Expr;
-use crate::vectorise::{AlikeRows, Limbs, joined};
+use crate::vectorise::{LimbRows, Limbs, joined};
 use std::collections::BTreeMap;
 
 /// Rates at contacts of the limbs of one group.
@@ -46,10 +46,10 @@ struct Factor<'g> {
 /// `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. `None` unless each row moves one limb of several alike ones,
 /// and each of these as many.
 pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
-    let alike = limbs.alike_rows(rows)?;
+    let alike = limbs.limb_rows(rows)?;
     let factor = Factor::of(limbs, limbs.groups());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
-    for AlikeRows { group, width, rows: numbers } in alike {
+    for LimbRows { group, width, rows: numbers } in alike {
         for (row, lanes) in numbers.iter().enumerate() {
             for (lane, i) in lanes.iter().enumerate() {
                 places.insert(*i, Place { family: families.len(), row, lane });

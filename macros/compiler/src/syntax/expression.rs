@@ -151,7 +151,11 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
         inner = if input.peek(token::Paren) {
             let (arguments, arguments_size, close) = parse_arguments(input)?;
             let place = inner.0.place.to(&close.into());
-            node(ExprKind::Method(Box::new(inner.0), member, arguments), place, size.max(arguments_size.around()))?
+            node(
+                ExprKind::Method(Box::new(inner.0), member, arguments),
+                place,
+                size.max(arguments_size.around()),
+            )?
         } else {
             let place = inner.0.place.to(&member.place);
             node(ExprKind::Field(Box::new(inner.0), member), place, size)?

@@ -1,28 +1,28 @@
-//! Limbs that are alike: subtrees on one link, or on the ground, with the same joints in the same order.
+//! Search for isomorphic limbs: subtrees on one link, or on the ground, with the same joints in the same order.
 
 use crate::expr::lanes::MAX_LANES;
 use crate::kinematics::Joint;
 use crate::mechanism::Model;
 use std::collections::BTreeMap;
 
-/// Limbs that are alike.
+/// A set of isomorphic limbs.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// How many there are.
+    /// Number of limbs.
     pub limbs: usize,
-    /// The links of each lane that correspond to each other; those of the first limb in the model's order. The last limb
-    /// stands in several lanes if there are more of these than limbs: their number is a power of two.
+    /// Corresponding links, one per lane, in the order of the first limb. The number of lanes is a power of two; the last
+    /// limb fills the lanes beyond the number of limbs.
     pub rows: Vec<Vec<usize>>,
 }
 
-/// What limbs are compared by: the kinds of their joints, link by link.
+/// Shapes of subtrees: the kinds of their joints, link by link.
 struct Shapes {
     children: Vec<Vec<usize>>,
-    /// By link; equal for subtrees of the same shape, zero for what has no place in a limb.
+    /// Shape of the subtree of each link: equal for isomorphic subtrees, zero for subtrees that cannot be limbs.
     shape: Vec<usize>,
 }
 
-/// Groups of alike limbs. No link is in two of them.
+/// Finds the groups of isomorphic limbs. No link is in two groups.
 pub fn find(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<Group> {
     let shapes = Shapes::of(model, joints);
     let mut groups = Vec::new();
@@ -59,9 +59,9 @@ impl Shapes {
         Shapes { children, shape }
     }
 
-    /// The groups among the children of one link.
-    fn groups(&self, joints: &[Joint<'_>], among: &[usize], groups: &mut Vec<Group>, taken: &mut [bool]) {
-        let mut left: Vec<usize> = among.iter().copied().filter(|k| self.shape[*k] != 0).collect();
+    /// Adds the groups among the children of one link.
+    fn groups(&self, joints: &[Joint<'_>], children: &[usize], groups: &mut Vec<Group>, taken: &mut [bool]) {
+        let mut left: Vec<usize> = children.iter().copied().filter(|k| self.shape[*k] != 0).collect();
         while let Some(&first) = left.first() {
             let mut roots: Vec<usize> = left
                 .iter()
@@ -70,7 +70,7 @@ impl Shapes {
                 .take(MAX_LANES)
                 .collect();
             left.retain(|k| !roots.contains(k));
-            roots.retain(|k| is_apart(joints, *k));
+            roots.retain(|k| is_uncoupled(joints, *k));
             if roots.len() < 2 {
                 continue;
             }
@@ -83,17 +83,17 @@ impl Shapes {
         }
     }
 
-    /// Corresponding links of subtrees of one shape, parents before their children.
+    /// Adds the rows of corresponding links of isomorphic subtrees, parents before their children.
     fn rows(&self, roots: Vec<usize>, rows: &mut Vec<Vec<usize>>) {
         let mut todo = vec![roots];
         while let Some(row) = todo.pop() {
             let mut left: Vec<Vec<usize>> = row.iter().map(|k| self.children[*k].clone()).collect();
             let next = self.children[row[0]].iter().map(|child| {
-                let alike = left.iter_mut().filter_map(|list| {
+                let corresponding = left.iter_mut().filter_map(|list| {
                     let at = list.iter().position(|c| self.shape[*c] == self.shape[*child])?;
                     Some(list.remove(at))
                 });
-                alike.collect()
+                corresponding.collect()
             });
             let next: Vec<Vec<usize>> = next.collect();
             todo.extend(next.into_iter().rev());
@@ -102,8 +102,8 @@ impl Shapes {
     }
 }
 
-/// True if no coordinate of a limb moves anything else.
-fn is_apart(joints: &[Joint<'_>], root: usize) -> bool {
+/// Returns true if no velocity of a limb moves a joint outside the limb.
+fn is_uncoupled(joints: &[Joint<'_>], root: usize) -> bool {
     let mut inside = vec![false; joints.len()];
     inside[root] = true;
     for k in root + 1..joints.len() {

@@ -1,52 +1,52 @@
-//! Alike limbs as the lanes of one: legs, arms, fingers with the same joints. The mechanism that is left has one limb
-//! for each group; what differs between its lanes are constants and inputs. The algorithms run over it as over any other,
-//! and where a limb hands something to the link that it hangs from, they take the sum of the lanes.
+//! Identical limbs, such as legs, arms or fingers, as the SIMD lanes of one limb. The vectorised mechanism has one limb
+//! for each group; its lanes differ in constants and inputs. The algorithms process it like any other mechanism and sum over
+//! the lanes where a limb passes a force or an inertia to its parent link.
 
 use super::find::Group;
 use super::merge::Merge;
-use super::velocities::{Location, Velocity, paired};
+use super::velocities::{Location, Velocity, pair_velocities};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanism::{InV, Inertia, Link, LinkId, Model, Quantity};
 use std::collections::BTreeMap;
 
-/// A mechanism with one limb for each group of alike ones.
+/// Vectorised mechanism with one limb for each group of identical limbs.
 pub struct Limbs<'g> {
-    /// The mechanism, without springs and the like; its `v` are numbered by the limbs.
+    /// The vectorised mechanism without passive forces; its `v` are velocities of the vectorised mechanism.
     pub model: Model<'g>,
-    /// Its joints.
+    /// Joints of the vectorised mechanism.
     pub joints: Vec<Joint<'g>>,
     velocities: Vec<Velocity>,
-    /// By velocity of the whole mechanism.
+    /// Location of each velocity of the whole mechanism.
     places: Vec<Location>,
-    /// Forces of springs, dashpots and the like, by velocity here.
+    /// Passive forces, by velocity of the vectorised mechanism.
     passive_forces: Vec<Expr<'g>>,
 }
 
-/// A limb among alike ones.
+/// One limb of a group.
 #[derive(Clone, Copy, Debug)]
 pub struct LimbLane {
     /// The first velocity of the group.
     pub group: usize,
-    /// Its lane.
+    /// Lane of the limb.
     pub lane: usize,
-    /// How many lanes there are.
+    /// Number of lanes.
     pub width: usize,
 }
 
-/// Rows that limbs of one group have, one of each limb in turn.
-pub struct AlikeRows {
+/// Corresponding matrix rows of the limbs of one group.
+pub struct LimbRows {
     /// The first velocity of the group.
     pub group: usize,
-    /// How many limbs there are.
+    /// Number of limbs.
     pub width: usize,
-    /// Numbers of the rows that go together, by lane.
+    /// Indices of corresponding rows, one per lane.
     pub rows: Vec<Vec<usize>>,
 }
 
 impl<'g> Limbs<'g> {
-    /// The mechanism with its alike limbs as lanes. `passive_forces` gives those of the mechanism, by velocity. `None` if
-    /// there are no groups, or limbs are alike in shape alone.
+    /// Returns the mechanism with its identical limbs as lanes; `passive_forces` returns the passive forces of the whole
+    /// mechanism, by velocity. Returns `None` if there are no groups, or if limbs of one shape cannot be merged.
     pub fn of(
         model: &Model<'g>,
         joints: &[Joint<'g>],
@@ -59,7 +59,7 @@ impl<'g> Limbs<'g> {
         let rows = rows(joints.len(), groups);
         let merge = &mut Merge::new(model.graph);
         pair_coordinates(model, &rows, merge);
-        let (velocities, places) = paired(model, joints, &rows)?;
+        let (velocities, places) = pair_velocities(model, joints, &rows)?;
         let mut limbs = Limbs {
             model: without_forces(model),
             joints: Vec::new(),
@@ -131,7 +131,7 @@ impl<'g> Limbs<'g> {
         })
     }
 
-    /// One expression for each velocity here, from those of the whole mechanism.
+    /// Merges expressions by velocity of the whole mechanism into expressions by velocity of the vectorised mechanism.
     fn lane_groups(&self, whole: &[Expr<'g>], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
         let gather = |velocity: &Velocity| {
@@ -141,7 +141,7 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(gather).collect()
     }
 
-    /// Symbols of a kind, one expression for each velocity here.
+    /// Returns symbols of one quantity, by velocity of the vectorised mechanism.
     pub fn symbols(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let gather = |velocity: &Velocity| {
@@ -151,7 +151,7 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(gather).collect()
     }
 
-    /// By velocity here: the group of limbs that it belongs to, as the first velocity of these; none for those of trunks.
+    /// Returns the group of each velocity of the vectorised mechanism, identified by its first velocity; `None` outside limbs.
     pub fn groups(&self) -> Vec<Option<usize>> {
         let mut groups = vec![None; self.velocities.len()];
         let mut of_links: Vec<Option<usize>> = Vec::new();
@@ -165,13 +165,13 @@ impl<'g> Limbs<'g> {
         groups
     }
 
-    /// How many lanes a velocity has.
+    /// Returns the number of lanes of a velocity.
     pub fn width(&self, index: usize) -> usize {
         self.velocities[index].lanes.len()
     }
 
-    /// The one limb whose velocities a row has, numbered by the whole mechanism, if it has those of one. Limbs that stand in several
-    /// lanes have none.
+    /// Returns the limb whose velocities have nonzero entries in a row over the whole mechanism, if it is a single limb that
+    /// occupies one lane.
     pub fn lane_of(&self, row: &[Expr<'g>], groups: &[Option<usize>]) -> Option<LimbLane> {
         let entries = row.iter().zip(&self.places).filter(|(entry, _)| !entry.is_zero());
         let mut found: Option<LimbLane> = None;
@@ -181,35 +181,35 @@ impl<'g> Limbs<'g> {
             if (1..lanes.len()).any(|k| lanes[..k].contains(&lanes[k])) {
                 return None;
             }
-            let here = LimbLane { group, lane, width: lanes.len() };
+            let limb = LimbLane { group, lane, width: lanes.len() };
             if found.is_some_and(|known| (known.group, known.lane) != (group, lane)) {
                 return None;
             }
-            found = Some(here);
+            found = Some(limb);
         }
         found
     }
 
-    /// Rows, by velocity of the whole mechanism, as the limbs have them: the first of each limb of a group go together, then the second,
-    /// and so on. `None` unless each row moves one limb of several alike ones, and each of these has as many.
-    pub fn alike_rows(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<AlikeRows>> {
+    /// Groups rows over the whole mechanism by limbs: the first rows of all limbs of a group correspond, then the second ones, and so
+    /// on. Returns `None` unless each row belongs to one limb of a group and all limbs have the same number of rows.
+    pub fn limb_rows(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<LimbRows>> {
         let groups = self.groups();
         let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
         for (i, row) in rows.iter().enumerate() {
             let LimbLane { group, lane, width } = self.lane_of(row, &groups)?;
             found.entry(group).or_insert_with(|| vec![Vec::new(); width])[lane].push(i);
         }
-        let alike = |(group, lanes): (usize, Vec<Vec<usize>>)| {
+        let limb_rows = |(group, lanes): (usize, Vec<Vec<usize>>)| {
             let count = lanes.first()?.len();
             let row = |k: usize| lanes.iter().map(|numbers| numbers[k]).collect();
             let is_even = lanes.iter().all(|numbers| numbers.len() == count);
-            is_even.then(|| AlikeRows { group, width: lanes.len(), rows: (0..count).map(row).collect() })
+            is_even.then(|| LimbRows { group, width: lanes.len(), rows: (0..count).map(row).collect() })
         };
-        found.into_iter().map(alike).collect()
+        found.into_iter().map(limb_rows).collect()
     }
 
-    /// Rows that go together, by velocity of the whole mechanism, as one in lanes by velocity here, with the signs that they have there.
-    /// `None` if they are built differently.
+    /// Merges corresponding rows over the whole mechanism into one row over the vectorised mechanism, without its signs.
+    /// Returns `None` if the rows have different structures.
     pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let entry = |velocity: &Velocity| {
             let of = |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
@@ -219,7 +219,7 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(entry).collect()
     }
 
-    /// A square matrix of each lane, by velocities of the whole mechanism, as one in lanes; as [`merged_rows`](Self::merged_rows).
+    /// Merges square matrices over the whole mechanism, one per lane, as [`merged_rows`](Self::merged_rows) does.
     pub fn merged_squares(
         &self,
         lanes: &[Vec<Vec<Expr<'g>>>],
@@ -238,23 +238,23 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(row).collect()
     }
 
-    /// Which velocity of the whole mechanism one here is in a lane; of what stands alone the same in all.
+    /// Returns the velocity of the whole mechanism that a velocity is in a lane; the same in all lanes outside the limbs.
     fn velocity_in(&self, velocity: &Velocity, lane: usize) -> Option<usize> {
         let is_alone = velocity.lanes.len() == 1;
         velocity.lanes.get(if is_alone { 0 } else { lane }).copied()
     }
 
-    /// By velocity of the whole mechanism: the one here, and its lane if it is one of several.
+    /// Returns for each velocity of the whole mechanism its index in the vectorised mechanism and its lane, if it has one.
     pub fn places(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         self.places.iter().map(|place| (place.index, place.lane))
     }
 
-    /// Rows of the whole mechanism that belong to the limbs of a group, one of each, as one in lanes.
+    /// Joins rows over the whole mechanism, one for each limb of a group, into one row over the vectorised mechanism.
     pub fn side_by_side(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let merge = &mut Merge::new(g);
         let entry = |velocity: &Velocity| {
-            // What stands alone is the trunk's, and of other limbs there is nothing.
+            // Velocities outside the limbs are common to all rows; those of other groups are absent.
             let of = |(lane, row): (usize, &&[Expr<'g>])| match self.velocity_in(velocity, lane) {
                 Some(k) => row[k],
                 None => g.zero(),
@@ -266,7 +266,7 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(entry).collect()
     }
 
-    /// One expression for each velocity of the whole mechanism, from what `of` makes of its index here and its lane.
+    /// Returns an expression for each velocity of the whole mechanism; `of` takes its index in the vectorised mechanism and its lane.
     pub fn scattered_from(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let scatter = |place: &Location| match place.lane {
@@ -276,12 +276,12 @@ impl<'g> Limbs<'g> {
         self.places.iter().map(scatter).collect()
     }
 
-    /// Forces of springs, dashpots and the like.
+    /// Returns the passive forces, by velocity of the vectorised mechanism.
     pub fn passive_forces(&self) -> &[Expr<'g>] {
         &self.passive_forces
     }
 
-    /// One expression for each velocity of the whole mechanism, from those here.
+    /// Splits expressions by velocity of the vectorised mechanism into expressions by velocity of the whole mechanism.
     pub fn scattered(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let scatter = |place: &Location| match place.lane {
@@ -291,12 +291,12 @@ impl<'g> Limbs<'g> {
         self.places.iter().map(scatter).collect()
     }
 
-    /// By velocity of the whole mechanism: whether it stands for itself here, and is one of those marked here.
-    pub fn alone_and(&self, marked: &[bool]) -> Vec<bool> {
+    /// Returns for each velocity of the whole mechanism whether it is outside the limbs and marked in the vectorised mechanism.
+    pub fn marked_outside_limbs(&self, marked: &[bool]) -> Vec<bool> {
         self.places.iter().map(|place| place.lane.is_none() && marked[place.index]).collect()
     }
 
-    /// The matrix of the whole mechanism, by rows, from that of the velocities here.
+    /// Splits a matrix over the vectorised mechanism into that over the whole mechanism, row by row.
     pub fn scattered_matrix(&self, matrix: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let signs = |index: usize| g.lane_constants(&self.velocities[index].signs);
@@ -317,7 +317,7 @@ impl<'g> Limbs<'g> {
     }
 }
 
-/// Expressions side by side; their number is a power of two.
+/// Joins expressions into the lanes of one; their number is a power of two.
 pub fn joined<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
     match lanes.split_at(lanes.len() / 2) {
         ([], _) => lanes[0],
@@ -325,7 +325,7 @@ pub fn joined<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
     }
 }
 
-/// By link: those that become one with it, itself first; none for those that are not the first.
+/// Returns for each link the corresponding links of its group, itself first; an empty list for links of later limbs.
 fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = (0..links).map(|k| vec![k]).collect();
     for row in groups.iter().flat_map(|group| &group.rows) {
@@ -335,7 +335,7 @@ fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
     rows
 }
 
-/// Tells which entries of `q` become the lanes of one.
+/// Declares to the merger which entries of `q` correspond.
 fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_>) {
     for row in rows.iter().filter(|row| row.len() > 1) {
         let entries = |k: &usize| model.links[*k].motion.configuration();
@@ -346,7 +346,7 @@ fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_
     }
 }
 
-/// A mechanism without springs and the like.
+/// Returns the mechanism without passive forces.
 fn without_forces<'g>(model: &Model<'g>) -> Model<'g> {
     let mut model = model.clone();
     model.springs.clear();

@@ -1,6 +1,6 @@
-//! Expressions of several limbs as the lanes of one. What is made is right for any pairing of operands: every lane has
-//! the value of its own expression. Depth and steps are bounded: expressions come from users, and what is too deep or
-//! takes too long has no lanes.
+//! Merging of the expressions of several limbs into the SIMD lanes of one expression. The result is correct for any pairing
+//! of operands: every lane has the value of its own expression. Expressions come from users, so depth and steps are
+//! bounded; an expression that exceeds the bounds is not merged.
 
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
@@ -8,31 +8,31 @@ use crate::kinematics::symbols_in;
 use crate::mechanism::Quantity;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How deep operands are compared to find out which go together.
+/// Depth to which operands are compared when they are paired.
 const DEPTH: u8 = 8;
 
-/// Most operations one in another. Each takes stack, which compilers and their plug-ins have little of.
+/// Maximum nesting of operations. Each level takes stack, of which compiler plug-ins have little.
 const MAX_DEPTH: usize = 64;
 
-/// Most steps of one mechanism, of about a tenth of a microsecond each in an unoptimised build.
+/// Maximum number of steps per mechanism, of about 0.1 µs each in an unoptimised build.
 const STEPS: usize = 2_000_000;
 
-/// Makes lanes of expressions; what was made once is kept.
+/// Merges expressions into lanes and remembers the results.
 pub struct Merge<'g> {
     graph: &'g Graph,
     known: BTreeMap<Vec<Id>, Option<Id>>,
-    /// With signs, true for minus.
+    /// Results for expressions with signs, true for minus.
     signed: BTreeMap<Vec<(Id, bool)>, Option<Id>>,
-    /// Symbols that are the lanes of one.
+    /// Corresponding symbols, one per lane.
     partners: Vec<Vec<Symbol>>,
-    /// How deep the expression is that is looked at.
+    /// Depth of the current expression.
     depth: usize,
-    /// How many steps are left.
+    /// Number of remaining steps.
     steps: usize,
 }
 
 impl<'g> Merge<'g> {
-    /// For the expressions of a graph.
+    /// Creates a merger for the expressions of a graph.
     pub fn new(graph: &'g Graph) -> Merge<'g> {
         Merge {
             graph,
@@ -44,15 +44,15 @@ impl<'g> Merge<'g> {
         }
     }
 
-    /// Says which symbols are the lanes of one.
+    /// Declares corresponding symbols, one per lane.
     pub fn pair_symbols(&mut self, lanes: Vec<Symbol>) {
         self.partners.push(lanes);
     }
 
-    /// What takes the place of an expression of one lane in another lane, where it is not counted: with the symbols of that
-    /// lane, so that they are gathered once. As it is if it has symbols of other lanes too, of which there would be several
-    /// alike, or may be infinite there: not even zero times that would be zero.
-    fn in_lane(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
+    /// Returns a filler for lane `to` when only lane `from` has this term: the coefficient there is zero. The filler has the
+    /// symbols of lane `to`, so that they are gathered once. The expression itself is the filler if it has symbols of other
+    /// lanes too, or may be infinite, since zero times infinity is not zero.
+    fn filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
         let partners = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
         let is_own = |s: &Symbol| partners(*s).is_none_or(|list| list.get(from) == Some(s));
         if !symbols_in(&[e]).iter().all(is_own) || !is_finite(e) {
@@ -61,14 +61,14 @@ impl<'g> Merge<'g> {
         replace(e, &|s| partners(s)?.get(to).map(|s| self.graph.symbol(*s)))
     }
 
-    /// Takes steps off what is left; `None` when nothing is.
+    /// Uses up steps; returns `None` when too few remain.
     fn spend(&mut self, steps: usize) -> Option<()> {
         self.steps = self.steps.checked_sub(steps)?;
         Some(())
     }
 
-    /// What is made one level deeper; `None` if that is too deep.
-    fn deeper(&mut self, make: impl FnOnce(&mut Self) -> Option<Expr<'g>>) -> Option<Expr<'g>> {
+    /// Builds an expression one level deeper; returns `None` if that is too deep.
+    fn nest(&mut self, make: impl FnOnce(&mut Self) -> Option<Expr<'g>>) -> Option<Expr<'g>> {
         if self.depth == MAX_DEPTH {
             return None;
         }
@@ -78,7 +78,8 @@ impl<'g> Merge<'g> {
         made
     }
 
-    /// The expression with these lanes; what is the same in all lanes has none. `None` if they are built differently.
+    /// Returns the expression with these lanes, or the common expression if all lanes are equal. Returns `None` if the
+    /// lanes have different structures.
     pub fn lanes(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
         let first = *lanes.first()?;
         if lanes.iter().all(|e| *e == first) {
@@ -92,19 +93,19 @@ impl<'g> Merge<'g> {
             return known.map(|id| self.graph.expr(id));
         }
         self.spend(ids.len())?;
-        let found = self.deeper(|merge| merge.build(lanes));
+        let found = self.nest(|merge| merge.build(lanes));
         self.known.insert(ids, found.map(Expr::id));
         found
     }
 
     fn build(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
-        // Offsets and factors that differ, or are missing in some lanes, are constants of the lanes.
+        // Offsets and factors that differ between lanes become lane constants.
         let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| affine(*e)).collect();
         let moving = lanes.iter().position(|e| e.value().is_none())?;
         for lane in 0..parts.len() {
             if lanes[lane].value().is_some() {
-                // Nothing there moves, so that nothing of what takes its place counts.
-                parts[lane].2 = self.in_lane(parts[moving].2, moving, lane);
+                // The lane is constant: its factor is zero.
+                parts[lane].2 = self.filler(parts[moving].2, moving, lane);
             }
         }
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
@@ -129,11 +130,13 @@ impl<'g> Merge<'g> {
                 Some(self.lanes(&arguments?)?.call(f))
             }
             Node::Add(..) | Node::Sub(..) => {
-                let (a, b) = self.paired(lanes.iter().map(|e| terms(*e)).collect::<Option<Vec<_>>>()?)?;
+                let (a, b) =
+                    self.pair_operands(lanes.iter().map(|e| terms(*e)).collect::<Option<Vec<_>>>()?)?;
                 Some(self.lanes(&a)? + self.lanes(&b)?)
             }
             Node::Mul(..) => {
-                let (a, b) = self.paired(lanes.iter().map(|e| factors(*e)).collect::<Option<Vec<_>>>()?)?;
+                let (a, b) =
+                    self.pair_operands(lanes.iter().map(|e| factors(*e)).collect::<Option<Vec<_>>>()?)?;
                 Some(self.lanes(&a)? * self.lanes(&b)?)
             }
             Node::Div(..) => {
@@ -149,7 +152,7 @@ impl<'g> Merge<'g> {
         }
     }
 
-    /// Offsets, factors and rests as lanes.
+    /// Merges lanes of the form `offset + factor × rest`.
     fn affine(&mut self, parts: &[(f64, f64, Expr<'g>)]) -> Option<Expr<'g>> {
         let offsets: Vec<f64> = parts.iter().map(|part| part.0).collect();
         let factors: Vec<f64> = parts.iter().map(|part| part.1).collect();
@@ -161,7 +164,7 @@ impl<'g> Merge<'g> {
         Some(self.graph.lane_constants(&offsets) + scaled)
     }
 
-    /// Expressions with signs. Where these differ the constants of the expressions take them, if there are enough.
+    /// Merges expressions with signs. Signs that differ between lanes are absorbed by constants of the expressions, if possible.
     fn signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
         let sign = *signs.first()?;
         if signs.iter().all(|s| *s == sign) {
@@ -173,7 +176,7 @@ impl<'g> Merge<'g> {
             return known.map(|id| self.graph.expr(id));
         }
         self.spend(key.len())?;
-        let found = self.deeper(|merge| merge.build_signed(lanes, signs));
+        let found = self.nest(|merge| merge.build_signed(lanes, signs));
         self.signed.insert(key, found.map(Expr::id));
         found
     }
@@ -192,11 +195,11 @@ impl<'g> Merge<'g> {
                 lanes.iter().map(|e| of(*e)).collect::<Option<Vec<_>>>()
             };
             if let Some(operands) = all(terms) {
-                let (a, b) = self.paired(operands)?;
+                let (a, b) = self.pair_operands(operands)?;
                 return Some(self.signed(&a, signs)? + self.signed(&b, signs)?);
             }
             if let Some(operands) = all(factors) {
-                let (a, b) = self.paired(operands)?;
+                let (a, b) = self.pair_operands(operands)?;
                 return match absorbs(*a.first()?, DEPTH) {
                     true => Some(self.signed(&a, signs)? * self.lanes(&b)?),
                     false => Some(self.lanes(&a)? * self.signed(&b, signs)?),
@@ -206,26 +209,29 @@ impl<'g> Merge<'g> {
         Some(self.graph.lane_constants(signs) * self.lanes(lanes)?)
     }
 
-    /// First and second operands of a commutative operation in all lanes, exchanged where that brings like to like.
-    fn paired(&mut self, mut operands: Vec<(Expr<'g>, Expr<'g>)>) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
+    /// Returns the first and second operands of a commutative operation in all lanes, exchanged where that pairs similar ones.
+    fn pair_operands(
+        &mut self,
+        mut operands: Vec<(Expr<'g>, Expr<'g>)>,
+    ) -> Option<(Vec<Expr<'g>>, Vec<Expr<'g>>)> {
         let (a, b) = *operands.first()?;
         for (x, y) in &mut operands {
-            let straight = self.alike(a, *x, DEPTH)? && self.alike(b, *y, DEPTH)?;
-            if !straight && self.alike(a, *y, DEPTH)? && self.alike(b, *x, DEPTH)? {
+            let in_order = self.is_similar(a, *x, DEPTH)? && self.is_similar(b, *y, DEPTH)?;
+            if !in_order && self.is_similar(a, *y, DEPTH)? && self.is_similar(b, *x, DEPTH)? {
                 std::mem::swap(x, y);
             }
         }
         Some(operands.into_iter().unzip())
     }
 
-    /// Whether two expressions are built alike, as far as one looks. `None` when no steps are left.
-    fn alike(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
+    /// Returns true if two expressions have the same structure down to a depth, or `None` when no steps remain.
+    fn is_similar(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
         self.spend(1)?;
         let ((.., a), (.., b)) = (affine(a), affine(b));
         if a == b || depth == 0 || a.value().is_some() || b.value().is_some() {
             return Some(true);
         }
-        let mut same = |x: Id, y: Id| self.alike(a.graph().expr(x), a.graph().expr(y), depth - 1);
+        let mut same = |x: Id, y: Id| self.is_similar(a.graph().expr(x), a.graph().expr(y), depth - 1);
         Some(match (a.node(), b.node()) {
             (Node::Symbol(s), Node::Symbol(t)) => {
                 std::mem::discriminant(&Quantity::of(s)) == std::mem::discriminant(&Quantity::of(t))
@@ -242,7 +248,7 @@ impl<'g> Merge<'g> {
     }
 }
 
-/// The terms of a sum or difference.
+/// Returns the terms of a sum or difference.
 fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
     let at = |id: Id| e.graph().expr(id);
     match e.node() {
@@ -252,7 +258,7 @@ fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
     }
 }
 
-/// The factors of a product.
+/// Returns the factors of a product.
 fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
     let at = |id: Id| e.graph().expr(id);
     match e.node() {
@@ -261,7 +267,7 @@ fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
     }
 }
 
-/// True if another sign costs nothing: constants take it. Looks so deep.
+/// Returns true if constants of an expression can absorb a sign, down to a depth.
 fn absorbs(e: Expr<'_>, depth: u8) -> bool {
     let (offset, factor, rest) = affine(e);
     if offset != 0.0 || factor.abs() != 1.0 || e.value().is_some() {
@@ -275,7 +281,7 @@ fn absorbs(e: Expr<'_>, depth: u8) -> bool {
     }
 }
 
-/// Offset, factor and rest: an expression as `offset + factor × rest`, as far as constants go.
+/// Splits an expression into constants and a remainder, `offset + factor × remainder`.
 fn affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
     let at = |id: Id| e.graph().expr(id);
     let (mut offset, mut factor, mut rest) = (0.0, 1.0, e);
@@ -301,7 +307,7 @@ fn affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
     }
 }
 
-/// True for an expression that is finite wherever its symbols are, short of numbers that are too large.
+/// Returns true if an expression is finite for finite symbols, overflow aside.
 fn is_finite(e: Expr<'_>) -> bool {
     let graph = e.graph();
     let (mut todo, mut seen) = (vec![e.id()], BTreeSet::new());

@@ -1,5 +1,5 @@
-//! Expressions side by side, as the lanes of one: alike limbs, and what degrees of freedom propagate to the root through
-//! the same joints.
+//! Vectorisation over SIMD lanes: identical limbs become the lanes of one limb, and quantities that several degrees of
+//! freedom propagate to the root through the same joints become the lanes of one expression.
 
 mod find;
 mod limbs;
@@ -8,6 +8,6 @@ mod paths;
 mod velocities;
 
 pub use find::{Group, find};
-pub use limbs::{AlikeRows, Limbs, joined};
+pub use limbs::{LimbRows, Limbs, joined};
 pub use merge::Merge;
 pub use paths::{LaneGroup, Paths, Propagated, Visitor};

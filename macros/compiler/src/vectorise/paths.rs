@@ -1,55 +1,55 @@
-//! What degrees of freedom bring to their ancestors. What those propagate that follow each other on a path to the root pass
-//! the same joints once the last of them is passed: several at once, as the lanes of one.
+//! Propagation from degrees of freedom to the root, several at a time as SIMD lanes. Degrees of freedom on one path to the root
+//! are transformed by the same joints from the innermost of them on.
 
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial};
 
-/// What a degree of freedom propagates to the root.
+/// A quantity that a degree of freedom propagates to the root.
 pub trait Propagated<'g>: Sized {
-    /// It with all expressions replaced by what is made of them and of those of another.
-    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self;
-    /// About the parent's origin, in its axes.
-    fn moved(&self, joint: &Joint<'g>) -> Self;
+    /// Combines the expressions of two quantities entry by entry.
+    fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self;
+    /// Transforms the quantity to the parent's origin and axes.
+    fn to_parent(&self, joint: &Joint<'g>) -> Self;
 }
 
-/// What is done on the way.
+/// Algorithm that runs during the propagation.
 pub trait Visitor<'g> {
-    /// What is propagated.
+    /// Propagated quantity.
     type Item: Propagated<'g>;
-    /// What a degree of freedom propagates, on its own link.
+    /// Returns the quantity that a degree of freedom propagates, in the frame of its own link.
     fn start(&mut self, dof: usize) -> Self::Item;
-    /// A group has come to another link.
+    /// Processes a group of degrees of freedom that has been transformed to another link.
     fn visit(&mut self, group: &LaneGroup<Self::Item>);
 }
 
-/// What several degrees of freedom propagate, side by side.
+/// Propagated quantities of several degrees of freedom, as SIMD lanes.
 pub struct LaneGroup<T> {
-    /// Where it is: a link.
+    /// Index of the link that the quantities are given in.
     pub link: usize,
-    /// What is propagated, in lanes if there are several.
+    /// The quantities, in lanes if there are several.
     pub item: T,
-    /// Whose they are; none where lanes are filled up.
+    /// Degree of freedom of each quantity; `None` for a filler.
     members: Vec<Option<usize>>,
-    /// How many limbs are side by side in each.
+    /// Number of limbs in each quantity.
     width: usize,
-    /// How many are in the expressions of the link.
-    here: usize,
+    /// Number of limbs in the expressions of the link.
+    link_width: usize,
 }
 
 /// Degrees of freedom on their paths to the root.
 pub struct Paths<'a, 'g> {
     joints: &'a [Joint<'g>],
-    /// By link: how many limbs are side by side in its expressions.
+    /// Number of limbs in the expressions of each link.
     widths: Vec<usize>,
-    /// The link of each degree of freedom, parents first.
+    /// Link of each degree of freedom, parents first.
     links: Vec<usize>,
     /// Degrees of freedom that are propagated together, from the leaves to the root.
     groups: Vec<Vec<usize>>,
 }
 
 impl<'a, 'g> Paths<'a, 'g> {
-    /// For all degrees of freedom, joint by joint; in up to `most` lanes, one for none.
-    pub fn of(joints: &'a [Joint<'g>], most: usize) -> Paths<'a, 'g> {
+    /// Returns the paths of all degrees of freedom, joint by joint, in at most `max_lanes` lanes; one for no lanes.
+    pub fn of(joints: &'a [Joint<'g>], max_lanes: usize) -> Paths<'a, 'g> {
         let mut widths: Vec<usize> = Vec::with_capacity(joints.len());
         for joint in joints {
             let above = joint.parent.map_or(1, |p| widths[p.0]);
@@ -57,34 +57,35 @@ impl<'a, 'g> Paths<'a, 'g> {
         }
         let links = joints.iter().enumerate().flat_map(|(k, joint)| joint.dofs.iter().map(move |_| k));
         let mut paths = Paths { joints, widths, links: links.collect(), groups: Vec::new() };
-        paths.groups = match most {
+        paths.groups = match max_lanes {
             1 => (0..paths.links.len()).map(|dof| vec![dof]).collect(),
-            _ => paths.groups_of(most),
+            _ => paths.lane_groups(max_lanes),
         };
         paths
     }
 
-    /// The link of each degree of freedom.
+    /// Returns the link of each degree of freedom.
     pub fn links(&self) -> &[usize] {
         &self.links
     }
 
-    fn groups_of(&self, most: usize) -> Vec<Vec<usize>> {
+    /// Divides the runs into groups of at most `max_lanes` lanes.
+    fn lane_groups(&self, max_lanes: usize) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
         for run in self.runs().iter().filter(|run| !run.is_empty()) {
             let width = self.widths[self.links[run[0]]];
-            let together = if width.is_power_of_two() { (most / width).max(1) } else { 1 };
-            groups.extend(run.chunks(together).map(<[usize]>::to_vec));
+            let size = if width.is_power_of_two() { (max_lanes / width).max(1) } else { 1 };
+            groups.extend(run.chunks(size).map(<[usize]>::to_vec));
         }
         groups
     }
 
-    /// The degrees of freedom between a branch or a leaf and the next branch, towards the root.
+    /// Returns runs of degrees of freedom from a leaf or a branch to the next branch, towards the root.
     fn runs(&self) -> Vec<Vec<usize>> {
         let mut children = vec![0; self.joints.len()];
         self.joints.iter().filter_map(|joint| joint.parent).for_each(|p| children[p.0] += 1);
         let mut runs: Vec<Vec<usize>> = Vec::new();
-        // By link: the run that it continues.
+        // Run that each link continues.
         let mut run_of: Vec<Option<usize>> = vec![None; self.joints.len()];
         for (link, joint) in self.joints.iter().enumerate().rev() {
             let run = run_of[link].unwrap_or_else(|| {
@@ -106,23 +107,23 @@ impl<'a, 'g> Paths<'a, 'g> {
     /// Propagates everything to the root.
     pub fn propagate<V: Visitor<'g>>(&self, visitor: &mut V) {
         for group in &self.groups {
-            let lanes = self.together(group, visitor);
-            self.moved(lanes, None, visitor);
+            let lanes = self.gather(group, visitor);
+            self.transform(lanes, None, visitor);
         }
     }
 
-    /// What a group propagates, on the link of the last.
-    fn together<V: Visitor<'g>>(&self, group: &[usize], visitor: &mut V) -> LaneGroup<V::Item> {
+    /// Returns the quantities of a group in the frame of the link of its last degree of freedom.
+    fn gather<V: Visitor<'g>>(&self, group: &[usize], visitor: &mut V) -> LaneGroup<V::Item> {
         if let [dof] = *group {
             let link = self.links[dof];
             let (width, item) = (self.widths[link], visitor.start(dof));
-            return LaneGroup { link, item, members: vec![Some(dof)], width, here: width };
+            return LaneGroup { link, item, members: vec![Some(dof)], width, link_width: width };
         }
         let half = group.len().next_power_of_two() / 2;
         let (far, near) = group.split_at(group.len() - half);
-        let far = self.together(far, visitor);
-        let near = self.together(near, visitor);
-        let mut far = self.moved(far, Some(near.link), visitor);
+        let far = self.gather(far, visitor);
+        let near = self.gather(near, visitor);
+        let mut far = self.transform(far, Some(near.link), visitor);
         while far.members.len() < half {
             far.item = far.joined(&far);
             far.members.resize(2 * far.members.len(), None);
@@ -130,8 +131,8 @@ impl<'a, 'g> Paths<'a, 'g> {
         LaneGroup { item: near.joined(&far), members: [near.members, far.members].concat(), ..near }
     }
 
-    /// A group on a link nearer to the root, or on the root.
-    fn moved<V: Visitor<'g>>(
+    /// Transforms a group link by link to a link nearer to the root, or to the root.
+    fn transform<V: Visitor<'g>>(
         &self,
         mut group: LaneGroup<V::Item>,
         to: Option<usize>,
@@ -140,8 +141,8 @@ impl<'a, 'g> Paths<'a, 'g> {
         while Some(group.link) != to
             && let Some(parent) = self.joints[group.link].parent
         {
-            group.item = group.item.moved(&group.spread_joint(&self.joints[group.link]));
-            (group.link, group.here) = (parent.0, self.widths[parent.0]);
+            group.item = group.item.to_parent(&group.spread_joint(&self.joints[group.link]));
+            (group.link, group.link_width) = (parent.0, self.widths[parent.0]);
             visitor.visit(&group);
         }
         group
@@ -149,20 +150,20 @@ impl<'a, 'g> Paths<'a, 'g> {
 }
 
 impl<T> LaneGroup<T> {
-    /// An expression of the link for every member.
+    /// Repeats an expression of the link for every member of the group.
     pub fn spread<'g>(&self, e: Expr<'g>) -> Expr<'g> {
         let mut e = e;
-        // What is the same for all limbs is so for all members.
-        if self.here > 1 {
+        // An expression without lanes holds for all members.
+        if self.link_width > 1 {
             for k in 0..self.members.len().trailing_zeros() {
-                e = e.joined(self.here << k, e);
+                e = e.joined(self.link_width << k, e);
             }
         }
         e
     }
 
     fn spread_joint<'g>(&self, joint: &Joint<'g>) -> Joint<'g> {
-        if self.members.len() == 1 || self.here == 1 {
+        if self.members.len() == 1 || self.link_width == 1 {
             return joint.clone();
         }
         Joint {
@@ -172,16 +173,16 @@ impl<T> LaneGroup<T> {
         }
     }
 
-    /// Its lanes, then those of another.
+    /// Concatenates the lanes of two groups.
     fn joined<'g>(&self, other: &LaneGroup<T>) -> T
     where
         T: Propagated<'g>,
     {
         let lanes = self.members.len() * self.width;
-        self.item.with(&other.item, &|a, b| a.joined(lanes, b))
+        self.item.zip_with(&other.item, &|a, b| a.joined(lanes, b))
     }
 
-    /// The members, each with what of an expression is its own.
+    /// Returns the degree of freedom of each member with its lanes of an expression.
     pub fn parts<'g>(&self, e: Expr<'g>) -> impl Iterator<Item = (usize, Expr<'g>)> {
         let (alone, width) = (self.members.len() == 1, self.width);
         let part = move |k: usize| if alone { e } else { lanes(e, k * width, width) };
@@ -189,7 +190,7 @@ impl<T> LaneGroup<T> {
     }
 }
 
-/// So many lanes of an expression, a power of two.
+/// Returns `count` lanes of an expression, from lane `first` on; `count` is a power of two.
 fn lanes(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
     match count {
         1 => e.lane(first),
@@ -198,21 +199,24 @@ fn lanes(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
 }
 
 impl<'g> Propagated<'g> for Spatial<'g> {
-    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
-        Spatial { linear: self.linear.with(&other.linear, f), angular: self.angular.with(&other.angular, f) }
+    fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+        Spatial {
+            linear: self.linear.zip_with(&other.linear, f),
+            angular: self.angular.zip_with(&other.angular, f),
+        }
     }
 
-    fn moved(&self, joint: &Joint<'g>) -> Self {
+    fn to_parent(&self, joint: &Joint<'g>) -> Self {
         joint.wrench_to_parent(self)
     }
 }
 
 impl<'g> Propagated<'g> for Vec3<'g> {
-    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+    fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Vec3(std::array::from_fn(|k| f(self[k], other[k])))
     }
 
-    fn moved(&self, joint: &Joint<'g>) -> Self {
+    fn to_parent(&self, joint: &Joint<'g>) -> Self {
         joint.rotation.to_parent(*self)
     }
 }

@@ -1,29 +1,29 @@
-//! Which velocities of a mechanism with alike limbs go together.
+//! Correspondence between the velocities of a mechanism and those of its vectorised form, where identical limbs are lanes.
 
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::Model;
 
-/// Velocities of the whole mechanism that are the lanes of one.
+/// Velocity of the vectorised mechanism.
 #[derive(Clone, Debug)]
 pub struct Velocity {
-    /// One for each lane; a single one for what is in no limb.
+    /// Index in the whole mechanism of the velocity in each lane; a single index for a velocity outside the limbs.
     pub lanes: Vec<usize>,
-    /// Of each lane: minus one where the limb's joint moves the other way.
+    /// Sign of each lane: minus one if the limb's joint moves in the opposite direction.
     pub signs: Vec<f64>,
 }
 
-/// Where a velocity of the whole mechanism is found.
+/// Position of a velocity of the whole mechanism in the vectorised mechanism.
 #[derive(Clone, Copy, Debug)]
 pub struct Location {
-    /// The velocity that it is, or is a lane of.
+    /// Index of the velocity of the vectorised mechanism.
     pub index: usize,
-    /// Its lane, if it is one of several.
+    /// Lane of that velocity, if it has several.
     pub lane: Option<usize>,
 }
 
-/// The velocities that are left when corresponding ones are lanes, and the places of all. Each row holds corresponding
-/// links. `None` if the joints of limbs are coupled differently.
-pub fn paired(
+/// Returns the velocities of the vectorised mechanism, and the location in it of each velocity of the whole mechanism. Each row
+/// holds corresponding links. Returns `None` if the joints of the limbs are coupled differently.
+pub fn pair_velocities(
     model: &Model<'_>,
     joints: &[Joint<'_>],
     rows: &[Vec<usize>],
@@ -55,7 +55,7 @@ pub fn paired(
     Some((velocities, places))
 }
 
-/// Minus one if the second of two motions is the opposite of the first, as far as their first numbers tell.
+/// Returns minus one if two motion subspaces have opposite signs in the first component that is a nonzero number in both.
 fn sign_between(a: &Spatial<'_>, b: &Spatial<'_>) -> f64 {
     let pairs = a.linear.0.iter().chain(&a.angular.0).zip(b.linear.0.iter().chain(&b.angular.0));
     let mut products = pairs.filter_map(|(x, y)| Some(x.value()? * y.value()?));

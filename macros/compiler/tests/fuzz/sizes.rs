@@ -149,7 +149,8 @@ fn too_many_loops_are_refused_with_a_reason() {
         (20, 100, "500 scalar constraints, more than 256"),
         (85, 41, "the constraints of this mechanism depend on each other too much"),
     ] {
-        let output = expand(TokenStream::new(), tied_chain(pins, ties).parse().unwrap(), Path::new("../../tests/ui"));
+        let output =
+            expand(TokenStream::new(), tied_chain(pins, ties).parse().unwrap(), Path::new("../../tests/ui"));
         let output = format!("{} {}", output.tokens, output.text);
         assert!(output.contains(reason), "{pins} pins with {ties} ties: {:.2000}", output);
     }
@@ -249,7 +250,10 @@ fn nesting_of_every_kind_fits_the_stack() {
         let pieces = list(n, |k| format!("if m < {k} {{ {k} }} else "));
         add("pieces", with_mass(&format!("{pieces} {{ m }}")));
         add("pieces in pieces", with_mass(&nested(n.min(10_000), "if m < 1 { ", "m", " } else { 1 }")));
-        add("branches in braces", with_mass(&nested(n.min(10_000), "if m < 1 { 1 } else if m < 2 { 2 } else { ", "m", " }")));
+        add(
+            "branches in braces",
+            with_mass(&nested(n.min(10_000), "if m < 1 { 1 } else if m < 2 { 2 } else { ", "m", " }")),
+        );
         add("signs in brackets", with_mass(&nested(n / 2, "-(", "m", ")")));
         add("runs of signs in brackets", with_mass(&nested(n / 4, "- - - (", "m", ")")));
         for function in ["sin", "sqrt", "abs"] {
@@ -277,7 +281,9 @@ fn nesting_of_every_kind_fits_the_stack() {
         add("functions", with_type(&nested(n / 2, "fn() -> ", "f64", "")));
         add("lifetimes of functions", with_type(&nested(n / 8, "for<'a> fn() -> ", "f64", "")));
         add("generics in tuples", with_type(&nested(n / 4, "Vec<(", "f64", ")>")));
-        for operand in ["1 + ", "return ", "|a| ", "!", "&mut ", "1 .. ", "a = ", "if a {} else ", "break 'a "] {
+        for operand in
+            ["1 + ", "return ", "|a| ", "!", "&mut ", "1 .. ", "a = ", "if a {} else ", "break 'a "]
+        {
             add(operand, with_type(&format!("[f64; {} 1]", operand.repeat(n))));
             add(operand, with_type(&format!("Foo<{{ {} 1 }}>", operand.repeat(n))));
         }

@@ -152,21 +152,21 @@ impl<'g> Changes<'g> {
 }
 
 impl<'g> Propagated<'g> for Changes<'g> {
-    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+    fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Changes {
-            by_q: self.by_q.with(&other.by_q, f),
-            by_v: self.by_v.with(&other.by_v, f),
-            momentum: self.momentum.with(&other.momentum, f),
-            moment: self.moment.with(&other.moment, f),
+            by_q: self.by_q.zip_with(&other.by_q, f),
+            by_v: self.by_v.zip_with(&other.by_v, f),
+            momentum: self.momentum.zip_with(&other.momentum, f),
+            moment: self.moment.zip_with(&other.moment, f),
         }
     }
 
-    fn moved(&self, joint: &Joint<'g>) -> Self {
+    fn to_parent(&self, joint: &Joint<'g>) -> Self {
         Changes {
-            by_q: self.by_q.moved(joint),
-            by_v: self.by_v.moved(joint),
-            momentum: self.momentum.moved(joint),
-            moment: self.moment.moved(joint),
+            by_q: self.by_q.to_parent(joint),
+            by_v: self.by_v.to_parent(joint),
+            momentum: self.momentum.to_parent(joint),
+            moment: self.moment.to_parent(joint),
         }
     }
 }

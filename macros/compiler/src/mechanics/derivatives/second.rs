@@ -411,25 +411,25 @@ impl<'g> Changes<'g> {
 }
 
 impl<'g> Propagated<'g> for Changes<'g> {
-    fn with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
+    fn zip_with(&self, other: &Self, f: &dyn Fn(Expr<'g>, Expr<'g>) -> Expr<'g>) -> Self {
         Changes {
-            by_q: self.by_q.with(&other.by_q, f),
-            factored: self.factored.with(&other.factored, f),
-            moment_by_q: self.moment_by_q.with(&other.moment_by_q, f),
-            by_v: self.by_v.with(&other.by_v, f),
-            moment_by_v: self.moment_by_v.with(&other.moment_by_v, f),
-            momentum: self.momentum.with(&other.momentum, f),
+            by_q: self.by_q.zip_with(&other.by_q, f),
+            factored: self.factored.zip_with(&other.factored, f),
+            moment_by_q: self.moment_by_q.zip_with(&other.moment_by_q, f),
+            by_v: self.by_v.zip_with(&other.by_v, f),
+            moment_by_v: self.moment_by_v.zip_with(&other.moment_by_v, f),
+            momentum: self.momentum.zip_with(&other.momentum, f),
         }
     }
 
-    fn moved(&self, joint: &Joint<'g>) -> Self {
+    fn to_parent(&self, joint: &Joint<'g>) -> Self {
         Changes {
-            by_q: self.by_q.moved(joint),
-            factored: self.factored.moved(joint),
-            moment_by_q: self.moment_by_q.moved(joint),
-            by_v: self.by_v.moved(joint),
-            moment_by_v: self.moment_by_v.moved(joint),
-            momentum: self.momentum.moved(joint),
+            by_q: self.by_q.to_parent(joint),
+            factored: self.factored.to_parent(joint),
+            moment_by_q: self.moment_by_q.to_parent(joint),
+            by_v: self.by_v.to_parent(joint),
+            moment_by_v: self.moment_by_v.to_parent(joint),
+            momentum: self.momentum.to_parent(joint),
         }
     }
 }
