@@ -266,7 +266,7 @@ fn after(input: &Input, pass: &str, function: &str) -> Result<(), Failure> {
     let source = read(input.arguments.clone(), input.item.clone(), &input.folder, cx);
     let source = checked(source, cx)?;
     let graph = Graph::new();
-    let output = pipeline::observed(Box::new(print), || compile(&source, &graph, cx));
+    let output = pipeline::with_observer(Box::new(print), || compile(&source, &graph, cx));
     checked(output, cx).map(|_| ())
 }
 
@@ -354,7 +354,7 @@ fn one_run(input: &Input, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Resu
             None => sums.push((pass.to_string(), time)),
         }
     };
-    let output = pipeline::observed(Box::new(note), || {
+    let output = pipeline::with_observer(Box::new(note), || {
         let derived = || derive_with(&model, source.mechanism.requests, Passes::default(), cx);
         watch.measure("derive", derived)
     });

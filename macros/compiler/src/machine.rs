@@ -1,37 +1,35 @@
-//! What the compiler takes for granted about processors. Every number that was tuned by measuring stands here, with how it was
-//! found; nothing else in the compiler knows a processor.
-//! Latencies are usual figures of processors with fused operations; limits were tuned on the robots of `benches`, on x86-64
-//! processors with 512-bit registers.
+//! Processor model of the compiler: latencies, costs and limits that were tuned by measurement. Latencies are typical values of
+//! processors with fused operations; limits were tuned on the robots of `benches`, on x86-64 processors with 512-bit
+//! registers.
 
-/// In how many parts a cycle is counted, and how many operations are begun in one.
+/// Time units per cycle, and operations issued per cycle.
 pub const CYCLE: u32 = 3;
-/// How long an addition takes.
+/// Latency of an addition.
 pub const ADD: u32 = 3 * CYCLE;
-/// How long a multiplication takes, and a product with its sum.
+/// Latency of a multiplication or a fused multiply-add.
 pub const MULTIPLY: u32 = 4 * CYCLE;
-/// How long a division takes.
+/// Latency of a division.
 pub const DIVIDE: u32 = 13 * CYCLE;
-/// How long a negation takes.
+/// Latency of a negation.
 pub const NEGATE: u32 = CYCLE;
-/// How long moving a number between lanes takes.
+/// Latency of a move between lanes.
 pub const MOVE_LANE: u32 = 2 * CYCLE;
-/// How long adding the upper half of a vector's lanes to the lower takes: a move and an addition.
+/// Latency of adding the upper half of a vector's lanes to the lower half: a move and an addition.
 pub const HALVE: u32 = 5 * CYCLE;
-/// How long sines and cosines take: those of all angles are evaluated as lanes at the beginning.
+/// Latency of sines and cosines, which are evaluated in lanes for all angles at the start.
 pub const SINE: u32 = 60 * CYCLE;
-/// How long other elementary functions take, which are calls.
+/// Latency of other elementary functions, which are library calls.
 pub const CALL: u32 = 50 * CYCLE;
 
-/// Most instructions for each cycle of the longest chain that are put in another order. Where there are more, the processor
-/// never lacks something to do, and another order only keeps more values waiting.
+/// Maximum number of instructions per cycle of the critical path for which a program is scheduled. With more parallelism the
+/// processor is busy in any order, and scheduling only increases register pressure.
 pub const MOST_PARALLELISM: f64 = 5.0;
 
-/// About how many instructions the first cache holds: those of a larger program have to be
-/// fetched each time, however many lanes they have.
+/// Approximate number of instructions that the first-level cache holds. Those of a larger program are fetched on each call.
 pub const CACHED_INSTRUCTIONS: usize = 4000;
 
-/// What an instruction costs, in tenths of one of a single lane, by the number of lanes. Eight
-/// lanes take two registers where there are none of 512 bits.
+/// Returns the cost of an instruction by its number of lanes, in tenths of an instruction on one lane. Eight lanes take two
+/// registers on processors without 512-bit registers.
 pub fn cost_of_lanes(lanes: usize) -> usize {
     match lanes {
         0..=2 => 10,
@@ -39,52 +37,55 @@ pub fn cost_of_lanes(lanes: usize) -> usize {
         _ => 25,
     }
 }
-/// What gathering a lane of an input costs, in tenths of an instruction.
+/// Cost of gathering one lane of an input, in tenths of an instruction.
 pub const GATHER_COST: usize = 8;
-/// What taking a lane out costs.
+/// Cost of extracting a lane.
 pub const LANE_COST: usize = 5;
-/// What summing lanes costs, for each of them.
+/// Cost of summing lanes, per lane.
 pub const SUM_COST: usize = 10;
-/// What a call costs, for each lane.
+/// Cost of a library call, per lane.
 pub const CALL_COST: usize = 20;
-/// What fetching an instruction costs that the first cache does not hold.
+/// Cost of fetching an instruction that is not in the first-level cache.
 pub const FETCH_COST: usize = 15;
 
-/// Fewest operations of a function that chooses its arithmetic at run time. The choice costs about two nanoseconds, and a function
-/// that is called cannot be inlined.
+/// Minimum number of operations of a function that chooses its instruction set at run time. The choice costs about two
+/// nanoseconds and prevents inlining.
 pub const DISPATCHED_OPERATIONS: usize = 60;
 
-/// Fewest instructions of a function that is written once for matrices that are given and for those it returns. Rustc reads half as
-/// much, and a humanoid's takes 2961 ns instead of 3260: filling matrices with zeros is quicker than storing zeros one by one.
+/// Minimum number of instructions of a function that is emitted once, for matrices of the caller, and wrapped for returned
+/// matrices. rustc reads half as much, and a humanoid's derivatives take 2961 ns instead of 3260, because clearing a matrix is
+/// faster than storing single zeros.
 pub const FILLING_INSTRUCTIONS: usize = 3000;
 
-/// Fewest operations of what springs, dashpots and applied forces between points store, dissipate and act by, from which on their
-/// generalized forces are a function that the others call. A call costs a few nanoseconds and computes placements twice, which is
-/// less than a hundredth of the time of so many operations; without it rustc reads each of them in every function.
+/// Minimum number of operations of passive forces for which the generalized passive forces are a separate function. The call
+/// costs a few nanoseconds and computes placements twice, which is less than a hundredth of the time of that many operations;
+/// otherwise rustc would read these operations in every function.
 pub const CALLED_OPERATIONS: usize = 1000;
 
-/// Up to how many velocities functions are derived from frames of several kinds, and both algorithms of forward dynamics, and
-/// compared.
+/// Maximum number of velocities for which candidates with several choices of link frames, and both algorithms of forward
+/// dynamics, are derived and compared.
 pub const COMPARED_VELOCITIES: usize = 18;
-/// Up to how many operations of mass matrix and inverse dynamics together they are compared whatever they cost: beyond, frames that
-/// are worse at first sight are left out, and articulated bodies are taken. The largest quadruped has 1940, 16 spatial pins 2635,
-/// whose frames differ by 6 to 9 in 100, and the factorisation takes twice the operations.
+/// Maximum number of operations of mass matrix and inverse dynamics together for which all candidates are compared. Beyond it,
+/// candidates with more operations in a first estimate are dropped, and forward dynamics uses articulated bodies. The largest
+/// quadruped has 1940 operations; a chain of 16 spatial pins has 2635, its frames differ by 6 to 9 per cent, and the
+/// factorisation takes twice the operations.
 pub const COMPARED_OPERATIONS: usize = 2000;
 
-/// Up to how many velocities every form of a model is tried for derivatives, and each of them is written out.
+/// Maximum number of velocities for which every variant of a model is tried for derivatives, expanded to scalars.
 pub const DERIVATIVES_COMPARED: usize = 10;
-/// Up to how many velocities the derivatives of forward dynamics of mechanisms that branch are written out. What stands in a single
-/// function needs stack where it is not optimised.
+/// Maximum number of velocities for which derivatives of forward dynamics of branching mechanisms are expanded to scalars. A
+/// single large function needs much stack in unoptimised builds.
 pub const DERIVATIVES_WRITTEN_OUT: usize = 24;
-/// Up to how many velocities of a trunk, or of a mechanism that does not branch, the inverse of the mass matrix is written out.
-/// Beyond it is quicker in loops: of chains of pins, 12 are as fast, 16 take 776 ns instead of 1105, 24 take 2376 instead of 5079.
+/// Maximum number of velocities of a trunk, or of a mechanism without branches, for which the inverse of the mass matrix is
+/// expanded to scalars. Beyond it loops are faster: for chains of 12 pins both take the same time; 16 pins take 776 ns in loops
+/// instead of 1105, 24 pins 2376 instead of 5079.
 pub const INVERSE_WRITTEN_OUT: usize = 12;
 
-/// Up to how many statements results of alike limbs are stored at the end, column by column: then the lanes of several are turned
-/// round in registers and stored together.
-pub const TURNED_STATEMENTS: usize = 300;
-/// How many statements after one vector another may be known whose lanes are stored together with its own. More would make the
-/// first wait in memory, for few pairs: from 60 to 200 a humanoid's mass matrix gains 15 stores.
+/// Maximum number of statements for which results of identical limbs are stored at the end, column by column: lanes of several
+/// results are then transposed in registers and stored together.
+pub const TRANSPOSED_STATEMENTS: usize = 300;
+/// Maximum distance in statements between two vectors whose lanes are stored together. With a larger distance the first one would
+/// be spilled to memory, for few additional pairs: from 60 to 200 a humanoid's mass matrix saves 15 stores.
 pub const NEAR_STATEMENTS: usize = 60;
-/// How many zeros a column may have in the rows of its neighbours to be multiplied together with them.
+/// Maximum number of zeros of a column, in the rows of its neighbours, for which it is multiplied together with them.
 pub const FILLED_ZEROS: usize = 2;

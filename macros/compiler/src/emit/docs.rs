@@ -125,7 +125,7 @@ pub fn operations(functions: &[Function]) -> String {
     let mut lines = String::new();
     let mut row = |name: &str, program: &Program| {
         let c = program.counts;
-        let (held, branches) = (program.most_live(), program.branches());
+        let (held, branches) = (program.max_live(), program.branches());
         let _ = writeln!(
             lines,
             "| {name} | {} | {} | {} | {} | {held} | {branches} |",

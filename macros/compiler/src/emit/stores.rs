@@ -6,7 +6,7 @@ use super::signature::given;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use crate::lower::{Op, Operand, Program};
-use crate::machine::{NEAR_STATEMENTS, TURNED_STATEMENTS};
+use crate::machine::{NEAR_STATEMENTS, TRANSPOSED_STATEMENTS};
 use std::fmt;
 
 /// An entry of a matrix.
@@ -31,7 +31,7 @@ pub fn with_stores(
     outputs: &Outputs<'_>,
 ) -> (Vec<Statement>, Vec<Piece>) {
     let places = places(f, outputs);
-    let all = match !program.gathers.is_empty() && statements.len() <= TURNED_STATEMENTS {
+    let all = match !program.gathers.is_empty() && statements.len() <= TRANSPOSED_STATEMENTS {
         true => at_the_end(statements, &places, outputs),
         false => as_known(program, statements, &places, outputs),
     };

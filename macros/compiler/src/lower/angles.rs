@@ -1,10 +1,10 @@
-//! Sines and cosines of angles that are known from the start: printers evaluate several at a time.
+//! Angles whose sines and cosines can be evaluated together at the start of a program, several at a time.
 
 use super::{Op, Operand, Program};
 use crate::expr::{Function as Elementary, Symbol};
 use std::cmp::Reverse;
 
-/// Sine and cosine of one angle: the instructions that compute them.
+/// One angle with the instructions that compute its sine and cosine.
 pub struct Angle {
     /// The angle.
     pub angle: Operand,
@@ -14,18 +14,18 @@ pub struct Angle {
     pub cosine: Option<usize>,
 }
 
-/// The angles that can be evaluated together at the start: arithmetic of the arguments.
+/// Angles that are arithmetic expressions of the arguments.
 pub struct Angles {
     /// The angles.
     pub list: Vec<Angle>,
-    /// By instruction: it is one of their sines or cosines.
+    /// For each instruction: it is the sine or cosine of one of the angles.
     pub covered: Vec<bool>,
-    /// By instruction: an angle needs it.
+    /// For each instruction: an angle depends on it.
     pub before: Vec<bool>,
 }
 
 impl Angles {
-    /// Those of a program.
+    /// Finds the angles of a program.
     pub fn find(program: &Program) -> Angles {
         let n = program.instructions.len();
         let mut angles = Angles { list: Vec::new(), covered: vec![false; n], before: vec![false; n] };
@@ -72,7 +72,7 @@ impl Angles {
 }
 
 impl Angles {
-    /// The angles, those with most lanes first; numbers in the order of the inputs that they come from.
+    /// Returns the angles with most lanes first; angles with equally many lanes in the order of the inputs they depend on.
     pub fn widest_first(&self, program: &Program, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
         let mut list: Vec<&Angle> = self.list.iter().collect();
         list.sort_by_key(|angle| (Reverse(lanes(angle.angle)), input(program, angle.angle)));
@@ -80,7 +80,7 @@ impl Angles {
     }
 }
 
-/// The first input of an angle: of one plus a constant at least.
+/// Returns the first input of an angle that is an input, or an operation on inputs.
 fn input(program: &Program, angle: Operand) -> Option<Symbol> {
     let mut first = None;
     let mut note = |o: Operand| {

@@ -1,7 +1,6 @@
-//! Sums put in the order in which their products fuse. A sum of two products is a product and a fused one; where it is
-//! added to something else by an addition of its own, as in `a + (b c + d e)`, beginning with that saves an instruction:
-//! `(a + b c) + d e`. The numbers of multiplications and additions stay the same. Where `a` is known too late, the sum
-//! would have to wait for it: then it stays as it is.
+//! Reordering of sums so that more products fuse. A sum of two products takes a product and a fused instruction. If it is then
+//! added to another value, as in `a + (b c + d e)`, the order `(a + b c) + d e` saves an instruction. The numbers of
+//! multiplications and additions stay the same. The sum keeps its order if `a` is computed so late that the sum would wait.
 
 use super::terms::{LONGEST, Sum, Term};
 use super::times::Times;
@@ -11,7 +10,7 @@ use crate::machine::{ADD, MULTIPLY};
 impl Program {
     /// Puts the terms of sums in the order in which most products fuse.
     pub(super) fn chained(mut self) -> Program {
-        // Rewritten additions stand where their sum is used, since they need all that it does.
+        // Rewritten additions move to where their sum is used, after all its operands.
         let mut late = vec![false; self.instructions.len()];
         let mut times = Times::default();
         for k in 0..self.instructions.len() {
@@ -22,7 +21,7 @@ impl Program {
                 continue;
             };
             let time = times.chain(&self, &sum.terms);
-            // An instruction less is worth that each term may take as much longer as an addition with a product does.
+            // One instruction less is worth the longer latency of a fused addition for each term.
             if time > before + (MULTIPLY - ADD) * sum.terms.len() as u32 {
                 continue;
             }
@@ -32,14 +31,14 @@ impl Program {
                 late[*at] = *at != k;
             }
         }
-        let program = if late.contains(&true) { self.sorted(&late) } else { self };
+        let program = if late.contains(&true) { self.sort_instructions(&late) } else { self };
         program.with_products_at_their_sums()
     }
 
-    /// The sum that ends with instruction `k`, if another order of its terms saves an instruction.
+    /// Returns the sum that ends with instruction `k`, if another order of its terms saves an instruction.
     fn sum_to_chain(&self, k: usize) -> Option<Sum> {
         let ends = self.instructions[k].terms()?;
-        // With a product among its terms it is fused as it stands.
+        // With a product among its terms the last addition is fused already.
         if ends.iter().any(|t| self.fuses(*t)) {
             return None;
         }
@@ -55,7 +54,8 @@ impl Program {
         joined(0).or_else(|| joined(1))
     }
 
-    /// Collects the terms of a sum from the last to the first, which is a product; false if it is none or too long.
+    /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it is not, or if the
+    /// sum is too long.
     fn descend(&self, top: Term, sum: &mut Sum) -> bool {
         let Some(terms) = self.lone_addition(top.operand).filter(|_| sum.additions.len() < LONGEST) else {
             return false;
@@ -65,7 +65,7 @@ impl Program {
         let products = terms.map(|t| self.fuses(t));
         match products {
             [true, true] => {
-                // The earlier one is there first.
+                // The product that is computed first comes first.
                 if terms[0].operand.number() > terms[1].operand.number() {
                     terms.swap(0, 1);
                 }
@@ -90,13 +90,13 @@ impl Program {
         }
     }
 
-    /// True for a product whose only use is here.
+    /// Returns true for a product whose only use is this term.
     fn fuses(&self, term: Term) -> bool {
         self.lone_product(term.operand).is_some()
     }
 
-    /// The same instructions with operands before operations, those that are `late` not before they are needed.
-    fn sorted(self, late: &[bool]) -> Program {
+    /// Sorts the instructions so that operands precede operations; `late` instructions come right before their first use.
+    fn sort_instructions(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
         let mut is_placed = vec![false; n];
         let mut order = Vec::with_capacity(n);
@@ -127,7 +127,7 @@ mod tests {
     use crate::lower::lower;
     use crate::lower::pipeline::PART;
 
-    /// Tens of thousands of terms, of which two products come first or last, with the small stack of a test's thread.
+    /// Sums of tens of thousands of terms with two products at the beginning or at the end, on the small stack of a test thread.
     #[test]
     fn long_sums_need_no_stack() {
         let g = Graph::new();
@@ -138,7 +138,7 @@ mod tests {
         for (sum, fused) in [(first, 2), (rest + products, 1)] {
             let program = lower(&[sum]).through(PART);
             assert_eq!(program.instructions.len() + fused, program.counts.total());
-            // As many of each of 0, 1, … 7, where 0 · 1 + 2 · 3 stands for the sum of the four.
+            // Each of 0, 1, … 7 occurs equally often; 0 · 1 + 2 · 3 equals 0 + 1 + 2 + 3.
             assert_eq!(program.run(&|s| f64::from(s.0 % 8)), [140_000.0]);
         }
     }

@@ -1,13 +1,12 @@
-//! Common factors of a sum are taken out: `a b + a c` is `a (b + c)`, with a multiplication less. As many instructions as
-//! before are left where products are fused into sums.
+//! Factors common to several terms of a sum are taken out: `a b + a c` becomes `a (b + c)`, with one multiplication less. The
+//! number of instructions stays the same where products are fused into sums.
 
 use super::terms::{LONGEST, Term};
 use super::{Op, Operand, Program};
 
 impl Program {
-    /// The same program with common factors of the terms of its sums taken out.
+    /// Takes common factors out of the sums of a program.
     pub(super) fn factored(self) -> Program {
-        // The sum that each addition is a part of.
         let inner = self.inner_additions();
         let sums = (0..self.instructions.len()).filter(|k| !inner[*k]);
         let mut groups = sums.filter_map(|k| Some((k, self.grouped(self.terms_of(k)?)?))).peekable();
@@ -35,7 +34,7 @@ impl Program {
         Operand::Value(self.instructions.len() - 1)
     }
 
-    /// Additions whose only use is another one.
+    /// Returns for each instruction whether it is an addition whose only use is another addition.
     fn inner_additions(&self) -> Vec<bool> {
         let mut inner = vec![false; self.instructions.len()];
         for op in &self.instructions {
@@ -48,7 +47,7 @@ impl Program {
         inner
     }
 
-    /// The terms of the sum that ends with instruction `k`, from left to right.
+    /// Returns the terms of the sum that ends with instruction `k`, from left to right.
     fn terms_of(&self, k: usize) -> Option<Vec<Term>> {
         let mut terms = Vec::new();
         let [a, b] = self.instructions[k].terms()?;
@@ -65,7 +64,7 @@ impl Program {
         Some(terms)
     }
 
-    /// The terms of a sum by common factors. `None` if there are none.
+    /// Groups the terms of a sum by common factors. Returns `None` if there are none.
     fn grouped(&self, mut open: Vec<Term>) -> Option<Vec<Group>> {
         if !self.may_share_factors(&open) {
             return None;
@@ -84,17 +83,17 @@ impl Program {
             });
             groups.push(Group { factor: Some(factor), others });
         }
-        // What has nothing in common stays as it is, a product with its own factor.
+        // A term without common factor forms a group of its own.
         groups.extend(open.into_iter().map(|t| match self.lone_product(t.operand) {
             Some((a, b)) => Group { factor: Some(a), others: vec![Term { operand: b, ..t }] },
             None => Group { factor: None, others: vec![t] },
         }));
-        // What is there first comes first.
+        // Groups are ordered by when their values are computed.
         groups.sort_by_key(|g| g.others.iter().map(|t| t.operand.number()).max());
         saved.then_some(groups)
     }
 
-    /// False if no two of the terms have a factor in common, which is told quickly.
+    /// Returns false if no two terms have a factor in common: a cheap test.
     fn may_share_factors(&self, terms: &[Term]) -> bool {
         let mut factors: Vec<u64> = Vec::new();
         for term in terms {
@@ -108,7 +107,7 @@ impl Program {
         false
     }
 
-    /// The factor that two terms or more have, that of most terms.
+    /// Returns the factor that most terms have, if at least two have it.
     fn most_common_factor(&self, terms: &[Term]) -> Option<Operand> {
         let mut best: Option<(usize, Operand)> = None;
         for term in terms {
@@ -123,7 +122,7 @@ impl Program {
         best.map(|(_, factor)| factor)
     }
 
-    /// What a term that is a product multiplies its factor by.
+    /// Returns the other factor of a term that is a product with this factor.
     fn cofactor(&self, term: Term, factor: Operand) -> Option<Term> {
         let (a, b) = self.lone_product(term.operand)?;
         let opposite = |x: Operand| match (x, factor) {
@@ -135,7 +134,7 @@ impl Program {
         Some(Term { operand: other, negative: term.negative != opposite })
     }
 
-    /// The sum of products of a factor and a sum each, or of a value.
+    /// Adds the instructions for a sum of groups, each a factor times a sum.
     fn add_groups(&mut self, groups: &[Group], at: &dyn Fn(Operand) -> Operand) -> Operand {
         let mut sum: Option<Term> = None;
         for group in groups {
@@ -152,6 +151,7 @@ impl Program {
         }
     }
 
+    /// Adds the instructions for a sum of terms.
     fn sum_of(&mut self, terms: &[Term], at: &dyn Fn(Operand) -> Operand) -> Term {
         let known: f64 = terms.iter().filter_map(signed_constant).sum();
         let is_known = terms.iter().any(|t| signed_constant(t).is_some());
@@ -162,19 +162,20 @@ impl Program {
         all.fold(first, |sum, term| self.sum_of_two(sum, term))
     }
 
+    /// Adds the instruction for a sum of two terms.
     fn sum_of_two(&mut self, a: Term, b: Term) -> Term {
         let (op, negative) = Term::sum(a, b);
         Term { operand: self.push(op), negative }
     }
 }
 
-/// A factor, if there is one, and what it multiplies.
+/// Terms with a common factor, if there is one, divided by it.
 struct Group {
     factor: Option<Operand>,
     others: Vec<Term>,
 }
 
-/// The same number for operands that are equal up to their sign.
+/// Returns a key that is the same for operands equal up to sign.
 fn likeness(o: Operand) -> u64 {
     match o {
         Operand::Const(c) => c.abs().to_bits(),
@@ -185,6 +186,7 @@ fn likeness(o: Operand) -> u64 {
     }
 }
 
+/// Returns the value of a constant term.
 fn signed_constant(term: &Term) -> Option<f64> {
     match term.operand {
         Operand::Const(c) => Some(if term.negative { -c } else { c }),

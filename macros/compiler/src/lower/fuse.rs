@@ -3,13 +3,13 @@
 use super::{Op, Operand, Program};
 
 impl Program {
-    /// How many instructions are left when products have been fused into sums.
+    /// Returns the number of instructions after products are fused into sums.
     pub fn fused_length(&self) -> usize {
         let fused = (0..self.instructions.len()).filter(|k| self.product_to_fuse(*k).is_some());
         self.instructions.len() - fused.count()
     }
 
-    /// By instruction: it is a product that will fuse.
+    /// Returns for each instruction whether it is a product that will be fused.
     pub(super) fn products_to_fuse(&self) -> Vec<bool> {
         let mut fuses = vec![false; self.instructions.len()];
         for product in (0..self.instructions.len()).filter_map(|k| self.product_to_fuse(k)) {
@@ -18,13 +18,13 @@ impl Program {
         fuses
     }
 
-    /// The program as it becomes with products fused into sums, for its cost.
+    /// Returns a copy with products fused into sums, for cost estimates.
     pub(super) fn as_fused(&self) -> Program {
         Program { simd: None, ..self.clone() }.with_fused_products()
     }
 
-    /// Fuses products into sums. The generated code computes them fused where the hardware can,
-    /// and as product and sum elsewhere.
+    /// Fuses products into sums. Generated code uses the hardware's fused operation where it exists, and a product and a sum
+    /// elsewhere.
     pub(super) fn with_fused_products(mut self) -> Program {
         let counts = self.counts;
         for k in 0..self.instructions.len() {
@@ -48,11 +48,11 @@ impl Program {
         }
     }
 
-    /// The product that fuses into the sum of instruction `k`.
+    /// Returns the product that fuses into the sum of instruction `k`.
     fn product_to_fuse(&self, k: usize) -> Option<Operand> {
         let is_product = |o: Operand| self.lone_product(o).is_some();
         let product = match self.instructions[k] {
-            // Of two products the later one is fused: the earlier is ready when it is needed.
+            // Of two products the later one is fused, because the earlier one is ready by then.
             Op::Add(a, b) if is_product(a) && (!is_product(b) || a.number() > b.number()) => a,
             Op::Sub(a, b) if !is_product(b) => a,
             Op::Add(_, b) | Op::Sub(_, b) => b,
@@ -61,7 +61,7 @@ impl Program {
         Some(product).filter(|product| is_product(*product))
     }
 
-    /// Puts each product that will fuse right before its sum, where it will be computed.
+    /// Moves each product that will be fused right before its sum.
     pub(super) fn with_products_at_their_sums(self) -> Program {
         let n = self.instructions.len();
         let waits = self.products_to_fuse();

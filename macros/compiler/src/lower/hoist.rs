@@ -1,20 +1,20 @@
-//! Values that are known before a program runs: a program names them by symbols of their own, with either sign, and
-//! treats them as constants. Equal values of one graph have one name in all programs.
+//! Hoisted values, which are computed before a program runs: programs treat them as constants with symbols of their own, one
+//! for each sign. A node of the graph has the same symbol in all programs.
 
 use super::{Operand, Program};
 use crate::expr::{Id, Node, Symbol};
 
-/// Marks a symbol that names a node of the graph.
+/// Bit of symbols that name a node of the graph.
 const HOISTED: u32 = 1 << 31;
-/// Marks the negative of one.
+/// Bit of symbols that name the negative of a node.
 const MINUS: u32 = 1 << 30;
 
-/// The node that a symbol names, and whether its negative is meant; `None` for a symbol of the graph itself.
+/// Returns the node that a symbol names, and true for its negative; `None` for a symbol of the graph.
 pub fn hoisted(symbol: Symbol) -> Option<(Id, bool)> {
     (symbol.0 & HOISTED != 0).then_some((symbol.0 & !(HOISTED | MINUS), symbol.0 & MINUS != 0))
 }
 
-/// Replaces the names of nodes by other symbols.
+/// Replaces symbols of hoisted nodes by other symbols.
 pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
     let mut placed = |o: Operand| match o {
         Operand::Symbol(s) => match hoisted(s) {
@@ -34,13 +34,13 @@ pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> S
     }
 }
 
-/// The name of a node as an operand.
+/// Returns the symbol of a hoisted node as an operand.
 pub(super) fn operand(id: Id) -> Operand {
     Operand::Symbol(Symbol(HOISTED | id))
 }
 
-/// True for a number that is known before.
-pub(super) fn is_known(o: Operand) -> bool {
+/// Returns true for constants and hoisted values.
+pub(super) fn is_constant(o: Operand) -> bool {
     match o {
         Operand::Const(_) | Operand::Tuple(_) => true,
         Operand::Symbol(s) => hoisted(s).is_some(),
@@ -48,7 +48,7 @@ pub(super) fn is_known(o: Operand) -> bool {
     }
 }
 
-/// The negative of such a number.
+/// Returns the negative of a constant or hoisted value.
 pub(super) fn negated(o: Operand) -> Operand {
     match o {
         Operand::Const(c) => Operand::Const(-c),
@@ -57,9 +57,9 @@ pub(super) fn negated(o: Operand) -> Operand {
     }
 }
 
-/// Which of these nodes, operands first, depend on known symbols alone. Plain numbers are none of them, nor is what is made of
-/// plain numbers: a table's value there, or a function's that is no number.
-pub(super) fn known_before(
+/// Returns for each node, operands first, whether it depends on known symbols and constants, and on at least one known symbol.
+/// Operations on constants alone are not hoisted.
+pub(super) fn hoisted_nodes(
     nodes: &[Node],
     place: impl Fn(Id) -> usize,
     known: &dyn Fn(Symbol) -> bool,
@@ -88,9 +88,9 @@ mod tests {
     use crate::expr::{Graph, Symbol};
     use crate::lower::{hoisted, lower_without};
 
-    /// Two parameters and two variables: what the parameters make alone is not computed, not even to be negated.
+    /// With two parameters and two variables, values of the parameters alone are not computed, nor negated.
     #[test]
-    fn what_is_known_before_is_not_computed() {
+    fn hoisted_values_are_not_computed() {
         let g = Graph::new();
         let [m, l, x, y] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
         let known = |s: Symbol| s.0 < 2;

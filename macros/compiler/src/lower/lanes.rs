@@ -1,4 +1,4 @@
-//! Programs with lanes: which values have some, and what a program costs with them and without.
+//! Lanes of the values of a program, and cost estimates of programs with and without lanes.
 
 use super::{Op, Operand, Program};
 use crate::expr::{Graph, Id, Node};
@@ -6,23 +6,23 @@ use crate::machine::{
     CACHED_INSTRUCTIONS, CALL_COST, FETCH_COST, GATHER_COST, LANE_COST, SUM_COST, cost_of_lanes,
 };
 
-/// Lanes of the values of a program that is being written.
+/// Numbers of lanes of the values of a program that is being written.
 #[derive(Default)]
 pub(super) struct Lanes {
-    /// By value: how many, one for none.
+    /// Number of lanes of each value; one for scalars.
     widths: Vec<usize>,
     gathers: Vec<usize>,
     tuples: Vec<usize>,
 }
 
 impl Lanes {
-    /// For a program with the constants and inputs of another.
+    /// Starts a program with the constants and inputs of another one.
     pub(super) fn of_inputs(program: &Program) -> Lanes {
         let gathers = program.gathers.iter().map(Vec::len).collect();
         Lanes { widths: Vec::new(), gathers, tuples: program.tuples.iter().map(Vec::len).collect() }
     }
 
-    /// The operand that a node is without an instruction of its own.
+    /// Returns the operand of a node that needs no instruction.
     pub(super) fn leaf(
         &mut self,
         graph: &Graph,
@@ -48,7 +48,7 @@ impl Lanes {
         })
     }
 
-    /// The sum of `n` lanes of an operand.
+    /// Returns the operation that sums `n` lanes of an operand.
     pub(super) fn sum(&self, n: usize, a: Operand) -> Op {
         match self.width(a) {
             1 => Op::Mul(Operand::Const(n as f64), a),
@@ -56,7 +56,7 @@ impl Lanes {
         }
     }
 
-    /// Notes what the next instruction has.
+    /// Records the lanes of the next instruction.
     pub(super) fn push(&mut self, op: &Op) {
         let width = self.width_of(op);
         self.widths.push(width);
@@ -73,7 +73,7 @@ impl Lanes {
         width
     }
 
-    /// Lanes of an operand.
+    /// Returns the number of lanes of an operand.
     pub(super) fn width(&self, o: Operand) -> usize {
         match o {
             Operand::Const(_) | Operand::Symbol(_) => 1,
@@ -85,7 +85,7 @@ impl Lanes {
 }
 
 impl Program {
-    /// The same with the cheapest of some programs that compute it with lanes, if that is cheaper.
+    /// Adds the cheapest candidate with lanes as the SIMD variant, if it is cheaper than the program itself.
     pub fn or_in_lanes(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
         let costs = candidates.into_iter().map(|program| (program.cost(), program));
         let best = costs.min_by_key(|(cost, _)| *cost);
@@ -93,10 +93,10 @@ impl Program {
         self
     }
 
-    /// What it costs, roughly, in tenths of an instruction of one lane.
+    /// Returns the estimated cost in tenths of an instruction on one lane.
     pub fn cost(&self) -> usize {
         let gathers: usize = self.gathers.iter().map(|g| GATHER_COST * g.len()).sum();
-        // A product that will fuse costs nothing beside its sum.
+        // A product that will be fused costs nothing in addition to its sum.
         let fuses = self.products_to_fuse();
         let all = self.instructions.iter().zip(self.lanes()).zip(&fuses);
         let instructions: usize = all
@@ -113,7 +113,7 @@ impl Program {
         gathers + instructions.max(fetched)
     }
 
-    /// By value: how many lanes it has, one for none.
+    /// Returns the number of lanes of each value; one for scalars.
     pub fn lanes(&self) -> Vec<usize> {
         let mut lanes = Lanes::of_inputs(self);
         for op in &self.instructions {

@@ -1,12 +1,12 @@
-//! What a worst case is reckoned from: how many numbers a program holds at once, and where it may branch.
+//! Quantities that bound stack use and execution time: live values and branches of a program.
 
 use super::{Op, Operand, Program};
 use crate::expr::Function;
 
 impl Program {
-    /// The most numbers that are held at once, each lane one: computed, and still to be used or returned. Arguments and constants
-    /// are not among them.
-    pub fn most_live(&self) -> usize {
+    /// Returns the maximum number of live values: values that are computed and will still be used or returned. Each lane counts;
+    /// arguments and constants do not.
+    pub fn max_live(&self) -> usize {
         let end = self.instructions.len();
         let mut last = vec![0; end];
         for (k, op) in self.instructions.iter().enumerate() {
@@ -26,7 +26,7 @@ impl Program {
         last.iter().zip(&lanes).for_each(|(last, lanes)| released[*last] += lanes);
         let (mut held, mut most) = (0, 0);
         for (lanes, released) in lanes.iter().zip(&released) {
-            // A result may take the place of an operand, but need not.
+            // The result may need storage of its own while the operands are live.
             held += lanes;
             most = most.max(held);
             held -= released;
@@ -34,9 +34,9 @@ impl Program {
         most
     }
 
-    /// How many instructions may branch: all angles together once, where one is so large that the library's functions are called;
-    /// tables, which look for a place in their grid; and functions of the library. Square roots, magnitudes, signs, and the smaller
-    /// or larger of two numbers do not.
+    /// Returns the number of instructions that may branch: table lookups, which search their grid, and functions of the math
+    /// library. All sines and cosines count once, since large angles fall back to the library. Square roots, magnitudes, signs,
+    /// minima and maxima do not branch.
     pub fn branches(&self) -> usize {
         let is_angle = |op: &&Op| matches!(op, Op::Call(Function::Sin | Function::Cos, _));
         let others = self.instructions.iter().filter(|op| match op {
@@ -60,13 +60,13 @@ mod tests {
     fn numbers_are_held_until_their_last_use() {
         let g = Graph::new();
         let [a, b, c, d] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
-        // One product after the other is added: the sum, and the product that is to be added.
+        // Live at once: the partial sum, the next product, and their sum.
         let chain = a * b + b * c + c * d;
-        assert_eq!(lower(&[chain]).most_live(), 2 + 1);
-        // Both sums are there when they are divided, and so is the quotient.
-        assert_eq!(lower(&[(a + b) / (c + d)]).most_live(), 3);
-        // What is returned is held to the end.
-        assert_eq!(lower(&[a + b, c + d, a * c]).most_live(), 3);
+        assert_eq!(lower(&[chain]).max_live(), 2 + 1);
+        // Live at once: both sums and their quotient.
+        assert_eq!(lower(&[(a + b) / (c + d)]).max_live(), 3);
+        // Outputs stay live to the end.
+        assert_eq!(lower(&[a + b, c + d, a * c]).max_live(), 3);
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! Expressions → a straight-line program: only what the outputs need, in an order in which every value is computed
-//! before it is used, with operations counted. Knows no mechanics.
+//! Lowering of expressions to a straight-line program that computes only the values that the outputs need, each before its
+//! first use, with operations counted. Knows no mechanics.
 
 use crate::expr::{Expr, Graph, Id, Node, Symbol};
 use std::time::Instant;
@@ -25,13 +25,12 @@ pub use angles::{Angle, Angles};
 pub use hoist::{hoisted, place_hoisted};
 pub use program::{Counts, Op, Operand, Program};
 
-/// Drafts a program of the outputs: products and sums are apart until [`pipeline::FINISH`] or [`pipeline::PART`] fuses them.
+/// Drafts a program of the outputs. Products and sums are separate instructions until [`pipeline::FINISH`] or [`pipeline::PART`] fuses them.
 pub fn lower(outputs: &[Expr<'_>]) -> Program {
     lower_without(outputs, &|_| false)
 }
 
-/// Drafts a program of the outputs, where what depends on symbols that are `known` before alone is not computed but named: see
-/// [`hoisted`].
+/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see [`hoisted`].
 pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let start = Instant::now();
     let program = select(outputs, known);
@@ -41,21 +40,21 @@ pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Pr
     program
 }
 
-/// Expressions as instructions, as they stand.
+/// Translates expressions to instructions one by one.
 fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let Some(first) = outputs.first() else {
         return Program::default();
     };
     let graph = first.graph();
-    // By node: its place in the order, counted from one. Only the places of the nodes that are needed are touched, so
-    // that a small function does not pay for a large graph.
+    // Position of each node in the order, counted from one. Only the entries of needed nodes are written, so that a small
+    // function does not pay for a large graph.
     let mut places = graph.borrow_table();
     let order = needed(outputs, &mut places);
     let place = |id: Id| places[id as usize] as usize - 1;
     let nodes = nodes_of(graph, &order);
-    let before = hoist::known_before(&nodes, place, known);
+    let hoisted = hoist::hoisted_nodes(&nodes, place, known);
     let mut uses = vec![0_u32; order.len()];
-    for (node, _) in nodes.iter().zip(&before).filter(|(_, before)| !**before) {
+    for (node, _) in nodes.iter().zip(&hoisted).filter(|(_, hoisted)| !**hoisted) {
         node.operands(|a| uses[place(a)] += 1);
     }
     for output in outputs {
@@ -66,7 +65,7 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let mut lanes = lanes::Lanes::default();
     for (k, node) in nodes.iter().enumerate() {
         let at = |a: Id| values[place(a)];
-        if before[k] {
+        if hoisted[k] {
             values.push(match *node {
                 Node::Neg(a) => hoist::negated(at(a)),
                 _ => hoist::operand(order[k]),
@@ -83,7 +82,7 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
             Node::Lane(k, a) => Op::Lane(k.into(), at(a)),
             Node::Join(n, a, b) => Op::Join(n.into(), at(a), at(b)),
             Node::Neg(a) => match nodes[place(a)] {
-                // −(a − b) is b − a where nothing else wants a − b.
+                // −(a − b) is b − a if nothing else uses a − b.
                 Node::Sub(x, y) if uses[place(a)] == 1 => Op::Sub(at(y), at(x)),
                 _ => Op::Neg(at(a)),
             },
@@ -109,37 +108,39 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     program
 }
 
-/// Operations that the outputs take as they stand, without negations and elementary functions: what a program of them
-/// has before its sums are factored, within a few hundredths. Quicker than the program.
+/// Returns the number of operations of the outputs, without negations and elementary functions: that of a program before its
+/// sums are factored, within a few hundredths. Cheaper than drafting the program.
 pub fn size(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
     let Some(first) = outputs.first() else { return 0 };
     let graph = first.graph();
     let mut places = graph.borrow_table();
     let order = needed(outputs, &mut places);
     let nodes = nodes_of(graph, &order);
-    let before = hoist::known_before(&nodes, |id| places[id as usize] as usize - 1, known);
+    let hoisted = hoist::hoisted_nodes(&nodes, |id| places[id as usize] as usize - 1, known);
     for id in &order {
         places[*id as usize] = 0;
     }
     let counts = |node: &Node| {
         matches!(node, Node::Add(..) | Node::Sub(..) | Node::Mul(..) | Node::Div(..) | Node::Sum(..))
     };
-    nodes.iter().zip(before).filter(|(node, before)| !before && counts(node)).count()
+    nodes.iter().zip(hoisted).filter(|(node, hoisted)| !hoisted && counts(node)).count()
 }
 
+/// Returns the nodes with these ids.
 fn nodes_of(graph: &Graph, ids: &[Id]) -> Vec<Node> {
     let nodes = graph.nodes();
     ids.iter().map(|id| nodes[*id as usize]).collect()
 }
 
-/// Ids of all nodes that the outputs need, operands first; their places, counted from one, go into the table.
+/// Returns the ids of all nodes that the outputs need, operands first, and writes their positions, counted from one, to the
+/// table.
 fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
     let Some(first) = outputs.first() else {
         return Vec::new();
     };
     let nodes = first.graph().nodes();
     let mut todo: Vec<Id> = Vec::new();
-    // Creation order is the algorithm's order, and operands are made before operations: a bit for every node.
+    // Nodes are created in the order of the algorithm, operands before operations: a bit set keeps this order.
     let last = outputs.iter().map(|o| o.id()).max().unwrap_or(0);
     let mut bits = vec![0_u64; last as usize / 64 + 1];
     let mut visit = |id: Id, todo: &mut Vec<Id>| {

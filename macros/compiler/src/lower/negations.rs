@@ -1,70 +1,71 @@
-//! Signs: which of `x` and `−x` is computed. A difference is as cheap one way as the other, and a constant factor can
-//! have either sign, so most negations can be avoided by computing the negatives of some values.
+//! Choice between computing `x` and `−x`. A difference costs the same either way, and a constant factor can have either
+//! sign, so most negations can be avoided by computing the negatives of some values.
 //!
-//! Every value has a sign, that of what is stored in proportion to what is meant. Those of differences and of multiples
-//! are free, those of all else follow; what leaves the program must be positive, and costs a negation if not. Starting
-//! from all free signs positive, single signs are changed as long as that saves negations.
+//! Every value is stored with a sign: plus if the value itself is stored, minus if its negative is. The signs of differences
+//! and of multiples are free; those of other values follow from their operands. An output must be stored with plus and costs a
+//! negation otherwise. The search starts with all free signs plus and changes single signs while that saves negations.
 
-use super::hoist::{self, is_known as is_constant};
+use super::hoist::{self, is_constant};
 use super::terms::Term;
 use super::{Op, Operand, Program};
 use crate::expr::Function;
 use std::collections::BTreeSet;
 
-/// How far above a negated value free signs are looked for.
+/// Number of operand levels in which free signs are searched for a negated value.
 const DEPTH: usize = 6;
-/// Most free signs that are tried for one negated value.
+/// Maximum number of free signs that are tried for one negated value.
 const TRIES: usize = 6;
-/// Most values that a changed sign may change; beyond, it is left.
+/// Maximum number of values that a changed sign may affect; a change with more effects is rejected.
 const REACH: usize = 400;
 
 impl Program {
-    /// The same program with fewer negations. Angles `c - q` become `q - c` if that takes one more at most: then the
-    /// offsets of all angles are one addition of vectors.
+    /// Removes negations by choosing signs. Angles `c - q` become `q - c` if that takes at most one more negation: the offsets of
+    /// all angles are then one vector addition.
     pub(super) fn with_cheap_signs(self) -> Program {
-        let turned = self.turned_angles();
-        if turned.is_empty() && !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
+        let reversed = self.reversed_angles();
+        if reversed.is_empty() && !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
             return self;
         }
-        let best = Signs::searched(&self, &[]);
-        if turned.is_empty() {
+        let best = Signs::optimised(&self, &[]);
+        if reversed.is_empty() {
             return best.rewrite();
         }
-        let other = Signs::searched(&self, &turned);
+        let other = Signs::optimised(&self, &reversed);
         if other.negations() <= best.negations() + 1 { other.rewrite() } else { best.rewrite() }
     }
 
-    /// Values `c - q` of which nothing but sines and cosines is taken.
-    fn turned_angles(&self) -> Vec<usize> {
-        let is_turned = |op: &Op| matches!(op, Op::Sub(c, Operand::Symbol(_)) if is_constant(*c));
-        let mut taken = vec![0; self.instructions.len()];
+    /// Returns values `c - q` that are used by sines and cosines alone.
+    fn reversed_angles(&self) -> Vec<usize> {
+        let is_reversed = |op: &Op| matches!(op, Op::Sub(c, Operand::Symbol(_)) if is_constant(*c));
+        let mut uses = vec![0; self.instructions.len()];
         for op in &self.instructions {
             if let Op::Call(Function::Sin | Function::Cos, Operand::Value(k)) = *op {
-                taken[k] += 1;
+                uses[k] += 1;
             }
         }
         let all = 0..self.instructions.len();
-        all.filter(|k| taken[*k] > 0 && taken[*k] == self.uses[*k] && is_turned(&self.instructions[*k]))
+        all.filter(|k| uses[*k] > 0 && uses[*k] == self.uses[*k] && is_reversed(&self.instructions[*k]))
             .collect()
     }
 }
 
+/// Signs with which the values of a program are stored.
 struct Signs<'a> {
     program: &'a Program,
     users: Vec<Vec<usize>>,
-    /// True for values whose positive is needed.
+    /// True for values that must be stored with plus.
     sink: Vec<bool>,
-    /// The sign that a free value has.
+    /// Chosen sign of each free value.
     choice: Vec<bool>,
-    /// True for free values that keep it, come what may.
+    /// True for free values whose chosen sign is fixed.
     fixed: Vec<bool>,
-    /// True for values that are stored with the opposite sign.
+    /// True for values stored with minus.
     negative: Vec<bool>,
 }
 
 impl<'a> Signs<'a> {
-    /// The best signs that are found from all free ones positive, but some of them negative for good.
-    fn searched(program: &'a Program, negative: &[usize]) -> Signs<'a> {
+    /// Searches signs from all free ones plus, with some of them fixed to minus.
+    fn optimised(program: &'a Program, negative: &[usize]) -> Signs<'a> {
         let mut signs = Signs::new(program, negative);
         signs.search();
         signs
@@ -102,36 +103,40 @@ impl<'a> Signs<'a> {
         signs
     }
 
-    fn of(&self, o: Operand) -> bool {
+    /// Returns true if an operand is stored with minus.
+    fn is_negative(&self, o: Operand) -> bool {
         matches!(o, Operand::Value(a) if self.negative[a])
     }
 
-    /// The sign of a value, by those of its operands and by its choice where it is free.
+    /// Returns the sign of a value from those of its operands, or its chosen sign if it is free.
     fn sign(&self, k: usize) -> bool {
         match self.program.instructions[k] {
             _ if self.is_free(k) => self.choice[k],
-            Op::Neg(a) => !self.of(a),
-            Op::Add(a, _) | Op::Sub(a, _) => self.of(a),
-            Op::Mul(a, b) | Op::Div(a, b) => self.of(a) != self.of(b),
-            Op::Call(f, a) => f.is_odd() && self.of(a),
-            Op::Sum(_, a) => self.of(a),
+            Op::Neg(a) => !self.is_negative(a),
+            Op::Add(a, _) | Op::Sub(a, _) => self.is_negative(a),
+            Op::Mul(a, b) | Op::Div(a, b) => self.is_negative(a) != self.is_negative(b),
+            Op::Call(f, a) => f.is_odd() && self.is_negative(a),
+            Op::Sum(_, a) => self.is_negative(a),
             _ => false,
         }
     }
 
+    /// Returns true if the sign of a value can be chosen.
     fn is_free(&self, k: usize) -> bool {
         match self.program.instructions[k] {
-            Op::Add(a, b) => is_constant(a) || is_constant(b) || self.of(a) != self.of(b),
-            Op::Sub(a, b) => is_constant(a) || is_constant(b) || self.of(a) == self.of(b),
+            Op::Add(a, b) => is_constant(a) || is_constant(b) || self.is_negative(a) != self.is_negative(b),
+            Op::Sub(a, b) => is_constant(a) || is_constant(b) || self.is_negative(a) == self.is_negative(b),
             Op::Mul(a, b) | Op::Div(a, b) => is_constant(a) || is_constant(b),
             _ => false,
         }
     }
 
+    /// Returns the number of negations that the signs cost.
     fn negations(&self) -> usize {
         self.sink.iter().zip(&self.negative).filter(|(sink, negative)| **sink && **negative).count()
     }
 
+    /// Changes free signs while that saves negations.
     fn search(&mut self) {
         for least in [1, 0, 1, 0, 1] {
             let mut better = false;
@@ -149,7 +154,7 @@ impl<'a> Signs<'a> {
         }
     }
 
-    /// Ways up from the last value of `path` to free values that its sign depends on.
+    /// Finds paths from the last value of `path` through operands to free values that its sign depends on.
     fn paths_to_free(&self, path: &mut Vec<usize>, found: &mut Vec<Vec<usize>>) {
         let Some(k) = path.last().copied().filter(|_| found.len() < TRIES) else { return };
         if self.is_free(k) && !self.fixed[k] {
@@ -165,7 +170,7 @@ impl<'a> Signs<'a> {
         }
     }
 
-    /// Changes the signs along a path, as far as they are free or become so, if that saves negations.
+    /// Changes the signs along a path where they are free or become free, if that saves at least `least` negations.
     fn try_change(&mut self, path: &[usize], least: isize) -> bool {
         let before: Vec<bool> = path.iter().map(|k| self.choice[*k]).collect();
         for &k in path {
@@ -184,7 +189,7 @@ impl<'a> Signs<'a> {
         false
     }
 
-    /// Brings signs up to date after some choices; how many negations that saves.
+    /// Updates the signs that depend on changed ones; returns the number of negations saved.
     fn propagate(&mut self, from: &[usize], changed: &mut Vec<usize>) -> isize {
         let mut gain = 0;
         let mut todo: BTreeSet<usize> = from.iter().copied().collect();
@@ -193,7 +198,7 @@ impl<'a> Signs<'a> {
             if sign == self.negative[k] {
                 continue;
             }
-            // What was brought up to date only in part must not be kept.
+            // A partial update must be rejected.
             if changed.len() >= REACH {
                 return isize::MIN;
             }
@@ -207,6 +212,7 @@ impl<'a> Signs<'a> {
         gain
     }
 
+    /// Writes the program with its values stored with these signs.
     fn rewrite(&self) -> Program {
         let mut out = Rewrite {
             signs: self,
@@ -231,13 +237,14 @@ impl<'a> Signs<'a> {
     }
 }
 
+/// Program that is being written with signs.
 struct Rewrite<'a> {
     signs: &'a Signs<'a>,
     instructions: Vec<Op>,
     tuples: Vec<Vec<f64>>,
-    /// Where each value is stored, with its sign.
+    /// Operand that each value is stored in, with its sign.
     stored: Vec<Operand>,
-    /// Where each value is stored positive, if it is.
+    /// Operand that each value is stored in with plus, if there is one.
     positive: Vec<Option<Operand>>,
 }
 
@@ -254,7 +261,7 @@ impl Rewrite<'_> {
         }
     }
 
-    /// An operand itself, negated if it is not stored so.
+    /// Returns an operand with plus; adds a negation if it is stored with minus.
     fn positive(&mut self, o: Operand) -> Operand {
         let Operand::Value(a) = o else { return o };
         if let Some(found) = self.positive[a] {
@@ -268,14 +275,14 @@ impl Rewrite<'_> {
     fn add(&mut self, k: usize) {
         let (signs, negative) = (self.signs, self.signs.negative[k]);
         let stored = match signs.program.instructions[k] {
-            // The operand itself is its negative, or what that one is stored as.
+            // The sign of the value records the negation.
             Op::Neg(a) => self.stored(a),
             Op::Mul(a, b) => {
-                let (a, b) = self.factors(a, b, (signs.of(a) != signs.of(b)) != negative);
+                let (a, b) = self.factors(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
                 self.push(Op::Mul(a, b))
             }
             Op::Div(a, b) => {
-                let (a, b) = self.factors(a, b, (signs.of(a) != signs.of(b)) != negative);
+                let (a, b) = self.factors(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
                 self.push(Op::Div(a, b))
             }
             Op::Call(f, a) if f.is_odd() || f.is_even() => {
@@ -287,7 +294,7 @@ impl Rewrite<'_> {
                 self.push(Op::Sum(n, a))
             }
             op => match op.terms() {
-                Some(terms) => self.sum(terms.map(|t| t.within(signs.of(t.operand) != negative))),
+                Some(terms) => self.sum(terms.map(|t| t.within(signs.is_negative(t.operand) != negative))),
                 None => {
                     let op = op.mapped(|o| self.positive(o));
                     self.push(op)
@@ -298,7 +305,7 @@ impl Rewrite<'_> {
         self.positive.push((!negative).then_some(stored));
     }
 
-    /// The sum of two terms, of which at most one is negative or one is a constant.
+    /// Adds the sum of two terms; at most one of them is negative unless one is a constant.
     fn sum(&mut self, terms: [Term; 2]) -> Operand {
         let mut terms = terms.map(|t| Term { operand: self.stored(t.operand), ..t });
         if terms.iter().all(|t| t.negative) {
@@ -318,7 +325,7 @@ impl Rewrite<'_> {
         }
     }
 
-    /// The negative of a constant.
+    /// Returns the negative of a constant.
     fn negated(&mut self, o: Operand) -> Operand {
         match o {
             Operand::Tuple(k) => {
@@ -334,7 +341,7 @@ impl Rewrite<'_> {
     }
 }
 
-/// True for operations whose operands may be stored with either sign.
+/// Returns true for operations whose operands may be stored with either sign.
 fn keeps_signs(op: &Op) -> bool {
     match op {
         Op::Neg(_) | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) | Op::Sum(..) => true,

@@ -1,4 +1,4 @@
-//! The passes that a program goes through, in their order, as lists. An observer sees the program after each of them.
+//! Ordered lists of the passes over a program. An observer can inspect the program after each pass.
 
 use super::Program;
 use std::cell::RefCell;
@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 /// A pass over a program and over its SIMD variant.
 #[derive(Clone, Copy)]
 pub struct Pass {
-    /// The name under which an observer sees it.
+    /// Name of the pass.
     pub name: &'static str,
-    /// What it does.
+    /// Description in one clause.
     pub about: &'static str,
     run: fn(Program) -> Program,
 }
 
-/// Expressions have become instructions; no pass, but the first that an observer sees.
+/// Name of the translation from expressions to instructions: not a pass, but observed like one.
 pub const SELECT: &str = "select";
 
 const FACTOR: Pass = Pass {
@@ -53,15 +53,15 @@ const SCHEDULE: Pass = Pass {
     run: Program::scheduled,
 };
 
-/// What every candidate for a function goes through, before its operations are counted.
+/// Passes over every candidate program of a function, before its operations are counted.
 pub const DRAFT: &[Pass] = &[FACTOR, NEGATIONS, CHAIN];
-/// What the chosen program of a function goes through after that.
+/// Passes over the chosen program of a function.
 pub const FINISH: &[Pass] = &[SHARE_SUBSUMS, REASSOCIATE, FUSE, SCHEDULE];
-/// What a short part goes through: a step from link to link, or the numbers of a prepared mechanism.
+/// Passes over short programs: a transformation from link to link, or the values of a prepared mechanism.
 pub const PART: &[Pass] = &[FUSE];
 
 impl Program {
-    /// The program after these passes, and so its SIMD variant.
+    /// Runs passes over the program and its SIMD variant.
     #[must_use]
     pub fn through(mut self, passes: &[Pass]) -> Program {
         let simd = self.simd.take().map(|program| Box::new(program.through(passes)));
@@ -74,7 +74,7 @@ impl Program {
     }
 }
 
-/// What is told after every pass: the function that is being compiled, the pass, the program, and how long it took.
+/// Callback after every pass: the function that is being compiled, the name of the pass, the program, and the duration.
 type Observer = Box<dyn FnMut(&str, &str, &Program, Duration)>;
 
 thread_local! {
@@ -82,22 +82,22 @@ thread_local! {
     static FUNCTION: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Calls `f` while an observer is told of every pass on this thread.
-pub fn observed<T>(observer: Observer, f: impl FnOnce() -> T) -> T {
+/// Calls `f` with an observer of all passes on this thread.
+pub fn with_observer<T>(observer: Observer, f: impl FnOnce() -> T) -> T {
     OBSERVER.with(|cell| cell.replace(Some(observer)));
     let result = f();
     OBSERVER.with(|cell| cell.replace(None));
     result
 }
 
-/// Says which function the next passes are for.
+/// Sets the name of the function that the next passes belong to.
 pub fn begin(function: &str) {
     if OBSERVER.with(|cell| cell.borrow().is_some()) {
         FUNCTION.with(|name| name.replace(function.to_string()));
     }
 }
 
-/// Tells the observer, if there is one.
+/// Calls the observer, if there is one.
 pub(super) fn observe(pass: &str, program: &Program, time: Duration) {
     OBSERVER.with(|cell| {
         if let Ok(mut observer) = cell.try_borrow_mut()

@@ -1,11 +1,11 @@
-//! Straight-line programs: instructions with operands, and what they cost.
+//! Straight-line programs: instructions, their operands, and operation counts.
 
 use crate::expr::eval::joined;
 use crate::expr::lanes::MAX_LANES;
 use crate::expr::{Extreme, Function, Lookup, Symbol};
 use std::collections::BTreeSet;
 
-/// Where an operand comes from.
+/// Operand of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operand {
     /// A constant.
@@ -21,7 +21,7 @@ pub enum Operand {
 }
 
 impl Operand {
-    /// The number of the instruction that computes it, zero if none does.
+    /// Returns the index of the instruction that computes the operand, or zero.
     pub fn number(self) -> usize {
         match self {
             Operand::Value(k) => k,
@@ -29,7 +29,7 @@ impl Operand {
         }
     }
 
-    /// What a value has become in another program, given by number.
+    /// Replaces a value by the operand that computes it in another program.
     pub fn among(self, values: &[Operand]) -> Operand {
         match self {
             Operand::Value(k) => values[k],
@@ -38,7 +38,7 @@ impl Operand {
     }
 }
 
-/// What an instruction computes.
+/// Operation of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Op {
     /// `-a`
@@ -67,11 +67,11 @@ pub enum Op {
     Extreme(Extreme, Operand, Operand),
     /// A table's value or derivative; variables that it does not have repeat the last.
     Table(Lookup, Operand, Operand, Operand),
-    /// The sum of so many lanes.
+    /// The sum of the first `n` lanes.
     Sum(usize, Operand),
     /// One lane.
     Lane(usize, Operand),
-    /// A vector of the first so many lanes of one value, then as many lanes of another.
+    /// A vector of the first `n` lanes of one value, then `n` lanes of another.
     Join(usize, Operand, Operand),
 }
 
@@ -106,17 +106,17 @@ impl Op {
 pub struct Program {
     /// Instructions; instruction `k` computes value `k`.
     pub instructions: Vec<Op>,
-    /// How often each value is used, as an operand or an output.
+    /// Number of uses of each value as an operand or an output.
     pub uses: Vec<u32>,
     /// The results.
     pub outputs: Vec<Operand>,
-    /// Operations before fusing; one on all lanes of a value counts once.
+    /// Operation counts before fusing; an operation on all lanes of a value counts once.
     pub counts: Counts,
     /// Constants of lanes.
     pub tuples: Vec<Vec<f64>>,
     /// Inputs of lanes.
     pub gathers: Vec<Vec<Symbol>>,
-    /// The SIMD variant of the program, with alike limbs side by side as lanes, where that is cheaper.
+    /// Variant of the program with identical limbs as SIMD lanes, if it is cheaper.
     pub simd: Option<Box<Program>>,
 }
 
@@ -141,7 +141,7 @@ impl Counts {
 }
 
 impl Program {
-    /// A program that computes some of the outputs alone.
+    /// Returns the program that computes only the chosen outputs.
     pub fn with_outputs(mut self, chosen: &[usize]) -> Program {
         self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
         self.sweep();
@@ -150,7 +150,7 @@ impl Program {
         self
     }
 
-    /// The program with its instructions in another order, given by their numbers: operands come before operations.
+    /// Permutes the instructions; in `order`, operands must precede operations.
     pub fn reordered(mut self, order: &[usize]) -> Program {
         let mut number = vec![0; self.instructions.len()];
         for (place, k) in order.iter().enumerate() {
@@ -162,7 +162,7 @@ impl Program {
         self
     }
 
-    /// Drops instructions without use, renumbers the others and counts the uses.
+    /// Removes unused instructions, renumbers the others and counts uses.
     pub fn sweep(&mut self) {
         let n = self.instructions.len();
         self.uses.clear();
@@ -204,7 +204,7 @@ impl Program {
         }
     }
 
-    /// Its operations, counted.
+    /// Counts the operations.
     pub fn count(&self) -> Counts {
         let mut counts = Counts::default();
         for op in &self.instructions {
@@ -223,7 +223,7 @@ impl Program {
         counts
     }
 
-    /// The inputs that it uses.
+    /// Returns the inputs that the program uses.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         let mut symbols: BTreeSet<Symbol> = self.gathers.iter().flatten().copied().collect();
         let mut note = |o: Operand| match o {
@@ -237,7 +237,7 @@ impl Program {
         symbols
     }
 
-    /// True if every constant is a finite number.
+    /// Returns true if every constant is finite.
     pub fn is_finite(&self) -> bool {
         let mut finite = true;
         let mut check = |o: Operand| finite &= !matches!(o, Operand::Const(c) if !c.is_finite());
@@ -248,8 +248,8 @@ impl Program {
         finite && self.tuples.iter().flatten().all(|c| c.is_finite())
     }
 
-    /// A function of plain numbers alone that is no number itself, as it is written. What is one may be left as it is where a pass
-    /// has put another sign to it.
+    /// Returns the text of an operation on constants whose result is not finite, if there is one. Operations on constants with a
+    /// finite result may remain where a pass has changed a sign.
     pub fn undefined(&self) -> Option<String> {
         let constant = |o: Operand| match o {
             Operand::Const(c) => Some(c),
@@ -275,12 +275,12 @@ impl Program {
         })
     }
 
-    /// The values of the outputs.
+    /// Interprets the program; returns the values of the outputs.
     pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         self.run_with(symbol, &Lookup::apply)
     }
 
-    /// The values of the outputs with those of tables, of which each lookup is given its variables.
+    /// Interprets the program with a function that evaluates table lookups from their variables.
     pub fn run_with(
         &self,
         symbol: &dyn Fn(Symbol) -> f64,
@@ -325,7 +325,7 @@ impl Program {
 }
 
 impl Op {
-    /// The result in one lane, given the operands by number.
+    /// Returns the result in one lane from the operands in that lane.
     fn apply(self, get: impl Fn(usize) -> f64, table: &dyn Fn(Lookup, [f64; 3]) -> f64) -> f64 {
         match self {
             Op::Neg(_) => -get(0),
@@ -351,7 +351,7 @@ impl Op {
         self.mapped(|o| renumber(o, number))
     }
 
-    /// The operation with each of its operands replaced.
+    /// Returns the operation with each operand replaced.
     pub fn mapped(self, mut n: impl FnMut(Operand) -> Operand) -> Op {
         match self {
             Op::Neg(a) => Op::Neg(n(a)),

@@ -1,8 +1,7 @@
-//! Sums that keep others waiting, put in the order in which their terms become known. The longest chain of a program goes
-//! through sums, and where a term that is known late is added first, all others are added while nothing else goes on. The
-//! numbers of multiplications and additions stay the same.
+//! Reordering of sums on the critical path by the times at which their terms become available. If a late term is added first, all
+//! other additions wait for it. The numbers of multiplications and additions stay the same.
 //!
-//! Sums that nothing waits for stay as they are: what is added early waits in a register until the last term comes.
+//! Sums off the critical path keep their order: a partial sum that is computed early would occupy a register.
 
 use super::terms::{LONGEST, Sum};
 use super::times::{Times, latency};
@@ -10,7 +9,7 @@ use super::{Operand, Program};
 use crate::machine::MULTIPLY;
 
 impl Program {
-    /// Puts the terms of sums on the longest chain in the order in which they become known.
+    /// Orders the terms of sums on the critical path by the times at which they become available.
     pub(super) fn with_late_terms_last(mut self) -> Program {
         let sums = self.sums();
         let lanes = self.lanes();
@@ -31,8 +30,8 @@ impl Program {
             ordered.push(sum);
         }
         let end = times.known.iter().copied().max().unwrap_or(0);
-        let rest = self.rest_in_order(&ordered);
-        // Rewritten additions stand where their sum is used, since they need all that it does.
+        let rest = self.remaining_latency(&ordered);
+        // Rewritten additions move to where their sum is used, after all its operands.
         let mut late = vec![false; self.instructions.len()];
         let mut rewritten = Vec::new();
         times.known.clear();
@@ -54,10 +53,10 @@ impl Program {
         for (at, op) in rewritten {
             self.instructions[at] = op;
         }
-        self.placed(&late)
+        self.move_late(&late)
     }
 
-    /// By instruction: the sum of three terms or more that ends with it.
+    /// Returns for each instruction the sum of at least three terms that ends with it.
     fn sums(&self) -> Vec<Option<Sum>> {
         let mut sums: Vec<Option<Sum>> = self.instructions.iter().map(|_| None).collect();
         let mut inside = vec![false; self.instructions.len()];
@@ -82,8 +81,8 @@ impl Program {
         sums
     }
 
-    /// The same instructions with operands before operations, those that are `late` as soon as their operands are there.
-    fn placed(self, late: &[bool]) -> Program {
+    /// Sorts the instructions so that operands precede operations; `late` instructions come right after their last operand.
+    fn move_late(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
         let mut users = vec![Vec::new(); n];
         let mut missing = vec![0; n];
@@ -114,8 +113,7 @@ impl Program {
 }
 
 impl Times {
-    /// The sum with its terms as they become known, those that have no lanes before those that do, and one that is no product
-    /// among the first two.
+    /// Orders the terms of a sum by time, scalars before lanes; at least one of the first two terms is not a product.
     fn ordered(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
         sum.terms
             .sort_by_key(|term| (is_wide(term.operand), self.term(program, *term).0, term.operand.number()));
@@ -128,8 +126,8 @@ impl Times {
 }
 
 impl Program {
-    /// By instruction: how long after it the last of what hangs on it is known, with its sums in order.
-    fn rest_in_order(&self, sums: &[Option<Sum>]) -> Vec<u32> {
+    /// Returns for each instruction the latency from its value to the end of the program, with reordered sums.
+    fn remaining_latency(&self, sums: &[Option<Sum>]) -> Vec<u32> {
         let mut rest = vec![0; self.instructions.len()];
         let mut is_part = vec![false; self.instructions.len()];
         let raise = |rest: &mut Vec<u32>, o: Operand, to: u32| {
@@ -157,7 +155,7 @@ impl Program {
             };
             let mut time = rest[k];
             for (place, term) in terms.iter().enumerate().rev() {
-                // The first two are added by one addition.
+                // One addition adds the first two terms.
                 if place > 0 {
                     time += MULTIPLY;
                 }
@@ -180,9 +178,9 @@ mod tests {
     use crate::expr::{Graph, Symbol};
     use crate::lower::lower;
 
-    /// A term that is known late, and some that are known at once.
+    /// A sum of one late term and several early ones.
     #[test]
-    fn what_is_known_late_is_added_last() {
+    fn late_terms_are_added_last() {
         let g = Graph::new();
         let x: Vec<_> = (0..12).map(|k| g.symbol(Symbol(k))).collect();
         let late = (0..6).fold(x[0], |e, _| e * e / x[1]);
@@ -191,7 +189,7 @@ mod tests {
         let before = program.counts;
         let fused = program.with_late_terms_last().with_fused_products();
         assert_eq!(fused.counts, before);
-        // Six quotients of squares, and four additions, of which the last has the late product fused into it.
+        // Six quotients of squares and four additions, the last one fused with the late product.
         assert_eq!(fused.instructions.len(), 12 + 4);
         let symbol = |s: Symbol| 1.0 + 0.1 * f64::from(s.0);
         let value = |k: u32| symbol(Symbol(k));

@@ -1,7 +1,6 @@
-//! The order of instructions. A processor looks a few hundred instructions ahead of the oldest that still waits; what
-//! the algorithms compute one after another, such as the bias forces and the factors of the mass matrix, it would
-//! compute side by side only if both were within its sight. So at every step that instruction comes next which the most
-//! latency hangs on, among those whose operands would be there by then.
+//! List scheduling of instructions by critical path. A processor looks a few hundred instructions ahead of the oldest one that
+//! waits, so independent computations, such as bias forces and factors of the mass matrix, overlap only if their instructions are
+//! interleaved. The next instruction is the one with the longest remaining latency among those whose operands are available.
 
 use super::times::{issue, latency};
 use super::{Operand, Program};
@@ -10,7 +9,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 impl Program {
-    /// Puts the instructions in an order that keeps the processor busy.
+    /// Schedules the instructions.
     pub(super) fn scheduled(self) -> Program {
         match self.order() {
             Some(order) => self.reordered(&order),
@@ -18,15 +17,15 @@ impl Program {
         }
     }
 
-    /// How long a call takes, roughly, in half cycles: instructions, and the cycles of the longest chain of them. Of the calls
-    /// of a loop only parts are computed side by side.
+    /// Returns the estimated time of a call in half cycles: the number of instructions plus the cycles of the critical path,
+    /// since consecutive calls overlap only in part.
     pub fn time(&self) -> usize {
         let fused = self.as_fused();
-        let longest = fused.rest(&fused.users()).into_iter().max().unwrap_or(0) / CYCLE;
+        let longest = fused.critical_latency(&fused.users()).into_iter().max().unwrap_or(0) / CYCLE;
         fused.instructions.len() + longest as usize
     }
 
-    /// By instruction: those that need its value, as often as they name it.
+    /// Returns for each instruction the instructions that use its value, once per use.
     fn users(&self) -> Vec<Vec<usize>> {
         let mut users = vec![Vec::new(); self.instructions.len()];
         for (k, op) in self.instructions.iter().enumerate() {
@@ -39,8 +38,8 @@ impl Program {
         users
     }
 
-    /// From the beginning of every instruction until the last of what hangs on it, in thirds of a cycle.
-    fn rest(&self, users: &[Vec<usize>]) -> Vec<u32> {
+    /// Returns the latency from the start of each instruction to the end of the program, in thirds of a cycle.
+    fn critical_latency(&self, users: &[Vec<usize>]) -> Vec<u32> {
         let mut rest = vec![0; users.len()];
         for k in (0..users.len()).rev() {
             let after = users[k].iter().map(|u| rest[*u]).max().unwrap_or(0);
@@ -49,13 +48,13 @@ impl Program {
         rest
     }
 
-    /// The instructions by their numbers, operands before operations. `None` where the order does not matter.
+    /// Returns the schedule as indices of instructions, or `None` if the program has enough parallelism in any order.
     fn order(&self) -> Option<Vec<usize>> {
         let n = self.instructions.len();
         let users = self.users();
         let mut missing = vec![0; n];
         users.iter().flatten().for_each(|k| missing[*k] += 1);
-        let rest = self.rest(&users);
+        let rest = self.critical_latency(&users);
         let cycles = f64::from(*rest.iter().max()?) / f64::from(CYCLE);
         if n as f64 > MOST_PARALLELISM * cycles {
             return None;
@@ -94,7 +93,7 @@ mod tests {
     use crate::lower::pipeline::PART;
     use crate::lower::{Op, Operand, lower};
 
-    /// A long chain, and after it what a longer one begins with.
+    /// Returns a long chain and a longer one that comes after it.
     fn chains<'g>(g: &'g Graph) -> Vec<Expr<'g>> {
         let [x, y] = [0, 1].map(|k| g.symbol(Symbol(k)));
         let chain = |from: Expr<'g>, n: usize| (0..n).fold(from, |e, _| e * e + x * y);
@@ -103,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn values_stay() {
+    fn scheduling_keeps_values_and_uses() {
         let g = Graph::new();
         let before = lower(&chains(&g)).through(PART);
         let after = before.clone().scheduled();

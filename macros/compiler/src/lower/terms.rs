@@ -1,8 +1,8 @@
-//! Sums as the passes see them: additions with the terms that they add.
+//! Sums of several terms, as the passes process them.
 
 use super::{Op, Operand, Program};
 
-/// Longest sum that a pass looks at as one; it bounds the time that long sums take.
+/// Maximum number of terms that a pass processes as one sum; bounds the time for long sums.
 pub(super) const LONGEST: usize = 64;
 
 /// A term of a sum.
@@ -17,12 +17,12 @@ impl Term {
         Term { operand, negative: false }
     }
 
-    /// The same term where what it is a part of has this sign.
+    /// Returns the term of a sum that itself has this sign.
     pub fn within(self, negative: bool) -> Term {
         Term { negative: self.negative != negative, ..self }
     }
 
-    /// The addition of two terms, and whether its result is meant negative, which it is if both are.
+    /// Returns the operation that adds two terms, and true if its result has to be negated: if both terms are negative.
     pub fn sum(a: Term, b: Term) -> (Op, bool) {
         let op = match (a.negative, b.negative) {
             (false, false) | (true, true) => Op::Add(a.operand, b.operand),
@@ -33,16 +33,14 @@ impl Term {
     }
 }
 
-/// A sum of several terms: the additions that are its own, innermost first, and the terms in the order in which they are
-/// added.
+/// A sum of several terms: its additions, innermost first, and its terms in the order of addition.
 pub(super) struct Sum {
     pub additions: Vec<usize>,
     pub terms: Vec<Term>,
 }
 
 impl Sum {
-    /// An addition for each of its places: terms are added one after another, the first one last if both of the first
-    /// two are negative. `None` if all are.
+    /// Returns the operations that add the terms one after another, or `None` if all terms are negative.
     pub fn chain(&self) -> Option<Vec<Op>> {
         let mut ops = Vec::with_capacity(self.additions.len());
         let mut sum = *self.terms.first()?;
@@ -56,7 +54,7 @@ impl Sum {
 }
 
 impl Op {
-    /// The two terms of an addition or a subtraction.
+    /// Returns the two terms of an addition or a subtraction.
     pub(super) fn terms(&self) -> Option<[Term; 2]> {
         match *self {
             Op::Add(a, b) => Some([Term::positive(a), Term::positive(b)]),
@@ -67,12 +65,12 @@ impl Op {
 }
 
 impl Program {
-    /// The terms of an addition whose only use is here.
+    /// Returns the terms of an addition with a single use.
     pub(super) fn lone_addition(&self, o: Operand) -> Option<[Term; 2]> {
         self.lone(o)?.terms()
     }
 
-    /// The factors of a product whose only use is here.
+    /// Returns the factors of a product with a single use.
     pub(super) fn lone_product(&self, o: Operand) -> Option<(Operand, Operand)> {
         match *self.lone(o)? {
             Op::Mul(a, b) => Some((a, b)),
@@ -80,6 +78,7 @@ impl Program {
         }
     }
 
+    /// Returns the operation of a value with a single use.
     fn lone(&self, o: Operand) -> Option<&Op> {
         match o {
             Operand::Value(k) if self.uses[k] == 1 => Some(&self.instructions[k]),

@@ -1,11 +1,11 @@
-//! Programs as text, a line for each instruction: `t3 = x0 * t1`. For people, and for tests that people read.
+//! Programs as text with one line per instruction, such as `t3 = x0 * t1`, for people to read.
 
 use super::{Op, Operand, Program};
 use crate::expr::Symbol;
 use std::fmt::Write;
 
 impl Program {
-    /// The instructions and the outputs, with names for symbols.
+    /// Returns the instructions and outputs as text, with names for symbols.
     pub fn text(&self, name: &dyn Fn(Symbol) -> String) -> String {
         let mut text = String::new();
         let at = |o: Operand| self.operand_text(o, name);

@@ -1,10 +1,10 @@
-//! When the values of a program are known at the earliest, if the processor waits for nothing but operands and products fuse.
+//! Earliest times at which the values of a program are available, limited by operand latencies alone, with products fused.
 
 use super::terms::Term;
 use super::{Op, Operand, Program};
 use crate::machine::{ADD, CALL, DIVIDE, HALVE, MOVE_LANE, MULTIPLY, NEGATE, SINE};
 
-/// Times in parts of a cycle, of the instructions that have been looked at.
+/// Times of the instructions processed so far, in fractions of a cycle.
 #[derive(Default)]
 pub(super) struct Times {
     pub known: Vec<u32>,
@@ -18,7 +18,7 @@ impl Times {
         }
     }
 
-    /// When the value of instruction `k` is known.
+    /// Returns the time at which the value of instruction `k` is available.
     pub fn of(&self, program: &Program, k: usize) -> u32 {
         let op = &program.instructions[k];
         if let Some([a, b]) = op.terms() {
@@ -29,7 +29,7 @@ impl Times {
         start + if matches!(op, Op::Call(..)) { SINE } else { latency(op) }
     }
 
-    /// When a term can be added, and whether it is a product that fuses: that can be as soon as its factors are known.
+    /// Returns the time at which a term can be added, and true if it is a product that fuses; its factors must be available then.
     pub fn term(&self, program: &Program, term: Term) -> (u32, bool) {
         match program.lone_product(term.operand) {
             Some((a, b)) => (self.value(a).max(self.value(b)), true),
@@ -37,12 +37,12 @@ impl Times {
         }
     }
 
-    /// When terms have been added one after another.
+    /// Returns the time at which the sum of terms added one after another is available.
     pub fn chain(&self, program: &Program, terms: &[Term]) -> u32 {
         let mut times = terms.iter().map(|term| self.term(program, *term));
         let (Some(first), Some(second)) = (times.next(), times.next()) else { return 0 };
         let start = match (first, second) {
-            // Of two products the earlier is one.
+            // The earlier of two products is a separate instruction.
             ((a, true), (b, true)) => (a.min(b) + MULTIPLY).max(a.max(b)) + MULTIPLY,
             ((a, false), (b, false)) => a.max(b) + ADD,
             ((a, _), (b, _)) => a.max(b) + MULTIPLY,
@@ -51,7 +51,7 @@ impl Times {
     }
 }
 
-/// How long the result of an operation takes. Sines and cosines are evaluated before all else.
+/// Returns the latency of an operation. Sines and cosines are evaluated at the start and count zero.
 pub(super) fn latency(op: &Op) -> u32 {
     match op {
         Op::Call(..) => 0,
@@ -65,7 +65,7 @@ pub(super) fn latency(op: &Op) -> u32 {
     }
 }
 
-/// How long an operation keeps others waiting.
+/// Returns the number of issue slots of an operation.
 pub(super) fn issue(op: &Op) -> u32 {
     match op {
         Op::Call(..) => 0,
@@ -74,7 +74,7 @@ pub(super) fn issue(op: &Op) -> u32 {
     }
 }
 
-/// How often the upper half of so many lanes is added to the lower half.
+/// Returns the number of steps that add the upper half of the lanes to the lower half.
 fn halvings(lanes: usize) -> u32 {
     lanes.next_power_of_two().trailing_zeros()
 }
