@@ -1,4 +1,4 @@
-//! Frames worth trying for a link.
+//! Candidate frames of a link.
 
 use super::motions::{Freedom, freedom};
 use super::number::{
@@ -8,24 +8,23 @@ use super::number::{
 use crate::mechanism::{Link, Motion};
 use std::f64::consts::FRAC_PI_2;
 
-/// What the choice of a link's frame depends on.
+/// Data that the choice of a link's frame depends on.
 pub struct Site {
     /// The parent link.
     pub parent: Option<usize>,
-    /// The joint's frame on the parent, if in numbers.
+    /// The joint's frame on the parent, if numeric.
     pub place: Option<Frame>,
-    /// Which choice there is.
+    /// Degrees of freedom of the choice.
     pub freedom: Freedom,
-    /// Mass properties, if in numbers.
+    /// Mass properties, if numeric.
     pub mass: Option<Mass>,
-    /// How far along its axis the link's origin may be moved. The rounding of moments of inertia about the origin grows as
-    /// the square of its distance, beside which what the link has of its own is lost: it stays within a few times the
-    /// link's size.
+    /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size. The rounding
+    /// error of moments of inertia about the origin grows as the square of this distance.
     pub reach: f64,
 }
 
 impl Site {
-    /// The site of a link of some size; where parameters cost nothing (`free`), its mass properties need not be numbers.
+    /// Returns the site of a link of a given size. With `free_parameters`, its mass properties need not be numeric.
     pub fn of(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
         let (place, mass) = (Frame::of(&link.placement), Mass::of(&link.inertia));
         let free = freedom(&link.motion);
@@ -40,7 +39,7 @@ impl Site {
         }
     }
 
-    /// The joint's axis in the parent's frame.
+    /// Returns the joint's axis in the parent's frame.
     fn direction(&self) -> Option<Vector> {
         let place = self.place.as_ref()?;
         match self.freedom {
@@ -51,19 +50,20 @@ impl Site {
     }
 }
 
-/// Most angles and most shifts that are tried for one link.
+/// Maximum numbers of angles and of shifts that are tried for one link.
 const MAX_CANDIDATES: usize = 5;
 
-/// How many times its size a link's origin may be moved. With the sine of the angle between them above its inverse the common
-/// normal of two axes is within reach whatever their places are. At this distance rounding takes two digits at most off the
-/// link's moments of inertia.
+/// Maximum distance by which a link's origin may be moved, in units of its size. The common normal of two axes is within this
+/// distance if the sine of the angle between them exceeds its inverse. At this distance rounding costs the link's moments of
+/// inertia at most two digits.
 const REACH: f64 = 8.0;
 
-/// Axes of which the sine is smaller are taken for parallel as well. No accuracy depends on it, only which frames are tried:
-/// a placement is that of the frames that are chosen, whatever they are.
+/// Sine of the angle below which axes are also treated as parallel. Only the choice of candidates depends on it: placements are
+/// computed exactly for any chosen frames.
 const NEARLY_PARALLEL: f64 = 1e-3;
 
-/// Frames for link `k`, in its present one; that one is the first. `chosen` are the candidates of later links.
+/// Returns candidate frames of link `k`, relative to its present frame, which comes first. `chosen` holds the candidates of
+/// later links.
 pub fn candidates(sites: &[Site], k: usize, chosen: &[Vec<Frame>]) -> Vec<Frame> {
     match sites[k].freedom {
         Freedom::None => vec![Frame::IDENTITY],
@@ -86,19 +86,19 @@ fn children(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
     (k + 1..sites.len()).filter(move |c| sites[*c].parent == Some(k))
 }
 
-/// Angles about and shifts along a link's axis.
+/// Candidate angles about, and shifts along, a link's axis.
 struct Choices {
-    /// The axis.
+    /// Index of the coordinate axis.
     a: usize,
     angles: Vec<f64>,
     shifts: Vec<f64>,
-    /// Largest shift.
+    /// Maximum shift.
     reach: f64,
 }
 
 impl Choices {
-    /// An axis of the frame along a vector's part normal to the joint's axis, if it has one. By right angles within
-    /// 45°: those cost nothing.
+    /// Adds the angle, reduced by right angles to within 45°, that aligns an axis of the frame with the component of a vector
+    /// normal to the joint's axis. Right angles cost nothing.
     fn head(&mut self, v: Vector) {
         let (x, y) = (v[(self.a + 1) % 3], v[(self.a + 2) % 3]);
         if clean(x.hypot(y), norm(v)) == 0.0 {
@@ -109,7 +109,7 @@ impl Choices {
         push(&mut self.angles, clean(rest, 2.0 * angle.abs()), 1.0);
     }
 
-    /// The origin at a distance that comes from lengths of size `scale`, if that is within reach.
+    /// Adds a shift of the origin, computed from lengths of magnitude `scale`, if it is within reach.
     fn shift(&mut self, s: f64, scale: f64) {
         if s.abs() <= self.reach {
             push(&mut self.shifts, clean(s, scale), scale);
@@ -117,7 +117,7 @@ impl Choices {
     }
 }
 
-/// Adds a number that comes from numbers of size `scale`, unless it is there.
+/// Adds a number, computed from numbers of magnitude `scale`, unless it is in the list.
 fn push(list: &mut Vec<f64>, x: f64, scale: f64) {
     if list.len() < MAX_CANDIDATES && !list.iter().any(|y| clean(x - y, 4.0 * (scale + x.abs())) == 0.0) {
         list.push(x);
@@ -132,7 +132,7 @@ fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices
         }
     }
     if let Some(place) = &sites[k].place {
-        // At the parent's origin along the axis, and with an axis normal to one of the parent's.
+        // The point nearest to the parent's origin, and orientations with an axis normal to one of the parent's.
         let back = transposed_times(&place.rotation, place.translation);
         list.shift(-back[a], norm(back));
         let own = column(&place.rotation, a);
@@ -145,7 +145,7 @@ fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices
         let (moment, products) = (normal(mass.moment), normal(column(&mass.tensor, a)));
         list.head(moment);
         list.head(products);
-        // Where the product of inertia along the first moment vanishes.
+        // The shift at which the product of inertia along the first moment vanishes.
         if norm(moment) > 0.0 {
             list.shift(-dot(products, moment) / dot(moment, moment), 0.0);
         }
@@ -153,14 +153,14 @@ fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices
     list
 }
 
-/// On the common normal with a child's axis, and along it.
+/// Adds the shift to the common normal with a child's axis, and the angle that points along it.
 fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
     let (a, p) = (list.a, place.translation);
     let scale = norm(p);
     let direction = child.direction();
     if let Some(u) = direction {
-        // Where the common normal meets the axis, from the parts of both vectors across it, of which no digits cancel. Of
-        // axes that are parallel but for rounding it is anywhere, and most often out of reach.
+        // The foot of the common normal, computed from the components of both vectors across the axis, without cancellation.
+        // For axes that are parallel up to rounding it is arbitrary, and mostly out of reach.
         let across = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
         let (side, away) = (across(u), across(p));
         if clean(norm(side), 1.0) != 0.0 {
@@ -171,7 +171,7 @@ fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
     match direction {
         Some(u) if norm([u[(a + 1) % 3], u[(a + 2) % 3], 0.0]) > NEARLY_PARALLEL => {}
         Some(_) => {
-            // Of parallel axes all normals are common: the child's own choices carry over.
+            // Parallel axes have all normals in common, so the child's candidates are candidates here.
             list.shift(p[a], scale);
             for choice in chosen {
                 let ahead = times(&place.rotation, choice.translation);
@@ -183,7 +183,7 @@ fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
     list.head(p);
 }
 
-/// Frames for a sliding link: turned as its parent or a child, at their places or its own.
+/// Returns candidate frames of a sliding link: oriented like itself, its parent or a child, and at their positions.
 fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
     let mut rotations = vec![IDENTITY];
     let mut points = vec![[0.0; 3]];
@@ -195,7 +195,7 @@ fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
         rotations.push(place.rotation);
         points.push(place.translation);
     }
-    // Sliding along a coordinate axis is cheap, so it stays so.
+    // Sliding along a coordinate axis is cheap and is preserved.
     let entries = |v: Vector| v.iter().filter(|c| clean(**c, 1.0) != 0.0).count();
     rotations.retain(|rotation| entries(transposed_times(rotation, slide)) <= entries(slide));
     rotations.truncate(MAX_CANDIDATES);

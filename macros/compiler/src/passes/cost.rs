@@ -1,4 +1,4 @@
-//! What placements and mass properties cost, roughly: operations of inverse dynamics, mass matrix and forward dynamics
+//! Estimated costs of placements and mass properties: operations of inverse dynamics, mass matrix and forward dynamics
 //! together, for a link in the middle of an arm.
 
 use super::candidates::Site;
@@ -8,21 +8,21 @@ use super::number::{
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// A rotation about a coordinate axis.
+/// Cost of a rotation about a coordinate axis.
 const TURN: f64 = 150.0;
-/// A component of a translation.
+/// Cost of a component of a translation.
 pub const LENGTH: f64 = 80.0;
-/// An addition to an angle.
+/// Cost of an addition to an angle.
 const OFFSET: f64 = 3.0;
-/// A component of the first moment normal to the axis.
+/// Cost of a component of the first moment normal to the axis.
 const MOMENT: f64 = 20.0;
-/// A product of inertia.
+/// Cost of a product of inertia.
 pub const PRODUCT: f64 = 12.0;
-/// The part of these costs that a joint on the ground has: forces on the ground do not matter.
+/// Fraction of these costs for a joint on the ground, where forces are not needed.
 const GROUND: f64 = 0.02;
 
-/// The cheapest way to place a link's new frame `frame` in its parent's `parent`: cost, placement, and the angle that
-/// is left to the joint. `None` if the placement is not made of numbers.
+/// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost, placement, and the angle
+/// to be added to the joint. Returns `None` if the placement is not numeric.
 pub fn joint(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, f64)> {
     let plain = site.place.as_ref()?.between(parent, frame);
     let mut best = (placement(site, &plain, frame), plain, 0.0);
@@ -42,7 +42,7 @@ pub fn joint(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, 
 fn placement(site: &Site, place: &Frame, frame: &Frame) -> f64 {
     let mut lengths = place.translation;
     if let Freedom::Slide { along } = site.freedom {
-        // The way goes through all components of the sliding axis.
+        // The displacement has all components of the sliding axis.
         let turned = transposed_times(&frame.rotation, along);
         let way = times(&place.rotation, turned);
         lengths = std::array::from_fn(|k| lengths[k].abs() + way[k].abs());
@@ -55,7 +55,7 @@ fn nonzero(v: Vector) -> f64 {
     v.iter().filter(|c| **c != 0.0).count() as f64
 }
 
-/// How many rotations about coordinate axes a rotation takes, beside those by right angles.
+/// Returns the number of rotations about coordinate axes in a rotation; right angles do not count.
 fn turns(m: &Matrix) -> f64 {
     match m.iter().flatten().filter(|e| **e == 0.0).count() {
         6 => 0.0,
@@ -65,7 +65,7 @@ fn turns(m: &Matrix) -> f64 {
     }
 }
 
-/// Rotations `m R` that are sparse, with `R` a rotation by the angle about coordinate axis `k`.
+/// Returns sparse rotations `m R` with their angles, where `R` rotates by the angle about coordinate axis `k`.
 fn alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let u = column(m, k);
@@ -79,7 +79,7 @@ fn alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
         let n = across.map(|c| c / length);
         let mut angle = dot(n, column(m, j)).atan2(dot(n, column(m, i)));
         let mut x = n;
-        // By right angles back to within 45°: that costs nothing.
+        // Right angles cost nothing: the angle is reduced to within 45°.
         while angle.abs() > 0.5 * FRAC_PI_2 + 1e-6 {
             x = if angle > 0.0 { cross(x, u) } else { cross(u, x) };
             angle -= FRAC_PI_2.copysign(angle);
@@ -94,7 +94,7 @@ fn alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
     found
 }
 
-/// Cost of the mass properties seen from a frame.
+/// Returns the cost of the mass properties resolved in a frame.
 pub fn masses(site: &Site, frame: &Frame) -> f64 {
     let Some(mass) = &site.mass else { return 0.0 };
     let seen = mass.seen_from(frame);

@@ -1,10 +1,9 @@
-//! Link frames where placements are sparse: each is moved along and turned about its joint's axis, as in the frames of
-//! Denavit and Hartenberg (1955), of which every link has its own best. The origin sits where the axis meets the common
-//! normal with a child's axis, an axis of the frame points along that normal, and what is left of a placement's
-//! rotation about the joint's axis goes to the joint's zero.
+//! Choice of link frames with sparse placements. As with the frames of Denavit and Hartenberg (1955), a frame may be shifted
+//! along and rotated about its joint's axis. Typically its origin is at the foot of the common normal with a child's axis, an
+//! axis of the frame points along that normal, and the remaining rotation about the joint's axis becomes an offset of the joint.
 //!
-//! Candidates of all links are weighed together: the cost of a placement depends on the frames of both links, so the
-//! best choice follows from the leaves to the roots (Bellman 1957).
+//! The cost of a placement depends on the frames of both links, so the candidates of all links are compared together by dynamic
+//! programming from the leaves to the root (Bellman 1957).
 
 use super::candidates::{Site, candidates};
 use super::cost;
@@ -12,18 +11,18 @@ use super::motions::{Freedom, seen_from};
 use super::number::{Frame, Mass, norm};
 use crate::mechanism::{Direction, Inertia, Input, Link, Model, Pose};
 
-/// A choice for one link.
+/// Chosen frame of one link.
 #[derive(Clone, Copy)]
 struct Step {
-    /// The new frame in the old one.
+    /// The new frame relative to the old one.
     frame: Frame,
-    /// The joint's frame in the parent's new one.
+    /// The joint's frame relative to the parent's new frame.
     placement: Frame,
-    /// What the joint's coordinate starts at, about or along the coordinate axis.
+    /// Offset of the joint's coordinate about the coordinate axis.
     offset: f64,
 }
 
-/// Moves the frames of links that have these sizes.
+/// Chooses and applies the frames of links with these sizes.
 pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool) {
     let sites = sites(model, sizes, free_parameters);
     let Some(frames) = choose(&sites) else { return };
@@ -37,8 +36,8 @@ pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool)
     apply(model, &sites, &steps);
 }
 
-/// The size of every link: the distances of its own joint from the parent's origin, of its children's joints, and of its
-/// mass from its own origin, as far as they are numbers.
+/// Returns the size of every link: the maximum of the distances of its joint from the parent's origin plus its radius of
+/// gyration, and of its children's joints, as far as these are numeric.
 pub fn sizes(model: &Model<'_>) -> Vec<f64> {
     let places: Vec<Option<Frame>> = model.links.iter().map(|link| Frame::of(&link.placement)).collect();
     let length = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
@@ -51,12 +50,12 @@ pub fn sizes(model: &Model<'_>) -> Vec<f64> {
     model.links.iter().enumerate().map(size).collect()
 }
 
-/// What the choice depends on.
+/// Returns the data that the choice of frames depends on.
 fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
     let of = |(link, size): (&Link<'_>, &f64)| Site::of(link, *size, free_parameters);
     let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(of).collect();
     for k in 0..sites.len() {
-        // A placement that is not made of numbers stays as it is, on both sides.
+        // A placement that is not numeric fixes the frames on both sides.
         if let (None, Some(p)) = (&sites[k].place, sites[k].parent) {
             sites[p].freedom = Freedom::None;
         }
@@ -64,7 +63,7 @@ fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
     sites
 }
 
-/// The cheapest frame of every link, in its present one. `None` if nothing can move.
+/// Returns the cheapest frame of every link relative to its present one, or `None` if no frame can be chosen.
 fn choose(sites: &[Site]) -> Option<Vec<Frame>> {
     if sites.iter().all(|site| matches!(site.freedom, Freedom::None)) {
         return None;
@@ -88,12 +87,12 @@ fn choose(sites: &[Site]) -> Option<Vec<Frame>> {
     Some(frames)
 }
 
-/// The best choice for a link, given its parent's frame: its index, and its cost with all that it carries.
+/// Returns the index of the best candidate of a link for a parent's frame, and its cost including all descendants.
 fn best(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64]) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     for (c, frame) in choices.iter().enumerate() {
         let own = cost::joint(site, parent, frame).map_or(0.0, |(cost, ..)| cost);
-        // The first of equals is kept: it is the frame as it was, if that is among them.
+        // The first of equal candidates wins: it is the present frame, if that is among them.
         if own + costs[c] < best.1 - 1e-9 {
             best = (c, own + costs[c]);
         }
@@ -122,10 +121,10 @@ fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
     move_contents(model, &back.collect::<Vec<_>>());
 }
 
-/// Everything that is fixed in the links, seen from their new frames: `back` are the old frames there.
+/// Transforms everything that is fixed in the links to their new frames; `back` holds the old frames relative to the new ones.
 pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
-    // All fields are named, so that whoever adds one is asked what the frames mean to it. Expressions of the state,
-    // as those of loads and outputs, are complete by now: they do not know the frames. The drawing is placed in named frames.
+    // All fields are listed, so that rustc asks about each new one. Expressions of the state, such as those of loads and
+    // outputs, do not depend on the link frames any more; the drawing is placed in named frames.
     let Model {
         graph: _,
         kinematic: _,

@@ -1,4 +1,4 @@
-//! `Model` → `Model`: the same mechanism with other link frames and other mass properties, whose equations cost less.
+//! Passes from `Model` to `Model` that choose link frames and redistribute mass properties so that the equations cost less.
 //! Every pass is exact up to rounding and can be switched off.
 
 use crate::kinematics::{Joint, joints};
@@ -18,18 +18,18 @@ pub use motions::Gauge;
 pub use parallel::in_common_axes;
 pub use regroup::{Regroup, regroup};
 
-/// Which passes are run.
+/// Passes to run.
 #[derive(Clone, Copy, Debug)]
 pub struct Passes {
-    /// Link frames are moved to where placements are sparse.
+    /// Chooses link frames with sparse placements.
     pub frames: bool,
-    /// Mass properties are moved towards the base.
+    /// Moves mass properties towards the base.
     pub regroup: bool,
-    /// What depends on parameters alone costs nothing: it is computed before.
+    /// Treats expressions of parameters alone as free, because they are computed in advance.
     pub free_parameters: bool,
-    /// Links that turn about parallel axes are described in common axes, where that costs less.
+    /// Resolves links on parallel revolute joints in common axes, where that costs less.
     pub parallel: bool,
-    /// Alike limbs are evaluated as the lanes of one, and so are joints of one path to the root.
+    /// Evaluates identical limbs, and joints of one path to the root, as SIMD lanes.
     pub lanes: bool,
 }
 
@@ -40,7 +40,7 @@ impl Default for Passes {
 }
 
 impl Passes {
-    /// In how many lanes joints of one path are tried, beside none, by the number of velocities.
+    /// Returns the numbers of lanes that are tried for joints of one path, in addition to none.
     pub fn wide(&self, nv: usize) -> &'static [usize] {
         match nv {
             _ if !self.lanes => &[],
@@ -51,22 +51,22 @@ impl Passes {
     }
 }
 
-/// A model that has the same functions as another.
+/// Model that is equivalent to the original one.
 #[derive(Clone)]
 pub struct Variant<'g> {
-    /// The model. Its mass properties are seen from the axes of its joints.
+    /// The model, with mass properties resolved in the axes of its joints.
     pub model: Model<'g>,
     /// The model's joints.
     pub joints: Vec<Joint<'g>>,
-    /// Masses were moved to children too: that is good for inverse dynamics alone.
+    /// True if masses were also moved to children, which pays for inverse dynamics only.
     pub for_inverse_dynamics: bool,
 }
 
-/// The model after the passes, its mass properties distributed in several ways. The frames are the same in all.
+/// Runs the passes; returns variants with the same frames and different distributions of mass properties.
 pub fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
     let mut start = model.clone();
     if passes.regroup {
-        // Frames are chosen by what is left of the mass properties.
+        // Frames are chosen by the mass properties that remain.
         regroup(&mut start, Regroup::default());
     }
     if passes.frames {
@@ -93,10 +93,10 @@ pub fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
     variants
 }
 
-/// Up to how many velocities all distributions are tried: beyond, the little that some may save is not worth the time.
+/// Maximum number of velocities for which all distributions are tried; beyond it their savings are not worth the time.
 const EXHAUSTIVE_VELOCITIES: usize = 18;
 
-/// Gauge, whether masses go to children, whether parameters are moved too, whether it is tried for any size.
+/// Distributions: gauge, masses also to children, symbolic properties too, tried for any number of velocities.
 const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
     (Gauge::Second, false, false, true),
     (Gauge::First, false, false, false),
@@ -106,7 +106,7 @@ const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
     (Gauge::Flat, true, false, true),
 ];
 
-/// Adds a variant unless it is there.
+/// Adds a variant unless it is known.
 fn add<'g>(variants: &mut Vec<Variant<'g>>, variant: Variant<'g>) {
     let links = |f: &Variant<'g>| f.model.links.iter().map(|l| l.inertia).collect::<Vec<_>>();
     if !variants.iter().any(|known| links(known) == links(&variant)) {

@@ -1,30 +1,30 @@
-//! What the passes know of elementary motions: how the frame of a link may be chosen, how its motion is seen from there, and what
-//! of its mass properties may go to the parent.
+//! Properties of elementary motions that the passes use: the freedom to choose a link's frame, the motion relative to the new
+//! frame, and the mass properties that may be moved to the parent.
 
 use super::number::{Vector, clean};
 use crate::expr::{Sym3, Vec3};
 use crate::mechanism::{Coordinate, Inertia, Link, Motion, Pose};
 
-/// How a link's frame can be chosen.
+/// Freedom to choose a link's frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Freedom {
-    /// Not at all.
+    /// The frame is fixed.
     None,
-    /// Along and about coordinate axis `k`.
+    /// The frame may be shifted along, and rotated about, coordinate axis `k`.
     Turn {
         /// The joint's axis.
         k: usize,
-        /// The joint's zero can be shifted.
+        /// True if the joint's coordinate can take an offset.
         offset: bool,
     },
-    /// Anywhere.
+    /// The frame is arbitrary.
     Slide {
         /// The joint's axis.
         along: Vector,
     },
 }
 
-/// How the frame of a link with this motion can be chosen.
+/// Returns the freedom to choose the frame of a link with this motion, or `None` if it is fixed.
 pub fn freedom(motion: &Motion<'_>) -> Option<Freedom> {
     match motion {
         Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: true }),
@@ -34,19 +34,19 @@ pub fn freedom(motion: &Motion<'_>) -> Option<Freedom> {
     }
 }
 
-/// The motion of a link whose frame is this one in its old one, which is turned about the joint's axis by the angle `offset`.
+/// Rewrites the motion of a link for its new frame, given relative to the old one and rotated about the joint's axis by `offset`.
 pub fn seen_from<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
     match motion {
         Motion::Turn { axis, coordinate } => shift(coordinate, *axis, offset),
         Motion::Slide { axis, .. } => *axis = frame.rotation.to_child(*axis),
-        // The frame is moved along and about the axis, without an offset.
+        // The frame is shifted along the axis and rotated about it, without an offset.
         Motion::Helix { .. } => {}
         // These frames cannot be chosen.
         Motion::Ball { .. } | Motion::Free { .. } | Motion::Placed => {}
     }
 }
 
-/// The coordinate of a joint about `axis` with an angle about the coordinate axis added.
+/// Adds an angle about the coordinate axis to the coordinate of a joint about `axis`.
 fn shift(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
     let negative = axis.values().is_some_and(|n| n.iter().sum::<f64>() < 0.0);
     let angle = if negative { -offset } else { offset };
@@ -54,19 +54,20 @@ fn shift(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
     coordinate.offset = clean(coordinate.offset + angle, scale);
 }
 
-/// Which moment of inertia of a turning link vanishes. About an axis `k` the others are `k + 1` and `k + 2`, cyclic.
+/// Convention that makes a moment of inertia of a revolute link vanish. The joint's axis is `k`; the others are `k + 1` and
+/// `k + 2`, cyclically.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gauge {
-    /// That about axis `k + 1`.
+    /// The moment about axis `k + 1` vanishes.
     First,
-    /// That about axis `k + 2`.
+    /// The moment about axis `k + 2` vanishes.
     Second,
-    /// The moments about both add up to that about `k`: no mass is off the plane through the origin.
+    /// The moments about both add up to that about `k`, as for a body in the plane normal to `k`.
     #[default]
     Flat,
 }
 
-/// What of a link's mass properties acts as if it were fixed to the parent.
+/// Returns the part of a link's mass properties that can be moved to the parent.
 pub fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
     let Inertia { mass, moment, tensor } = link.inertia;
     let nothing = Inertia::zero(mass.graph());
@@ -87,7 +88,7 @@ pub fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
     }
 }
 
-/// Equal moments about the two axes normal to `k`.
+/// Returns the inertia with equal moments about the two axes normal to `k` that makes the moment of the gauge vanish.
 fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let d = &tensor.diagonal;
@@ -101,7 +102,7 @@ fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
     out
 }
 
-/// The coordinate axis that a vector points along (either way), if it does.
+/// Returns the coordinate axis that a vector is parallel to, if there is one.
 pub fn coordinate_axis(v: Vec3<'_>) -> Option<usize> {
     let k = (0..3).find(|k| !v[*k].is_zero())?;
     let others = v[(k + 1) % 3].is_zero() && v[(k + 2) % 3].is_zero();

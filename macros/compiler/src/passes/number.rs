@@ -1,80 +1,80 @@
-//! Vectors, rotations and mass properties in plain numbers, with what is only rounding told from what is small.
+//! Numeric vectors, rotations and mass properties, with values at rounding level replaced by zero.
 
 use crate::expr::{Graph, Mat3, Rotation, Sym3, Vec3};
 use crate::mechanism::{Inertia, Pose};
 
-/// A vector.
+/// Vector.
 pub type Vector = [f64; 3];
-/// A matrix by rows.
+/// Matrix by rows.
 pub type Matrix = [[f64; 3]; 3];
 
-/// What rounding of a few operations leaves of a one.
+/// Relative rounding error of a few operations.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A number, or zero if it is but the rounding of terms of size `scale`.
+/// Returns a number, or zero if it is the rounding error of terms of magnitude `scale`.
 pub fn clean(x: f64, scale: f64) -> f64 {
     if x.abs() <= ROUNDING * scale { 0.0 } else { x }
 }
 
-/// An entry of a rotation matrix without rounding about 0 and ±1.
+/// Returns an entry of a rotation matrix, rounded to 0 or ±1 if it is next to it.
 fn clean_entry(x: f64) -> f64 {
     if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { clean(x, 1.0) }
 }
 
-/// Scalar product.
+/// Returns the scalar product.
 pub fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Vector product.
+/// Returns the vector product.
 pub fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Length.
+/// Returns the length.
 pub fn norm(a: Vector) -> f64 {
     a[0].hypot(a[1]).hypot(a[2])
 }
 
-/// `s a + b`.
+/// Returns `s a + b`.
 pub fn along(s: f64, a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| s * a[k] + b[k])
 }
 
-/// The unit vector along coordinate axis `k`.
+/// Returns the unit vector along coordinate axis `k`.
 pub fn axis(k: usize) -> Vector {
     std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })
 }
 
-/// Column `j`.
+/// Returns column `j`.
 pub fn column(m: &Matrix, j: usize) -> Vector {
     [m[0][j], m[1][j], m[2][j]]
 }
 
-/// Product with a vector.
+/// Returns the product with a vector.
 pub fn times(m: &Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
 
-/// Product of the transpose with a vector.
+/// Returns the product of the transpose with a vector.
 pub fn transposed_times(m: &Matrix, v: Vector) -> Vector {
     std::array::from_fn(|j| dot(column(m, j), v))
 }
 
-/// Product.
+/// Returns the product.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| dot(a[i], column(b, j))))
 }
 
-/// Transpose.
+/// Returns the transpose.
 pub fn transpose(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| column(m, i))
 }
 
-/// The unit matrix.
+/// Identity matrix.
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// A rotation about coordinate axis `k`.
+/// Returns the rotation about coordinate axis `k`.
 pub fn about(k: usize, angle: f64) -> Matrix {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let (sin, cos) = angle.sin_cos();
@@ -84,25 +84,25 @@ pub fn about(k: usize, angle: f64) -> Matrix {
     m
 }
 
-/// A rotation matrix without rounding about 0 and ±1.
+/// Rounds entries next to 0 and ±1.
 pub fn clean_rotation(m: &Matrix) -> Matrix {
     m.map(|row| row.map(clean_entry))
 }
 
-/// A frame in another.
+/// Frame relative to another one.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    /// Columns are its axes.
+    /// Axes of the frame, as columns.
     pub rotation: Matrix,
-    /// Its origin.
+    /// Origin of the frame.
     pub translation: Vector,
 }
 
 impl Frame {
-    /// The same frame.
+    /// The identity.
     pub const IDENTITY: Frame = Frame { rotation: IDENTITY, translation: [0.0; 3] };
 
-    /// The numbers of a pose, if it is made of numbers, and its rotation is one up to rounding.
+    /// Returns a numeric pose whose rotation is orthogonal up to rounding, or `None`.
     pub fn of(pose: &Pose<'_>) -> Option<Frame> {
         let rotation = clean_rotation(&pose.rotation.matrix().values()?);
         let square = product(&transpose(&rotation), &rotation);
@@ -113,13 +113,13 @@ impl Frame {
         Some(Frame { rotation, translation: clean_vector(pose.translation.values()?) })
     }
 
-    /// It as a pose.
+    /// Converts the frame to a pose.
     pub fn pose<'g>(&self, g: &'g Graph) -> Pose<'g> {
         let matrix = Mat3::from_fn(|i, j| g.num(self.rotation[i][j]));
         Pose { rotation: Rotation::from_matrix(matrix), translation: Vec3::numbers(g, self.translation) }
     }
 
-    /// This frame in one that is placed at `other`, moved on by `next` in itself.
+    /// Returns `other⁻¹ self next`.
     pub fn between(&self, other: &Frame, next: &Frame) -> Frame {
         let rotation = product(&transpose(&other.rotation), &product(&self.rotation, &next.rotation));
         let ahead = times(&self.rotation, next.translation);
@@ -131,25 +131,25 @@ impl Frame {
     }
 }
 
-/// A vector without components that are but rounding next to the others.
+/// Replaces components at rounding level by zero.
 fn clean_vector(v: Vector) -> Vector {
     let scale = norm(v);
     v.map(|c| clean(c, scale))
 }
 
-/// Mass properties in numbers.
+/// Numeric mass properties.
 #[derive(Clone, Copy, Debug)]
 pub struct Mass {
     /// Mass.
     pub mass: f64,
-    /// First moment.
+    /// First moment about the origin.
     pub moment: Vector,
     /// Inertia about the origin.
     pub tensor: Matrix,
 }
 
 impl Mass {
-    /// The numbers of mass properties, if they are numbers.
+    /// Returns mass properties if they are numeric.
     pub fn of(inertia: &Inertia<'_>) -> Option<Mass> {
         Some(Mass {
             mass: inertia.mass.value()?,
@@ -158,13 +158,13 @@ impl Mass {
         })
     }
 
-    /// How far from the origin the masses are, in the mean of squares; zero without mass.
+    /// Returns the root mean square distance of the mass from the origin; zero without mass.
     pub fn radius(&self) -> f64 {
         let polar = 0.5 * (self.tensor[0][0] + self.tensor[1][1] + self.tensor[2][2]);
         if self.mass > 0.0 { (polar.max(0.0) / self.mass).sqrt() } else { 0.0 }
     }
 
-    /// They as expressions.
+    /// Converts the mass properties to expressions.
     pub fn inertia<'g>(&self, g: &'g Graph) -> Inertia<'g> {
         Inertia {
             mass: g.num(self.mass),
@@ -173,8 +173,8 @@ impl Mass {
         }
     }
 
-    /// The same about the origin of a frame placed in this one, in its axes: with `p` its origin, the tensor loses
-    /// `2 (p · h) 1 − p hᵀ − h pᵀ` and gains `m (|p|² 1 − p pᵀ)`.
+    /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first moment `h`, the tensor is
+    /// reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
     pub fn seen_from(&self, place: &Frame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);
@@ -189,7 +189,7 @@ impl Mass {
         Mass { mass: self.mass, moment, tensor }.cleaned()
     }
 
-    /// The sum with a point mass at `p`.
+    /// Returns the sum with a point mass at `p`.
     pub fn plus_point(&self, mass: f64, p: Vector) -> Mass {
         let square = dot(p, p);
         let entry = |i: usize, j: usize| if i == j { square - p[i] * p[j] } else { -p[i] * p[j] };
@@ -197,7 +197,7 @@ impl Mass {
         Mass { mass: self.mass + mass, moment: along(mass, p, self.moment), tensor }
     }
 
-    /// Without first moments and products of inertia that are but rounding.
+    /// Replaces first moments and products of inertia at rounding level by zero.
     fn cleaned(&self) -> Mass {
         let size = self.tensor.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let entry = |i: usize, j: usize| match i == j {

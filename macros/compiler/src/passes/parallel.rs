@@ -1,10 +1,10 @@
-//! Links that turn about parallel axes, one after the other, in the same axes: those that do not turn with the first of
-//! them. Nothing that is handed from one to the next is turned then. What is turned, by the sum of the angles, are the
-//! constants of each link, its mass properties and the places of what it carries (Khalil and Dombre, *Modeling,
-//! Identification and Control of Robots*, 2002, ch. 3, for the geometry of arms).
+//! Successive links on parallel revolute joints, resolved in common axes: the axes before the first of these joints. Vectors
+//! that are passed between these links need no rotation. Instead the constants of each link, its mass properties and the
+//! positions of its children, are rotated by the sum of the angles (Khalil and Dombre, *Modeling, Identification and Control of
+//! Robots*, 2002, ch. 3, for the geometry of arms).
 //!
-//! Axes are those in which components are told. Velocities and accelerations stay those of the links, so that all
-//! recursions of vectors hold as they are; a link's mass properties become expressions of its angle.
+//! Only the axes in which vectors are resolved change. Velocities and accelerations are still those of the links, so all
+//! vector recursions hold unchanged; a link's mass properties become expressions of its angle.
 
 use super::Variant;
 use super::motions::coordinate_axis;
@@ -12,23 +12,23 @@ use crate::expr::{Expr, Rotation};
 use crate::kinematics::position_in;
 use crate::mechanism::{Link, Model, Motion};
 
-/// The variants with the axes of parallel joints in common. Empty if there are no such joints.
+/// Returns variants in which links on parallel joints are resolved in common axes; none if there are no such joints.
 pub fn in_common_axes<'g>(variants: &[Variant<'g>]) -> Vec<Variant<'g>> {
     variants.iter().filter_map(with_common_axes).collect()
 }
 
-/// Axes of which the sine is no larger are parallel. The equations in common axes are those of axes that are: they change by as
-/// much beside one, less than what π with twelve digits is off, as files have it.
+/// Maximum sine of the angle between axes that are treated as parallel. The equations in common axes are those of exactly
+/// parallel axes, which changes them by this relative amount: less than the error of π with twelve digits in robot files.
 const PARALLEL: f64 = 2.5e-13;
 
-/// A joint about or along a coordinate axis, of those that are parallel to each other.
+/// Joint about or along a coordinate axis, in a chain of parallel joints.
 #[derive(Clone, Copy)]
 struct Member {
-    /// The axis.
+    /// Index of the coordinate axis.
     axis: usize,
-    /// The first of them.
+    /// First link of the chain.
     first: usize,
-    /// The cosine between the axis and that of the parent, plus or minus one, if the parent is one of them.
+    /// Cosine of the angle to the parent's axis, plus or minus one, if the parent belongs to the chain.
     along: Option<f64>,
 }
 
@@ -38,9 +38,9 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         return None;
     }
     let mut variant = variant.clone();
-    // By link: the angle about the axis that its own axes have in the common ones.
+    // For each link: the angle of its own axes relative to the common ones.
     let mut angles: Vec<Option<Expr<'g>>> = Vec::new();
-    // Of its own axes in those in which it is described now.
+    // For each link: the rotation of its own axes relative to the axes in which it is resolved now.
     let mut turned: Vec<Option<Rotation<'g>>> = Vec::new();
     for ((link, joint), member) in variant.model.links.iter_mut().zip(&mut variant.joints).zip(members) {
         let above = joint.parent.and_then(|p| turned[p.0].clone());
@@ -54,7 +54,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
             continue;
         };
         let carried = along.zip(joint.parent.and_then(|p| angles[p.0])).map(|(cosine, angle)| angle * cosine);
-        // A constant rotation that keeps the axis may come before the turn about it as well as after.
+        // A constant rotation about the same axis commutes with the joint's rotation.
         let above = if along.is_some() { None } else { above };
         joint.rotation = after(above, &link.placement.rotation);
         let own = own_angle(link, axis);
@@ -70,7 +70,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
     Some(variant)
 }
 
-/// By link: its place among joints that are parallel to each other, of which two turn at least.
+/// Returns for each link its place in a chain of parallel joints, at least two of which are revolute.
 fn members(model: &Model<'_>) -> Vec<Option<Member>> {
     let mut members: Vec<Option<Member>> = Vec::with_capacity(model.links.len());
     let mut turns = vec![0; model.links.len()];
@@ -80,7 +80,7 @@ fn members(model: &Model<'_>) -> Vec<Option<Member>> {
             let along = above.and_then(|above| {
                 let direction = link.placement.rotation.matrix().column(axis).values()?;
                 let cosine = direction[above.axis];
-                // The cosine of a small angle is one, too: its sine tells.
+                // The sine decides, because the cosine of a small angle rounds to one.
                 let across = [(above.axis + 1) % 3, (above.axis + 2) % 3];
                 let is_parallel = across.iter().all(|i| direction[*i].abs() <= PARALLEL);
                 (is_parallel && cosine.abs() == 1.0).then_some((cosine, above.first))
@@ -95,13 +95,13 @@ fn members(model: &Model<'_>) -> Vec<Option<Member>> {
     members.into_iter().map(|member| member.filter(|m| turns[m.first] > 1)).collect()
 }
 
-/// The coordinate axis about or along which a link moves.
+/// Returns the coordinate axis about or along which a link moves.
 fn axis(link: &Link<'_>) -> Option<usize> {
     let (Motion::Turn { axis, .. } | Motion::Slide { axis, .. }) = link.motion else { return None };
     coordinate_axis(axis).filter(|k| axis[*k].value().is_some_and(|c| c.abs() == 1.0))
 }
 
-/// The angle by which a link turns about a coordinate axis.
+/// Returns the angle by which a link rotates about a coordinate axis.
 fn own_angle<'g>(link: &Link<'g>, axis: usize) -> Option<Expr<'g>> {
     let Motion::Turn { axis: direction, coordinate } = &link.motion else { return None };
     let angle = position_in(direction[axis].graph(), coordinate);

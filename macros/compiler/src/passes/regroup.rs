@@ -1,28 +1,28 @@
-//! Mass properties moved from links to their parents: what a joint's motion neither changes nor sets moving acts as if
-//! it were fixed to the parent (Khalil and Kleinfinger 1987; Gautier and Khalil 1990).
+//! Regrouping of mass properties from links to their parents (Khalil and Kleinfinger 1987; Gautier and Khalil 1990).
 //!
-//! Of a link with mass properties `X` and a joint with subspace `S`, a part with `X S = 0` that the joint's motion
-//! carries into itself gives the same wrench, momentum and energy whether the joint moves or not. About a turning axis
-//! `z` these are a mass at the origin, a moment along `z`, and equal moments of inertia about `x` and `y`; for a sliding
-//! joint all moments of inertia; for a screw equal moments about `x` and `y`; for a ball a mass at the centre.
+//! A part `X` of a link's mass properties can be moved across a joint with motion subspace `S` if `X S = 0` and the joint's motion
+//! leaves `X` invariant: wrench, momentum and energy are then the same as if it were fixed to the parent. For a revolute joint
+//! about `z` these are a mass at the origin, a first moment along `z`, and equal moments of inertia about `x` and `y`. For a
+//! prismatic joint they are all moments of inertia, for a screw equal moments about `x` and `y`, for a ball joint a mass at its
+//! centre.
 
 use super::motions::{Gauge, coordinate_axis, movable};
 use super::number::{Frame, Mass};
 
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
 
-/// How mass properties are distributed.
+/// Options of the regrouping.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Regroup {
-    /// What is left of the moments of inertia.
+    /// Moment of inertia that becomes zero.
     pub gauge: Gauge,
-    /// A part of a link's mass goes to a child's origin where that takes away a component of the link's first moment.
+    /// Also moves mass to a child's origin, where that removes a component of the link's first moment.
     pub to_children: bool,
-    /// Also where mass properties or places are not numbers: moving them costs operations too.
+    /// Also moves symbolic mass properties, although that costs operations.
     pub symbolic: bool,
 }
 
-/// Moves all that can be moved.
+/// Moves all mass properties that can be moved.
 pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: Regroup) {
     for k in (0..model.links.len()).rev() {
         if to_children {
@@ -45,9 +45,8 @@ pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: 
     }
 }
 
-/// Moves a mass from link `k` to the origin of a child that turns about it, so that a component of the link's first
-/// moment vanishes. The force on that mass is one product of three numbers with an acceleration that is known, while
-/// the moment would need that of the link's origin as well.
+/// Moves a mass from link `k` to the origin of a revolute or ball joint of a child, so that a component of the link's first moment
+/// vanishes. The force on the mass is its product with an acceleration that is computed anyway.
 fn anchor(model: &mut Model<'_>, k: usize) {
     let Motion::Turn { axis, .. } = &model.links[k].motion else { return };
     let (Some(own), Some(mut inertia)) = (coordinate_axis(*axis), Mass::of(&model.links[k].inertia)) else {
@@ -65,7 +64,7 @@ fn anchor(model: &mut Model<'_>, k: usize) {
         let (Some(place), Some(mut other)) = (Frame::of(&child.placement), Mass::of(&child.inertia)) else {
             continue;
         };
-        // Without a first moment the child's acceleration may not be needed at all.
+        // The acceleration of a child without first moment may not be needed at all.
         if !turns || child.parent != Some(LinkId(k)) || other.mass != 0.0 || other.moment == [0.0; 3] {
             continue;
         }
@@ -77,7 +76,7 @@ fn anchor(model: &mut Model<'_>, k: usize) {
             continue;
         }
         let mass = inertia.moment[i] / p[i];
-        // A short arm would take a large mass, and digits with it.
+        // A short lever arm would need a large mass and lose digits.
         if mass.abs() > total {
             continue;
         }
@@ -89,7 +88,8 @@ fn anchor(model: &mut Model<'_>, k: usize) {
     }
 }
 
-/// True if the force on a link matters, not its moment alone: between it and the root there is an arm that turns.
+/// Returns true if the force on a link has an effect in addition to its moment: a revolute joint with a lever arm, or a prismatic
+/// joint, lies between the link and the root.
 fn pushes(model: &Model<'_>, mut k: usize) -> bool {
     loop {
         let link = &model.links[k];

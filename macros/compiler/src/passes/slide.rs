@@ -1,6 +1,6 @@
-//! Link frames moved along the axes they turn about where places are parameters: as in the frames of Denavit and
-//! Hartenberg (1955) two lengths along one axis become one, next to the one joint or the other. Mass properties in a frame
-//! that was moved by a parameter cost operations, fewer than they save.
+//! Shifts of link frames along revolute axes for symbolic placements. As with the frames of Denavit and Hartenberg (1955), two
+//! lengths along one axis become one. Mass properties in a frame that is shifted by a parameter cost operations, but fewer than
+//! the shift saves.
 
 use super::cost::{LENGTH, PRODUCT};
 use super::frames::move_contents;
@@ -8,7 +8,7 @@ use super::motions::coordinate_axis;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{Inertia, Link, Model, Motion, Pose};
 
-/// Moves the frames, parents before their children.
+/// Shifts the frames, parents before their children.
 pub fn slide_frames(model: &mut Model<'_>) {
     let g = model.graph;
     let mut all = vec![Pose::identity(g); model.links.len()];
@@ -27,7 +27,7 @@ pub fn slide_frames(model: &mut Model<'_>) {
     move_contents(model, &all);
 }
 
-/// The shift of link `k` that saves most, if one saves anything.
+/// Returns the shift of link `k` that saves most, if one saves anything.
 fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     let link = &model.links[k];
     let Motion::Turn { axis, .. } = &link.motion else { return None };
@@ -37,7 +37,7 @@ fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     let is_placed = |c: &&Link<'g>| !matches!(c.motion, Motion::Placed);
     let is_number = |c: &&Link<'g>| c.placement.translation.values().is_some();
     let own = link.placement.translation;
-    // Between numbers frames are placed by all of their costs.
+    // Numeric frames are chosen by `place_frames`.
     if !children.iter().all(is_placed) || is_number(&link) && children.iter().all(is_number) {
         return None;
     }
@@ -45,7 +45,7 @@ fn best<'g>(model: &Model<'g>, k: usize) -> Option<Vec3<'g>> {
     let cost = |s: Expr<'g>| {
         let shift = Vec3::axis(model.graph, a) * s;
         let lengths = children.iter().map(|c| nonzero(c.placement.translation - shift)).sum::<usize>();
-        // A joint on the ground may be anywhere.
+        // The position of a joint on the ground costs nothing.
         let lengths = lengths + if link.parent.is_some() { nonzero(own + along * s) } else { 0 };
         let h = link.inertia.moment;
         let products = [(a + 1) % 3, (a + 2) % 3]
