@@ -91,6 +91,7 @@ pub use inertial::{Inertial, Placement};
 #[doc(inline)]
 pub use lanes::Lanes;
 pub use limits::Limits;
+#[cfg(not(linkwork_expanded))]
 pub use linkwork_macros::mechanism;
 pub use mechanism::{Mechanism, Real};
 pub use nalgebra;
@@ -164,8 +165,10 @@ pub mod prelude {
     pub use crate::simulate::{Crossing, Sample, simulate};
     pub use crate::{
         Batch, Constrained, ConstraintError, Derivatives, FirstOrder, FirstOrderDerivatives, Limits,
-        Mechanism, Real, SecondDerivatives, Table, at, frame, index, mechanism,
+        Mechanism, Real, SecondDerivatives, Table, at, frame, index,
     };
+    #[cfg(not(linkwork_expanded))]
+    pub use linkwork_macros::mechanism;
     pub use nalgebra::{SMatrix, SVector};
 }
 

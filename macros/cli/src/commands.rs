@@ -139,6 +139,10 @@ fn export_library() -> Command {
         "FOLDER",
         "The sources of Linkwork that it is built with [default: its release]",
     ))
+    .arg(switch(
+        "expanded",
+        "Writes the generated code instead of the attribute; with RUSTFLAGS=\"--cfg linkwork_expanded\" the crate is built without the compiler",
+    ))
 }
 
 fn with_input(command: Command) -> Command {

@@ -147,6 +147,33 @@ fn documentation_is_for_other_readers_too() {
     assert!(header.contains("* Returns 1 where none is found, for an index that is none."), "{header}");
 }
 
+/// With `--expanded` the crate contains the generated code instead of the attribute, and is otherwise the same. The description has
+/// the limits of the joints.
+#[test]
+fn libraries_contain_the_attribute_or_its_code() {
+    let here = folder("expanded");
+    let slider = "#[mechanism] pub struct Slider { #[particle(mass = 2)] block: Particle, \
+        #[joint(ground -> block, along = x)] rail: Sleeve, \
+        #[limit(on = rail, from = -1, to = 2.5, max_speed = 3)] ends: Limit }";
+    std::fs::write(here.join("slider.rs"), slider).unwrap();
+    let written = |more: &[&str]| {
+        let (status, _, told) =
+            linkwork(&here, &[&["export", "library", "slider.rs", "--out", "slider"], more].concat());
+        assert_eq!((status, told.as_str()), (0, ""));
+        ["src/lib.rs", "description.json", "include/slider.h", "Cargo.toml"]
+            .map(|file| std::fs::read_to_string(here.join("slider").join(file)).unwrap())
+    };
+    let [declared, description, header, manifest] = written(&[]);
+    let [expanded, same_description, same_header, same_manifest] = written(&["--expanded"]);
+    assert_eq!([&description, &header, &manifest], [&same_description, &same_header, &same_manifest]);
+    assert!(declared.contains("#[mechanism") && !declared.contains("fn forward_dynamics"));
+    assert!(!expanded.contains("#[mechanism") && expanded.contains("fn forward_dynamics"));
+    let description: serde_json::Value = serde_json::from_str(&description).unwrap();
+    let limits =
+        serde_json::json!([{ "index": 0, "lower": -1.0, "upper": 2.5, "velocity": 3.0, "effort": null }]);
+    assert_eq!(description["limits"], limits);
+}
+
 /// The text of the first block of a language in the guide.
 fn block(language: &str) -> String {
     let guide = include_str!("../README.md");

@@ -2,6 +2,7 @@
 
 use super::{Function, Kind, Known};
 use linkwork_compiler::export::without_links;
+use linkwork_compiler::mechanism::Limit;
 use serde_json::{Value, json};
 
 /// The description.
@@ -32,6 +33,7 @@ pub fn description(known: &Known<'_, '_>) -> String {
         "parameters": named(plain(&m.parameters), &m.units.parameters),
         "outputs": named(m.outputs.iter().map(|output| output.name.as_str()).collect(), &m.units.outputs),
         "frames": m.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(),
+        "limits": m.limits.iter().map(limit).collect::<Vec<_>>(),
         "constraints": m.constraints.len(),
         "contacts": m.contacts.len(),
         "time": m.time,
@@ -41,6 +43,14 @@ pub fn description(known: &Known<'_, '_>) -> String {
         "left_out": known.left_out,
     });
     all.to_string()
+}
+
+/// Serialises the limits of a joint: numbers, `"parameters"` where a bound depends on parameters, or null.
+fn limit(limit: &Limit<'_>) -> Value {
+    let [lower, upper, velocity, effort] = limit
+        .bounds()
+        .map(|bound| bound.map(|bound| bound.value().map_or(json!("parameters"), |value| json!(value))));
+    json!({ "index": limit.v.0, "lower": lower, "upper": upper, "velocity": velocity, "effort": effort })
 }
 
 fn of_function(f: &Function, unit: Option<String>) -> Value {

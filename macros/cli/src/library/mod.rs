@@ -13,10 +13,10 @@ use crate::input::{Compiled, Input};
 use clap::ArgMatches;
 pub use functions::docs;
 use functions::{Function, Kind};
+use linkwork_compiler::Source;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::syntax::ScalarType;
-use linkwork_compiler::{Source, expand};
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
@@ -80,8 +80,9 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
             input.name
         )));
     }
-    let tokens = expand(input.arguments.clone(), input.item.clone(), &input.folder).into_tokens()?;
-    let file: syn::File = syn::parse2(tokens)?;
+    let emitted = source.emit(&model, &output);
+    let expansion = format!("{}\n{}", emitted.tokens, emitted.text);
+    let file = syn::parse_file(&expansion)?;
     let (mut functions, left_out) = functions::read(&file.items, &input.name);
     functions.extend(frames(&model));
     functions.extend(limits(&model));
@@ -103,7 +104,10 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
     let description = describe::description(&known);
     let linkwork = given(matches, "linkwork").map(home).transpose()?;
     let manifest = manifest(prefix, linkwork.as_deref());
-    let text = write::library(&known, &description, &at_home(input)?)?;
+    let text = match matches.get_flag("expanded") {
+        true => write::library(&known, &description, "")? + &expansion,
+        false => write::library(&known, &description, &declaration(input)?)?,
+    };
     Ok(Crate {
         prefix: prefix.to_string(),
         files: vec![
@@ -131,27 +135,27 @@ fn model_slips(functions: &[Function]) -> bool {
         && functions.iter().all(|f| f.name != "forward_dynamics_derivatives")
 }
 
-/// The mechanism's declaration, with files where they are.
-fn at_home(input: &Input) -> Result<(TokenStream, TokenStream), Stop> {
+/// Returns the declaration of the mechanism, with the paths of files made absolute.
+fn declaration(input: &Input) -> Result<String, Stop> {
     let mut arguments = TokenStream::new();
-    let mut named = false;
+    let mut names_file = false;
     for token in input.arguments.clone() {
-        let is_path = matches!(&token, TokenTree::Literal(_)) && named;
+        let is_path = matches!(&token, TokenTree::Literal(_)) && names_file;
         if let TokenTree::Ident(word) = &token {
-            named = ["urdf", "mjcf", "sdf"].iter().any(|format| word == format);
+            names_file = ["urdf", "mjcf", "sdf"].iter().any(|format| word == format);
         } else if !matches!(&token, TokenTree::Punct(sign) if sign.as_char() == '=') {
-            named = false;
+            names_file = false;
         }
         if !is_path {
             arguments.extend([token]);
             continue;
         }
         let text: syn::LitStr = syn::parse2(token.to_token_stream())?;
-        let whole = input.folder.join(text.value());
-        let whole = whole.canonicalize().unwrap_or(whole);
-        arguments.extend(whole.to_string_lossy().to_token_stream());
+        let path = input.folder.join(text.value());
+        let path = path.canonicalize().unwrap_or(path);
+        arguments.extend(path.to_string_lossy().to_token_stream());
     }
-    Ok((arguments, input.item.clone()))
+    Ok(format!("#[mechanism({arguments})]\n{}\n", input.item))
 }
 
 /// Frames by their numbers.

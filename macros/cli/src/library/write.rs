@@ -2,21 +2,16 @@
 
 use super::{Function, Kind, Known, by_field};
 use crate::Stop;
-use proc_macro2::TokenStream;
 use std::fmt::Write;
 
-/// The text of `lib.rs`.
-pub fn library(
-    known: &Known<'_, '_>,
-    description: &str,
-    (arguments, item): &(TokenStream, TokenStream),
-) -> Result<String, Stop> {
+/// Returns the text of `lib.rs`. Without a declaration the generated code has to follow it.
+pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> Result<String, Stop> {
     let m = known.model;
     let (kind, number, prefix) = (known.kind(), known.number(), known.prefix);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
     let mut text = format!(
         "use linkwork::prelude::*;\nuse linkwork_library::{{self as library, Failure, Function, Given, Library, Motion, Results, Rollout, given, raw}};\n\
-         use std::ffi::{{CStr, c_char, c_int}};\n\n#[mechanism({arguments})]\n{item}\n\n"
+         use std::ffi::{{CStr, c_char, c_int}};\n\n{declaration}\n"
     );
     let _ = write!(
         text,
