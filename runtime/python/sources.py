@@ -1,4 +1,4 @@
-"""Puts the sources of Linkwork into the wheel: those crates that mechanisms of Python are compiled with."""
+"""Puts the sources of Linkwork into the wheel: the crates that mechanisms of Python are compiled with."""
 
 import re
 import tempfile
@@ -31,6 +31,7 @@ class Sources(BuildHookInterface):
         workspace = (root / "Cargo.toml").read_text(encoding="utf-8")
         workspace = re.sub(r"^members = .*$", f"members = [{members}]", workspace, flags=re.MULTILINE)
         add("Cargo.toml", re.sub(r"^linkwork-(models|design) = .*\n", "", workspace, flags=re.MULTILINE))
+        included[str(root / "Cargo.lock")] = "linkwork/_source/Cargo.lock"
         included[str(root / "README.md")] = "linkwork/_source/README.md"
         for member in MEMBERS:
             # Tests stay behind, and what they need with them.

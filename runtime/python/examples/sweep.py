@@ -40,7 +40,7 @@ def chunk(number, size, lose=None):
     if lose is not None and not os.path.exists(lose):
         open(lose, "w").close()
         os._exit(1)
-    # Each process compiles it once; all others on its machine find the library.
+    # One process of each machine builds the library; the others load it.
     pendulum = linkwork.compile(PENDULUM, quiet=True)()
     rng = np.random.default_rng([7, number])
     q, v = rng.uniform(-np.pi, np.pi, (size, 2)), np.zeros((size, 2))
@@ -80,6 +80,8 @@ def main():
     options.add_argument("--chunk", type=int, default=2000)
     options.add_argument("--address", default=None)
     given = options.parse_args()
+    # Shows the progress of the build; workers on other machines compile it as well.
+    linkwork.compile(PENDULUM)
     ray.init(address=given.address, log_to_driver=False)
     start = time.perf_counter()
     over, error = sweep(given.rollouts, given.chunk, bar)

@@ -22,7 +22,8 @@ Rust, under the same names:
 All quantities are in SI units, angles in radians.
 """
 
-from ._build import ToolchainError, command, compile, gallery, toolchain
+from ._build import command, compile, gallery, toolchain
+from ._cache import ToolchainError
 from ._mechanism import Mechanism
 from ._names import Error, UnknownName
 from ._results import LinearSystem, Page, Run

@@ -7,11 +7,12 @@ from ._package import export
 
 try:
     if sys.argv[1:3] == ["export", "python"]:
-        sys.exit(export(sys.argv[3:]))
-    sys.exit(command(sys.argv[1:]))
+        export(sys.argv[3:])
+    else:
+        sys.exit(command(sys.argv[1:]))
 except (ToolchainError, OSError) as error:
     print(f"linkwork: {error}", file=sys.stderr)
     sys.exit(2)
 except Error as error:
-    print(error, file=sys.stderr)
-    sys.exit(getattr(error, "status", 1))
+    print(error.complaints or error, file=sys.stderr)
+    sys.exit(error.status)

@@ -1,5 +1,6 @@
-"""Declarations and robot files to compiled libraries, which are kept."""
+"""Compiles declarations and robot files to libraries, which the cache keeps."""
 
+import contextlib
 import difflib
 import errno
 import functools
@@ -7,24 +8,36 @@ import hashlib
 import json
 import os
 import re
+import secrets
 import shutil
 import subprocess
 import sys
 import tempfile
-import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, overload
 
 import numpy as np
 
-from ._mechanism import Mechanism, load
+from ._cache import ToolchainError, build_once, cache_folder, write
+from ._functions import digest, is_intact
+from ._mechanism import Compiled, load
 from ._names import Error, UnknownName, checked
+from ._results import Run
 
 _HERE = Path(__file__).resolve().parent
 
 
-class ToolchainError(Error):
-    """There is no toolchain of Rust, or it cannot build."""
+#: The profile of all builds. The command and the libraries share the crates that both depend on, which are compiled once.
+_PROFILE = {"opt-level": "3", "codegen-units": "16", "debug": "false", "lto": "false"}
+#: Crates of the command that are not optimised, since that would take minutes. The command derives the equations of an arm in a
+#: second without it, those of a humanoid in four.
+_UNOPTIMISED = (
+    "clap clap_builder clap_complete linkwork-cli linkwork-compiler linkwork-view prettyplease proc-macro2 quote roxmltree serde_json syn"
+).split()
+#: Omits the attribute from the crate `linkwork`, and so a second build of the compiler.
+_EXPANDED = "--cfg linkwork_expanded"
 
 
 def toolchain() -> str:
@@ -35,26 +48,31 @@ def toolchain() -> str:
     """
     cargo = _cargo()
     rustc = os.environ.get("RUSTC") or shutil.which("rustc") or str(cargo.with_name("rustc"))
+    return _version(rustc)
+
+
+@functools.cache
+def _version(rustc: str) -> str:
     return _run([rustc, "-vV"], "cannot run rustc").strip()
 
 
 @checked
 def compile(
-    source: str | os.PathLike,
+    source: str | os.PathLike[str],
     *,
     options: str = "",
     name: str | None = None,
-    tables: dict | None = None,
+    tables: dict[str, Any] | None = None,
     native: bool = True,
     batch: bool = True,
     derivatives: bool = True,
     quiet: bool = False,
-) -> type[Mechanism]:
+) -> type[Compiled]:
     """Compiles a mechanism to a class.
 
-    The first call builds Linkwork's command, which takes a minute (the environment variable ``LINKWORK_COMMAND`` names one of the
-    same version that is there already); every mechanism takes some seconds to half a minute, and is found at once when it is asked
-    for again.
+    The first call builds Linkwork's command, which takes about a minute (the environment variable ``LINKWORK_COMMAND`` names an
+    existing one of the same version). Every mechanism takes some seconds to half a minute, and is loaded from the cache when it is
+    compiled again. Any number of processes can compile at the same time: one builds, and the others wait for the library.
 
     Args:
         source: the path of a robot file (URDF, MJCF, SDF) or of a Rust file with a struct that has ``#[mechanism]``; or such a
@@ -80,27 +98,77 @@ def compile(
     """
     text, path = _source(source)
     written = {key: _table(key, table) for key, table in (tables or {}).items()}
-    command = _command(quiet)
+    words = _words(path, text, options, batch, derivatives)
+    origin: dict[str, Any] = {"text": text, "path": path and str(path), "options": words, "name": name, "tables": written}
+    request = hashlib.sha256(json.dumps([origin, native]).encode() + _environment(native)).hexdigest()[:32]
+    record = cache_folder() / "requests" / f"{request}.json"
+    library = _find_recorded(record)
+    if library is None:
+        library, files = _compile_source(origin, native, quiet)
+        if files is not None:
+            with contextlib.suppress(OSError):
+                record.parent.mkdir(exist_ok=True)
+                write(record, json.dumps({"library": library.name, "files": files}).encode())
+    _keep_origin(library, origin)
+    kind = load(library)
+    kind._source = origin
+    return kind
+
+
+def _compile_source(origin: dict[str, Any], native: bool, quiet: bool) -> tuple[Path, dict[str, str] | None]:
+    """Returns the compiled library of a source, and digests of the files that it was made of, if they are known."""
+    command, path = _command(quiet), origin["path"]
     with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
         if path is None:
             path = Path(folder) / "mechanism.rs"
-            path.write_text(text, encoding="utf-8")
-        words = _words(path, text, options, batch, derivatives)
+            path.write_text(origin["text"], encoding="utf-8")
         arguments = [command, "export", "library", path, "--out", Path(folder) / "crate"]
-        arguments += ["--prefix", "mechanism", "--linkwork", _sources()]
-        if words:
-            arguments += ["--with", words]
-        if name is not None:
-            arguments += ["--struct", name]
-        arguments += _table_arguments(written, folder)
+        arguments += ["--expanded", "--prefix", "mechanism", "--linkwork", _sources()]
+        if origin["options"]:
+            arguments.append(f"--with={origin['options']}")
+        if origin["name"] is not None:
+            arguments.append(f"--struct={origin['name']}")
+        arguments += _table_arguments(origin["tables"], folder)
         _run(arguments, None)
-        origin = {"text": text, "path": None if text else str(path), "options": words, "name": name}
-        origin["tables"] = written
-        return _built(Path(folder) / "crate", origin, native, quiet)
+        crate = Path(folder) / "crate"
+        files = _digests(crate / "src" / "lib.rs", origin["path"])
+        return _build_library(crate, native, quiet), files
 
 
-def gallery(name: str | None = None, **settings):
-    """The mechanisms of Linkwork's gallery: their names; or the class of one of them, compiled as :func:`compile` does.
+def _digests(code: Path, path: str | None) -> dict[str, str] | None:
+    """Returns digests of the files of a mechanism, which its code includes; `None` if one cannot be read."""
+    included = re.findall(r'include_bytes\s*!\s*\(\s*("(?:[^"\\]|\\.)*")', code.read_text(encoding="utf-8"))
+    try:
+        files = [json.loads(literal) for literal in included] + ([path] if path else [])
+        return {file: digest(Path(file).read_bytes()) for file in files}
+    except (OSError, ValueError):
+        return None
+
+
+def _find_recorded(record: Path) -> Path | None:
+    """Returns the library of an earlier call, unless a file of the mechanism has changed since."""
+    try:
+        found = json.loads(record.read_bytes())
+        if any(digest(Path(file).read_bytes()) != before for file, before in found["files"].items()):
+            return None
+        library: Path = record.parents[1] / "libraries" / found["library"]
+        return library if is_intact(library) else None
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        return None
+
+
+def _environment(native: bool) -> bytes:
+    """Returns what libraries depend on besides the mechanism: sources, toolchain, flags and processor."""
+    about = f"{toolchain()}\n{_flags(native)}\n{os.environ.get('LINKWORK_COMMAND', '')}\n"
+    return about.encode() + _fingerprint() + (_processor() if native else b"")
+
+
+@overload
+def gallery(name: None = None) -> list[str]: ...
+@overload
+def gallery(name: str, **settings: Any) -> type[Compiled]: ...
+def gallery(name: str | None = None, **settings: Any) -> list[str] | type[Compiled]:
+    """Returns the names of the mechanisms in Linkwork's gallery, or the class of one of them, compiled as by :func:`compile`.
 
     >>> "CartPole" in linkwork.gallery()
     True
@@ -121,7 +189,7 @@ def gallery(name: str | None = None, **settings):
     return compile(found[name], name=name, **settings)
 
 
-def view(origin, run, path):
+def view(origin: dict[str, Any], run: Run, path: Path) -> None:
     """Writes a page of a motion."""
     with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
         file = origin["path"]
@@ -132,24 +200,24 @@ def view(origin, run, path):
         run.csv(motion)
         arguments = [_command(quiet=True), "view", file, "--motion", motion, "--out", path]
         if origin["options"]:
-            arguments += ["--with", origin["options"]]
+            arguments.append(f"--with={origin['options']}")
         if origin["name"]:
-            arguments += ["--struct", origin["name"]]
+            arguments.append(f"--struct={origin['name']}")
         for name, value in run.mechanism.parameters.items():
-            arguments += ["--set", f"{name}={value!r}"]
+            arguments.append(f"--set={name}={value!r}")
         arguments += _table_arguments(origin.get("tables", {}), folder)
         _run(arguments, None)
 
 
 def command(arguments: list[str]) -> int:
-    """Runs Linkwork's command, as `python -m linkwork` does; its exit status."""
+    """Runs Linkwork's command, as `python -m linkwork` does, and returns its exit status."""
     return subprocess.run([str(_command(quiet=False)), *arguments], check=False).returncode
 
 
-def _table(name, given):
-    """A table as comma-separated values, and the words behind it."""
+def _table(name: str, given: Any) -> tuple[str, list[str]]:
+    """Returns a table as comma-separated values, and its options."""
     parts = list(given) if isinstance(given, (tuple, list)) else [given]
-    words = []
+    words: list[str] = []
     while parts and isinstance(parts[-1], str) and parts[-1] in ("smooth", "extrapolated"):
         words.insert(0, parts.pop())
     if len(parts) == 1 and isinstance(parts[0], (str, os.PathLike)):
@@ -168,8 +236,8 @@ def _table(name, given):
     return "\n".join(",".join(repr(float(x)) for x in row) for row in points), words
 
 
-def _table_arguments(written, folder):
-    arguments = []
+def _table_arguments(written: dict[str, Any], folder: str) -> list[Any]:
+    arguments: list[Any] = []
     for k, (name, (text, words)) in enumerate(written.items()):
         file = Path(folder) / f"table_{k}.csv"
         file.write_text(text, encoding="utf-8")
@@ -177,8 +245,8 @@ def _table_arguments(written, folder):
     return arguments
 
 
-def _source(source):
-    """The text of a declaration, or the path of a file."""
+def _source(source: Any) -> tuple[str, None] | tuple[None, Path]:
+    """Returns the text of a declaration, or the path of a file."""
     if isinstance(source, os.PathLike):
         path = Path(source)
     elif not isinstance(source, str):
@@ -197,8 +265,8 @@ def _source(source):
     return None, path.resolve()
 
 
-def _meant(path):
-    """What a path that there is not may stand for."""
+def _meant(path: Path) -> str:
+    """Returns a suggestion for a path without a file."""
     if re.fullmatch(r"\w+", str(path)) and str(path) in gallery():
         return f"; `linkwork.gallery({str(path)!r})` is the one of the gallery"
     beside = [file.name for file in path.parent.iterdir() if file.is_file()] if path.parent.is_dir() else []
@@ -206,15 +274,15 @@ def _meant(path):
     return f": did you mean {', '.join(near)}?" if near else ""
 
 
-def _words(path, text, options, batch, derivatives):
-    """Arguments of the attribute that are not there yet."""
-    if path.suffix == ".rs":
-        text = text if text is not None else path.read_text(encoding="utf-8")
+def _words(path: Path | None, text: str | None, options: str, batch: bool, derivatives: bool) -> str:
+    """Returns the options that the declaration lacks."""
+    if path is None or path.suffix == ".rs":
+        text = text or (path.read_text(encoding="utf-8") if path else "")
         written = " ".join(re.findall(r"#\[(?:\w+::)*mechanism\((.*?)\)\]", text, flags=re.DOTALL))
     else:
         written = ""
     given = options.strip().strip(",")
-    has = lambda word: re.search(rf"\b{word}\b", f"{written} {given}") is not None
+    has: Callable[[str], bool] = lambda word: re.search(rf"\b{word}\b", f"{written} {given}") is not None
     bare = has("inertia\\s*=\\s*none")
     words = [given] if given else []
     words += ["derivatives"] if derivatives and not bare and not has("derivatives") else []
@@ -222,99 +290,177 @@ def _words(path, text, options, batch, derivatives):
     return ", ".join(words)
 
 
-def _built(crate, origin, native, quiet):
-    """The class of a crate, which is compiled unless that has been done before."""
-    key = hashlib.sha256()
+def _build_library(crate: Path, native: bool, quiet: bool) -> Path:
+    """Returns the library of a crate, which is compiled unless the cache has it."""
+    key = hashlib.sha256(_environment(native))
     for file in ("Cargo.toml", "src/lib.rs"):
         key.update((crate / file).read_bytes())
-    key.update(_files_named(crate / "src" / "lib.rs"))
-    key.update(toolchain().encode())
-    key.update(_fingerprint())
-    flags = os.environ.get("RUSTFLAGS", "")
-    if native:
-        flags = f"{flags} -C target-cpu=native".strip()
-        key.update(_processor())
-    key.update(flags.encode())
-    kept = _cache() / "libraries" / (key.hexdigest()[:32] + _suffix())
-    if not kept.is_file():
-        described = json.loads((crate / "description.json").read_text(encoding="utf-8"))
-        if not quiet:
-            print(f"linkwork: compiling {described['name']} …", file=sys.stderr, flush=True)
-        target = _cache() / "target"
-        environment = {**os.environ, "CARGO_TARGET_DIR": str(target), "RUSTFLAGS": flags}
+    path = cache_folder() / "libraries" / (key.hexdigest()[:32] + _suffix())
+
+    def build(target: Path) -> Path:
+        name = json.loads((crate / "description.json").read_text(encoding="utf-8"))["name"]
         lock = _sources() / "Cargo.lock"
         if lock.is_file():
-            shutil.copy(lock, crate / "Cargo.lock")
-        # A name of its own: others may be built in this folder at the same time.
-        own = "mechanism_" + kept.stem
+            shutil.copyfile(lock, crate / "Cargo.lock")
+        # A name that no other build has, not even one whose process was killed while cargo goes on.
+        own = f"mechanism_{secrets.token_hex(8)}"
         manifest = crate / "Cargo.toml"
         text = manifest.read_text(encoding="utf-8")
         manifest.write_text(text.replace('name = "mechanism"', f'name = "{own}"'), encoding="utf-8")
-        arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", manifest]
-        _run(arguments, "the library cannot be built", environment)
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = kept.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
-        shutil.copy(target / "release" / (_stem() + own + _suffix()), unfinished)
-        os.replace(unfinished, kept)
-        for folder in (target / "release", target / "release" / "deps"):
-            for left in folder.glob(f"*{own}*"):
-                left.unlink(missing_ok=True)
-    kept.with_suffix(".json").write_text(json.dumps(origin), encoding="utf-8")
-    return load(kept)
+        progress = Progress(f"compiling {name}", quiet)
+        _cargo_build(manifest, _PROFILE, _flags(native), target, progress, "the library cannot be built")
+        folder = target / _host() / "release"
+        own_library = folder / (_stem() + own + _suffix())
+        library = own_library.rename(folder / f"newest{_suffix()}")
+        for leftovers in (folder, folder / "deps", folder / ".fingerprint"):
+            for leftover in leftovers.glob("*mechanism*"):
+                shutil.rmtree(leftover) if leftover.is_dir() else leftover.unlink(missing_ok=True)
+        return library
+
+    return build_once(path, build, quiet)
 
 
-def _files_named(source):
-    """The contents of files that a crate names: when one of them changes, it is another library."""
-    named = re.findall(r'"((?:/|[A-Za-z]:)[^"\n]*)"', source.read_text(encoding="utf-8")[:20000])
-    found = [Path(path) for path in named]
-    return b"".join(path.read_bytes() for path in found if path.is_file())
+def _keep_origin(path: Path, origin: dict[str, Any]) -> None:
+    """Writes the source of a library next to it, for other processes that unpickle the class."""
+    file, content = path.with_suffix(".json"), json.dumps(origin).encode()
+    try:
+        if file.read_bytes() == content:
+            return
+    except OSError:
+        pass
+    # A cache that cannot be written to is good enough for libraries that it has.
+    with contextlib.suppress(OSError):
+        write(file, content)
 
 
-# One thread compiles the command, the others find it.
-_COMMAND = threading.Lock()
-
-
-def _command(quiet):
-    """Linkwork's command: the one that `LINKWORK_COMMAND` names, or one that is compiled once."""
+def _command(quiet: bool) -> Path:
+    """Returns Linkwork's command: the one that `LINKWORK_COMMAND` names, or the one that is compiled once."""
     own = os.environ.get("LINKWORK_COMMAND")
     if own:
         return _own_command(own)
-    with _COMMAND:
-        return _compiled_command(quiet)
+    key = hashlib.sha256(_environment(native=True)).hexdigest()[:16]
+
+    def build(target: Path) -> Path:
+        sources = _sources()
+        if sources == _HERE / "_source":
+            # Cargo writes into the folder of a workspace; that of an installed package may be read-only.
+            sources = target / "source"
+            shutil.rmtree(sources, ignore_errors=True)
+            shutil.copytree(_sources(), sources, ignore=shutil.ignore_patterns("models"))
+        manifest = sources / "macros" / "cli" / "Cargo.toml"
+        profile = {**_PROFILE, **{f'package."{name}".opt-level': "0" for name in _UNOPTIMISED}}
+        progress = Progress("compiling the compiler, once", quiet)
+        _cargo_build(manifest, profile, _flags(native=True), target, progress, "Linkwork's command cannot be built")
+        return target / _host() / "release" / f"linkwork{_program_suffix()}"
+
+    return build_once(cache_folder() / f"linkwork-{key}{_program_suffix()}", build, quiet)
 
 
 @functools.cache
-def _own_command(path):
+def _own_command(path: str) -> Path:
     said = _run([path, "--version"], "`LINKWORK_COMMAND` names no command that runs").split()
     manifest = (_sources() / "Cargo.toml").read_text(encoding="utf-8")
-    wanted = re.search(r'^version = "(.*)"', manifest, re.MULTILINE).group(1)
+    found = re.search(r'^version = "(.*)"', manifest, re.MULTILINE)
+    wanted = found[1] if found else ""
     if said != ["linkwork", wanted]:
         raise ToolchainError(f"`LINKWORK_COMMAND` names {' '.join(said)!r}, and this package needs 'linkwork {wanted}'")
     return Path(path)
 
 
-def _compiled_command(quiet):
-    target = _cache() / "target"
-    suffix = ".exe" if os.name == "nt" else ""
-    key = hashlib.sha256(_fingerprint() + toolchain().encode()).hexdigest()[:16]
-    kept = _cache() / f"linkwork-{key}{suffix}"
-    if kept.is_file():
-        return kept
-    if not quiet:
-        print("linkwork: compiling the compiler, once …", file=sys.stderr, flush=True)
-    manifest = _sources() / "macros" / "cli" / "Cargo.toml"
-    environment = {**os.environ, "CARGO_TARGET_DIR": str(target)}
-    arguments = [_cargo(), "build", "--release", "--quiet", "--manifest-path", manifest]
-    _run(arguments, "Linkwork's command cannot be built", environment)
-    kept.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = kept.with_suffix(f".{os.getpid()}.{threading.get_ident()}")
-    shutil.copy(target / "release" / f"linkwork{suffix}", unfinished)
-    os.replace(unfinished, kept)
-    return kept
+def _flags(native: bool) -> str:
+    """Returns the flags of rustc: for the processor at hand, or for all of its kind."""
+    return " ".join([os.environ.get("RUSTFLAGS", ""), _EXPANDED, *(["-C target-cpu=native"] if native else [])]).strip()
 
 
-def _sources():
-    """The folder of Linkwork's sources: those of the package, or of the repository that it is in."""
+def _cargo_build(
+    manifest: Path, profile: dict[str, str], flags: str, target: Path, progress: "Progress", failure: str
+) -> None:
+    """Runs `cargo build` and shows its progress."""
+    arguments = [str(_cargo()), "build", "--release", "--target", _host(), "--manifest-path", str(manifest)]
+    for name, value in profile.items():
+        arguments += ["--config", f"profile.release.{name}={value}"]
+    environment = {
+        **os.environ,
+        "CARGO_TARGET_DIR": str(target),
+        "CARGO_TERM_COLOR": "never",
+        "CARGO_TERM_PROGRESS_WHEN": "always",
+        "CARGO_TERM_PROGRESS_WIDTH": "80",
+        "CARGO_TERM_QUIET": "false",
+        "CARGO_TERM_VERBOSE": "false",
+        "RUSTFLAGS": flags,
+    }
+    # It would take precedence over `RUSTFLAGS`.
+    environment.pop("CARGO_ENCODED_RUSTFLAGS", None)
+    complaints = []
+    try:
+        process = subprocess.Popen(
+            arguments,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            env=environment,
+        )
+    except OSError as error:
+        raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
+    with process:
+        try:
+            # Cargo ends the lines of its progress with carriage returns, which end a line here as well.
+            for line in process.stderr or ():
+                step = re.match(r"\s*Building \[.*\] (\d+)/(\d+)", line)
+                if step:
+                    progress.show(int(step[1]), int(step[2]))
+                elif not re.match(r"\s*(Compiling|Building|Finished|Locking|Updating|Download\w+|Adding|Blocking) ", line):
+                    complaints.append(line)
+        except BaseException:
+            process.kill()
+            raise
+    progress.end()
+    if process.returncode != 0:
+        text = "".join(complaints).strip() or f"exit status {process.returncode}"
+        raise ToolchainError(f"{failure}:\n{text}\n(cargo's files are in {target}, which can be deleted)")
+
+
+class Progress:
+    """One line on a terminal, which is written again as the build goes on; elsewhere a line from time to time."""
+
+    def __init__(self, task: str, quiet: bool) -> None:
+        self.task, self.quiet = f"linkwork: {task}", quiet
+        self.terminal = sys.stderr is not None and sys.stderr.isatty()
+        self.start = self.last = time.monotonic()
+        self._write(f"{self.task} …", end="" if self.terminal else "\n")
+
+    def show(self, done: int, count: int) -> None:
+        """Shows the number of crates that are compiled."""
+        now = time.monotonic()
+        if now - self.last >= (0.2 if self.terminal else 10.0):
+            self.last = now
+            text = f"{self.task}: {done} of {count} crates, {now - self.start:.0f} s"
+            self._write(f"\r{text:78}" if self.terminal else text, end="" if self.terminal else "\n")
+
+    def end(self) -> None:
+        """Ends the line on a terminal."""
+        if self.terminal:
+            self._write(f"\r{f'{self.task}: {time.monotonic() - self.start:.0f} s':78}", end="\n")
+
+    def _write(self, text: str, end: str) -> None:
+        if not self.quiet:
+            print(text, end=end, file=sys.stderr, flush=True)
+
+
+@functools.cache
+def _host() -> str:
+    """Returns the target triple of this machine, as rustc names it."""
+    found = re.search(r"^host: (\S+)", toolchain(), re.MULTILINE)
+    if found is None:
+        raise ToolchainError(f"`rustc -vV` names no host:\n{toolchain()}")
+    return found[1]
+
+
+def _sources() -> Path:
+    """Returns the folder of Linkwork's sources: in the package, or the repository that contains it."""
     own = os.environ.get("LINKWORK_SOURCE")
     candidates = [Path(own)] if own else [_HERE / "_source", *_HERE.parents]
     for folder in candidates:
@@ -323,30 +469,21 @@ def _sources():
     raise ToolchainError("the sources of Linkwork are missing: install the package again")
 
 
-def _fingerprint():
-    """What tells these sources from others."""
+def _fingerprint() -> bytes:
+    """Returns a digest of the names, sizes and times of the sources."""
     folder = _sources()
     key = hashlib.sha256()
-    files = [f for part in ("macros", "runtime") for f in sorted((folder / part).rglob("*.rs"))]
-    for file in files:
+    files = [*folder.glob("Cargo.*")]
+    for crate in ("macros", "macros/cli", "macros/compiler", "runtime", "runtime/library", "runtime/view"):
+        files += [folder / crate / "Cargo.toml", *(folder / crate / "src").rglob("*.*")]
+    for file in sorted(files):
         about = file.stat()
         key.update(f"{file.relative_to(folder)} {about.st_size} {about.st_mtime_ns}\n".encode())
     return key.digest()
 
 
-def _cache():
-    """Where libraries are kept: `LINKWORK_CACHE`, or a folder of the user's."""
-    own = os.environ.get("LINKWORK_CACHE")
-    if own:
-        return Path(own)
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home())) / "linkwork"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "linkwork"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "linkwork"
-
-
-def _cargo():
+def _cargo() -> Path:
+    """Returns the path of cargo."""
     found = os.environ.get("CARGO") or shutil.which("cargo")
     own = Path.home() / ".cargo" / "bin" / ("cargo.exe" if os.name == "nt" else "cargo")
     if found:
@@ -358,8 +495,8 @@ def _cargo():
     )
 
 
-def _processor():
-    """What native code is compiled for."""
+def _processor() -> bytes:
+    """Returns the features of the processor that native code is compiled for."""
     try:
         return b"".join(l for l in Path("/proc/cpuinfo").read_bytes().splitlines() if l.startswith(b"flags"))[:4096]
     except OSError:
@@ -368,37 +505,53 @@ def _processor():
         return platform.processor().encode()
 
 
-def _suffix():
+def _suffix() -> str:
     return {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 
-def _stem():
+def _stem() -> str:
     return "" if sys.platform == "win32" else "lib"
 
 
-def _run(arguments, failure, environment=None):
-    """What a command prints. Its complaints are the error."""
-    for pause in (0.05, 0.2, 1.0, None):
+def _program_suffix() -> str:
+    return ".exe" if sys.platform == "win32" else ""
+
+
+def _run(arguments: list[Any], failure: str | None) -> str:
+    """Returns the output of a command. Its complaints are the error; without `failure` they are errors of the mechanism."""
+    pauses = [1.0, 0.2, 0.05]
+    while True:
         try:
             done = subprocess.run(
                 [str(a) for a in arguments],
                 capture_output=True,
                 text=True,
                 encoding="utf-8",
-                env=environment,
                 check=False,
             )
             break
         except OSError as error:
             # A process that another thread starts at this moment has the new file open a little longer.
-            if error.errno != errno.ETXTBSY or pause is None:
+            if error.errno != errno.ETXTBSY or not pauses:
                 raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
-            time.sleep(pause)
+            time.sleep(pauses.pop())
     if done.returncode == 0:
         return done.stdout
     complaints = done.stderr.strip() or f"exit status {done.returncode}"
     if failure is None:
-        error = Error(complaints.replace("`--struct NAME`", "`name=`"))
-        error.status = done.returncode
-        raise error
+        reported = Error(_translate_complaints(complaints))
+        reported.complaints, reported.status = complaints, done.returncode
+        raise reported
     raise ToolchainError(f"{failure}:\n{complaints}")
+
+
+def _translate_complaints(complaints: str) -> str:
+    """Returns complaints of the command with arguments of Python instead of its own and of the attribute."""
+    complaints = re.sub(r"\S*linkwork-\w+[/\\]mechanism\.rs", "mechanism.rs", complaints)
+    complaints = re.sub(r"`#\[mechanism\((?:…|(?:urdf|mjcf|sdf) = \"[^\"]*\"), ([^`]*)\)\]`", r"`options='\1'`", complaints)
+    complaints = re.sub(r"`--with[ =]([\"'])([^`]*)\1`", r"`options='\2'`", complaints)
+    complaints = re.sub(r"`--with[ =]([^`]*)`", r"`options='\1'`", complaints)
+    complaints = complaints.replace("`--with`", "`options=`").replace("--with", "options=")
+    complaints = re.sub(r"--table (\w+)=FILE", r"tables={'\1': …}", complaints)
+    complaints = re.sub(r"`--table (\w+)=[^`]*`", r"`tables`, '\1'", complaints)
+    return complaints.replace("`--struct NAME`", "`name=`")

@@ -1,16 +1,21 @@
 """Functions of compiled libraries as methods."""
 
 import ctypes
+import hashlib
 import inspect
 import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ._names import Error, hint, index, numbers, safe
+from ._names import Error, count as whole, hint, index, numbers, safe
 
 
-def _structures(number):
-    """Settings of simulations and rollouts, and the type of controllers, for a type of numbers."""
+def _structures(number: Any) -> tuple[Any, Any, Any]:
+    """Returns the settings of simulations and rollouts, and the type of controllers, for a type of numbers."""
 
     class Settings(ctypes.Structure):
         _fields_ = [
@@ -40,18 +45,42 @@ def _structures(number):
     return Settings, Rollout, control
 
 
+def digest_file(path: Path) -> Path:
+    """Returns the path of the file with the digest of a library or a command."""
+    return path.with_name(f"{path.name}.sha256")
+
+
+def digest(content: bytes) -> str:
+    """Returns the digest of a file's content."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def is_intact(path: Path) -> bool:
+    """Whether a file has the content that was written."""
+    try:
+        return digest(path.read_bytes()) == digest_file(path).read_text(encoding="ascii", errors="replace")
+    except FileNotFoundError:
+        return False
+
+
 class Library:
     """The functions of a shared library with their types."""
 
-    def __init__(self, path, prefix="mechanism"):
-        self.handle = ctypes.CDLL(str(path))
-        get = lambda name: getattr(self.handle, f"{prefix}_{name}")
+    def __init__(self, path: Path, prefix: str = "mechanism") -> None:
+        try:
+            # A damaged library could crash the interpreter.
+            if not is_intact(path):
+                raise OSError("its content is not the one that was written")
+            self.handle = ctypes.CDLL(str(path))
+        except OSError as error:
+            raise Error(f"cannot load the library {path}: {error}; compile the mechanism again") from None
+        get: Callable[[str], Any] = lambda name: getattr(self.handle, f"{prefix}_{name}")
         describe = get("description")
         describe.restype = ctypes.c_char_p
-        self.description = json.loads(describe().decode("utf-8"))
+        self.description: dict[str, Any] = json.loads(describe().decode("utf-8"))
         single = self.description["number"] == "f32"
         self.dtype = np.dtype(np.float32 if single else np.float64)
-        number = ctypes.c_float if single else ctypes.c_double
+        number: Any = ctypes.c_float if single else ctypes.c_double
         self.Settings, self.Rollout, self.Control = _structures(number)
         self.message = get("message")
         self.message.restype = ctypes.c_char_p
@@ -66,16 +95,17 @@ class Library:
         self.roll_out.argtypes = [pointer] * 5
         self.defaults = get("defaults") if self.description["parameters"] else None
 
-    def why(self):
-        return self.message().decode("utf-8")
+    def why(self) -> str:
+        """Returns the message of the last failure in this thread."""
+        return str(self.message().decode("utf-8"))
 
 
-def address(array):
-    """Where an array's numbers are. The quick way does not go with arrays that are empty or cannot be written to."""
+def address(array: NDArray[Any]) -> int:
+    """Returns the address of an array's numbers. The fast path does not work for empty and for read-only arrays."""
     try:
-        return _addressof(_from_buffer(array))
+        return _addressof(_from_buffer(array))  # type: ignore[arg-type, unused-ignore]
     except (TypeError, ValueError, BufferError):
-        return array.__array_interface__["data"][0]
+        return int(array.__array_interface__["data"][0])
 
 
 _addressof, _from_buffer = ctypes.addressof, ctypes.c_char.from_buffer
@@ -85,8 +115,8 @@ _addressof, _from_buffer = ctypes.addressof, ctypes.c_char.from_buffer
 ENTRIES = {"q": "q", "from": "q", "to": "q", "v": "v", "a": "v", "tau": "v", "dv": "v", "u": "u"}
 
 
-def marked(chosen, velocities, dtype):
-    """Marks at velocities that are named, or given by their indices."""
+def marked(chosen: str | int | Iterable[str | int], velocities: Sequence[str], dtype: Any) -> NDArray[Any]:
+    """Returns marks at velocities that are chosen by names or indices."""
     marks = np.zeros(len(velocities), dtype)
     for one in [chosen] if isinstance(chosen, (str, int)) else chosen:
         k = index(velocities, one, "velocity") if isinstance(one, str) else one
@@ -96,11 +126,11 @@ def marked(chosen, velocities, dtype):
     return marks
 
 
-def function(library, k, about, cls):
-    """The method that calls a function by its number."""
+def function(library: Library, k: int, about: dict[str, Any], cls: str) -> Callable[..., Any]:
+    """Returns the method that calls a function by its number."""
     arguments, results = about["arguments"], about["results"]
     dtype, call, nv = library.dtype, library.call, len(library.description["velocities"])
-    shapes = []
+    shapes: list[tuple[int, ...]] = []
     for a in arguments:
         shapes.append(tuple(a["shape"]) if a["kind"] == "array" else (nv,) if a["kind"] == "velocities" else ())
     kinds = [a["kind"] for a in arguments]
@@ -108,20 +138,23 @@ def function(library, k, about, cls):
     # Matrices stand column by column: in memory their transposes.
     stored = [tuple(r["shape"][:-2] + r["shape"][:-3:-1]) if len(r["shape"]) > 1 else tuple(r["shape"]) for r in results]
     turned = [len(shape) > 1 for shape in stored]
-    Arguments, Results = ctypes.c_void_p * max(len(arguments), 1), ctypes.c_void_p * len(results)
+    Arguments: Any = ctypes.c_void_p * max(len(arguments), 1)
+    Results: Any = ctypes.c_void_p * len(results)
     count = len(arguments)
     frames = library.description["frames"]
     velocities = [entry["name"] for entry in library.description["velocities"]]
 
-    def prepared(self, i, value):
+    def prepared(self: Any, i: int, value: Any) -> NDArray[Any]:
         kind = kinds[i]
         if kind == "frame" and isinstance(value, str):
             value = index(frames, value, "frame")
         elif kind == "velocities":
             return marked(value, velocities, dtype)
-        elif isinstance(value, dict) and arguments[i]["name"] in ENTRIES:
-            return self._vector(value, shapes[i][0], arguments[i]["name"])
+        elif isinstance(value, Mapping) and arguments[i]["name"] in ENTRIES:
+            vector: NDArray[Any] = self._vector(value, shapes[i][0], arguments[i]["name"])
+            return vector
         array = numbers(value, dtype, names[i])
+        found = array.shape
         if len(shapes[i]) == 2:
             array = np.swapaxes(array, -1, -2)
             expected = shapes[i][::-1]
@@ -129,14 +162,14 @@ def function(library, k, about, cls):
             expected = shapes[i]
         if array.shape[array.ndim - len(expected) :] != expected or array.ndim > len(expected) + 1:
             raise ValueError(
-                f"{about['name']}: {names[i]} has the shape {shapes[i]}, or (N, …) of N states, not {np.shape(value)}"
+                f"{about['name']}: {names[i]} has the shape {shapes[i]}, or (N, …) of N states, not {found}"
             )
         return array if array.flags.c_contiguous else np.ascontiguousarray(array)
 
     plain = all(kind == "array" and len(shape) == 1 for kind, shape in zip(kinds, shapes))
     ndarray, empty = np.ndarray, np.empty
 
-    def method(self, *given, threads=None, out=None, **others):
+    def method(self: Any, *given: Any, threads: int | None = None, out: Any = None, **others: Any) -> Any:
         for name in others:
             if name in names:
                 raise TypeError(f"{about['name']}({', '.join(names)}): arguments are given without their names")
@@ -161,8 +194,8 @@ def function(library, k, about, cls):
                 )
         return general(self, given, threads, out)
 
-    def placed(out, lead):
-        """Arrays that results go into, as they are stored."""
+    def placed(out: Any, lead: tuple[int, ...]) -> list[NDArray[Any]]:
+        """Returns the arrays that results go into, as they are stored."""
         given = out if isinstance(out, tuple) else (out,)
         if len(given) != len(stored):
             raise ValueError(f"{about['name']}: `out` has {len(given)} arrays for {len(stored)} results")
@@ -177,7 +210,7 @@ def function(library, k, about, cls):
             arrays.append(kept)
         return arrays
 
-    def general(self, given, threads, out):
+    def general(self: Any, given: tuple[Any, ...], threads: int | None, out: Any) -> Any:
         if not hasattr(self, "_own"):
             raise TypeError(f"{about['name']} is a function of a mechanism, not of its class: make one first, with values of its parameters")
         if len(given) != count:
@@ -201,8 +234,8 @@ def function(library, k, about, cls):
             wanted = Results(*[address(array) for array in found])
             if threads is None:
                 threads = 0 if n >= 256 else 1
-            elif threads < 0:
-                raise ValueError(f"a number of threads is not {threads!r}")
+            else:
+                threads = whole(threads, "threads")
             if call(k, self._own, own, wanted, n, threads) != 0:
                 raise Error(f"{about['name']}: {library.why()}")
         found = [array.swapaxes(-1, -2) if turn else array[()] for array, turn in zip(found, turned)]
@@ -215,11 +248,12 @@ def function(library, k, about, cls):
     parameters = [kind("self", kind.POSITIONAL_ONLY)]
     parameters += [kind(name, kind.POSITIONAL_ONLY) for name in names]
     parameters += [kind(name, kind.KEYWORD_ONLY, default=None) for name in ("threads", "out")]
-    method.__signature__ = inspect.Signature(parameters)
+    setattr(method, "__signature__", inspect.Signature(parameters))
     return method
 
 
-def documentation(about, shapes):
+def documentation(about: dict[str, Any], shapes: Sequence[tuple[int, ...]]) -> str:
+    """Returns the documentation of a method."""
     lines = [about["documentation"], ""]
     if about["arguments"]:
         lines.append("Args:")
@@ -235,8 +269,8 @@ def documentation(about, shapes):
     lines.append("Returns:")
     unit = f", {about['unit']}" if about["unit"] else ""
     for r in about["results"]:
-        shape = f"shape {tuple(r['shape'])}" if r["shape"] else "a number"
-        lines.append(f"    {r['name']}: {shape}{unit}")
+        size = f"shape {tuple(r['shape'])}" if r["shape"] else "a number"
+        lines.append(f"    {r['name']}: {size}{unit}")
     lines.append("")
     if about["errors"]:
         lines += ["Raises:", f"    Error: {about['errors']}", ""]
@@ -245,8 +279,8 @@ def documentation(about, shapes):
     return "\n".join(lines)
 
 
-def quoted(text, indent=4):
-    """A text as a documentation string."""
+def quoted(text: str, indent: int = 4) -> str:
+    """Returns a text as a documentation string."""
     text = text.replace("\\", "\\\\").replace('"""', "'''").strip()
     lines = text.split("\n")
     inner = "\n".join([lines[0], *[(" " * indent + line).rstrip() for line in lines[1:]]])

@@ -1,18 +1,27 @@
 """Compiled mechanisms as classes of Python."""
 
+import copyreg
 import ctypes
+import importlib
 import json
-from collections.abc import Mapping
+import keyword
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ._equilibrium import Rest, find
 from ._functions import ENTRIES, Library, address, function, marked, quoted
-from ._names import Error, checked, hint, index, number, numbers, safe
+from ._names import Error, checked, count, hint, index, number, numbers, safe
 from ._results import LinearSystem, Run, Units
 
-
+#: A mechanism of any class.
+M = TypeVar("M", bound="Mechanism")
+#: Entries of a vector: an array, or values by name.
+Entries = ArrayLike | Mapping[str, float]
 #: Methods of simulations, and what says how exact they are.
 _METHODS = {
     "dormand_prince": "tolerance",
@@ -26,25 +35,41 @@ _METHODS = {
 }
 
 
-class Mechanism:
+class _Kind(type):
+    """The type of the classes of mechanisms, which are pickled by the paths of their libraries."""
+
+
+class Mechanism(metaclass=_Kind):
     """A mechanism with values of its parameters. Its subclasses are made by :func:`linkwork.compile`; parameters are given by name,
     those that have a dot in their names in a dictionary."""
 
-    #: The struct's name, and what its doc comment says.
-    name = None
+    #: The name of the struct.
+    name: ClassVar[str] = ""
     #: Names of the entries of `q`, `v` and `u`, of the parameters, the frames and the outputs.
-    configuration = velocities = inputs = parameter_names = frames = outputs = ()
+    configuration: ClassVar[Sequence[str]] = ()
+    velocities: ClassVar[Sequence[str]] = ()
+    inputs: ClassVar[Sequence[str]] = ()
+    parameter_names: ClassVar[Sequence[str]] = ()
+    frames: ClassVar[Sequence[str]] = ()
+    outputs: ClassVar[Sequence[str]] = ()
     #: Units of all of these.
-    units = None
-    #: How many entries `q`, `v` and `u` have.
-    nq = nv = nu = 0
+    units: ClassVar[Units] = Units([], [], [], [])
+    #: Number of entries of `q`, `v` and `u`.
+    nq: ClassVar[int] = 0
+    nv: ClassVar[int] = 0
+    nu: ClassVar[int] = 0
     #: The equations of motion as text; empty where they are too long to be read.
-    equations = ""
+    equations: ClassVar[str] = ""
     #: Names of generated functions that Python cannot call.
-    left_out = ()
-    _library = None
+    left_out: ClassVar[Sequence[str]] = ()
+    _library: ClassVar[Any] = None
+    _description: ClassVar[dict[str, Any]] = {}
+    _functions: ClassVar[dict[str, Any]] = {}
+    _path: ClassVar[Path] = Path()
+    #: Its source, where it was compiled in this process.
+    _source: ClassVar[dict[str, Any] | None] = None
 
-    def __init__(self, parameters=None, /, *others, **named):
+    def __init__(self, parameters: Mapping[str, float] | None = None, /, *others: Any, **named: float) -> None:
         if self._library is None:
             raise TypeError("mechanisms are made by `linkwork.compile`")
         values = np.zeros(len(self.parameter_names), self._library.dtype)
@@ -63,17 +88,17 @@ class Mechanism:
             raise Error(self._library.why())
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, float]:
         """Values of the parameters by name."""
         return dict(zip(self.parameter_names, self._values.tolist()))
 
-    def replace(self, parameters=None, /, *others, **named):
-        """The mechanism with other values of some parameters."""
+    def replace(self: M, parameters: Mapping[str, float] | None = None, /, *others: Any, **named: float) -> M:
+        """Returns the mechanism with other values of some parameters."""
         return type(self)({**self.parameters, **self._given(parameters, others, named)})
 
     @classmethod
-    def _given(cls, parameters, others, named):
-        """Values of parameters by their names."""
+    def _given(cls, parameters: Any, others: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
+        """Returns values of parameters by their names."""
         if not others and (parameters is None or isinstance(parameters, Mapping)):
             return {**dict(parameters or {}), **named}
         words = [f"{name}=…" for name in cls.parameter_names if name.isidentifier()]
@@ -86,22 +111,26 @@ class Mechanism:
         found = ", ".join(map(repr, (parameters, *others)))
         raise TypeError(f"{cls.name} takes {expected}; found {found}")
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())
         return f"{self.name}({values if len(values) < 200 else '…'})"
 
-    def __reduce__(self):
-        return _again, (str(self._path), self.parameters)
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (str(self._path), self.parameters)
 
     @classmethod
-    def _origin(cls):
-        """What it was compiled from."""
-        return json.loads(Path(cls._path).with_suffix(".json").read_text(encoding="utf-8"))
+    def _origin(cls) -> dict[str, Any]:
+        """Returns the source that it was compiled from."""
+        if cls._source is not None:
+            return cls._source
+        found: dict[str, Any] = json.loads(Path(cls._path).with_suffix(".json").read_text(encoding="utf-8"))
+        return found
 
     @classmethod
     def stub(cls) -> str:
         """The class with types and documentation, as editors and type checkers read it: a file NAME.pyi."""
         lines = [
+            "from collections.abc import Iterable, Mapping",
             "from typing import Any",
             "",
             "from numpy.typing import ArrayLike, NDArray",
@@ -109,26 +138,26 @@ class Mechanism:
             "import linkwork",
             "",
             f"class {cls.name}(linkwork.Mechanism):",
-            f"    {quoted(cls.__doc__)}",
+            f"    {quoted(cls.__doc__ or '')}",
         ]
-        values = ", ".join(f"{name}: float" for name in cls.parameter_names if name.isidentifier())
+        values = ", ".join(f"{name}: float = ..." for name in cls.parameter_names if name.isidentifier() and not keyword.iskeyword(name))
         star = f", *, {values}" if values else ""
-        lines.append(f"    def __init__(self, parameters: dict[str, float] | None = None, /{star}) -> None: ...")
-        kinds = {"frame": "str | int", "velocities": "list[str] | list[int]"}
+        lines.append(f"    def __init__(self, parameters: Mapping[str, float] | None = None, /{star}) -> None: ...")
+        kinds = {"frame": "str | int", "velocities": "str | int | Iterable[str | int]", "number": "float"}
         for name, about in cls._functions.items():
             if name not in cls.__dict__:
                 continue
-            arguments = "".join(f", {safe(a['name'])}: {kinds.get(a['kind'], 'ArrayLike')}" for a in about["arguments"])
+            arguments = "".join(f", {safe(a['name'])}: {_stub_type(a, kinds)}" for a in about["arguments"])
             position = f"{arguments}, /" if arguments else ""
-            count = len(about["results"])
-            result = "NDArray[Any]" if count == 1 else f"tuple[{', '.join(['NDArray[Any]'] * count)}]"
+            results = ["NDArray[Any]" if r["shape"] else "Any" for r in about["results"]]
+            result = results[0] if len(results) == 1 else f"tuple[{', '.join(results)}]"
             lines.append(f"    def {name}(self{position}, *, threads: int | None = None, out: Any = None) -> {result}:")
             lines.append(f"        {quoted(getattr(cls, name).__doc__, 8)}")
         return "\n".join(lines) + "\n"
 
     @classmethod
     @checked
-    def save(cls, folder=".") -> Path:
+    def save(cls, folder: str | os.PathLike[str] = ".") -> Path:
         """Writes the class as a package into a folder: a module with its library and its stubs, which needs NumPy alone. It can be
         copied to machines without Linkwork and Rust that have the same system and the same kind of processor; compile with
         `native=False` for those with an older one.
@@ -140,35 +169,34 @@ class Mechanism:
             FileExistsError: something else has this name.
         """
         try:
-            from ._package import save
+            package = importlib.import_module("._package", __package__)
         except ImportError:
             raise Error("this is such a package already: copy its folder") from None
 
-        return save(cls, folder)
+        written: Path = package.save(cls, folder)
+        return written
 
     # Indices
 
-    def index_q(self, name):
-        """The index of an entry of `q`, by its name."""
+    def index_q(self, name: str) -> int:
+        """Returns the index of an entry of `q`, by its name."""
         return index(self.configuration, name, "coordinate")
 
-    def index_v(self, name):
-        """The index of an entry of `v`, by its name."""
+    def index_v(self, name: str) -> int:
+        """Returns the index of an entry of `v`, by its name."""
         return index(self.velocities, name, "velocity")
 
-    def index_u(self, name):
-        """The index of an entry of `u`, by its name."""
+    def index_u(self, name: str) -> int:
+        """Returns the index of an entry of `u`, by its name."""
         return index(self.inputs, name, "input")
 
     # Motions
 
-    def _vector(self, value, length, what):
-        if value is None:
-            return None
-        if isinstance(value, dict):
+    def _vector(self, value: Any, length: int, what: str) -> NDArray[Any]:
+        if isinstance(value, Mapping):
             entries = ENTRIES[what]
             names = {"q": self.configuration, "v": self.velocities, "u": self.inputs}[entries]
-            vector = self.neutral().copy() if entries == "q" else np.zeros(length, self._library.dtype)
+            vector: NDArray[Any] = self._neutral() if entries == "q" else np.zeros(length, self._library.dtype)
             kind = {"q": "coordinate", "v": "velocity", "u": "input"}[entries]
             for name, entry in value.items():
                 vector[index(names, name, kind)] = number(entry, f"the {kind} {name!r}")
@@ -178,8 +206,8 @@ class Mechanism:
             raise ValueError(f"{what} has {length} entries, found an array of shape {vector.shape}")
         return vector
 
-    def _method(self, method, tolerance, step):
-        """The method, and its tolerance or the length of its steps."""
+    def _method(self, method: str | None, tolerance: float | None, step: float | None) -> tuple[str, float]:
+        """Returns the method, and its tolerance or the length of its steps."""
         if method is None and self._description["contacts"]:
             method = "event_driven" if step is None else "time_stepping"
         elif method is None:
@@ -202,20 +230,20 @@ class Mechanism:
     @checked
     def simulate(
         self,
-        q=None,
-        v=None,
+        q: Entries | None = None,
+        v: Entries | None = None,
         *,
-        duration,
-        every=None,
-        start=0.0,
-        inputs=None,
-        control=None,
-        period=None,
-        method=None,
-        tolerance=None,
-        step=None,
-    ):
-        """A motion.
+        duration: float,
+        every: float | None = None,
+        start: float = 0.0,
+        inputs: Entries | None = None,
+        control: Callable[[float, NDArray[Any], NDArray[Any]], Entries] | None = None,
+        period: float | None = None,
+        method: str | None = None,
+        tolerance: float | None = None,
+        step: float | None = None,
+    ) -> Run:
+        """Simulates a motion.
 
         Args:
             q: the configuration at the start: an array, or values by name; the neutral one if none is given.
@@ -238,8 +266,8 @@ class Mechanism:
             Error: the motion cannot go on; the samples so far are in its attribute `run`.
         """
         library = self._library
-        q = self.neutral() if q is None else self._vector(q, self.nq, "q")
-        v = np.zeros(self.nv, library.dtype) if v is None else self._vector(v, self.nv, "v")
+        first_q = self._neutral() if q is None else self._vector(q, self.nq, "q")
+        first_v = np.zeros(self.nv, library.dtype) if v is None else self._vector(v, self.nv, "v")
         duration = number(duration, "`duration`")
         if not (duration >= 0 and np.isfinite(duration)):
             raise ValueError(f"the duration is a time in seconds, found {duration!r}")
@@ -258,28 +286,29 @@ class Mechanism:
         if period is not None and control is None:
             raise TypeError("`period` is the time between calls of `control`, and there is none; samples stand `every` so often")
         method, setting = self._method(method, tolerance, step)
-        constant = self._vector(inputs, self.nu, "u")
-        if constant is not None:
+        if inputs is not None:
+            constant = self._vector(inputs, self.nu, "u")
             control, period = (lambda t, q, v: constant), every
-        raised = []
+        raised: list[BaseException] = []
         size = library.dtype.itemsize
 
-        def asked(_user, t, q, v, u):
+        def asked(_user: Any, t: float, q: int, v: int, u: int) -> int:
             try:
+                assert control is not None
                 own_q, own_v = np.empty(self.nq, library.dtype), np.empty(self.nv, library.dtype)
                 ctypes.memmove(address(own_q), q, self.nq * size)
                 ctypes.memmove(address(own_v), v, self.nv * size)
-                found = control(t, own_q, own_v)
-                found = self._vector(found, self.nu, "u")
-                if found is None:
+                returned = control(t, own_q, own_v)
+                if returned is None:
                     raise TypeError("`control` returned nothing")
+                found = self._vector(returned, self.nu, "u")
                 ctypes.memmove(u, address(found), self.nu * size)
                 return 0
             except BaseException as error:  # It cannot pass through the library: it is raised again behind it.
                 raised.append(error)
                 return 1
 
-        pointer = library.Control(asked) if control is not None else None
+        pointer: Any = library.Control(asked) if control is not None else None
         settings = library.Settings(
             number(start, "`start`"), duration, every, method.encode(), setting, period or 0.0, ctypes.cast(pointer, ctypes.c_void_p), None
         )
@@ -288,8 +317,8 @@ class Mechanism:
         count = ctypes.c_size_t()
         code = library.simulate(
             self._own,
-            address(q),
-            address(v),
+            address(first_q),
+            address(first_v),
             ctypes.addressof(settings),
             address(samples),
             rows,
@@ -307,8 +336,18 @@ class Mechanism:
         return run
 
     @checked
-    def roll_out(self, q, v, inputs=None, *, steps=None, h, start=0.0, threads=0):
-        """Many motions by steps of the classical method of Runge and Kutta, eight states at a time and on all processors, while other
+    def roll_out(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        inputs: ArrayLike | None = None,
+        *,
+        steps: int | None = None,
+        h: float,
+        start: float = 0.0,
+        threads: int = 0,
+    ) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Simulates many motions by steps of the classical method of Runge and Kutta, eight states at a time and on all processors, while other
         threads of Python go on.
 
         Args:
@@ -324,36 +363,33 @@ class Mechanism:
             Configurations (N, steps + 1, nq) and velocities (N, steps + 1, nv), those at the start first.
         """
         library = self._library
-        q, v = np.asarray(q, library.dtype), np.asarray(v, library.dtype)
-        if q.ndim != 2 or q.shape[1] != self.nq or v.shape != (len(q), self.nv):
+        first_q, first_v = numbers(q, library.dtype, "q"), numbers(v, library.dtype, "v")
+        if first_q.ndim != 2 or first_q.shape[1] != self.nq or first_v.shape != (len(first_q), self.nv):
             raise ValueError(
-                f"expected arrays of shapes (N, {self.nq}) and (N, {self.nv}), found {q.shape} and {v.shape}"
+                f"expected arrays of shapes (N, {self.nq}) and (N, {self.nv}), found {first_q.shape} and {first_v.shape}"
             )
-        n, kind = len(q), 0
+        n, kind, held = len(first_q), 0, None
+        steps = None if steps is None else count(steps, "steps")
+        threads = count(threads, "threads")
         if inputs is not None:
-            inputs = np.ascontiguousarray(inputs, library.dtype)
-            found = inputs.shape[-2] if inputs.ndim >= 2 else None
+            held = np.ascontiguousarray(numbers(inputs, library.dtype, "inputs"))
+            found = held.shape[-2] if held.ndim >= 2 else None
             if steps is not None and found is not None and steps != found:
                 raise ValueError(f"there are inputs of {found} steps, not of {steps}")
             steps = found
-            if inputs.shape == (steps, self.nu):
+            if held.shape == (steps, self.nu):
                 kind = 1
-            elif inputs.shape == (n, steps, self.nu):
+            elif held.shape == (n, steps, self.nu):
                 kind = 2
             else:
-                raise ValueError(f"inputs have the shape (steps, {self.nu}) or ({n}, steps, {self.nu}), not {inputs.shape}")
+                raise ValueError(f"inputs have the shape (steps, {self.nu}) or ({n}, steps, {self.nu}), not {held.shape}")
         if steps is None:
-            raise TypeError("how many steps?")
-        if threads < 0:
-            raise ValueError(f"a number of threads is not {threads!r}")
-        if steps < 0 or int(steps) != steps:
-            raise ValueError(f"a number of steps is not {steps!r}")
-        steps = int(steps)
+            raise TypeError("give the number of `steps`, or `inputs` for each of them")
         all_q = np.empty((n, steps + 1, self.nq), library.dtype)
         all_v = np.empty((n, steps + 1, self.nv), library.dtype)
-        all_q[:, 0], all_v[:, 0] = q, v
+        all_q[:, 0], all_v[:, 0] = first_q, first_v
         settings = library.Rollout(number(start, "`start`"), number(h, "`h`"), steps, n, threads, kind)
-        given = address(inputs) if kind else None
+        given = address(held) if held is not None else None
         code = library.roll_out(self._own, ctypes.addressof(settings), given, address(all_q), address(all_v))
         if code != 0:
             error = Error(library.why())
@@ -364,8 +400,16 @@ class Mechanism:
     # Steady states and linear systems
 
     @checked
-    def equilibrium(self, q=None, inputs=None, *, held=(), tolerance=1e-12, iterations=50):
-        """A configuration near `q` in which the mechanism stays at rest under constant inputs: Newton's method with half steps on the
+    def equilibrium(
+        self,
+        q: Entries | None = None,
+        inputs: Entries | None = None,
+        *,
+        held: str | int | Iterable[str | int] = (),
+        tolerance: float = 1e-12,
+        iterations: int = 50,
+    ) -> NDArray[Any]:
+        """Returns a configuration near `q` in which the mechanism stays at rest under constant inputs: Newton's method with half steps on the
         generated derivatives. Under constraints they hold there, and their forces are found along with it (the change of these with
         the configuration by differences of the generated Jacobian). Limits of joints are not heeded: a long way off `q` it may lie
         beyond them.
@@ -383,64 +427,130 @@ class Mechanism:
         if self._description["contacts"]:
             raise Error("equilibria at contacts are found by the crate linkwork-design")
         self._need("inverse_dynamics_derivatives", "derivatives")
-        q = self.neutral() if q is None else self._vector(q, self.nq, "q")
+        first = self._neutral() if q is None else self._vector(q, self.nq, "q")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
         free = marked(held, self.velocities, self._library.dtype) == 0
-        return find(Rest(self, u, free), q, tolerance, iterations) if free.any() else q
+        return find(Rest(self, u, free), first, tolerance, iterations) if free.any() else first
 
     @checked
-    def linear_system(self, q, v=None, inputs=None, *, t=0.0):
-        """The linear system about a state, which fulfils the constraints; of one that is no equilibrium A and B describe what is
+    def linear_system(
+        self, q: Entries, v: Entries | None = None, inputs: Entries | None = None, *, t: float = 0.0
+    ) -> LinearSystem:
+        """Returns the linear system about a state, which fulfils the constraints; of one that is no equilibrium A and B describe what is
         added to its motion. Every joint of a robot file is an input unless the option `inputs` says otherwise.
 
         Raises:
             Error: without derivatives, or off the constraints: `assemble` brings a configuration onto them.
         """
         self._need("linearize", "derivatives")
-        q = self._vector(q, self.nq, "q")
+        time = [number(t, "`t`")] if self._description["time"] else []
+        at_q = self._vector(q, self.nq, "q")
         if "constraint_residuals" in self._functions:
-            off = np.abs(self.constraint_residuals(*([t] if self._description["time"] else []), q)).max(initial=0)
+            off = float(np.abs(self._call("constraint_residuals", *time, at_q)).max(initial=0))
             if not off <= 1e-6:
                 raise Error(f"the configuration is off the constraints by {off:.3g} (m, rad): `assemble` brings it onto them")
-        v = np.zeros(self.nv) if v is None else self._vector(v, self.nv, "v")
+        at_v = np.zeros(self.nv) if v is None else self._vector(v, self.nv, "v")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
-        time = [t] if self._description["time"] else []
         if self._description["constraints"]:
-            found = self.linearize(*time, q, v, u, [])
-            a, b, coordinates, speeds = found
+            a, b, coordinates, speeds = self._call("linearize", *time, at_q, at_v, u, [])
             names = [self.velocities[int(k)] for k in coordinates]
             names += [f"{self.velocities[int(k)]}.rate" for k in speeds]
         else:
-            a, b = self.linearize(*time, q, v, u)
+            a, b = self._call("linearize", *time, at_q, at_v, u)
             names = list(self.velocities) + [f"{name}.rate" for name in self.velocities]
         return LinearSystem(a, b, names, list(self.inputs))
 
-    def _forces(self, time, q, v, u):
+    def _call(self, name: str, *arguments: Any) -> Any:
+        """Calls a generated function by its name."""
+        return getattr(self, name)(*arguments)
+
+    def _neutral(self) -> NDArray[Any]:
+        """Returns the configuration in which all coordinates are zero."""
+        return np.array(self._call("neutral"))
+
+    def _forces(self, time: list[float], q: NDArray[Any], v: NDArray[Any], u: NDArray[Any]) -> Any:
         if not self.nu:
             return np.zeros(self.nv)
         given = [q, v, u] if self._takes("generalized_forces", "v") else [q, u]
-        return self.generalized_forces(*time, *given)
+        return self._call("generalized_forces", *time, *given)
 
-    def _takes(self, function, argument):
+    def _takes(self, function: str, argument: str) -> bool:
         return any(a["name"] == argument for a in self._functions[function]["arguments"])
 
-    def _need(self, function, word):
+    def _need(self, function: str, word: str) -> None:
         if function not in self._functions:
             raise Error(f"this needs the function `{function}`: compile with `{word}=True`")
 
 
-def _again(path, parameters):
-    return load(path)(parameters)
+def _stub_type(argument: dict[str, Any], kinds: dict[str, str]) -> str:
+    """Returns the type of an argument in a stub."""
+    by_name = argument["kind"] == "array" and argument["name"] in ENTRIES
+    return "ArrayLike | Mapping[str, float]" if by_name else kinds.get(argument["kind"], "ArrayLike")
 
 
-def load(path):
-    """The class of a compiled library."""
+def _documentation(description: dict[str, Any]) -> str:
+    """Returns the documentation of a class: that of the struct, and tables of the coordinates, inputs and parameters."""
+    limits = {limit["index"]: limit for limit in description["limits"]}
+    shown: Callable[[Any], str] = lambda value: "" if value is None else value if isinstance(value, str) else f"{value:g}"
+    velocities = []
+    for k, entry in enumerate(description["velocities"]):
+        limit = limits.get(k, {})
+        bounds = [shown(limit.get(key)) for key in ("lower", "upper", "velocity", "effort")]
+        velocities.append([entry["name"], entry["unit"], *bounds])
+    head = ["name", "unit", "lower limit", "upper limit", "velocity limit", "effort limit"]
+    named: Callable[[str], list[list[str]]] = lambda key: [[entry["name"], entry["unit"]] for entry in description[key]]
+    tables = [
+        ("Configuration `q`", ["name", "unit"], named("configuration")),
+        ("Velocities `v`, with the limits of the joints in SI units", head, velocities),
+        ("Inputs `u`", ["name", "unit"], named("inputs")),
+        ("Parameters", ["name", "unit"], named("parameters")),
+        ("Outputs", ["name", "unit"], named("outputs")),
+    ]
+    parts = [description["documentation"] or f"The mechanism {description['name']}."]
+    parts += [f"{title}:\n{_align_columns([head, *rows])}" for title, head, rows in tables if rows]
+    if description["frames"]:
+        parts.append(f"Frames: {', '.join(description['frames'])}.")
+    return "\n\n".join(parts)
+
+
+def _align_columns(rows: list[list[str]]) -> str:
+    """Returns rows of text as aligned columns. Empty columns are left out."""
+    columns = [column for column in zip(*rows) if any(column[1:])]
+    widths = [max(map(len, column)) for column in columns]
+    lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in zip(*columns)]
+    return "\n".join(f"    {line}" for line in lines)
+
+
+def _restore(path: str, parameters: dict[str, float]) -> "Mechanism":
+    """Returns a mechanism of another process."""
+    return load(Path(path))(parameters)
+
+
+def _reduce_class(kind: Any) -> Any:
+    return (load, (kind._path,)) if kind._library is not None else kind.__qualname__
+
+
+copyreg.pickle(_Kind, _reduce_class)
+
+if TYPE_CHECKING:
+
+    class Compiled(Mechanism):
+        """A mechanism whose generated functions are known when it is compiled."""
+
+        def __getattr__(self, name: str) -> Any: ...
+
+else:
+    Compiled = Mechanism
+
+
+def load(path: Path) -> type[Compiled]:
+    """Returns the class of a compiled library."""
     library = Library(path)
     d = library.description
-    names = lambda key: [entry["name"] for entry in d[key]]
-    units = lambda key: [entry["unit"] for entry in d[key]]
+    names: Callable[[str], list[str]] = lambda key: [entry["name"] for entry in d[key]]
+    units: Callable[[str], list[str]] = lambda key: [entry["unit"] for entry in d[key]]
     members = {
-        "__doc__": d["documentation"] or f"The mechanism {d['name']}.",
+        "__doc__": _documentation(d),
         "__module__": "linkwork",
         "name": d["name"],
         "configuration": names("configuration"),
@@ -463,4 +573,6 @@ def load(path):
     for k, about in enumerate(d["functions"]):
         if about["name"] not in members and not hasattr(Mechanism, about["name"]):
             members[about["name"]] = function(library, k, about, d["name"])
-    return type(d["name"], (Mechanism,), members)
+    kind: Any = _Kind(d["name"], (Compiled,), members)
+    made: type[Compiled] = kind
+    return made

@@ -1,44 +1,60 @@
-"""Names and numbers that are given, and what is said of others."""
+"""Checks of names and numbers, and their errors."""
 
 import difflib
 import functools
 import inspect
 import keyword
+import operator
+from collections.abc import Callable, Sequence
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 class Error(Exception):
-    """What Linkwork cannot do, in its words."""
+    """An error of Linkwork: of a declaration, a file, or a call without a result."""
+
+    #: The complaints and the exit status of the command that reported it.
+    complaints: str | None = None
+    status = 1
+    #: The samples before the error, of a simulation.
+    run: Any = None
+    #: Configurations and velocities before the error, of rollouts.
+    q: Any = None
+    v: Any = None
 
 
 class UnknownName(KeyError):
-    """A name that there is not; the message has the nearest ones."""
+    """An unknown name; the message has the nearest names."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return str(self.args[0])
 
 
-def hint(name, names):
-    """The nearest of some names, or all of them."""
+def hint(name: object, names: Sequence[str]) -> str:
+    """Returns the nearest of some names, or all of them."""
     near = difflib.get_close_matches(str(name), names, n=3)
     return f": did you mean {', '.join(map(repr, near))}?" if near else f"; there are {', '.join(names) or 'none'}"
 
 
-def index(names, name, what):
-    """The index of a name in a list of names."""
+def index(names: Sequence[str], name: str, what: str) -> int:
+    """Returns the index of a name in a list of names."""
     if name in names:
         return names.index(name)
     raise UnknownName(f"there is no {what} {name!r}{hint(name, names)}")
 
 
-def checked(function):
-    """Tells which argument is meant where a keyword is none."""
+def checked(function: Callable[P, R]) -> Callable[P, R]:
+    """Reports unknown keywords with the nearest argument."""
     parameters = inspect.signature(function).parameters.values()
     known = [p.name for p in parameters if p.kind in (p.KEYWORD_ONLY, p.POSITIONAL_OR_KEYWORD) and p.name != "self"]
 
     @functools.wraps(function)
-    def called(*given, **named):
+    def called(*given: P.args, **named: P.kwargs) -> R:
         for name in named:
             if name not in known:
                 raise TypeError(f"{function.__name__}() has no argument {name!r}{hint(name, known)}")
@@ -47,8 +63,8 @@ def checked(function):
     return called
 
 
-def number(value, what):
-    """A single number."""
+def number(value: Any, what: str) -> float:
+    """Returns a single number."""
     try:
         if isinstance(value, (str, bytes)) or np.ndim(value) != 0:
             raise TypeError
@@ -57,8 +73,19 @@ def number(value, what):
         raise TypeError(f"{what} is a number, found {value!r}") from None
 
 
-def numbers(value, dtype, what):
-    """An array of numbers, which nothing is lost of that cannot be seen."""
+def count(value: Any, what: str) -> int:
+    """Returns a whole number that is not negative."""
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise TypeError(f"`{what}` is a whole number, found {value!r}") from None
+    if not 0 <= found < 2**48:
+        raise ValueError(f"`{what}` is a whole number that is not negative, found {value!r}")
+    return found
+
+
+def numbers(value: Any, dtype: Any, what: str) -> NDArray[Any]:
+    """Returns an array of numbers. Rejects conversions that lose data silently."""
     if np.iscomplexobj(value):
         raise TypeError(f"{what} has complex numbers")
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
@@ -69,6 +96,6 @@ def numbers(value, dtype, what):
         raise type(error)(f"{what} is an array of numbers, found {value!r:.100}") from None
 
 
-def safe(name):
-    """A name that is no keyword."""
+def safe(name: str) -> str:
+    """Returns the name, with an underscore if it is a keyword."""
     return f"{name}_" if keyword.iskeyword(name) else name

@@ -2,9 +2,15 @@
 
 import argparse
 import keyword
+import os
+import platform
 import re
 import shutil
 from pathlib import Path
+from typing import Any
+
+from ._functions import digest_file
+from ._mechanism import Mechanism
 
 _HERE = Path(__file__).resolve().parent
 _MODULE = '''"""{name}, compiled by Linkwork: needs NumPy alone, and a machine of the kind that it was compiled on ({machine})."""
@@ -25,16 +31,14 @@ __all__ = ["Error", "LinearSystem", "Mechanism", "Run", "{name}"]
 _PARTS = ("_equilibrium.py", "_functions.py", "_mechanism.py", "_names.py", "_results.py")
 
 
-def module_name(name):
-    """The name of a package for a struct: `CartPole` in `cart_pole`."""
+def module_name(name: str) -> str:
+    """Returns the name of the package of a struct: `cart_pole` for `CartPole`."""
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
     return f"{words}_" if keyword.iskeyword(words) else words
 
 
-def save(kind, folder):
+def save(kind: type[Mechanism], folder: str | os.PathLike[str]) -> Path:
     """Writes the package of a class into a folder."""
-    import platform
-
     library = Path(kind._path)
     package = Path(folder) / module_name(kind.name)
     if package.exists() and not (package / "_mechanism.py").is_file() and any(package.iterdir()):
@@ -42,8 +46,9 @@ def save(kind, folder):
     package.mkdir(parents=True, exist_ok=True)
     own = "mechanism" + library.suffix
     machine = f"{platform.system()} {platform.machine()}"
-    # A library that is loaded is not written into, but replaced.
-    shutil.copy(library, package / (own + ".new"))
+    # A library that is loaded is not overwritten, but replaced.
+    shutil.copyfile(library, package / (own + ".new"))
+    shutil.copyfile(digest_file(library), digest_file(package / own))
     (package / (own + ".new")).replace(package / own)
     for part in _PARTS:
         shutil.copy(_HERE / part, package / part)
@@ -57,7 +62,7 @@ def save(kind, folder):
     return package
 
 
-def export(arguments):
+def export(arguments: list[str]) -> None:
     """`linkwork export python`: compiles a mechanism and writes its package."""
     from ._build import compile
 
@@ -72,7 +77,7 @@ def export(arguments):
     parser.add_argument("--native", action="store_true", help="for the very processor at hand, not for all of its kind")
     parser.add_argument("--out", "-o", metavar="FOLDER", default=".", help="where the package goes [default: .]")
     given = parser.parse_args(arguments)
-    tables = {}
+    tables: dict[str, Any] = {}
     for table in given.table:
         name, _, words = table.partition("=")
         tables[name] = tuple(words.split(","))

@@ -1,13 +1,16 @@
-"""What mechanisms give: motions, pages, linear systems."""
+"""Results of mechanisms: motions, pages, linear systems."""
 
 import csv
 import html
+import importlib
+import os
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ._names import Error, checked, index
 
@@ -22,33 +25,38 @@ class Page:
     #: Where it is.
     path: Path
 
-    def _repr_html_(self):
+    def _repr_html_(self) -> str:
         text = html.escape(Path(self.path).read_text(encoding="utf-8"), quote=True)
         return f'<iframe srcdoc="{text}" width="100%" height="560" frameborder="0"></iframe>'
 
-    def open(self):
-        """Opens it in the browser."""
+    def open(self) -> None:
+        """Opens the page in the browser."""
         webbrowser.open(Path(self.path).resolve().as_uri())
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Run:
     """A motion: samples of time, configuration, velocity and inputs, a row each."""
 
     mechanism: "Mechanism"
     #: Times, s.
-    t: np.ndarray
+    t: NDArray[Any]
     #: Configurations, a row for each time.
-    q: np.ndarray
+    q: NDArray[Any]
     #: Velocities, a row for each time.
-    v: np.ndarray
+    v: NDArray[Any]
     #: Inputs, a row for each time.
-    u: np.ndarray
+    u: NDArray[Any]
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.t)
 
-    def csv(self, path):
+    def __repr__(self) -> str:
+        times = f", t = {self.t[0]:g} … {self.t[-1]:g} s" if len(self) else ""
+        m = self.mechanism
+        return f"Run({m.name}: {len(self)} samples{times}; t, q[{m.nq}], v[{m.nv}], u[{m.nu}])"
+
+    def csv(self, path: str | os.PathLike[str]) -> None:
         """Writes the samples as comma-separated values with the columns t, q.…, v.…, u.…, which `linkwork view --motion` reads."""
         m = self.mechanism
         head = ["t"] + [f"q.{n}" for n in m.configuration]
@@ -59,19 +67,19 @@ class Run:
             writer.writerows(np.column_stack([self.t, self.q, self.v, self.u]).tolist())
 
     @checked
-    def view(self, path=None) -> Page:
+    def view(self, path: str | os.PathLike[str] | None = None) -> Page:
         """Writes a page that shows the motion, and opens offline: to `path`, or to the mechanism's name with .html."""
         try:
-            from ._build import view
+            build = importlib.import_module("._build", __package__)
         except ImportError:
             raise Error("pages are made by the package `linkwork`, which this package does not need otherwise") from None
 
         path = Path(path if path is not None else f"{self.mechanism.name}.html")
-        view(self.mechanism._origin(), self, path)
+        build.view(self.mechanism._origin(), self, path)
         return Page(path)
 
     @checked
-    def plot(self, *names, ax=None):
+    def plot(self, *names: str, ax: Any = None) -> Any:
         """Draws entries of the motion over time with matplotlib: of the configuration by default, or those that are named
         (`"hinge"`, `"v.hinge"`, `"u.motor"`). Entries of one unit share axes, one below the other; all go into `ax` if it is given.
 
@@ -84,14 +92,14 @@ class Run:
             "v": ("velocity", m.velocities, m.units.velocities),
             "u": ("input", m.inputs, m.units.inputs),
         }
-        groups = {}
+        groups: dict[str, list[tuple[str, str, NDArray[Any]]]] = {}
         for name in names or m.configuration:
             kind, rest = name.split(".", 1) if name[:2] in ("q.", "v.", "u.") else ("q", name)
             what, known, units = kinds[kind]
             k = index(known, rest, what)
             groups.setdefault(units[k], []).append((name, kind, getattr(self, kind)[:, k]))
 
-        import matplotlib.pyplot as plt
+        plt: Any = importlib.import_module("matplotlib.pyplot")
 
         if ax is None:
             rows = max(len(groups), 1)
@@ -109,7 +117,7 @@ class Run:
             own.set_ylabel("" if shares else f"{said} [{unit}]" if unit else said)
         for own in axes:
             # Many names stand beside the curves.
-            beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(own.get_lines()) > 6 else {}
+            beside: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(own.get_lines()) > 6 else {}
             own.legend(**beside)
         axes[-1].set_xlabel("t [s]")
         return axes[0] if len(axes) == 1 else axes
@@ -118,22 +126,22 @@ class Run:
 _MANY = {"q": "coordinates", "v": "velocities", "u": "inputs"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LinearSystem:
     """x' = A x + B u about a state: displacements of the configuration, then changes of the velocity, each in the order of `v`."""
 
-    a: np.ndarray
-    b: np.ndarray
+    a: NDArray[Any]
+    b: NDArray[Any]
     #: Names of the states.
-    states: list
+    states: list[str]
     #: Names of the inputs.
-    inputs: list
+    inputs: list[str]
 
     @checked
-    def control(self, c=None, d=None):
-        """The system in the type of the package python-control, whose `lqr` and others take it; all states are outputs if no others
+    def control(self, c: ArrayLike | None = None, d: ArrayLike | None = None) -> Any:
+        """Returns the system in the type of the package python-control, whose `lqr` and others take it; all states are outputs if no others
         are given."""
-        import control
+        control: Any = importlib.import_module("control")
 
         c = np.eye(len(self.a)) if c is None else c
         d = np.zeros((np.shape(c)[0], self.b.shape[1])) if d is None else d
@@ -144,7 +152,7 @@ class LinearSystem:
 class Units:
     """Units of all entries, in their order."""
 
-    configuration: list
-    velocities: list
-    inputs: list
-    parameters: list
+    configuration: list[str]
+    velocities: list[str]
+    inputs: list[str]
+    parameters: list[str]

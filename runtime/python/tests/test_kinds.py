@@ -1,5 +1,6 @@
 """Tables, constraints, contacts, robots: mechanisms of all kinds."""
 
+import pickle
 import tempfile
 import unittest
 from pathlib import Path
@@ -145,13 +146,62 @@ class OfRobots(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "did you mean 'tool'"):
             arm.frame_jacobian("tol", [0.0])
         np.testing.assert_array_equal(arm.lower_limits(), [-2.0])
+        rows = [line.split("  ") for line in type(arm).__doc__.splitlines() if line.startswith("    shoulder  rad/s")]
+        self.assertEqual([[cell.strip() for cell in row if cell.strip()] for row in rows], [["shoulder", "rad/s", "-2", "2", "3", "50"]])
         np.testing.assert_array_equal(arm.clamp_effort([[60.0], [-70.0], [3.0]]), [[50.0], [-50.0], [3.0]])
         m = heavy()
         self.assertEqual(m.parameters["upper.mass"], 2.0)
         np.testing.assert_allclose(m.replace({"upper.mass": 4.0}).mass_matrix([0.0]), [[0.1 + 4 * 0.25]])
 
+    def test_files_that_change_are_compiled_again(self):
+        part = """<mujoco><worldbody><body name="block"><joint name="rail" type="slide" axis="1 0 0"/>
+          <geom type="sphere" size="0.1" mass="{mass}"/></body></worldbody></mujoco>"""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "whole.xml"
+            path.write_text('<mujoco><include file="part.xml"/></mujoco>')
+            for mass in (2.0, 3.0, 2.0):
+                (Path(folder) / "part.xml").write_text(part.format(mass=mass))
+                for _ in range(2):
+                    slider = linkwork.compile(path, quiet=True, batch=False, derivatives=False)()
+                    np.testing.assert_allclose(slider.mass_matrix([0.0]), [[mass]])
+
+    def test_names_and_folders_of_all_scripts(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "gelenk-größe 手 'x' \"y\"" / "zwei räder.urdf"
+            path.parent.mkdir()
+            path.write_text(ROBOT.replace("shoulder", "Schulter größe 手").replace("upper", "Oberarm ß"), encoding="utf-8")
+            arm = linkwork.compile(path, quiet=True, batch=False, derivatives=False)()
+            self.assertEqual(arm.configuration, ["Schulter größe 手"])
+            np.testing.assert_allclose(arm.mass_matrix({"Schulter größe 手": 0.3}), [[0.1 + 2 * 0.25]])
+            self.assertIn("Schulter größe 手", type(arm).__doc__)
+            self.assertEqual(pickle.loads(pickle.dumps(arm)).configuration, arm.configuration)
+            package = type(arm).save(Path(folder) / "pakete ü")
+            self.assertTrue(package.name.isidentifier(), package)
+            compile((package / "__init__.pyi").read_text(encoding="utf-8"), "stub.pyi", "exec")
+            run = arm.simulate(duration=0.1)
+            self.assertTrue(run.view(Path(folder) / "bewegung ß.html").path.is_file())
+
+    def test_errors_name_arguments_of_python(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "heavy.urdf"
+            # Moments of inertia that no body has: 1 + 0.1 < 2.
+            path.write_text(ROBOT.replace('ixx="0.1"', 'ixx="2"').replace('iyy="0.1"', 'iyy="1"').replace('izz="0.01"', 'izz="0.1"'))
+            with self.assertRaisesRegex(linkwork.Error, "`options='inertia = trust'`") as caught:
+                linkwork.compile(path, quiet=True)
+            self.assertNotRegex(str(caught.exception), r"#\[mechanism|--with")
+            # The option that the message names is the remedy.
+            arm = linkwork.compile(path, options="inertia = trust", quiet=True)()
+            np.testing.assert_allclose(arm.mass_matrix([0.0]), [[1 + 2 * 0.25]])
+            for options, words in [("base = fre", "base"), ("inertia =", "inertia"), ("(", r"`options=`")]:
+                with self.assertRaisesRegex(linkwork.Error, words) as caught:
+                    linkwork.compile(path, options=options, quiet=True)
+                self.assertNotIn("--with", str(caught.exception))
+        with self.assertRaisesRegex(linkwork.Error, r"tables=\{'energy': …\}") as caught:
+            compiled(SLIDER)
+        self.assertNotIn("--table", str(caught.exception))
+
     def test_mistakes_have_their_places(self):
-        with self.assertRaisesRegex(linkwork.Error, r"mechanism\.rs:\d+:\d+: error: .*massa"):
+        with self.assertRaisesRegex(linkwork.Error, r"^mechanism\.rs:\d+:\d+: error: .*massa"):
             compiled(PENDULUM.replace("mass = mass, com", "massa = mass, com"))
         with self.assertRaisesRegex(linkwork.Error, "choose one with `name=`: Pendulum, Bead"):
             compiled(PENDULUM + BEAD)

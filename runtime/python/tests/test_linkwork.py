@@ -5,6 +5,7 @@ import pickle
 import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
+from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
@@ -31,10 +32,38 @@ class OfAPendulum(unittest.TestCase):
         self.assertEqual(self.kind.configuration, ["hinge"])
         self.assertEqual(self.kind.inputs, ["motor"])
         self.assertEqual(self.kind.units.parameters, ["kg", "m"])
-        self.assertEqual(self.kind.__doc__, "A rod on a hinge, with a motor.")
+        self.assertEqual(
+            self.kind.__doc__.splitlines(),
+            [
+                "A rod on a hinge, with a motor.",
+                "",
+                "Configuration `q`:",
+                "    name   unit",
+                "    hinge  rad",
+                "",
+                "Velocities `v`, with the limits of the joints in SI units:",
+                "    name   unit",
+                "    hinge  rad/s",
+                "",
+                "Inputs `u`:",
+                "    name   unit",
+                "    motor  N·m",
+                "",
+                "Parameters:",
+                "    name    unit",
+                "    mass    kg",
+                "    length  m",
+            ],
+        )
         self.assertIn("hinge''", self.kind.equations)
         self.assertIn("shape (1,)", self.kind.forward_dynamics.__doc__)
         self.assertEqual(self.m.index_q("hinge"), 0)
+
+    def test_a_run_is_shown_on_one_line(self):
+        run = self.m.simulate([2.0], duration=1.0, every=0.25)
+        self.assertEqual(repr(run), "Run(Pendulum: 5 samples, t = 0 … 1 s; t, q[1], v[1], u[1])")
+        self.assertFalse(run == self.m.simulate([2.0], duration=1.0, every=0.25))
+        self.assertEqual(hash(run), hash(run))
 
     def test_energy_stays(self):
         run = self.m.simulate([2.0], duration=10.0, every=0.1, tolerance=1e-12)
@@ -169,8 +198,10 @@ class OfAPendulum(unittest.TestCase):
                 self.kind(mass=value, length=1.5)
         with self.assertRaisesRegex(linkwork.Error, "mass of `rod` cannot be negative"):
             self.kind(mass=-1.0, length=2.0)
-        copy = pickle.loads(pickle.dumps(self.m))
-        np.testing.assert_array_equal(copy.mass_matrix([0.1]), self.m.mass_matrix([0.1]))
+        copies = [pickle.loads(pickle.dumps(self.m)), pickle.loads(pickle.dumps(self.kind))(mass=2.0, length=1.5)]
+        for copy in [*copies, deepcopy(self.m)]:
+            np.testing.assert_array_equal(copy.mass_matrix([0.1]), self.m.mass_matrix([0.1]))
+        self.assertIs(pickle.loads(pickle.dumps(linkwork.Mechanism)), linkwork.Mechanism)
 
     def test_arrays_of_other_shapes_and_types(self):
         expected = self.m.inverse_dynamics([1.0], [2.0], [3.0])

@@ -60,6 +60,37 @@ print(Pendulum.__module__, m.mass_matrix([0.0])[0, 0], run.q[-1, 0])
             compile(stub, "pendulum.pyi", "exec")
             self.assertNotIn("import linkwork", stub)
 
+    def test_saved_packages_are_typed(self):
+        checkers = {
+            "mypy": ["-m", "mypy", "--strict"],
+            "pyright": ["-m", "pyright", "--pythonpath", sys.executable],
+        }
+        uses = """
+import numpy as np
+from pendulum import Pendulum, Run
+
+m = Pendulum(mass=2.0, length=1.5)
+inertia = m.mass_matrix([0.0])
+by_name = m.mass_matrix({"hinge": 0.0})
+run: Run = m.simulate({"hinge": 1.0}, duration=1.0, control=lambda t, q, v: -q)
+last: float = float(run.q[-1, 0]) + float(inertia[0, 0])
+heavier: Pendulum = m.replace(mass=3.0)
+q, v = m.roll_out(np.zeros((3, 1)), np.zeros((3, 1)), steps=3, h=0.1)
+"""
+        kind, bead = compiled(PENDULUM), compiled(BEAD)
+        with tempfile.TemporaryDirectory() as folder:
+            kind.save(folder)
+            bead.save(folder)
+            (Path(folder) / "uses.py").write_text(uses, encoding="utf-8")
+            (Path(folder) / "wrong.py").write_text("from pendulum import Pendulum\nPendulum(mass=1.0).mass_matrx([0.0])\n")
+            for checker, words in checkers.items():
+                if importlib.util.find_spec(checker) is None:
+                    continue
+                for files, expected in [(["pendulum", "bead", "uses.py"], 0), (["wrong.py"], 1)]:
+                    with self.subTest(checker, files=files):
+                        done = subprocess.run([sys.executable, *words, *files], capture_output=True, text=True, cwd=folder)
+                        self.assertEqual(done.returncode, expected, done.stdout + done.stderr)
+
     def test_the_command_writes_it(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "slider.rs"
