@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -70,7 +71,7 @@ def compile(
 ) -> type[Compiled]:
     """Compiles a mechanism to a class.
 
-    The first call builds Linkwork's command, which takes about a minute (the environment variable ``LINKWORK_COMMAND`` names an
+    The first call builds Linkwork's command, which takes about 80 s of processor time (the environment variable ``LINKWORK_COMMAND`` names an
     existing one of the same version). Every mechanism takes some seconds to half a minute, and is loaded from the cache when it is
     compiled again. Any number of processes can compile at the same time: one builds, and the others wait for the library.
 
@@ -405,49 +406,55 @@ def _cargo_build(
         )
     except OSError as error:
         raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
-    with process:
+    with process, progress:
         try:
             # Cargo ends the lines of its progress with carriage returns, which end a line here as well.
             for line in process.stderr or ():
                 step = re.match(r"\s*Building \[.*\] (\d+)/(\d+)", line)
                 if step:
-                    progress.show(int(step[1]), int(step[2]))
+                    progress.show(step[1], step[2])
                 elif not re.match(r"\s*(Compiling|Building|Finished|Locking|Updating|Download\w+|Adding|Blocking) ", line):
                     complaints.append(line)
         except BaseException:
             process.kill()
             raise
-    progress.end()
     if process.returncode != 0:
         text = "".join(complaints).strip() or f"exit status {process.returncode}"
         raise ToolchainError(f"{failure}:\n{text}\n(cargo's files are in {target}, which can be deleted)")
 
 
 class Progress:
-    """One line on a terminal, which is written again as the build goes on; elsewhere a line from time to time."""
+    """Shows a build on one line of a terminal, which is written again every second; elsewhere on a line every ten seconds."""
 
     def __init__(self, task: str, quiet: bool) -> None:
-        self.task, self.quiet = f"linkwork: {task}", quiet
+        self.task, self.quiet, self.crates = f"linkwork: {task}", quiet, ""
         self.terminal = sys.stderr is not None and sys.stderr.isatty()
-        self.start = self.last = time.monotonic()
-        self._write(f"{self.task} …", end="" if self.terminal else "\n")
+        self.start = time.monotonic()
+        self.ended = threading.Event()
+        self.thread = threading.Thread(target=self._repeat, daemon=True)
 
-    def show(self, done: int, count: int) -> None:
-        """Shows the number of crates that are compiled."""
-        now = time.monotonic()
-        if now - self.last >= (0.2 if self.terminal else 10.0):
-            self.last = now
-            text = f"{self.task}: {done} of {count} crates, {now - self.start:.0f} s"
-            self._write(f"\r{text:78}" if self.terminal else text, end="" if self.terminal else "\n")
+    def __enter__(self) -> "Progress":
+        self._write(f"{self.task} …")
+        self.thread.start()
+        return self
 
-    def end(self) -> None:
-        """Ends the line on a terminal."""
+    def __exit__(self, *_: object) -> None:
+        self.ended.set()
+        self.thread.join()
         if self.terminal:
-            self._write(f"\r{f'{self.task}: {time.monotonic() - self.start:.0f} s':78}", end="\n")
+            self._write(f"{self.task}: {time.monotonic() - self.start:.0f} s", end="\n")
 
-    def _write(self, text: str, end: str) -> None:
+    def show(self, done: str, count: str) -> None:
+        """Sets the number of crates that are compiled."""
+        self.crates = f"{done} of {count} crates, "
+
+    def _repeat(self) -> None:
+        while not self.ended.wait(1.0 if self.terminal else 10.0):
+            self._write(f"{self.task}: {self.crates}{time.monotonic() - self.start:.0f} s")
+
+    def _write(self, text: str, end: str = "") -> None:
         if not self.quiet:
-            print(text, end=end, file=sys.stderr, flush=True)
+            print(f"\r{text:78}" if self.terminal else text, end=end if self.terminal else "\n", file=sys.stderr, flush=True)
 
 
 @functools.cache
@@ -470,15 +477,14 @@ def _sources() -> Path:
 
 
 def _fingerprint() -> bytes:
-    """Returns a digest of the names, sizes and times of the sources."""
+    """Returns a digest of the sources."""
     folder = _sources()
     key = hashlib.sha256()
     files = [*folder.glob("Cargo.*")]
     for crate in ("macros", "macros/cli", "macros/compiler", "runtime", "runtime/library", "runtime/view"):
         files += [folder / crate / "Cargo.toml", *(folder / crate / "src").rglob("*.*")]
     for file in sorted(files):
-        about = file.stat()
-        key.update(f"{file.relative_to(folder)} {about.st_size} {about.st_mtime_ns}\n".encode())
+        key.update(f"{file.relative_to(folder)} {digest(file.read_bytes())}\n".encode())
     return key.digest()
 
 
