@@ -30,10 +30,11 @@ from ._results import Run
 _HERE = Path(__file__).resolve().parent
 
 
-#: The profile of all builds. The command and the libraries share the crates that both depend on, which are compiled once.
+#: The profile of all builds. The command and the libraries share the crates that both depend on, which are
+#: compiled once.
 _PROFILE = {"opt-level": "3", "codegen-units": "16", "debug": "false", "lto": "false"}
-#: Crates of the command that are not optimised, since that would take minutes. The command derives the equations of an arm in a
-#: second without it, those of a humanoid in four.
+#: Crates of the command that are not optimised, since that would take minutes. The command derives the
+#: equations of an arm in a second without it, those of a humanoid in four.
 _UNOPTIMISED = (
     "clap clap_builder clap_complete linkwork-cli linkwork-compiler linkwork-view prettyplease proc-macro2 quote roxmltree serde_json syn"
 ).split()
@@ -71,22 +72,25 @@ def compile(
 ) -> type[Compiled]:
     """Compiles a mechanism to a class.
 
-    The first call builds Linkwork's command, which takes about 80 s of processor time (the environment variable ``LINKWORK_COMMAND`` names an
-    existing one of the same version). Every mechanism takes some seconds to half a minute, and is loaded from the cache when it is
-    compiled again. Any number of processes can compile at the same time: one builds, and the others wait for the library.
+    The first call builds Linkwork's command, which takes about 80 s of processor time (the environment
+    variable ``LINKWORK_COMMAND`` names an existing one of the same version). Every mechanism takes some
+    seconds to half a minute, and is loaded from the cache when it is compiled again. Any number of processes
+    can compile at the same time: one builds, and the others wait for the library.
 
     Args:
-        source: the path of a robot file (URDF, MJCF, SDF) or of a Rust file with a struct that has ``#[mechanism]``; or such a
-            declaration as text.
+        source: the path of a robot file (URDF, MJCF, SDF) or of a Rust file with a struct that has
+            ``#[mechanism]``; or such a declaration as text.
         options: further arguments of the attribute, as in ``"base = free, inertia = trust"``.
         name: the struct, of a Rust file that has several.
-        tables: the figures of fields that are tables, by name: a path of a file of comma-separated values (for each point of the grid
-            a line with the variables, then the value), or ``(axes, values)`` with the points of each axis and an array that has as many
-            sides. Behind either may stand ``"smooth"`` and ``"extrapolated"``: ``(axes, values, "smooth")``, ``(path, "smooth")``.
-            The figures become constants of the library.
+        tables: the figures of fields that are tables, by name: a path of a file of comma-separated values
+            (for each point of the grid a line with the variables, then the value), or ``(axes, values)`` with
+            the points of each axis and an array that has as many sides. Behind either may stand ``"smooth"``
+            and ``"extrapolated"``: ``(axes, values, "smooth")``, ``(path, "smooth")``. The figures become
+            constants of the library.
         native: for the processor at hand rather than for all of its kind.
         batch: also functions of eight states at once, for arrays of states. Takes longer to compile.
-        derivatives: also derivatives of the dynamics, linear systems, and steps with Jacobians. Takes longer to compile.
+        derivatives: also derivatives of the dynamics, linear systems, and steps with Jacobians. Takes longer
+            to compile.
         quiet: says nothing while it builds.
 
     Returns:
@@ -94,7 +98,8 @@ def compile(
 
     Raises:
         ToolchainError: there is no toolchain of Rust, or it cannot build.
-        Error: the mechanism has mistakes, all of which the message has with their places; or the text is no declaration.
+        Error: the mechanism has mistakes, all of which the message has with their places; or the text is no
+            declaration.
         FileNotFoundError: there is no such file.
     """
     text, path = _source(source)
@@ -117,7 +122,8 @@ def compile(
 
 
 def _compile_source(origin: dict[str, Any], native: bool, quiet: bool) -> tuple[Path, dict[str, str] | None]:
-    """Returns the compiled library of a source, and digests of the files that it was made of, if they are known."""
+    """Returns the compiled library of a source, and digests of the files that it was made of, if they are
+    known."""
     command, path = _command(quiet), origin["path"]
     with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
         if path is None:
@@ -169,7 +175,8 @@ def gallery(name: None = None) -> list[str]: ...
 @overload
 def gallery(name: str, **settings: Any) -> type[Compiled]: ...
 def gallery(name: str | None = None, **settings: Any) -> list[str] | type[Compiled]:
-    """Returns the names of the mechanisms in Linkwork's gallery, or the class of one of them, compiled as by :func:`compile`.
+    """Returns the names of the mechanisms in Linkwork's gallery, or the class of one of them, compiled as by
+    :func:`compile`.
 
     >>> "CartPole" in linkwork.gallery()
     True
@@ -424,7 +431,8 @@ def _cargo_build(
 
 
 class Progress:
-    """Shows a build on one line of a terminal, which is written again every second; elsewhere on a line every ten seconds."""
+    """Shows a build on one line of a terminal, which is written again every second; elsewhere on a line every
+    ten seconds."""
 
     def __init__(self, task: str, quiet: bool) -> None:
         self.task, self.quiet, self.crates = f"linkwork: {task}", quiet, ""
@@ -524,7 +532,8 @@ def _program_suffix() -> str:
 
 
 def _run(arguments: list[Any], failure: str | None) -> str:
-    """Returns the output of a command. Its complaints are the error; without `failure` they are errors of the mechanism."""
+    """Returns the output of a command. Its complaints are the error; without `failure` they are errors of the
+    mechanism."""
     pauses = [1.0, 0.2, 0.05]
     while True:
         try:

@@ -1,7 +1,7 @@
 """The cache of compiled files, shared by any number of processes.
 
-Processes build one at a time, under a lock that the operating system releases when its holder ends, killed or not. A file is
-written under a unique name and then renamed, so that readers find a complete file or none.
+Processes build one at a time, under a lock that the operating system releases when its holder ends, killed or
+not. A file is written under a unique name and then renamed, so that readers find a complete file or none.
 """
 
 import contextlib
@@ -36,8 +36,8 @@ def cache_folder() -> Path:
 
 
 def build_once(path: Path, build: Callable[[Path], Path], quiet: bool) -> Path:
-    """Returns a file of the cache. Builds it if it is missing or damaged; `build` gets cargo's target folder and returns the
-    built file."""
+    """Returns a file of the cache. Builds it if it is missing or damaged; `build` gets cargo's target folder
+    and returns the built file."""
     with contextlib.suppress(OSError):
         if is_intact(path):
             return path
@@ -80,8 +80,8 @@ def report_write_errors() -> Iterator[None]:
 
 @contextlib.contextmanager
 def hold_lock(quiet: bool) -> Iterator[Path]:
-    """Admits one process, and one of its threads, at a time. Returns cargo's target folder; a temporary one where the file system
-    of the cache has no locks."""
+    """Admits one process, and one of its threads, at a time. Returns cargo's target folder; a temporary one
+    where the file system of the cache has no locks."""
     folder = cache_folder()
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "a+b") as file:
@@ -102,7 +102,8 @@ _HELD: set[IO[bytes]] = set()
 
 
 def _close_inherited() -> None:
-    """Closes lock files in a forked process, which would hold the locks of its parent beyond the parent's end."""
+    """Closes lock files in a forked process, which would hold the locks of its parent beyond the parent's
+    end."""
     for file in _HELD:
         file.close()
     _HELD.clear()

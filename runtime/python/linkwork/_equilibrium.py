@@ -14,8 +14,8 @@ Vector = NDArray[Any]
 
 
 class Rest:
-    """The equations of a mechanism at rest under inputs, of those velocities that are free: forces and those of the constraints
-    balance, and the constraints hold."""
+    """The equations of a mechanism at rest under inputs, of those velocities that are free: forces and those
+    of the constraints balance, and the constraints hold."""
 
     def __init__(self, mechanism: "Mechanism", inputs: Vector, free: Vector) -> None:
         self.m: Any = mechanism

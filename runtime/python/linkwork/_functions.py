@@ -15,7 +15,8 @@ from ._names import Error, count as whole, hint, index, numbers, safe
 
 
 def _structures(number: Any) -> tuple[Any, Any, Any]:
-    """Returns the settings of simulations and rollouts, and the type of controllers, for a type of numbers."""
+    """Returns the settings of simulations and rollouts, and the type of controllers, for a type of
+    numbers."""
 
     class Settings(ctypes.Structure):
         _fields_ = [
@@ -101,7 +102,8 @@ class Library:
 
 
 def address(array: NDArray[Any]) -> int:
-    """Returns the address of an array's numbers. The fast path does not work for empty and for read-only arrays."""
+    """Returns the address of an array's numbers. The fast path does not work for empty and for read-only
+    arrays."""
     try:
         return _addressof(_from_buffer(array))  # type: ignore[arg-type, unused-ignore]
     except (TypeError, ValueError, BufferError):
@@ -118,6 +120,8 @@ ENTRIES = {"q": "q", "from": "q", "to": "q", "v": "v", "a": "v", "tau": "v", "dv
 def marked(chosen: str | int | Iterable[str | int], velocities: Sequence[str], dtype: Any) -> NDArray[Any]:
     """Returns marks at velocities that are chosen by names or indices."""
     marks = np.zeros(len(velocities), dtype)
+    if not isinstance(chosen, (str, int, Iterable)):
+        raise TypeError(f"velocities are chosen by names or indices, found {chosen!r}")
     for one in [chosen] if isinstance(chosen, (str, int)) else chosen:
         k = index(velocities, one, "velocity") if isinstance(one, str) else one
         if not isinstance(k, (int, np.integer)) or not 0 <= k < len(velocities):

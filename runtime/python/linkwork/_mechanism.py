@@ -40,8 +40,8 @@ class _Kind(type):
 
 
 class Mechanism(metaclass=_Kind):
-    """A mechanism with values of its parameters. Its subclasses are made by :func:`linkwork.compile`; parameters are given by name,
-    those that have a dot in their names in a dictionary."""
+    """A mechanism with values of its parameters. Its subclasses are made by :func:`linkwork.compile`;
+    parameters are given by name, those that have a dot in their names in a dictionary."""
 
     #: The name of the struct.
     name: ClassVar[str] = ""
@@ -143,7 +143,7 @@ class Mechanism(metaclass=_Kind):
         values = ", ".join(f"{name}: float = ..." for name in cls.parameter_names if name.isidentifier() and not keyword.iskeyword(name))
         star = f", *, {values}" if values else ""
         lines.append(f"    def __init__(self, parameters: Mapping[str, float] | None = None, /{star}) -> None: ...")
-        kinds = {"frame": "str | int", "velocities": "str | int | Iterable[str | int]", "number": "float"}
+        kinds = {"frame": "str | int", "velocities": "str | int | Iterable[str | int]"}
         for name, about in cls._functions.items():
             if name not in cls.__dict__:
                 continue
@@ -158,12 +158,13 @@ class Mechanism(metaclass=_Kind):
     @classmethod
     @checked
     def save(cls, folder: str | os.PathLike[str] = ".") -> Path:
-        """Writes the class as a package into a folder: a module with its library and its stubs, which needs NumPy alone. It can be
-        copied to machines without Linkwork and Rust that have the same system and the same kind of processor; compile with
-        `native=False` for those with an older one.
+        """Writes the class as a package into a folder: a module with its library and its stubs, which needs
+        NumPy alone. It can be copied to machines without Linkwork and Rust that have the same system and the
+        same kind of processor; compile with `native=False` for those with an older one.
 
         Returns:
-            The folder of the package. Its name is that of the class in small letters: `CartPole` is imported from `cart_pole`.
+            The folder of the package. Its name is that of the class in small letters: `CartPole` is imported
+            from `cart_pole`.
 
         Raises:
             FileExistsError: something else has this name.
@@ -253,13 +254,15 @@ class Mechanism(metaclass=_Kind):
             start: time at the start, s.
             inputs: constant inputs: an array, or values by name.
             control: a function of `t, q, v` that returns the inputs, instead of constant ones.
-            period: time between calls of `control`, s; its inputs are held in between. Without it `control` is called whenever
-                the method evaluates the dynamics, and must be continuous.
-            method: `"dormand_prince"`, `"dormand_prince8"`, `"rodas"` (stiff), by tolerance; `"rk4"`, `"implicit_midpoint"`, by
-                step. With contacts `"event_driven"`, by tolerance, or `"time_stepping"`, by step, or
-                `"time_stepping_midpoint"` with two evaluations of the dynamics per step in place of four. By default
-                `"dormand_prince"` and `"event_driven"`; with a `step` `"rk4"` and `"time_stepping"`.
-            tolerance: error of a step, relative and absolute, of methods by tolerance; 1e-8 if it is not given.
+            period: time between calls of `control`, s; its inputs are held in between. Without it `control`
+                is called whenever the method evaluates the dynamics, and must be continuous.
+            method: `"dormand_prince"`, `"dormand_prince8"`, `"rodas"` (stiff), by tolerance; `"rk4"`,
+                `"implicit_midpoint"`, by step. With contacts `"event_driven"`, by tolerance, or
+                `"time_stepping"`, by step, or `"time_stepping_midpoint"` with two evaluations of the dynamics
+                per step in place of four. By default `"dormand_prince"` and `"event_driven"`; with a `step`
+                `"rk4"` and `"time_stepping"`.
+            tolerance: error of a step, relative and absolute, of methods by tolerance; 1e-8 if it is not
+                given.
             step: length of a step, s, of methods by step.
 
         Raises:
@@ -347,13 +350,14 @@ class Mechanism(metaclass=_Kind):
         start: float = 0.0,
         threads: int = 0,
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Simulates many motions by steps of the classical method of Runge and Kutta, eight states at a time and on all processors, while other
-        threads of Python go on.
+        """Simulates many motions by steps of the classical method of Runge and Kutta, eight states at a time
+        and on all processors, while other threads of Python go on.
 
         Args:
             q: configurations at the start, (N, nq).
             v: velocities at the start, (N, nv).
-            inputs: held during each step: (steps, nu) for all states alike, or (N, steps, nu); zero if none are given.
+            inputs: held during each step: (steps, nu) for all states alike, or (N, steps, nu); zero if none
+                are given.
             steps: how many, if there are no inputs.
             h: length of a step, s.
             start: time at the start, s.
@@ -409,10 +413,10 @@ class Mechanism(metaclass=_Kind):
         tolerance: float = 1e-12,
         iterations: int = 50,
     ) -> NDArray[Any]:
-        """Returns a configuration near `q` in which the mechanism stays at rest under constant inputs: Newton's method with half steps on the
-        generated derivatives. Under constraints they hold there, and their forces are found along with it (the change of these with
-        the configuration by differences of the generated Jacobian). Limits of joints are not heeded: a long way off `q` it may lie
-        beyond them.
+        """Returns a configuration near `q` in which the mechanism stays at rest under constant inputs:
+        Newton's method with half steps on the generated derivatives. Under constraints they hold there, and
+        their forces are found along with it (the change of these with the configuration by differences of the
+        generated Jacobian). Limits of joints are not heeded: a long way off `q` it may lie beyond them.
 
         Args:
             q: where the search begins: an array, or values by name.
@@ -430,14 +434,16 @@ class Mechanism(metaclass=_Kind):
         first = self._neutral() if q is None else self._vector(q, self.nq, "q")
         u = np.zeros(self.nu) if inputs is None else self._vector(inputs, self.nu, "u")
         free = marked(held, self.velocities, self._library.dtype) == 0
+        tolerance, iterations = number(tolerance, "`tolerance`"), count(iterations, "iterations")
         return find(Rest(self, u, free), first, tolerance, iterations) if free.any() else first
 
     @checked
     def linear_system(
         self, q: Entries, v: Entries | None = None, inputs: Entries | None = None, *, t: float = 0.0
     ) -> LinearSystem:
-        """Returns the linear system about a state, which fulfils the constraints; of one that is no equilibrium A and B describe what is
-        added to its motion. Every joint of a robot file is an input unless the option `inputs` says otherwise.
+        """Returns the linear system about a state, which fulfils the constraints; of one that is no
+        equilibrium A and B describe what is added to its motion. Every joint of a robot file is an input
+        unless the option `inputs` says otherwise.
 
         Raises:
             Error: without derivatives, or off the constraints: `assemble` brings a configuration onto them.
@@ -489,7 +495,8 @@ def _stub_type(argument: dict[str, Any], kinds: dict[str, str]) -> str:
 
 
 def _documentation(description: dict[str, Any]) -> str:
-    """Returns the documentation of a class: that of the struct, and tables of the coordinates, inputs and parameters."""
+    """Returns the documentation of a class: that of the struct, and tables of the coordinates, inputs and
+    parameters."""
     limits = {limit["index"]: limit for limit in description["limits"]}
     shown: Callable[[Any], str] = lambda value: "" if value is None else value if isinstance(value, str) else f"{value:g}"
     velocities = []

@@ -91,7 +91,11 @@ def numbers(value: Any, dtype: Any, what: str) -> NDArray[Any]:
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise TypeError(f"{what} has masked entries")
     try:
-        return np.asarray(value, dtype)
+        array = np.asarray(value)
+        # NumPy would convert texts and dates.
+        if array.dtype.kind not in "biufO":
+            raise ValueError
+        return np.asarray(array, dtype)
     except (TypeError, ValueError) as error:
         raise type(error)(f"{what} is an array of numbers, found {value!r:.100}") from None
 

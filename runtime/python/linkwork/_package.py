@@ -54,7 +54,8 @@ def save(kind: type[Mechanism], folder: str | os.PathLike[str]) -> Path:
         shutil.copy(_HERE / part, package / part)
     text = _MODULE.format(name=kind.name, machine=machine, library=own)
     (package / "__init__.py").write_text(text, encoding="utf-8")
-    imports = "from ._mechanism import Mechanism\nfrom ._names import Error\nfrom ._results import LinearSystem, Run\n"
+    imports = "from ._mechanism import Mechanism as Mechanism\nfrom ._names import Error as Error\n"
+    imports += "from ._results import LinearSystem as LinearSystem, Run as Run\n"
     stub = kind.stub().replace("import linkwork\n", imports)
     stub = stub.replace("(linkwork.Mechanism)", "(Mechanism)")
     (package / "__init__.pyi").write_text(stub, encoding="utf-8")

@@ -57,7 +57,8 @@ class Run:
         return f"Run({m.name}: {len(self)} samples{times}; t, q[{m.nq}], v[{m.nv}], u[{m.nu}])"
 
     def csv(self, path: str | os.PathLike[str]) -> None:
-        """Writes the samples as comma-separated values with the columns t, q.…, v.…, u.…, which `linkwork view --motion` reads."""
+        """Writes the samples as comma-separated values with the columns t, q.…, v.…, u.…, which `linkwork
+        view --motion` reads."""
         m = self.mechanism
         head = ["t"] + [f"q.{n}" for n in m.configuration]
         head += [f"v.{n}" for n in m.velocities] + [f"u.{n}" for n in m.inputs]
@@ -68,7 +69,8 @@ class Run:
 
     @checked
     def view(self, path: str | os.PathLike[str] | None = None) -> Page:
-        """Writes a page that shows the motion, and opens offline: to `path`, or to the mechanism's name with .html."""
+        """Writes a page that shows the motion, and opens offline: to `path`, or to the mechanism's name with
+        .html."""
         try:
             build = importlib.import_module("._build", __package__)
         except ImportError:
@@ -80,8 +82,9 @@ class Run:
 
     @checked
     def plot(self, *names: str, ax: Any = None) -> Any:
-        """Draws entries of the motion over time with matplotlib: of the configuration by default, or those that are named
-        (`"hinge"`, `"v.hinge"`, `"u.motor"`). Entries of one unit share axes, one below the other; all go into `ax` if it is given.
+        """Draws entries of the motion over time with matplotlib: of the configuration by default, or those
+        that are named (`"hinge"`, `"v.hinge"`, `"u.motor"`). Entries of one unit share axes, one below the
+        other; all go into `ax` if it is given.
 
         Returns:
             The axes; an array of them where there are several.
@@ -128,7 +131,8 @@ _MANY = {"q": "coordinates", "v": "velocities", "u": "inputs"}
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
-    """x' = A x + B u about a state: displacements of the configuration, then changes of the velocity, each in the order of `v`."""
+    """x' = A x + B u about a state: displacements of the configuration, then changes of the velocity, each in
+    the order of `v`."""
 
     a: NDArray[Any]
     b: NDArray[Any]
@@ -139,8 +143,8 @@ class LinearSystem:
 
     @checked
     def control(self, c: ArrayLike | None = None, d: ArrayLike | None = None) -> Any:
-        """Returns the system in the type of the package python-control, whose `lqr` and others take it; all states are outputs if no others
-        are given."""
+        """Returns the system in the type of the package python-control, whose `lqr` and others take it; all
+        states are outputs if no others are given."""
         control: Any = importlib.import_module("control")
 
         c = np.eye(len(self.a)) if c is None else c

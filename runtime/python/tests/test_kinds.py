@@ -169,7 +169,7 @@ class OfRobots(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "gelenk-größe 手 'x' \"y\"" / "zwei räder.urdf"
             path.parent.mkdir()
-            path.write_text(ROBOT.replace("shoulder", "Schulter größe 手").replace("upper", "Oberarm ß"), encoding="utf-8")
+            path.write_text(ROBOT.replace("shoulder", "Schulter größe 手").replace('"upper"', '"Oberarm ß"'), encoding="utf-8")
             arm = linkwork.compile(path, quiet=True, batch=False, derivatives=False)()
             self.assertEqual(arm.configuration, ["Schulter größe 手"])
             np.testing.assert_allclose(arm.mass_matrix({"Schulter größe 手": 0.3}), [[0.1 + 2 * 0.25]])

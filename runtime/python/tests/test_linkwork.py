@@ -53,6 +53,8 @@ class OfAPendulum(unittest.TestCase):
                 "    name    unit",
                 "    mass    kg",
                 "    length  m",
+                "",
+                "Frames: rod.",
             ],
         )
         self.assertIn("hinge''", self.kind.equations)
@@ -214,8 +216,20 @@ class OfAPendulum(unittest.TestCase):
         for wrong in ([1.0, 2.0], 1.0, np.zeros((2, 3, 1)), np.zeros((1, 2))):
             with self.assertRaisesRegex(ValueError, "has the shape"):
                 self.m.mass_matrix(wrong)
-        with self.assertRaises((ValueError, TypeError)):
-            self.m.mass_matrix(["a"])
+        # NumPy would make numbers of all of these.
+        for wrong in (["a"], ["1"], np.array(["2020-01-01"], "datetime64[D]"), np.array([b"1"])):
+            with self.assertRaisesRegex(ValueError, "q is an array of numbers"):
+                self.m.mass_matrix(wrong)
+            with self.assertRaisesRegex(ValueError, "q is an array of numbers"):
+                self.m.roll_out([wrong], [[0.0]], steps=1, h=0.1)
+        for wrong in ({"steps": 1.5}, {"steps": "1"}, {"steps": 1, "threads": 0.5}):
+            with self.assertRaisesRegex(TypeError, "is a whole number, found"):
+                self.m.roll_out([[0.0]], [[0.0]], h=0.1, **wrong)
+        with self.assertRaisesRegex(ValueError, "`steps` is a whole number that is not negative, found -1"):
+            self.m.roll_out([[0.0]], [[0.0]], h=0.1, steps=-1)
+        for wrong in ({"held": 1.5}, {"held": None}, {"tolerance": "a"}, {"iterations": 1.5}):
+            with self.assertRaisesRegex(TypeError, "found"):
+                self.m.equilibrium([0.1], **wrong)
         with self.assertRaisesRegex(TypeError, "complex"):
             self.m.mass_matrix([1j])
         with self.assertRaisesRegex(TypeError, "masked"):
@@ -306,7 +320,7 @@ class OfAPendulum(unittest.TestCase):
     def test_stubs_are_python(self):
         text = self.kind.stub()
         compile(text, "pendulum.pyi", "exec")
-        self.assertIn("def mass_matrix(self, q: ArrayLike, /", text)
+        self.assertIn("def mass_matrix(self, q: ArrayLike | Mapping[str, float], /", text)
 
 
 class InSinglePrecision(unittest.TestCase):
