@@ -134,14 +134,10 @@ fn export_library() -> Command {
             .value_parser(value_parser!(PathBuf)),
     )
     .arg(text("prefix", "NAME", "What names begin with [default: the mechanism's name]"))
-    .arg(text(
-        "linkwork",
-        "FOLDER",
-        "The sources of Linkwork that it is built with [default: its release]",
-    ))
+    .arg(text("linkwork", "FOLDER", "The sources of Linkwork that it is built with [default: its release]"))
     .arg(switch(
         "expanded",
-        "Writes the generated code instead of the attribute; with RUSTFLAGS=\"--cfg linkwork_expanded\" the crate is built without the compiler",
+        "Writes the generated code instead of the attribute, for builds without the compiler",
     ))
 }
 
