@@ -30,9 +30,6 @@ from ._results import Run
 _HERE = Path(__file__).resolve().parent
 
 
-#: The profile of all builds. The command and the libraries share the crates that both depend on, which are
-#: compiled once.
-_PROFILE = {"opt-level": "3", "codegen-units": "16", "debug": "false", "lto": "false"}
 #: Crates of the command that are not optimised, since that would take minutes. The command derives the
 #: equations of an arm in a second without it, those of a humanoid in four.
 _UNOPTIMISED = (
@@ -316,7 +313,7 @@ def _build_library(crate: Path, native: bool, quiet: bool) -> Path:
         text = manifest.read_text(encoding="utf-8")
         manifest.write_text(text.replace('name = "mechanism"', f'name = "{own}"'), encoding="utf-8")
         progress = Progress(f"compiling {name}", quiet)
-        _cargo_build(manifest, _PROFILE, _flags(native), target, progress, "the library cannot be built")
+        _cargo_build(manifest, [], _flags(native), target, progress, "the library cannot be built")
         folder = target / _host() / "release"
         own_library = folder / (_stem() + own + _suffix())
         library = own_library.rename(folder / f"newest{_suffix()}")
@@ -356,7 +353,8 @@ def _command(quiet: bool) -> Path:
             shutil.rmtree(sources, ignore_errors=True)
             shutil.copytree(_sources(), sources, ignore=shutil.ignore_patterns("models"))
         manifest = sources / "macros" / "cli" / "Cargo.toml"
-        profile = {**_PROFILE, **{f'package."{name}".opt-level': "0" for name in _UNOPTIMISED}}
+        # The other crates are compiled once for the command and for libraries.
+        profile = [f'profile.release.package."{name}".opt-level=0' for name in _UNOPTIMISED]
         progress = Progress("compiling the compiler, once", quiet)
         _cargo_build(manifest, profile, _flags(native=True), target, progress, "Linkwork's command cannot be built")
         return target / _host() / "release" / f"linkwork{_program_suffix()}"
@@ -381,12 +379,12 @@ def _flags(native: bool) -> str:
 
 
 def _cargo_build(
-    manifest: Path, profile: dict[str, str], flags: str, target: Path, progress: "Progress", failure: str
+    manifest: Path, profile: list[str], flags: str, target: Path, progress: "Progress", failure: str
 ) -> None:
     """Runs `cargo build` and shows its progress."""
     arguments = [str(_cargo()), "build", "--release", "--target", _host(), "--manifest-path", str(manifest)]
-    for name, value in profile.items():
-        arguments += ["--config", f"profile.release.{name}={value}"]
+    for setting in profile:
+        arguments += ["--config", setting]
     environment = {
         **os.environ,
         "CARGO_TARGET_DIR": str(target),
