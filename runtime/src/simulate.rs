@@ -15,6 +15,7 @@ use crate::integrate::{
     ContinuousInputs, DormandPrince, Error, Inputs, Method, NoInputs, SampledInputs, State, System,
     not_negative, positive,
 };
+use crate::private::to_f64;
 use crate::{Real, Rheonomic};
 use core::fmt;
 use nalgebra::SVector;
@@ -80,6 +81,51 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub u: SVector<T, NU>,
     /// The event that this sample reports, counted from zero in the order of declaration; `None` otherwise.
     pub event: Option<usize>,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, NV, NU> {
+    /// A sample of a motion that does not come from [`simulate`]: measured, computed by another program, or a single state to be drawn
+    /// or logged. It reports no event.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    ///
+    /// #[mechanism(gravity = -9.81 * z)]
+    /// struct Top {
+    ///     #[body(mass = 1, com = 0.1 * z, inertia = cylinder(1, 0.05, 0.02, z))]
+    ///     top: Body,
+    ///     #[joint(ground -> top)]
+    ///     tip: Ball,
+    /// }
+    ///
+    /// let upright = Sample::new(&Top {}, 0.5, [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 30.0], [])?;
+    /// assert_eq!((upright.t, upright.v[2]), (0.5, 30.0));
+    /// // No quaternion, and no time.
+    /// assert!(Sample::new(&Top {}, 0.5, [0.0; 4], [0.0; 3], []).is_err());
+    /// assert!(Sample::new(&Top {}, f64::NAN, [0.0, 0.0, 0.0, 1.0], [0.0; 3], []).is_err());
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] for a number that is infinite or NaN, and [`Error::Quaternion`] for a quaternion that is not of unit length.
+    pub fn new<M>(
+        mechanism: &M,
+        t: T,
+        q: impl Start<T, NQ>,
+        v: impl Start<T, NV>,
+        u: impl Start<T, NU>,
+    ) -> Result<Self, Error>
+    where
+        M: Rheonomic<NQ, NV, NU, Scalar = T>,
+    {
+        let (q, v, u) = (q.vector(), v.vector(), u.vector());
+        if !q.iter().chain(&v).chain(&u).chain([&t]).all(|x| x.is_finite()) {
+            return Err(Error::NotFinite { t: to_f64(t) });
+        }
+        run::check_quaternions::<M, T, NQ, NV, NU>(&q, &mechanism.integrate(&q, &SVector::zeros()))?;
+        Ok(Self { t, q, v, u, event: None })
+    }
 }
 
 /// When samples are due.

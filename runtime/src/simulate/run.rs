@@ -21,6 +21,22 @@ fn far<T: Real>(a: T, b: T) -> bool {
     !near
 }
 
+/// Checks that a configuration is equal to the one with unit quaternions.
+pub(super) fn check_quaternions<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+    q: &SVector<T, NQ>,
+    unit: &SVector<T, NQ>,
+) -> Result<(), Error>
+where
+    M: Rheonomic<NQ, NV, NU, Scalar = T>,
+{
+    let off = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| far(*a, *b));
+    // From the back: NaN may have spread to the position in front of the quaternion.
+    match (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {
+        Some(coordinate) => Err(Error::Quaternion { coordinate }),
+        None => Ok(()),
+    }
+}
+
 /// The name of the entry that moves most from one vector to another, and by how much, if any is [`far`].
 fn farthest<T: Real, const N: usize>(
     to: &SVector<T, N>,
@@ -116,11 +132,7 @@ where
         if M::SPEEDS && unit.iter().any(|x| !x.is_finite()) {
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
-        let off = |i: &usize| unit.get(*i).zip(start.q.get(*i)).is_some_and(|(a, b)| far(*a, *b));
-        // From the back: what is not a number may have spread to the place in front of the quaternion.
-        if let Some(coordinate) = (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {
-            return Err(Error::Quaternion { coordinate });
-        }
+        check_quaternions::<M, T, NQ, NV, NU>(&start.q, &unit)?;
         let start = self.parted(start)?;
         let node = self.on_constraints(start)?;
         let t = to_f64(node.t);
