@@ -23,9 +23,10 @@ pub struct Piece {
 /// What of a declaration a piece shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A body, by its mass properties: the solids of its inertia, or figures that a solid can be made of.
+    /// A body, by its mass properties: the solids of its inertia, or mass and moments that determine an ellipsoid. A body that a file
+    /// draws by meshes has these pieces as well, for programs that cannot read them.
     Body,
-    /// What leads from the joint that holds a body to its other joints and its centre of mass.
+    /// Bars from the joint that holds a body to its other joints and its centre of mass, for the same bodies.
     Link,
     /// A body, by the visual geometry of a file.
     Visual,

@@ -26,8 +26,10 @@ pub(crate) struct Shape {
     pub(crate) frames: [Option<usize>; 2],
     pub(crate) numbers: Vec<f64>,
     pub(crate) mesh: Option<Mesh>,
-    /// It stands for figures that no form is declared for.
+    /// An ellipsoid made of mass and moments, for which no form is declared.
     fitted: bool,
+    /// It is declared by the mechanism, not added by the program.
+    declared: bool,
 }
 
 /// A number of any scalar type.
@@ -54,6 +56,7 @@ impl Figure {
             let Some(numbers) = numbers.get(piece.first..end) else { continue };
             figure.push(piece.name, piece.role, piece.kind, piece.frames, numbers);
         }
+        figure.shapes.iter_mut().for_each(|shape| shape.declared = true);
         figure.fit();
         figure
     }
@@ -111,12 +114,15 @@ impl Figure {
 
     /// Reads the triangles of a robot's meshes, STL, OBJ or COLLADA, from a folder. A path of the robot's file, `package://name/path` or
     /// a path of its own, is looked for there with all of it, then with ever fewer of its first folders. Without this call, and
-    /// where no file of the name is found, meshes are left out.
+    /// where no file of the name is found, the bodies are drawn by their mass properties, and
+    /// [`missing_meshes`](Self::missing_meshes) lists the files.
     ///
     /// # Errors
     ///
-    /// If a file of the name is found, and cannot be read as triangles.
+    /// If the folder cannot be read, or if a file of the name is found, and cannot be read as triangles.
     pub fn meshes(mut self, folder: impl AsRef<Path>) -> Result<Figure, Error> {
+        let unreadable = |cause| Error::File { path: folder.as_ref().to_path_buf(), cause };
+        std::fs::read_dir(folder.as_ref()).map_err(unreadable)?;
         for shape in &mut self.shapes {
             if let (Kind::Mesh(path), Role::Visual) = (shape.kind, shape.role)
                 && let Some(found) = mesh::find(folder.as_ref(), path)
@@ -125,6 +131,36 @@ impl Figure {
             }
         }
         Ok(self)
+    }
+
+    /// Paths of the meshes that were not read, each once, as the robot's file writes them.
+    pub fn missing_meshes(&self) -> Vec<&str> {
+        let mut missing = Vec::new();
+        for shape in &self.shapes {
+            if let (Kind::Mesh(path), Role::Visual, None) = (shape.kind, shape.role, &shape.mesh)
+                && !missing.contains(&path)
+            {
+                missing.push(path);
+            }
+        }
+        missing
+    }
+
+    /// The shapes that are drawn.
+    pub(crate) fn shown(&self) -> impl Iterator<Item = &Shape> {
+        self.shapes.iter().filter(|shape| shape.is_visible() && !self.has_meshes(shape))
+    }
+
+    /// Whether a shape shows the mass properties of a body whose meshes were all read.
+    fn has_meshes(&self, shape: &Shape) -> bool {
+        let is_mesh = |s: &&Shape| {
+            s.declared && s.role == Role::Visual && matches!(s.kind, Kind::Mesh(_)) && s.name == shape.name
+        };
+        let mut meshes = self.shapes.iter().filter(is_mesh).peekable();
+        shape.declared
+            && matches!(shape.role, Role::Body | Role::Link)
+            && meshes.peek().is_some()
+            && meshes.all(|s| s.mesh.is_some())
     }
 
     /// Names of the frames.
@@ -152,7 +188,8 @@ impl Figure {
             }
             kind => (kind, numbers.to_vec()),
         };
-        self.shapes.push(Shape { name: name.to_string(), role, kind, frames, numbers, mesh: None, fitted });
+        let (name, declared) = (name.to_string(), false);
+        self.shapes.push(Shape { name, role, kind, frames, numbers, mesh: None, fitted, declared });
     }
 
     /// Ellipsoids that stand for figures are no longer than the links: the inertias of many files are made up.
@@ -232,7 +269,7 @@ impl Shape {
         }
     }
 
-    /// It as data of a page; `renumber` gives the number of a frame there.
+    /// Serialises the shape as JSON; `renumber` maps frame indices to those of the page.
     pub(crate) fn json(&self, renumber: impl Fn(usize) -> usize) -> String {
         let frame = |k: Option<usize>| k.map_or("-1".to_string(), |k| renumber(k).to_string());
         let (kind, more) = match self.kind {

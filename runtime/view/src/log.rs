@@ -1,10 +1,13 @@
 //! Logs of motions as comma-separated values (RFC 4180).
 
+use crate::Error;
+use crate::figure::plain;
+use crate::motion::check_times;
 use linkwork::simulate::Sample;
 use linkwork::{Real, Rheonomic};
 use std::fmt::{Display, Write};
 
-/// A motion as comma-separated values: a line of names, then one for each sample with time, s, configuration, velocity and
+/// Writes a motion as comma-separated values: a line of names, then one for each sample with time, s, configuration, velocity and
 /// inputs, each with all its digits.
 ///
 /// The columns are `t`, and the names of `CONFIGURATION`, `VELOCITIES` and `INPUTS` after `q.`, `v.` and `u.`. Names with commas,
@@ -22,18 +25,24 @@ use std::fmt::{Display, Write};
 /// }
 ///
 /// let fall: Vec<_> = simulate(&Pendulum {}).from([0.5], [0.0]).duration(0.1).sample_every(0.05).collect::<Result<_, _>>()?;
-/// let log = linkwork_view::csv(&Pendulum {}, &fall);
+/// let log = linkwork_view::csv(&Pendulum {}, &fall)?;
 /// assert!(log.starts_with("t,q.hinge,v.hinge\r\n0,0.5,0\r\n0.05,"));
-/// # Ok::<(), linkwork::integrate::Error>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # Errors
+///
+/// If there are no samples, or if a time is not finite or before the one that precedes it, as for [`page`](crate::page). Other numbers
+/// may be infinite or NaN: the log shows where a motion fails.
 pub fn csv<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     _mechanism: &M,
     samples: &[Sample<T, NQ, NV, NU>],
-) -> String
+) -> Result<String, Error>
 where
     T: Real + Display,
     M: Rheonomic<NQ, NV, NU, Scalar = T>,
 {
+    check_times("csv", samples.iter().map(|sample| plain(sample.t)))?;
     let names =
         |list: &[&str], of: &str| list.iter().map(|name| field(&format!("{of}.{name}"))).collect::<Vec<_>>();
     let head = [names(&M::CONFIGURATION, "q"), names(&M::VELOCITIES, "v"), names(&M::INPUTS, "u")].concat();
@@ -47,7 +56,7 @@ where
         }
         out.push_str("\r\n");
     }
-    out
+    Ok(out)
 }
 
 /// A field, in quotes where it needs them.

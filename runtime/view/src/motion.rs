@@ -107,14 +107,8 @@ impl Motion {
         placements: Vec<Vec<IsometryMatrix3<f64>>>,
     ) -> Result<Motion, Error> {
         let motion = || title.to_string();
-        if times.is_empty() {
-            return Err(Error::Empty { motion: motion() });
-        }
+        check_times(title, times.iter().copied())?;
         check(&format!("the placements of `{title}`"), times.len(), placements.len())?;
-        let late = |k: usize| !times[k].is_finite() || k > 0 && times[k] < times[k - 1];
-        if let Some(sample) = (0..times.len()).find(|k| late(*k)) {
-            return Err(Error::Time { motion: motion(), sample });
-        }
         for (sample, list) in placements.iter().enumerate() {
             check(
                 &format!("the placements of sample {sample} of `{title}`"),
@@ -312,6 +306,11 @@ impl Motion {
         shown
     }
 
+    /// Paths of meshes of its figure that were not read.
+    pub(crate) fn missing_meshes(&self) -> Vec<&str> {
+        self.figure.missing_meshes()
+    }
+
     /// The frames that something moves with, by number.
     pub(crate) fn used(&self) -> Vec<usize> {
         let mut used = self.figure.used();
@@ -367,7 +366,7 @@ impl Motion {
         });
         let captions =
             self.captions.iter().map(|(t, words)| text::list([text::number(t - start), text::json(words)]));
-        let shapes = self.figure.shapes.iter().filter(|shape| shape.is_shown());
+        let shapes = self.figure.shown();
         let fields = [
             ("title", text::json(&self.title)),
             ("frames", text::list(used.iter().map(|k| text::json(&self.figure.frames[*k])))),
@@ -437,6 +436,18 @@ fn units(names: &[&str], of_rates: &[&'static str]) -> Vec<&'static str> {
         units.push(rate.strip_suffix("/s").filter(|unit| !is_turn && *unit != "1").unwrap_or(""));
     }
     units
+}
+
+/// Checks that there are times, which are finite and do not decrease.
+pub(crate) fn check_times(motion: &str, times: impl Iterator<Item = f64>) -> Result<(), Error> {
+    let mut last = None;
+    for (sample, t) in times.enumerate() {
+        if !t.is_finite() || last.is_some_and(|last| t < last) {
+            return Err(Error::Time { motion: motion.to_string(), sample });
+        }
+        last = Some(t);
+    }
+    last.map(|_| ()).ok_or(Error::Empty { motion: motion.to_string() })
 }
 
 fn check(what: &str, expected: usize, found: usize) -> Result<(), Error> {

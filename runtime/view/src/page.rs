@@ -41,6 +41,17 @@ impl Page {
             let more = about.split_off(1).concat();
             about.push(format!("<details><summary>More</summary>{more}</details>"));
         }
+        let mut missing: Vec<&str> = self.motions.iter().flat_map(Motion::missing_meshes).collect();
+        missing.sort_unstable();
+        missing.dedup();
+        if !missing.is_empty() {
+            let paths: Vec<String> =
+                missing.iter().map(|path| format!("<code>{}</code>", text::html(path))).collect();
+            about.push(format!(
+                "<p>Drawn by mass properties, since these meshes were not read: {}.</p>",
+                paths.join(", ")
+            ));
+        }
         let about: String = about.iter().map(|block| format!("{block}\n")).collect();
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

@@ -29,7 +29,7 @@ impl Scene {
         let first = &placements[0];
         let gravity = Vector3::from(figure.gravity);
         let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
-        let pieces: Vec<&Shape> = figure.shapes.iter().filter(|s| s.is_shown()).collect();
+        let pieces: Vec<&Shape> = figure.shown().collect();
         let place = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
             frame.map_or(point, |f| (placements[k][f] * Point3::from(point)).coords)
         };
@@ -88,8 +88,8 @@ impl Figure {
 }
 
 impl Shape {
-    /// Something is to be seen of it.
-    pub(crate) fn is_shown(&self) -> bool {
+    /// Whether there is something to draw: meshes and terrains may not have been read or computed.
+    pub(crate) fn is_visible(&self) -> bool {
         !matches!(self.kind, Kind::Mesh(_) | Kind::Terrain(_)) || self.mesh.is_some()
     }
 

@@ -6,7 +6,7 @@ use linkwork::drawing::{Kind, Role};
 use linkwork::nalgebra::{Point3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork::{Drawn, index_of};
-use linkwork_view::{Error, Figure, Motion, Page, page};
+use linkwork_view::{Error, Figure, Motion, Page, csv, page};
 use support::{channels, motions};
 
 #[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, gravity = 0 * z, drawing)]
@@ -179,19 +179,64 @@ fn visual_geometry_of_files_is_drawn() {
     // A quarter of a turn about y takes z to x.
     assert!((Vector3::from_column_slice(&cylinder[3..6]) - Vector3::x()).norm() < 1e-12);
     assert_eq!(cylinder[6..8], [0.03, 0.5]);
-    // A link without visual geometry is drawn by its inertia, and it alone.
+    // A link without visual geometry is drawn by its inertia; so are links with meshes, in place of those that cannot be read.
     let bodies: Vec<&str> = Shapes::DRAWING.iter().filter(|p| p.role == Role::Body).map(|p| p.name).collect();
-    assert_eq!(bodies, ["tip"]);
+    assert_eq!(bodies, ["base", "arm", "tip"]);
 
     let figure = Figure::of(&Shapes).meshes(concat!(env!("CARGO_MANIFEST_DIR"), "/tests")).unwrap();
-    let placements = vec![Shapes.frame_placements(&Shapes.neutral()).to_vec()];
-    let motion = Motion::from_placements("", figure, vec![0.0], placements).unwrap();
-    let html = Page::new("shapes").motion(motion).html();
+    assert_eq!(figure.missing_meshes(), ["package://shapes/meshes/lost.stl"]);
+    let html = shown(figure);
     let motion = &motions(&html)[0];
     let meshes: Vec<_> = motion["pieces"].as_array().unwrap().iter().filter(|p| p[0] == "Mesh").collect();
     assert_eq!(meshes.len(), 1, "the other one has no file");
     // Four corners of three numbers with two bytes each.
     assert_eq!(meshes[0][6][2].as_str().unwrap().len(), 4 * 3 * 2 * 4 / 3);
+}
+
+/// The page of a figure of `Shapes` in its neutral configuration.
+fn shown(figure: Figure) -> String {
+    let placements = vec![Shapes.frame_placements(&Shapes.neutral()).to_vec()];
+    let motion = Motion::from_placements("", figure, vec![0.0], placements).unwrap();
+    Page::new("shapes").motion(motion).html()
+}
+
+/// A link whose meshes were all read has no other body; one of a missing mesh is drawn by its mass properties, and the page lists
+/// the file. A folder that does not exist is an error.
+#[test]
+fn missing_meshes_are_replaced_and_listed() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
+    let sample = Sample::new(&Shapes, 0.0, Shapes.neutral(), [0.0; 2], [0.0; 2]).unwrap();
+    let note = "<p>Drawn by mass properties, since these meshes were not read: ";
+    let lost = "<code>package://shapes/meshes/lost.stl</code>";
+    let wedge = "<code>package://shapes/meshes/wedge.obj</code>";
+    for (html, bodies, list) in [
+        (shown(Figure::of(&Shapes).meshes(folder).unwrap()), &["arm", "tip"][..], lost.to_string()),
+        (page("shapes", &Shapes, &[sample]).unwrap(), &["base", "arm", "tip"], format!("{lost}, {wedge}")),
+    ] {
+        assert!(html.contains(&format!("{note}{list}.</p>")));
+        let motion = &motions(&html)[0];
+        let pieces = motion["pieces"].as_array().unwrap();
+        let of_role = |role: &str| -> Vec<&str> {
+            pieces.iter().filter(|p| p[1] == role).map(|p| p[2].as_str().unwrap()).collect()
+        };
+        assert_eq!(of_role("Body"), bodies);
+        // From the shoulder to the wrist and to the centre of mass.
+        assert_eq!(of_role("Link").iter().filter(|name| **name == "arm").count(), 2);
+    }
+    let error = Figure::of(&Shapes).meshes("/nowhere/meshes").unwrap_err();
+    assert!(matches!(&error, Error::File { path, .. } if path.ends_with("meshes")), "{error}");
+    assert!(error.to_string().starts_with("/nowhere/meshes: "), "{error}");
+}
+
+/// A log has the errors of a page: no samples, and times that decrease.
+#[test]
+fn logs_and_pages_agree_on_errors() {
+    let at = |t: f64| Sample::new(&Shapes, t, [0.1, 0.2], [0.0; 2], [0.0; 2]).unwrap();
+    for samples in [vec![], vec![at(1.0), at(0.5)]] {
+        let [log, html] = [csv(&Shapes, &samples), page("", &Shapes, &samples)].map(Result::unwrap_err);
+        assert_eq!(std::mem::discriminant(&log), std::mem::discriminant(&html), "{log} {html}");
+    }
+    assert!(csv(&Shapes, &[at(0.5), at(0.5)]).unwrap().ends_with("\r\n0.5,0.1,0.2,0,0,0,0\r\n"));
 }
 
 #[mechanism(mjcf = "tests/shapes.xml", drawing)]

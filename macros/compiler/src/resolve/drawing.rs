@@ -82,7 +82,8 @@ impl<'g> Builder<'_, 'g> {
         self.anchor(link, &pose.then(&on_body))
     }
 
-    /// The visual geometry of a file; returns the bodies that have any.
+    /// Adds the visual geometry of a file; returns the bodies that have any, and no mesh among it. Those with meshes are drawn by their
+    /// mass properties as well, which are shown where a mesh cannot be read.
     fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.description.visuals {
@@ -113,7 +114,9 @@ impl<'g> Builder<'_, 'g> {
             let name = on.body.text.clone();
             pieces.push(Piece { name, role: Role::Visual, kind, frames: [frame, None], numbers });
         }
-        pieces.iter().map(|piece| piece.name.clone()).collect()
+        let is_mesh = |piece: &&Piece<'g>| matches!(piece.kind, PieceKind::Mesh(_));
+        let meshes: BTreeSet<&String> = pieces.iter().filter(is_mesh).map(|piece| &piece.name).collect();
+        pieces.iter().map(|piece| &piece.name).filter(|name| !meshes.contains(name)).cloned().collect()
     }
 
     /// Solids and particles, but for bodies that are shown already.
