@@ -21,7 +21,7 @@ const STEPS: u8 = 40;
 const ASSEMBLIES: u8 = 100;
 
 impl Evaluated<'_, '_> {
-    /// Brings a state onto the constraints: the configuration, then the velocity. `None` where no state is near.
+    /// Projects a state onto the constraints: the configuration, then the velocity. `None` where no state is near.
     pub fn settle(&self, t: f64, q: &mut Vec<f64>, v: &mut [f64]) -> Option<()> {
         if !self.is_constrained() {
             return Some(());
@@ -47,7 +47,7 @@ impl Evaluated<'_, '_> {
             .flatten()
     }
 
-    /// The velocities that entries of a configuration move with, if one of those that move together is marked.
+    /// The velocities of joints that change marked entries of a configuration, or entries that move together with them.
     pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
         for (entries, velocities) in self.together() {
@@ -56,7 +56,7 @@ impl Evaluated<'_, '_> {
         moving
     }
 
-    /// The entries of a configuration that move with no other velocities than those that are marked.
+    /// The entries of a configuration that no other velocities of joints change than the marked ones.
     pub fn entries(&self, marks: &[bool]) -> Vec<bool> {
         let mut found = vec![false; self.model.nq()];
         for (entries, velocities) in self.together() {
@@ -65,8 +65,13 @@ impl Evaluated<'_, '_> {
         found
     }
 
-    /// The velocities that change no constraint, in this configuration and beside it.
-    pub fn unreached(&self, t: f64, q: &[f64]) -> Vec<bool> {
+    /// The velocities that change no constraint, in this configuration and near it: first those of the joints, then the entries of `v`,
+    /// which differ from them if speeds are declared.
+    pub fn unreached(&self, t: f64, q: &[f64]) -> [Vec<bool>; 2] {
+        [true, false].map(|of_joints| self.unreached_of(t, q, of_joints))
+    }
+
+    fn unreached_of(&self, t: f64, q: &[f64], of_joints: bool) -> Vec<bool> {
         let v = vec![0.0; self.model.nv()];
         let mut unreached = vec![true; v.len()];
         for size in [0.0, 0.1] {
@@ -74,8 +79,11 @@ impl Evaluated<'_, '_> {
             if self.normalise(&mut beside).is_err() {
                 continue;
             }
-            let jacobian =
-                self.called("constraint_jacobian", Values { t, q: &beside, v: &v, ..Values::default() });
+            let state = Values { t, q: &beside, v: &v, ..Values::default() };
+            let jacobian = self.called("constraint_jacobian", state).map(|jacobian| match of_joints {
+                true => self.by_joints(state, jacobian),
+                false => jacobian,
+            });
             let all = self.model.constraints.len();
             for (column, unreached) in
                 jacobian.iter().flat_map(|jacobian| jacobian.chunks(all)).zip(&mut unreached)
@@ -139,14 +147,15 @@ impl Evaluated<'_, '_> {
             }
             let state = Values { t, q, v: &v, ..Values::default() };
             let (all, positions) = (self.model.constraints.len(), left.len());
-            let jacobian = self.called("constraint_jacobian", state)?;
+            let jacobian = self.by_joints(state, self.called("constraint_jacobian", state)?);
             // Those on configurations come first.
             let jacobian: Vec<f64> =
                 jacobian.chunks(all).flat_map(|column| &column[..positions]).copied().collect();
             let target: Vec<f64> = left.iter().map(|x| -x).collect();
-            let (moved, _) = self.nearest(state, &jacobian, &target, held)?;
-            let mut rates = vec![0.0; q.len()];
-            self.rates(q, &moved, &mut rates);
+            let mass = self.called("mass_matrix", state)?;
+            let mass = self.by_joints(state, transposed(&self.by_joints(state, mass), held.len()));
+            let (moved, _) = nearest(&mass, &jacobian, &target, held)?;
+            let rates = self.rates_of_joints(q, &moved);
             let mut part = 1.0;
             (*q, left) = loop {
                 let mut next: Vec<f64> = q.iter().zip(&rates).map(|(q, rate)| q + part * rate).collect();
@@ -168,30 +177,44 @@ impl Evaluated<'_, '_> {
         let state = Values { t, q, v, ..Values::default() };
         let target: Vec<f64> = self.called("constraint_rates", state)?.iter().map(|rate| -rate).collect();
         let jacobian = self.called("constraint_jacobian", state)?;
-        let (change, off) = self.nearest(state, &jacobian, &target, held)?;
+        let (change, off) = nearest(&self.called("mass_matrix", state)?, &jacobian, &target, held)?;
         v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
         (off <= CONTRADICTION).then_some(())
     }
 
-    /// The least motion with `jacobian · motion = target`, in the metric of the mass matrix, of the velocities that are not held.
-    fn nearest(
-        &self,
-        state: Values<'_>,
-        jacobian: &[f64],
-        target: &[f64],
-        held: &[bool],
-    ) -> Option<(Vec<f64>, f64)> {
-        let (n, m) = (held.len(), target.len());
-        let free: Vec<usize> = (0..n).filter(|k| !held[*k]).collect();
-        let mass = self.called("mass_matrix", state)?;
-        let mass: Vec<f64> =
-            free.iter().flat_map(|j| free.iter().map(move |i| j * n + i)).map(|at| mass[at]).collect();
-        let jacobian: Vec<f64> = free.iter().flat_map(|k| &jacobian[k * m..(k + 1) * m]).copied().collect();
-        let (x, off) = Metric::of(&mass, free.len())?.nearest(vec![0.0; free.len()], &jacobian, target);
-        let mut motion = vec![0.0; n];
-        free.iter().zip(x).for_each(|(k, x)| motion[*k] = x);
-        Some((motion, off))
+    /// A matrix, column by column, that multiplies the entries of `v`, as one that multiplies the velocities of the joints.
+    fn by_joints(&self, state: Values<'_>, matrix: Vec<f64>) -> Vec<f64> {
+        let n = self.model.nv();
+        if self.model.speeds.is_none() || n == 0 {
+            return matrix;
+        }
+        let rows = matrix.len() / n;
+        let column = |k: usize| {
+            let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == k))).collect();
+            let speeds = self.called("speeds_of_rates", Values { v: &unit, ..state }).unwrap_or_default();
+            let entry = |i: usize| speeds.iter().enumerate().map(|(j, s)| matrix[j * rows + i] * s).sum();
+            (0..rows).map(entry).collect::<Vec<f64>>()
+        };
+        (0..n).flat_map(column).collect()
     }
+}
+
+/// The least motion with `jacobian · motion = target`, in the metric of the mass matrix, of the velocities that are not held.
+fn nearest(mass: &[f64], jacobian: &[f64], target: &[f64], held: &[bool]) -> Option<(Vec<f64>, f64)> {
+    let (n, m) = (held.len(), target.len());
+    let free: Vec<usize> = (0..n).filter(|k| !held[*k]).collect();
+    let mass: Vec<f64> =
+        free.iter().flat_map(|j| free.iter().map(move |i| j * n + i)).map(|at| mass[at]).collect();
+    let jacobian: Vec<f64> = free.iter().flat_map(|k| &jacobian[k * m..(k + 1) * m]).copied().collect();
+    let (x, off) = Metric::of(&mass, free.len())?.nearest(vec![0.0; free.len()], &jacobian, target);
+    let mut motion = vec![0.0; n];
+    free.iter().zip(x).for_each(|(k, x)| motion[*k] = x);
+    Some((motion, off))
+}
+
+/// A square matrix with rows and columns exchanged.
+fn transposed(matrix: &[f64], n: usize) -> Vec<f64> {
+    (0..n).flat_map(|i| (0..n).map(move |j| j * n + i)).map(|at| matrix[at]).collect()
 }
 
 /// Numbers from −1 to 1 that repeat nothing: parts of a golden angle.

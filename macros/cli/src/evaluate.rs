@@ -10,6 +10,7 @@ use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Lookup, Symbol};
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, InQ, InV, Model, Quantity};
+use linkwork_compiler::syntax::RATE_OF_STATE;
 
 /// A mechanism with its parameters.
 pub struct Evaluated<'a, 'g> {
@@ -18,9 +19,11 @@ pub struct Evaluated<'a, 'g> {
     output: &'a Output,
     parameters: Vec<f64>,
     tables: Vec<Looked>,
+    /// States of first order, each with its index among the parameters.
+    pub states: Vec<(String, usize)>,
 }
 
-/// What programs are functions of.
+/// Arguments of programs.
 #[derive(Clone, Copy, Default)]
 pub struct Values<'a> {
     /// Time, s.
@@ -29,6 +32,8 @@ pub struct Values<'a> {
     pub q: &'a [f64],
     /// Velocity.
     pub v: &'a [f64],
+    /// States of first order; those among the parameters if it is empty.
+    pub x: &'a [f64],
     /// Inputs.
     pub u: &'a [f64],
     /// Generalized forces.
@@ -51,8 +56,9 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         output: &'a Output,
         parameters: Vec<f64>,
         tables: Vec<Looked>,
+        states: Vec<(String, usize)>,
     ) -> Evaluated<'a, 'g> {
-        Evaluated { model, output, parameters, tables }
+        Evaluated { model, output, parameters, tables, states }
     }
 
     /// Whether a mechanism with these parameters can be, as `validate` says it in Rust.
@@ -108,8 +114,17 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         Ok(())
     }
 
-    /// Rates of `q`: velocities, turned into the axes of positions, and rates of quaternions.
-    pub fn rates(&self, q: &[f64], v: &[f64], rates: &mut [f64]) {
+    /// Rates of `q` with the velocity `v`, which is one of declared speeds if there are any.
+    pub fn rates(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        match self.called("rates_of_speeds", Values { q, v, ..Values::default() }) {
+            Some(of_joints) => self.rates_of_joints(q, &of_joints),
+            None => self.rates_of_joints(q, v),
+        }
+    }
+
+    /// Rates of `q` with velocities of the joints: rotated into the axes of positions, and rates of quaternions.
+    pub fn rates_of_joints(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let mut rates = vec![0.0; q.len()];
         for chart in &self.model.charts {
             match *chart {
                 Chart::Plain(at, from) => rates[at.0] = v[from.0],
@@ -124,20 +139,25 @@ impl<'a, 'g> Evaluated<'a, 'g> {
                 }
             }
         }
+        rates
     }
 
-    /// Accelerations under inputs; nothing where constraints determine none.
-    pub fn accelerations(&self, t: f64, q: &[f64], v: &[f64], u: &[f64]) -> Vec<f64> {
-        let state = Values { t, q, v, u, ..Values::default() };
-        let passive = self.find("__passive_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
+    /// Accelerations, then the rates of the states of first order; NaN where constraints determine none.
+    pub fn accelerations(&self, state: Values<'_>) -> Vec<f64> {
+        let passive = self.called("__passive_forces", state).unwrap_or_default();
         let state = Values { passive: &passive, ..state };
-        let tau = self.find("generalized_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
-        let tau = if tau.is_empty() { vec![0.0; v.len()] } else { tau };
-        if self.is_constrained() {
-            return self.constrained(state, tau).unwrap_or(vec![f64::NAN; v.len()]);
-        }
-        self.find("forward_dynamics")
-            .map_or(Vec::new(), |f| self.run(&f.program, Values { tau: &tau, ..state }))
+        let tau = self.called("generalized_forces", state).unwrap_or_default();
+        let tau = if tau.is_empty() { vec![0.0; state.v.len()] } else { tau };
+        let a = match self.is_constrained() {
+            true => self.constrained(state, tau),
+            false => self.called("forward_dynamics", Values { tau: &tau, ..state }),
+        };
+        let mut a = a.unwrap_or(vec![f64::NAN; state.v.len()]);
+        a.extend(self.states.iter().map(|(name, _)| {
+            let rate = self.called(&rate_of(name), state);
+            rate.and_then(|rate| rate.first().copied()).unwrap_or(f64::NAN)
+        }));
+        a
     }
 
     fn find(&self, name: &str) -> Option<&Function> {
@@ -214,16 +234,22 @@ impl<'a, 'g> Evaluated<'a, 'g> {
             }
             false => &["forward_dynamics"],
         };
-        let whole = |name: &&str| self.find(name).is_some_and(|f| f.program.symbols().into_iter().all(known));
-        if names.iter().all(whole) { None } else { tell("its dynamics are no function of the state alone") }
+        let whole = |name: &str| self.find(name).is_some_and(|f| f.program.symbols().into_iter().all(known));
+        let speeds = m.speeds.as_ref().map(|_| "rates_of_speeds".to_string());
+        let states = self.states.iter().map(|(name, _)| rate_of(name));
+        let needed = names.iter().map(ToString::to_string).chain(speeds).chain(states);
+        match needed.into_iter().all(|name| whole(&name)) {
+            true => None,
+            false => tell("its dynamics are no function of the state alone"),
+        }
     }
 
-    /// The placement of every frame.
-    pub fn placements(&self, t: f64, q: &[f64]) -> Vec<IsometryMatrix3<f64>> {
+    /// The placement of every frame, by time, configuration and states of first order.
+    pub fn placements(&self, t: f64, q: &[f64], x: &[f64]) -> Vec<IsometryMatrix3<f64>> {
         let mut links: Vec<Vec<f64>> = Vec::new();
         let v = vec![0.0; self.model.nv()];
         let at = |program: &Program, given: &[f64]| {
-            self.run(program, Values { t, q, v: &v, given, ..Values::default() })
+            self.run(program, Values { t, q, v: &v, x, given, ..Values::default() })
         };
         for link in &self.output.links {
             let parent = link.parent.and_then(|k| links.get(k)).map_or(&GROUND[..], Vec::as_slice);
@@ -255,7 +281,11 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     fn symbol(&self, symbol: Symbol, values: Values<'_>) -> f64 {
         let entry = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
         match Quantity::of(symbol) {
-            Quantity::Parameter(k) => entry(&self.parameters, k),
+            Quantity::Parameter(k) => {
+                let state = self.states.iter().position(|(_, parameter)| *parameter == k);
+                let state = state.and_then(|state| values.x.get(state)).copied();
+                state.unwrap_or_else(|| entry(&self.parameters, k))
+            }
             Quantity::Configuration(k) => entry(values.q, k),
             Quantity::Velocity(k) => entry(values.v, k),
             Quantity::Force(k) => entry(values.tau, k),
@@ -266,6 +296,11 @@ impl<'a, 'g> Evaluated<'a, 'g> {
             _ => f64::NAN,
         }
     }
+}
+
+/// The name of the function that returns the rate of a state of first order.
+fn rate_of(state: &str) -> String {
+    format!("{state}{RATE_OF_STATE}")
 }
 
 /// The rate of a quaternion, x y z w, with an angular velocity in the turned axes: half their product.

@@ -144,7 +144,8 @@ pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Gri
         }
         let text = std::fs::read_to_string(Path::new(file.trim()))
             .map_err(|error| fail(format!("cannot read {file}: {error}")))?;
-        let grid = Grid::parse(&text, tables[at].1).map_err(|why| fail(format!("{file}: {why}")))?;
+        let grid = Grid::parse(text.trim_start_matches('\u{feff}'), tables[at].1)
+            .map_err(|why| fail(format!("{file}: {why}")))?;
         found[at] = Some(Grid { smooth, extrapolated, ..grid });
     }
     let missing: Vec<String> = (tables.iter().zip(&found))

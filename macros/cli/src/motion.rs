@@ -1,9 +1,9 @@
 //! What a motion begins with, and where it goes.
 
 use crate::Stop;
-use crate::evaluate::Evaluated;
+use crate::evaluate::{Evaluated, Values};
 use crate::grid::{self, Grid, Looked};
-use crate::integrate::{System, advance};
+use crate::integrate::{Integrator, System};
 use crate::table::Table;
 use clap::ArgMatches;
 use linkwork_compiler::Source;
@@ -20,6 +20,8 @@ pub struct Sample {
     pub q: Vec<f64>,
     /// Velocity.
     pub v: Vec<f64>,
+    /// States of first order.
+    pub x: Vec<f64>,
     /// Inputs.
     pub u: Vec<f64>,
 }
@@ -31,6 +33,8 @@ pub struct Start<'a, 'g> {
     /// Configuration.
     pub q: Vec<f64>,
     v: Vec<f64>,
+    /// States of first order.
+    pub x: Vec<f64>,
     u: Vec<f64>,
     /// Which entries of the configuration and of the velocity are given.
     given: [Vec<bool>; 2],
@@ -60,7 +64,12 @@ impl<'a, 'g> Start<'a, 'g> {
         let configuration: Vec<String> = model.configuration.iter().map(|name| format!("q.{name}")).collect();
         let inputs: Vec<String> = model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
         let mut parameters = vec![None; model.parameters.len()];
-        let empty = Evaluated::new(model, output, Vec::new(), Vec::new());
+        let states: Vec<(String, usize)> =
+            source.mechanism.description.states.iter().map(|(name, k)| (name.text.clone(), *k)).collect();
+        // States begin at zero, as coordinates do.
+        states.iter().for_each(|(_, k)| parameters[*k] = Some(0.0));
+        let of_states: Vec<String> = states.iter().map(|(name, _)| format!("x.{name}")).collect();
+        let empty = Evaluated::new(model, output, Vec::new(), Vec::new(), states.clone());
         let (mut q, mut v, mut u) = (empty.neutral(), vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
         for given in matches.get_many::<String>("set").into_iter().flatten() {
@@ -68,6 +77,8 @@ impl<'a, 'g> Start<'a, 'g> {
             let place = |list: &[String]| list.iter().position(|known| known == name);
             if let Some(k) = place(&model.parameters) {
                 parameters[k] = Some(value);
+            } else if let Some(k) = place(&of_states) {
+                parameters[states[k].1] = Some(value);
             } else if let Some(k) = place(&configuration) {
                 (q[k], known[0][k]) = (value, true);
             } else if let Some(k) = place(&velocities) {
@@ -75,7 +86,10 @@ impl<'a, 'g> Start<'a, 'g> {
             } else if let Some(k) = place(&inputs) {
                 u[k] = value;
             } else {
-                let known = [&model.parameters[..], &configuration, &velocities, &inputs].concat();
+                let is_state = |name: &&String| states.iter().any(|(state, _)| state == *name);
+                let own: Vec<String> =
+                    model.parameters.iter().filter(|name| !is_state(name)).cloned().collect();
+                let known = [own, configuration, velocities, of_states, inputs].concat();
                 let meant = nearest(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
                 let meant = meant.map_or(String::new(), |meant| format!("; did you mean `{meant}`?"));
                 let known = known.join(", ");
@@ -100,10 +114,12 @@ impl<'a, 'g> Start<'a, 'g> {
         }
         let tables: Result<Vec<Looked>, _> =
             grid::given(matches, &source.tables())?.iter().map(Grid::looked).collect();
-        let mechanism = Evaluated::new(model, output, parameters.into_iter().flatten().collect(), tables?);
+        let parameters: Vec<f64> = parameters.into_iter().flatten().collect();
+        let x = states.iter().map(|(_, k)| parameters[*k]).collect();
+        let mechanism = Evaluated::new(model, output, parameters, tables?, states);
         mechanism.validate()?;
         mechanism.normalise(&mut q)?;
-        Ok(Start { mechanism, q, v, u, given: known, is_guessed })
+        Ok(Start { mechanism, q, v, x, u, given: known, is_guessed })
     }
 
     /// The motion, sample by sample.
@@ -126,50 +142,68 @@ impl<'a, 'g> Start<'a, 'g> {
             return Err(Stop::Failure(format!("more than {MAX_SAMPLES} samples: choose a larger `--every`")));
         }
         let inputs = self.inputs(matches)?;
-        let given = |t: f64| -> Vec<f64> {
+        // Inputs at a time; where they jump, those before or after the jump.
+        let given = |t: f64, is_before: bool| -> Vec<f64> {
             let at = |k: usize| match inputs
                 .as_ref()
                 .and_then(|(table, columns)| Some((table, columns[k].as_ref()?)))
             {
+                Some((table, values)) if is_before => table.before(values, t),
                 Some((table, values)) => table.at(values, t),
                 None => self.u[k],
             };
             (0..self.u.len()).map(at).collect()
         };
-        let (nq, count) = (self.q.len(), (duration / every * (1.0 + 1e-12)).floor() as usize);
-        let rates = |t: f64, y: &[f64]| {
-            let (q, v) = y.split_at(nq);
-            let mut rates = vec![0.0; nq];
-            self.mechanism.rates(q, v, &mut rates);
-            rates.extend(self.mechanism.accelerations(t, q, v, &given(t)));
-            rates
+        let (nq, nv) = (self.q.len(), self.v.len());
+        let begin = match self.mechanism.is_constrained() {
+            true => self.begin()?,
+            false => [self.q.clone(), self.v.clone()].concat(),
         };
-        let settle = |t: f64, y: &mut Vec<f64>| {
-            let (mut q, mut v) = (y[..nq].to_vec(), y[nq..].to_vec());
-            let is_there = self.mechanism.settle(t, &mut q, &mut v).is_some();
-            *y = [q, v].concat();
-            is_there
-        };
-        let system = System { rates: &rates, settle: &settle };
-        let (mut y, mut step) = ([self.q.clone(), self.v.clone()].concat(), every.min(1e-3));
-        if self.mechanism.is_constrained() {
-            y = self.begin()?;
-        }
+        let mut y = [begin, self.x.clone()].concat();
+        let count = (duration / every * (1.0 + 1e-12)).floor() as usize;
         let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
         if times[count] < duration * (1.0 - 1e-9) {
             times.push(duration);
         }
-        let mut samples = Vec::with_capacity(times.len());
-        for (k, t) in times.iter().enumerate() {
-            if k > 0 {
-                advance(&system, (times[k - 1], *t), &mut y, &mut step, tolerance).map_err(|t| {
+        // No step leads over a kink or a jump of inputs.
+        let mut kinks = inputs.iter().flat_map(|(table, _)| &table.times).copied().peekable();
+        let settle = |t: f64, y: &mut Vec<f64>| {
+            let (mut q, mut v) = (y[..nq].to_vec(), y[nq..nq + nv].to_vec());
+            let is_there = self.mechanism.settle(t, &mut q, &mut v).is_some();
+            *y = [q, v, y[nq + nv..].to_vec()].concat();
+            is_there
+        };
+        let mut integrator = Integrator::new(every.min(1e-3), tolerance);
+        let (mut samples, mut at, mut is_told) = (Vec::with_capacity(times.len()), 0.0, false);
+        for t in times {
+            while at < t {
+                while kinks.next_if(|kink| *kink <= at).is_some() {}
+                let stop = kinks.peek().copied().filter(|kink| *kink < t).unwrap_or(t);
+                let rates = |t: f64, y: &[f64]| {
+                    let (q, v, x) = (&y[..nq], &y[nq..nq + nv], &y[nq + nv..]);
+                    let u = if t < stop { given(t, false) } else { given(stop, true) };
+                    let mut rates = self.mechanism.rates(q, v);
+                    let state = Values { t, q, v, x, u: &u, ..Values::default() };
+                    rates.extend(self.mechanism.accelerations(state));
+                    rates
+                };
+                let system = System { rates: &rates, settle: &settle };
+                integrator.advance(&system, (at, stop), &mut y).map_err(|t| {
                     Stop::Failure(format!(
-                        "the motion cannot be continued beyond {t} s: it is stiff, or singular there"
+                        "the motion cannot be continued beyond {t} s: it is singular there, or too stiff"
                     ))
                 })?;
+                if let Some(t) = integrator.stiff_from.take_if(|_| !is_told) {
+                    is_told = true;
+                    crate::note!(
+                        "linkwork: the motion is stiff: from {t:.3} s on it is integrated by an implicit method (RODAS)"
+                    );
+                }
                 self.mechanism.normalise(&mut y[..nq])?;
+                at = stop;
             }
-            samples.push(Sample { t: *t, q: y[..nq].to_vec(), v: y[nq..].to_vec(), u: given(*t) });
+            let (q, v, x) = (y[..nq].to_vec(), y[nq..nq + nv].to_vec(), y[nq + nv..].to_vec());
+            samples.push(Sample { t, q, v, x, u: given(t, false) });
         }
         Ok(samples)
     }
@@ -184,8 +218,8 @@ impl<'a, 'g> Start<'a, 'g> {
             )));
         }
         // What no constraint reaches stays.
-        let apart = m.unreached(0.0, &self.q);
-        let in_v: Vec<bool> = in_v.iter().zip(&apart).map(|(given, apart)| *given || *apart).collect();
+        let [apart, still] = m.unreached(0.0, &self.q);
+        let in_v: Vec<bool> = in_v.iter().zip(&still).map(|(given, still)| *given || *still).collect();
         let moving: Vec<bool> =
             m.moving(in_q).iter().zip(&apart).map(|(given, apart)| *given || *apart).collect();
         let near = match self.is_guessed {
@@ -205,7 +239,7 @@ impl<'a, 'g> Start<'a, 'g> {
         if m.move_along(0.0, &q, &mut v, &in_v).is_none() {
             kept = false;
             v.clone_from(&self.v);
-            m.move_along(0.0, &q, &mut v, &apart).ok_or_else(|| {
+            m.move_along(0.0, &q, &mut v, &still).ok_or_else(|| {
                 Stop::Failure(format!("`{}` has constraints that contradict each other", m.model.name))
             })?;
         }
@@ -225,7 +259,7 @@ impl<'a, 'g> Start<'a, 'g> {
             (true, false) => "zero does not fulfil the constraints; the motion begins near it,",
         };
         if !moves.is_empty() {
-            eprintln!("linkwork: {why} at {moves}");
+            crate::note!("linkwork: {why} at {moves}");
         }
         Ok(begins)
     }
@@ -259,7 +293,14 @@ impl<'a, 'g> Start<'a, 'g> {
                 path.display()
             )));
         }
-        let columns = names.iter().map(|name| table.column(name).map(<[f64]>::to_vec)).collect();
+        let columns: Vec<_> = names.iter().map(|name| table.column(name).map(<[f64]>::to_vec)).collect();
+        if columns.iter().all(Option::is_none) {
+            let expected = match names.is_empty() {
+                true => format!("`{}` has no inputs", self.mechanism.model.name),
+                false => format!("there is no column of an input: expected {}", names.join(", ")),
+            };
+            return Err(Stop::Failure(format!("{}: {expected}", path.display())));
+        }
         Ok(Some((table, columns)))
     }
 }

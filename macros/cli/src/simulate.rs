@@ -22,7 +22,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             std::fs::write(path, log)
                 .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
         }
-        _ => put(matches, &csv(&model, &samples)),
+        _ => put(matches, &csv(&start, &samples)),
     }
 }
 
@@ -30,21 +30,26 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
 fn mcap(model: &Model<'_>, start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
     let frames: Vec<&str> = model.frames.iter().map(|frame| frame.name.as_str()).collect();
     let configuration: Vec<&str> = model.configuration.iter().map(String::as_str).collect();
-    let velocities: Vec<&str> = model.velocities.iter().map(|(name, _)| name.as_str()).collect();
+    let velocities = model.velocities.iter().map(|(name, _)| name.as_str());
+    // As in Rust, where states of first order are the last entries of the velocity of `extended()`.
+    let states = start.mechanism.states.iter().map(|(name, _)| name.as_str());
+    let velocities: Vec<&str> = velocities.chain(states).collect();
     let inputs: Vec<&str> = model.inputs.iter().map(|(name, _)| name.as_str()).collect();
     let names =
         Names { frames: &frames, configuration: &configuration, velocities: &velocities, inputs: &inputs };
-    let instant = |Sample { t, q, v, u }| {
-        let placements = start.mechanism.placements(t, &q);
-        Instant { t, q, v, u, placements }
+    let instant = |Sample { t, q, v, x, u }| {
+        let placements = start.mechanism.placements(t, &q, &x);
+        Instant { t, q, v: [v, x].concat(), u, placements }
     };
     Ok(mcap_of(&names, samples.into_iter().map(instant))?)
 }
 
-fn csv(model: &Model<'_>, samples: &[Sample]) -> String {
+fn csv(start: &Start<'_, '_>, samples: &[Sample]) -> String {
+    let model = start.mechanism.model;
     let mut head = vec!["t".to_string()];
     head.extend(model.configuration.iter().map(|name| format!("q.{name}")));
     head.extend(model.velocities.iter().map(|(name, _)| format!("v.{name}")));
+    head.extend(start.mechanism.states.iter().map(|(name, _)| format!("x.{name}")));
     head.extend(model.inputs.iter().map(|(name, _)| format!("u.{name}")));
     let quoted = |name: &String| match name.contains([',', '"']) {
         true => format!("\"{}\"", name.replace('"', "\"\"")),
@@ -53,7 +58,8 @@ fn csv(model: &Model<'_>, samples: &[Sample]) -> String {
     let mut text = head.iter().map(quoted).collect::<Vec<_>>().join(",");
     text.push_str("\r\n");
     for sample in samples {
-        let numbers = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v).chain(&sample.u);
+        let numbers = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v);
+        let numbers = numbers.chain(&sample.x).chain(&sample.u);
         text.push_str(&numbers.map(f64::to_string).collect::<Vec<_>>().join(","));
         text.push_str("\r\n");
     }

@@ -16,13 +16,18 @@ impl Table {
     pub fn read(path: &Path) -> Result<Table, Stop> {
         let text = std::fs::read_to_string(path)
             .map_err(|error| Stop::Failure(format!("cannot read {}: {error}", path.display())))?;
-        Table::parse(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
+        // Spreadsheets begin their files with a byte order mark.
+        Table::parse(text.trim_start_matches('\u{feff}'))
+            .map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
     }
 
     fn parse(text: &str) -> Result<Table, String> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let head = lines.next().map(|(_, line)| fields(line)).unwrap_or_default();
         let time = head.iter().position(|name| name == "t").ok_or("there is no column `t`")?;
+        if let Some(twice) = (1..head.len()).find(|k| head[..*k].contains(&head[*k])) {
+            return Err(format!("there are two columns `{}`", head[twice]));
+        }
         let mut columns: Vec<Vec<f64>> = vec![Vec::new(); head.len()];
         for (number, line) in lines {
             let found = fields(line);
@@ -52,10 +57,20 @@ impl Table {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
 
-    /// The value of a column at a time: on straight lines between those that are given, and as they are before and after.
+    /// The value of a column at a time: on straight lines between those that are given, and as they are before and after. Where it
+    /// jumps it is the value after the jump.
     pub fn at(&self, values: &[f64], t: f64) -> f64 {
-        let after = self.times.partition_point(|known| *known <= t);
-        match after {
+        self.behind(values, t, self.times.partition_point(|known| *known <= t))
+    }
+
+    /// The limit of a column as time approaches `t` from before.
+    pub fn before(&self, values: &[f64], t: f64) -> f64 {
+        self.behind(values, t, self.times.partition_point(|known| *known < t))
+    }
+
+    /// The value on the straight line that leads to the row of a number.
+    fn behind(&self, values: &[f64], t: f64, row: usize) -> f64 {
+        match row {
             0 => values[0],
             k if k == values.len() => values[k - 1],
             k => {
@@ -96,6 +111,7 @@ mod tests {
         let table = Table::parse("t,u.a\n0,1\n2,3\n2,5\n").unwrap_or_else(|why| panic!("{why}"));
         let values = table.column("u.a").unwrap();
         assert_eq!([-1.0, 0.5, 2.0, 9.0].map(|t| table.at(values, t)), [1.0, 1.5, 5.0, 5.0]);
+        assert_eq!([-1.0, 0.5, 2.0, 9.0].map(|t| table.before(values, t)), [1.0, 1.5, 3.0, 5.0]);
     }
 
     #[test]
@@ -106,6 +122,7 @@ mod tests {
             ("t,a\n0,x\n", "line 2: `x` is no number"),
             ("t,a\n0\n", "expected 2 values"),
             ("t\n1\n0\n", "decrease"),
+            ("t,a,a\n0,1,2\n", "two columns `a`"),
         ] {
             assert!(Table::parse(text).is_err_and(|why| why.contains(part)), "{text}");
         }

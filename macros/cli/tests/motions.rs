@@ -2,9 +2,12 @@
 
 #[path = "motions/flail.rs"]
 mod flail;
+#[path = "mechanisms/speeds.rs"]
+mod speeds;
 
 use flail::Flail;
 use linkwork::prelude::*;
+use speeds::Juggler;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -59,6 +62,135 @@ fn programs_and_generated_code_move_alike() {
         }
         assert!((row[21] - thrust(row[0])).abs() < 1e-12);
     }
+}
+
+const JUGGLER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/speeds.rs");
+
+/// With declared speeds configurations move as in Rust, in velocities along the ground's axes and in a mixture of rates; a speed of
+/// twice a rate is not the rate.
+#[test]
+fn declared_speeds_move_configurations() {
+    let here = folder("speeds");
+    let begin = [0.3, -0.2, 1.5, 0.4, -1.0, 2.0, 0.7, -0.6];
+    let names = ["ux", "uy", "uz", "wx", "wy", "wz", "swing", "bend"];
+    let mut set =
+        vec!["--set".to_string(), "axial=0.25".to_string(), "--set".to_string(), "q.theta=0.4".to_string()];
+    set.extend(names.iter().zip(begin).flat_map(|(name, v)| ["--set".to_string(), format!("v.{name}={v}")]));
+    let mut arguments =
+        vec!["simulate", JUGGLER, "--duration", "1", "--every", "0.25", "--tolerance", "1e-11"];
+    arguments.extend(set.iter().map(String::as_str));
+    let (status, log, told) = linkwork(&here, &arguments);
+    assert_eq!((status, told.as_str()), (0, ""));
+    let juggler = Juggler { axial: 0.25 };
+    let (mut q, v) = (juggler.neutral(), SVector::<f64, 8>::from(begin));
+    q[8] = 0.4;
+    let motion = simulate(&juggler).from(q, v).method(Rk4::step(5e-4)).duration(1.0).sample_every(0.25);
+    let samples: Vec<_> = motion.collect::<Result<_, _>>().unwrap();
+    for (row, sample) in rows(&log).iter().zip(&samples) {
+        let other = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v);
+        for (a, b) in row.iter().zip(other) {
+            assert!((a - b).abs() < 1e-8, "{row:?} {:?} {:?}", sample.q, sample.v);
+        }
+    }
+    let rotor = "
+#[mechanism]
+pub struct Rotor {
+    #[body(mass = 1, inertia = diagonal(2, 3, 4))]
+    rotor: Body,
+    #[joint(ground -> rotor, about = z)]
+    angle: Pin,
+    #[speed(4 * rate(angle))]
+    fast: Speed,
+}
+";
+    std::fs::write(here.join("rotor.rs"), rotor).unwrap();
+    let (status, log, _) = linkwork(&here, &["simulate", "rotor.rs", "--set", "v.fast=3", "--duration", "2"]);
+    let end = rows(&log).pop().unwrap();
+    assert!(status == 0 && (end[1] - 1.5).abs() < 1e-9 && (end[2] - 3.0).abs() < 1e-12, "{end:?}");
+}
+
+/// States of first order begin at zero or where `--set` says, and move: a lag of 0.5 s, closed form. A log holds them, and a page is
+/// made from it.
+#[test]
+fn states_of_first_order_are_integrated() {
+    let here = folder("states");
+    let sled = "
+#[mechanism]
+pub struct Sled {
+    pub lag: f64,
+    throttle: Input,
+    #[state(rate = (throttle - thrust) / lag)]
+    thrust: State,
+    #[body(mass = 2)]
+    sled: Body,
+    #[joint(ground -> sled, along = x)]
+    rail: Sleeve,
+    #[acts(on = rail, value = thrust)]
+    engine: Force,
+}
+";
+    std::fs::write(here.join("sled.rs"), sled).unwrap();
+    let simulate = ["simulate", "sled.rs", "--set", "lag=0.5", "--set", "u.throttle=6", "--duration", "2"];
+    for (set, start) in [(&[][..], 0.0), (&["--set", "x.thrust=2"], 2.0), (&["--set", "thrust=2"], 2.0)] {
+        let (status, log, told) = linkwork(&here, &[&simulate[..], set].concat());
+        assert_eq!((status, told.as_str()), (0, ""));
+        assert!(log.starts_with("t,q.rail,v.rail,x.thrust,u.throttle\r\n"), "{log}");
+        for row in rows(&log) {
+            let late = 1.0 - (-row[0] / 0.5).exp();
+            let thrust = start + (6.0 - start) * late;
+            let velocity = (6.0 * row[0] - (6.0 - start) * 0.5 * late) / 2.0;
+            assert!((row[3] - thrust).abs() < 1e-6 && (row[2] - velocity).abs() < 1e-6, "{row:?}");
+        }
+    }
+    let out = [&simulate[..], &["--out", "sled.csv"]].concat();
+    assert_eq!(linkwork(&here, &out).0, 0);
+    let view = ["view", "sled.rs", "--set", "lag=0.5", "--motion", "sled.csv"];
+    assert_eq!(linkwork(&here, &view), (0, "Sled.html\n".to_string(), String::new()));
+    let log = [&simulate[..], &["--out", "sled.mcap"]].concat();
+    assert_eq!(linkwork(&here, &log).0, 0);
+    let states = messages(&std::fs::read(here.join("sled.mcap")).unwrap());
+    let last = states.iter().rfind(|message| message.get("v").is_some()).unwrap();
+    assert!((last["v"]["thrust"].as_f64().unwrap() - 6.0 * (1.0 - (-4.0_f64).exp())).abs() < 1e-6, "{last}");
+    let (status, _, told) = linkwork(&here, &["simulate", "sled.rs", "--set", "lag=1", "--set", "x.thrst=1"]);
+    assert!(
+        status == 2 && told.contains("there is no `x.thrst`, but lag, q.rail, v.rail, x.thrust"),
+        "{told}"
+    );
+}
+
+/// A stiff arm is integrated by an implicit method, which is told: the spring of 10⁶ N m/rad holds the arm where its weight bends it.
+#[test]
+fn stiff_mechanisms_are_integrated_by_an_implicit_method() {
+    let here = folder("stiff");
+    let arm = "
+#[mechanism(gravity = -9.81 * y)]
+pub struct Arm {
+    #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
+    link: Body,
+    #[body(mass = 0.01, com = 0.05 * x, inertia = rod(0.01, 0.1, x))]
+    tip: Body,
+    #[joint(ground -> link, about = z)]
+    shoulder: Pin,
+    #[joint(link.at(x) -> tip, about = z)]
+    wrist: Pin,
+    #[acts(on = shoulder, stiffness = 1e6)]
+    drive: Spring,
+    #[acts(on = shoulder, damping = 1e4)]
+    damper: Dashpot,
+    #[acts(on = wrist, stiffness = 1e4)]
+    clamp: Spring,
+    #[acts(on = wrist, damping = 100)]
+    grease: Dashpot,
+}
+";
+    std::fs::write(here.join("arm.rs"), arm).unwrap();
+    let (status, log, told) =
+        linkwork(&here, &["simulate", "arm.rs", "--duration", "2", "--set", "q.wrist=0.1"]);
+    assert!(status == 0 && told.contains("the motion is stiff: from 0.0"), "{told}");
+    let end = rows(&log).pop().unwrap();
+    // Weight times lever by stiffness, at the angle zero but for parts in 10⁵.
+    let bend = -9.81 * (0.5 + 0.01 * 1.05) / 1e6;
+    assert!((end[1] - bend).abs() < 1e-8 && (end[2] + 9.81 * 0.01 * 0.05 / 1e4).abs() < 1e-8, "{end:?}");
 }
 
 /// A log comes back as a page; so does a motion that is computed for it.
@@ -399,6 +531,7 @@ pub struct Slider {
 fn what_cannot_be_done_is_told() {
     let here = folder("refused");
     std::fs::write(here.join("bad.csv"), "t,u.thrsut\n0,1\n").unwrap();
+    std::fs::write(here.join("plain.csv"), "t,thrust\n0,1\n").unwrap();
     for (arguments, part) in [
         (vec![], "parameters without a value: --set handle=…"),
         (vec!["--set", "handle"], "expected NAME=VALUE"),
@@ -409,6 +542,7 @@ fn what_cannot_be_done_is_told() {
         (vec!["--set", "handle=0.5", "--every", "0"], "`--every`: expected a number above zero"),
         (vec!["--set", "handle=0.5", "--inputs", "none.csv"], "cannot read none.csv"),
         (vec!["--set", "handle=0.5", "--inputs", "bad.csv"], "there is no input `u.thrsut`, but u.thrust"),
+        (vec!["--set", "handle=0.5", "--inputs", "plain.csv"], "no column of an input: expected u.thrust"),
         (vec!["--set", "handle=0.5", "--set", "q.chain.qw=0"], "is zero"),
     ] {
         let (status, out, told) = linkwork(&here, &[vec!["simulate", FLAIL], arguments.clone()].concat());

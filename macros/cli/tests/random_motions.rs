@@ -1,0 +1,275 @@
+//! Random mechanisms whose motion is known by another mechanism, or in closed form: declared speeds, states of first order, inputs
+//! over time, stiff springs.
+//!
+//! `LINKWORK_CASES` sets how many mechanisms of each kind are tried, `LINKWORK_COMMAND` names another build of the command.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Numbers that look random (Knuth's linear congruential generator).
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 >> 33
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        self.bits() % n
+    }
+
+    /// A number of three digits between bounds.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        let x = low + (high - low) * self.below(10_000) as f64 / 1e4;
+        (x * 1e3).round() / 1e3
+    }
+}
+
+fn cases() -> u64 {
+    std::env::var("LINKWORK_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(6)
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A motion as the command prints it: names of the columns, and rows.
+struct Log {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Log {
+    fn last(&self, name: &str) -> f64 {
+        let column = self.names.iter().position(|known| known == name);
+        self.rows[self.rows.len() - 1][column.unwrap_or_else(|| panic!("no `{name}` in {:?}", self.names))]
+    }
+}
+
+fn simulated(here: &Path, name: &str, text: &str, set: &[String], more: &[&str]) -> Log {
+    let file = format!("{name}.rs");
+    std::fs::write(here.join(&file), text).unwrap();
+    let command = std::env::var_os("LINKWORK_COMMAND").unwrap_or(env!("CARGO_BIN_EXE_linkwork").into());
+    let mut command = Command::new(command);
+    command.current_dir(here).args(["simulate", &file, "--tolerance", "1e-10", "--every", "0.25"]).args(more);
+    set.iter().for_each(|set| _ = command.arg("--set").arg(set));
+    let output = command.output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{text}\n{set:?}\n{told}");
+    let log = String::from_utf8(output.stdout).unwrap();
+    let mut lines = log.lines();
+    let names = lines.next().unwrap().split(',').map(ToString::to_string).collect();
+    Log { names, rows: lines.map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect() }
+}
+
+/// A chain of bodies on pins and sleeves with springs, or a slider-crank, and its coordinates.
+fn linkage(random: &mut Random) -> (String, Vec<String>, bool) {
+    let mut text = String::new();
+    if random.below(4) == 0 {
+        let (r, l) = (random.between(0.2, 0.5), random.between(0.9, 1.5));
+        let _ = write!(
+            text,
+            "    #[body(mass = 1.2, com = {r} / 2 * x, inertia = rod(1.2, {r}, x))]\n    crank: Body,
+    #[body(mass = 0.7, com = {l} / 2 * x, inertia = rod(0.7, {l}, x))]\n    arm: Body,
+    #[body(mass = 2.1)]\n    piston: Body,
+    #[joint(ground -> crank, about = z)]\n    j0: Pin,
+    #[joint(crank.at({r} * x) -> arm, about = z)]\n    j1: Pin,
+    #[joint(ground.at(({r} + {l}) * x) -> piston, along = x)]\n    j2: Sleeve,
+    #[joint(arm.at({l} * x) -> piston, about = z)]\n    closing: Pin,\n"
+        );
+        return (text, (0..3).map(|k| format!("j{k}")).collect(), true);
+    }
+    let n = 1 + random.below(3);
+    for k in 0..n {
+        let (mass, length) = (random.between(0.5, 3.0), random.between(0.3, 1.2));
+        let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(-0.4 * y)", k - 1) };
+        let (how, kind) =
+            [("about = z", "Pin"), ("about = x", "Pin"), ("along = x", "Sleeve")][random.below(3) as usize];
+        let _ = write!(
+            text,
+            "    #[body(mass = {mass}, com = -{length} / 2 * y + 0.1 * z, inertia = cuboid({mass}, 0.2, {length}, 0.3))]\n    b{k}: Body,
+    #[joint({parent} -> b{k}, {how})]\n    j{k}: {kind},
+    #[acts(on = j{k}, stiffness = {})]\n    s{k}: Spring,\n    #[acts(on = j{k}, damping = {})]\n    d{k}: Dashpot,\n",
+            random.between(5.0, 40.0),
+            random.between(0.0, 1.0)
+        );
+    }
+    (text, (0..n).map(|k| format!("j{k}")).collect(), false)
+}
+
+fn mechanism(body: &str) -> String {
+    format!("use linkwork::prelude::*;\n#[mechanism(gravity = -9.81 * y)]\npub struct Random {{\n{body}}}\n")
+}
+
+/// Speeds are another description of the same motion: the mechanism goes where it goes without them.
+#[test]
+fn declared_speeds_lead_to_the_same_motion() {
+    let here = folder("random_speeds");
+    for case in 0..cases() {
+        let random = &mut Random(2 * case + 1);
+        let (body, joints, loops) = linkage(random);
+        let mut with = body.clone();
+        let (mut begin, mut of_speeds, mut of_rates) = (Vec::new(), Vec::new(), Vec::new());
+        // A loop begins where it is assembled; one rate is free.
+        let q: Vec<f64> =
+            joints.iter().map(|_| if loops { 0.0 } else { random.between(-0.5, 0.5) }).collect();
+        let v: Vec<f64> = joints.iter().map(|_| random.between(-1.0, 1.0)).collect();
+        for (k, joint) in joints.iter().enumerate() {
+            let (own, other) = (random.between(0.5, 3.0), random.between(-1.0, 1.0));
+            let (mut value, mut speed) = (format!("{own} * rate({joint})"), own * v[k]);
+            // Triangular: it can be inverted everywhere.
+            if k > 0 && random.below(2) == 0 {
+                let before = &joints[k - 1];
+                let _ = write!(value, " + {other} * cos({joint}) * rate({before})");
+                speed += other * q[k].cos() * v[k - 1];
+            }
+            let _ = write!(with, "    #[speed({value})]\n    w{k}: Speed,\n");
+            begin.push(format!("q.{joint}={}", q[k]));
+            if !loops || k == 0 {
+                of_speeds.push(format!("v.w{k}={speed}"));
+                of_rates.push(format!("v.{joint}={}", v[k]));
+            }
+        }
+        if loops {
+            begin.clear();
+        }
+        let more = ["--duration", "1"];
+        let [a, b] = [(with, of_speeds), (body, of_rates)].map(|(body, set)| {
+            simulated(&here, "speeds", &mechanism(&body), &[begin.clone(), set].concat(), &more)
+        });
+        for joint in &joints {
+            let name = format!("q.{joint}");
+            let (a, b) = (a.last(&name), b.last(&name));
+            assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "case {case}: {name} is {a}, not {b}");
+        }
+    }
+}
+
+/// A state of first order is the velocity of a particle of 1 kg, on a rail of its own, that its rate pushes as a force.
+#[test]
+fn states_move_as_velocities_do() {
+    let here = folder("random_states");
+    for case in 0..cases() {
+        let random = &mut Random(2 * case + 2);
+        let (linkage, joints, loops) = linkage(random);
+        let j = &joints[0];
+        // Parameters have whatever units fit.
+        let parameters = ["lag", "lift", "drag", "wave", "scale", "gain"];
+        let values = [
+            random.between(0.5, 20.0),
+            random.between(-0.5, 0.5),
+            random.between(0.0, 0.5),
+            random.between(-0.5, 0.5),
+            random.between(0.2, 2.0),
+            random.between(-8.0, 8.0),
+        ];
+        let rate = |x: &str| {
+            format!(
+                "lag * (drive - {x}) + lift * sin(scale * {j}) - drag * rate({j}) + wave * {x} * cos(3 * t)"
+            )
+        };
+        let declared: String = parameters.iter().map(|name| format!("    pub {name}: f64,\n")).collect();
+        let force = |x: &str| {
+            format!(
+                "{declared}    pub share: f64,\n    drive: Input,\n    #[acts(on = {j}, value = gain * tanh(share * {x}))]\n    f: Force,\n"
+            )
+        };
+        let is_pin = linkage.contains("j0: Pin");
+        let force = |x: &str| if is_pin { force(x).replace("f: Force", "f: Torque") } else { force(x) };
+        let of_state =
+            format!("{}    #[state(rate = {})]\n    level: State,\n{linkage}", force("level"), rate("level"));
+        let of_rail = format!(
+            "{}{linkage}    #[particle(mass = 1)]\n    dot: Particle,\n    #[joint(ground -> dot, along = x)]\n    rail: Sleeve,
+    #[acts(on = rail, value = {})]\n    push: Force,\n",
+            force("rate(rail)"),
+            rate("rate(rail)")
+        );
+        let (level, drive) = (random.between(-1.0, 1.0), random.between(-2.0, 2.0));
+        let begin = if loops { vec![] } else { vec![format!("q.{j}={}", random.between(-0.5, 0.5))] };
+        let set = |name: &str| {
+            let values = parameters.iter().zip(values).map(|(name, value)| format!("{name}={value}"));
+            let own = ["share=0.7".to_string(), format!("{name}={level}"), format!("u.drive={drive}")];
+            [begin.clone(), values.collect(), own.to_vec()].concat()
+        };
+        let more = ["--duration", "1"];
+        let a = simulated(&here, "states", &mechanism(&of_state), &set("x.level"), &more);
+        let b = simulated(&here, "states", &mechanism(&of_rail), &set("v.rail"), &more);
+        let names = joints.iter().map(|joint| (format!("q.{joint}"), format!("q.{joint}")));
+        for (name, other) in names.chain([("x.level".to_string(), "v.rail".to_string())]) {
+            let (a, b) = (a.last(&name), b.last(&other));
+            assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "case {case}: {name} is {a}, not {b}");
+        }
+    }
+}
+
+/// A cart of 1 kg under a force on straight lines between random instants, which jumps and has short pulses: velocity and place are
+/// integrals of the table.
+#[test]
+fn inputs_are_followed_exactly() {
+    let here = folder("random_inputs");
+    let cart = mechanism(
+        "    #[body(mass = 1)]\n    cart: Body,\n    #[joint(ground -> cart, along = x)]\n    rail: Sleeve,\n    #[acts(on = rail)]\n    push: Force,\n",
+    );
+    for case in 0..cases() {
+        let random = &mut Random(3 * case + 5);
+        let mut rows = vec![(0.0, random.between(-5.0, 5.0))];
+        while rows.len() < 12 {
+            let last = rows[rows.len() - 1].0;
+            let t = match random.below(4) {
+                0 => last,
+                1 => last + 0.001,
+                _ => last + random.between(0.05, 0.6),
+            };
+            rows.push((t, random.between(-50.0, 50.0)));
+        }
+        let table: String = rows.iter().map(|(t, u)| format!("{t},{u}\r\n")).collect();
+        std::fs::write(here.join("push.csv"), format!("\u{feff}t,u.push\r\n{table}")).unwrap();
+        let end = rows[rows.len() - 1].0 + 0.5;
+        rows.push((end, rows[rows.len() - 1].1));
+        let (mut x, mut v) = (0.0, 0.0);
+        for pair in rows.windows(2) {
+            let [(from, a), (to, b)] = [pair[0], pair[1]];
+            let h = to - from;
+            x += v * h + (2.0 * a + b) * h * h / 6.0;
+            v += (a + b) * h / 2.0;
+        }
+        let more = ["--inputs", "push.csv", "--duration", &end.to_string()];
+        let log = simulated(&here, "inputs", &cart, &[], &more);
+        let (is, goes) = (log.last("q.rail"), log.last("v.rail"));
+        assert!((is - x).abs() < 1e-8 * (1.0 + x.abs()), "case {case}: {is}, not {x}");
+        assert!((goes - v).abs() < 1e-8 * (1.0 + v.abs()), "case {case}: {goes}, not {v}");
+    }
+}
+
+/// A cart on a stiff, strongly damped spring under a constant force that begins at rest: `c` and `k` are large, and the motion is the
+/// closed form of an overdamped oscillator.
+#[test]
+fn stiff_springs_are_integrated() {
+    let here = folder("random_stiff");
+    for case in 0..cases() {
+        let random = &mut Random(5 * case + 7);
+        let (mass, push) = (random.between(0.5, 2.0), random.between(-50.0, 50.0));
+        let fast = 10_f64.powf(random.between(3.0, 6.0)).round();
+        let slow = random.between(0.5, 20.0);
+        // m x″ + m (fast + slow) x′ + m fast slow x = push.
+        let (c, k) = (mass * (fast + slow), mass * fast * slow);
+        let cart = mechanism(&format!(
+            "    #[body(mass = {mass})]\n    cart: Body,\n    #[joint(ground -> cart, along = x)]\n    rail: Sleeve,
+    #[acts(on = rail, stiffness = {k})]\n    spring: Spring,\n    #[acts(on = rail, damping = {c})]\n    damper: Dashpot,\n    #[acts(on = rail)]\n    push: Force,\n"
+        ));
+        let begin = random.between(-1.0, 1.0);
+        let set = [format!("q.rail={begin}"), format!("u.push={push}")];
+        let log = simulated(&here, "stiff", &cart, &set, &["--duration", "2"]);
+        let rest = push / k;
+        for row in &log.rows {
+            let (t, x) = (row[0], row[1]);
+            let decay = (fast * (-slow * t).exp() - slow * (-fast * t).exp()) / (fast - slow);
+            let exact = rest + (begin - rest) * decay;
+            assert!((x - exact).abs() < 1e-7, "case {case}, {t} s: {x}, not {exact}");
+        }
+    }
+}
