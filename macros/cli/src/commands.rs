@@ -42,7 +42,7 @@ pub fn command() -> Command {
                     .value_parser(value_parser!(PathBuf)),
             )
             .arg(
-                text("linkwork", "FOLDER", "The sources of Linkwork that it is built with [default: its release]")
+                text("linkwork", "FOLDER", "The sources of Linkwork that it is built with [default: those of this command, or its release]")
                     .value_parser(value_parser!(PathBuf)),
             ),
         )
@@ -134,7 +134,11 @@ fn export_library() -> Command {
             .value_parser(value_parser!(PathBuf)),
     )
     .arg(text("prefix", "NAME", "What names begin with [default: the mechanism's name]"))
-    .arg(text("linkwork", "FOLDER", "The sources of Linkwork that it is built with [default: its release]"))
+.arg(text(
+        "linkwork",
+        "FOLDER",
+        "The sources of Linkwork that it is built with [default: those of this command, or its release]",
+    ))
     .arg(switch(
         "expanded",
         "Writes the generated code instead of the attribute, for builds without the compiler",

@@ -39,7 +39,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let description = &source.mechanism.description;
     let mut struct_of = Struct::new(description);
     let text = struct_of.text(&input);
-    struct_of.notes.iter().for_each(|note| eprintln!("linkwork: {note}"));
+    struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));
     struct_of.tell_renamed();
     put(matches, &text)
 }
@@ -93,7 +93,7 @@ impl<'a> Struct<'a> {
             more => format!(", and {more} more that the struct's documentation lists"),
         };
         if !shown.is_empty() {
-            eprintln!("linkwork: other names than in the file: {}{more}", shown.join(", "));
+            crate::note!("linkwork: other names than in the file: {}{more}", shown.join(", "));
         }
     }
 

@@ -44,7 +44,7 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
         crate::say!("{}", path.display());
     }
     for line in &files.left_out {
-        eprintln!("linkwork: not in C: {line}");
+        crate::note!("linkwork: not in C: {line}");
     }
     Ok(())
 }
@@ -66,7 +66,7 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
         crate::say!("{}", path.display());
     }
     for name in &made.left_out {
-        eprintln!("linkwork: not in the library: {name}");
+        crate::note!("linkwork: not in the library: {name}");
     }
     Ok(())
 }

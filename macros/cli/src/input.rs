@@ -1,7 +1,7 @@
 //! Files → what the attribute is given.
 
-use crate::Stop;
 use crate::commands::given;
+use crate::{Stop, syntax};
 use clap::ArgMatches;
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::{Diagnostic, Diagnostics};
@@ -103,7 +103,7 @@ impl Input {
     /// Prints the mistakes, if there are any.
     pub fn report(&self, cx: &Diagnostics) -> Stop {
         for one in cx.distinct() {
-            eprintln!("{}", self.mistake(one));
+            crate::note!("{}", self.mistake(one));
         }
         Stop::Mistakes
     }
@@ -130,15 +130,42 @@ impl Input {
             Some(at) => (at.file.to_string(), Some((at.line as usize, at.column as usize))),
             None => (self.file.display().to_string(), (!self.is_robot).then(|| start(one.place().span))),
         };
+        let words = |text: &String| if self.is_robot { for_command(text) } else { text.clone() };
         Mistake {
             mechanism: Some(self.name.clone()),
             file,
             at,
-            message: one.message().to_string(),
-            notes: one.notes().to_vec(),
-            helps: one.helps().to_vec(),
+            message: words(&one.message().to_string()),
+            notes: one.notes().iter().map(words).collect(),
+            helps: one.helps().iter().map(words).collect(),
         }
     }
+}
+
+/// The endings of robot files.
+const ENDINGS: [&str; 6] = ["urdf", "xacro", "sdf", "world", "mjcf", "xml"];
+
+/// Advice on the attribute as advice on the command: options are given by `--with`, and a file's ending says its format.
+fn for_command(text: &str) -> String {
+    let mut said = text.to_string();
+    let mut from = 0;
+    while let Some(at) = said[from..].find("`#[mechanism(").map(|at| from + at) {
+        let Some(end) = said[at..].find(")]`").map(|end| at + end) else { break };
+        let options = &said[at + "`#[mechanism(".len()..end];
+        // The file is named already.
+        let is_own = |option: &&str| *option == "…" || option.ends_with("= \"…\"");
+        let options: Vec<&str> = options.split(", ").skip_while(is_own).collect();
+        let with = format!("`--with \"{}\"`", options.join(", "));
+        said.replace_range(at..end + ")]`".len(), &with);
+        from = at + with.len();
+    }
+    for format in ["urdf", "sdf", "mjcf"] {
+        let begin = format!("write `{format} = \"…\"` instead of ");
+        if let Some(at) = said.find(&begin) {
+            said.replace_range(at.., &format!("give it a name that ends in `.{format}`"));
+        }
+    }
+    said
 }
 
 /// Line and column of a place, both from one.
@@ -205,22 +232,11 @@ fn is_mechanism(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
 }
 
-/// What is said of a text that has no words and brackets of Rust.
-const UNCLOSED: &str = "this is never closed, closes nothing, or is no word of Rust";
-
 /// The mechanisms of a Rust file, those in modules within it included. Paths in them are relative to the package.
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
     let parsed = syn::parse_file(&text).map_err(|error| {
-        Stop::Syntax(Box::new(Mistake {
-            file: path.display().to_string(),
-            at: Some(start(error.span())),
-            message: match text.trim_start_matches('\u{feff}').parse::<TokenStream>() {
-                Ok(_) => error.to_string(),
-                Err(_) => UNCLOSED.to_string(),
-            },
-            ..Mistake::default()
-        }))
+        Stop::Syntax(Box::new(Mistake { file: path.display().to_string(), ..syntax::located(&text, &error) }))
     })?;
     let whole = path.canonicalize()?;
     let package = whole.ancestors().find(|folder| folder.join("Cargo.toml").is_file());
@@ -262,7 +278,18 @@ fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
 
 /// A struct without fields of its own, which names a robot file.
 fn from_robot(path: &Path) -> Result<Input, Stop> {
-    let text = text_of(path)?;
+    let is_known =
+        path.extension().is_some_and(|end| ENDINGS.iter().any(|known| end.eq_ignore_ascii_case(known)));
+    let unknown = || {
+        let (file, known) = (path.display(), ENDINGS.join("`, `."));
+        Stop::Failure(format!(
+            "{file}: unknown type of file: expected a Rust file (`.rs`), or a robot file (`.{known}`) with an element `<robot>`, `<sdf>` or `<mujoco>`"
+        ))
+    };
+    let text = text_of(path).map_err(|stop| if is_known || !path.is_file() { stop } else { unknown() })?;
+    if !is_known && !["<robot", "<sdf", "<mujoco"].iter().any(|element| text.contains(element)) {
+        return Err(unknown());
+    }
     let name = type_name(path);
     let ident = syn::Ident::new(&name, Span::call_site());
     let written = path.to_string_lossy().into_owned();

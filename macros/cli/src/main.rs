@@ -16,6 +16,8 @@ mod names;
 mod new;
 mod show;
 mod simulate;
+mod sources;
+mod syntax;
 mod table;
 mod view;
 mod written;
@@ -44,7 +46,16 @@ macro_rules! say {
 }
 use say;
 
-/// Prints a text. Who reads only its beginning, as `head` does, closes its end: then there is no more to do.
+/// Prints a line to standard error. Nobody may be reading there, which is no error.
+macro_rules! note {
+    ($($text:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), $($text)*);
+    }};
+}
+use note;
+
+/// Prints a text to standard output. Exits quietly if the reader has closed it, as `head` does.
 fn print(text: std::fmt::Arguments<'_>) {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
@@ -52,7 +63,7 @@ fn print(text: std::fmt::Arguments<'_>) {
         if error.kind() == std::io::ErrorKind::BrokenPipe {
             std::process::exit(0);
         }
-        eprintln!("linkwork: cannot write: {error}");
+        note!("linkwork: cannot write: {error}");
         std::process::exit(2);
     }
 }
@@ -80,20 +91,22 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(Stop::Mistakes) => ExitCode::from(1),
         Err(Stop::Syntax(mistake)) => {
-            eprintln!("{mistake}");
+            note!("{mistake}");
             ExitCode::from(1)
         }
         Err(Stop::Failure(why)) => {
-            eprintln!("linkwork: {why}");
+            note!("linkwork: {why}");
             ExitCode::from(2)
         }
     }
 }
 
-/// What a shell completes.
+/// Prints the completions of a shell.
 fn completions(matches: &clap::ArgMatches) -> Result<(), Stop> {
     let shell = matches.get_one::<clap_complete::Shell>("shell").copied();
     let shell = shell.ok_or_else(|| Stop::Failure("expected a shell".to_string()))?;
-    clap_complete::generate(shell, &mut commands::command(), "linkwork", &mut std::io::stdout());
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut commands::command(), "linkwork", &mut script);
+    print(format_args!("{}", String::from_utf8_lossy(&script)));
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! `linkwork new`: a project that runs.
 
-use crate::Stop;
+use crate::sources::dependency;
+use crate::{Stop, sources};
 use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
@@ -19,6 +20,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let write = |path: &str, text: &str| std::fs::write(folder.join(Path::new(path)), text).map_err(fail);
     let sources = matches.get_one::<PathBuf>("linkwork").map(std::fs::canonicalize).transpose();
     let sources = sources.map_err(|error| Stop::Failure(format!("`--linkwork`: {error}")))?;
+    let sources = sources.or_else(sources::of_command);
     write("Cargo.toml", &manifest(&name, sources.as_deref()))?;
     write("src/main.rs", MAIN)?;
     write(".gitignore", "/target\n/motion.html\n")?;
@@ -41,16 +43,13 @@ fn check_name(name: &str) -> Result<(), Stop> {
     Ok(())
 }
 
-/// With the sources of Linkwork in a folder, or its release.
+/// The manifest, with the sources of Linkwork in a folder or its release.
 fn manifest(name: &str, sources: Option<&Path>) -> String {
-    let of = |part: &str| match sources {
-        Some(folder) => format!("{{ path = {:?} }}", folder.join(part).display().to_string()),
-        None => format!("{:?}", env!("CARGO_PKG_VERSION")),
-    };
-    let (linkwork, view) = (of("runtime"), of("runtime/view"));
+    let linkwork = dependency("linkwork", "runtime", sources);
+    let view = dependency("linkwork-view", "runtime/view", sources);
     format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
-         [dependencies]\nlinkwork = {linkwork}\nlinkwork-view = {view}\n\n\
+         [dependencies]\n{linkwork}\n{view}\n\n\
          # Most of the speed of a release build, with its checks on.\n[profile.dev]\nopt-level = 1\n\n[workspace]\n"
     )
 }

@@ -14,8 +14,8 @@ use linkwork_compiler::mechanism::{self, PieceKind};
 use linkwork_view::{Figure, Motion, Page};
 use std::path::{Path, PathBuf};
 
-/// Time, configuration, and inputs, where they are known.
-type State = (f64, Vec<f64>, Vec<f64>);
+/// Time, configuration, states of first order, and inputs, where they are known.
+type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 
 /// Most coordinates that are plotted of their own accord.
 const PLOTTED: usize = 12;
@@ -32,25 +32,39 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         Some(path) => from_log(path, &start)?,
         None => match start.mechanism.obstacle(matches.get_flag("without-contacts")) {
             Some(why) if matches.get_one::<f64>("duration").is_none() => {
-                eprintln!("linkwork: the page shows one configuration: {why}");
-                vec![(0.0, start.q.clone(), Vec::new())]
+                crate::note!("linkwork: the page shows one configuration: {why}");
+                vec![(0.0, start.q.clone(), start.x.clone(), Vec::new())]
             }
-            _ => start.run(matches)?.into_iter().map(|sample| (sample.t, sample.q, sample.u)).collect(),
+            _ => start.run(matches)?.into_iter().map(|s| (s.t, s.q, s.x, s.u)).collect(),
         },
     };
     let mut figure = figure(&start, &model);
     let beside = input.file.parent().map(Path::to_path_buf);
     match matches.get_one::<PathBuf>("meshes") {
-        Some(folder) => figure = figure.meshes(folder)?,
+        Some(folder) => {
+            let read = figure.meshes(folder);
+            figure = read.map_err(|error| Stop::Failure(format!("`--meshes`: {error}")))?;
+        }
         // Without being asked for, only those that can be read.
         None => {
             if let Some(folder) = beside.filter(|_| input.is_robot) {
-                figure = figure.clone().meshes(folder).unwrap_or(figure);
+                let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
+                figure = figure.clone().meshes(folder).unwrap_or_else(|error| {
+                    crate::note!("linkwork: meshes are not drawn: {error}");
+                    figure
+                });
             }
         }
     }
+    let missing = figure.missing_meshes();
+    if !missing.is_empty() {
+        crate::note!(
+            "linkwork: bodies are drawn by their mass properties where these meshes are not found (`--meshes FOLDER` says where they are): {}",
+            missing.join(", ")
+        );
+    }
     let times = states.iter().map(|(t, ..)| *t).collect();
-    let placements = states.iter().map(|(t, q, _)| start.mechanism.placements(*t, q)).collect();
+    let placements = states.iter().map(|(t, q, x, _)| start.mechanism.placements(*t, q, x)).collect();
     let heights = |number: usize, place: [f64; 2]| {
         let heights =
             start.mechanism.called("__drawing_heights", Values { given: &place, ..Values::default() })?;
@@ -58,7 +72,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     };
     let mut motion = Motion::from_placements("", figure, times, placements)?.terrain(heights);
     if states.len() > 1 && model.nq() <= PLOTTED {
-        let values = |k: usize| states.iter().map(|(_, q, _)| q[k]).collect();
+        let values = |k: usize| states.iter().map(|(_, q, ..)| q[k]).collect();
         motion =
             motion.plots("Coordinates", curves(&model.configuration, &model.units.configuration, values))?;
     }
@@ -91,11 +105,16 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     let inputs: Vec<_> =
         start.mechanism.model.inputs.iter().map(|(name, _)| table.column(&format!("u.{name}"))).collect();
     let inputs = if inputs.contains(&None) { Vec::new() } else { inputs };
+    let states: Option<Vec<_>> =
+        start.mechanism.states.iter().map(|(name, _)| table.column(&format!("x.{name}"))).collect();
     let state = |(k, t): (usize, &f64)| {
         let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
         start.mechanism.normalise(&mut q)?;
         let u = inputs.iter().filter_map(|column| Some(column.as_ref()?[k])).collect();
-        Ok((*t, q, u))
+        let x = states
+            .as_ref()
+            .map_or(start.x.clone(), |columns| columns.iter().map(|column| column[k]).collect());
+        Ok((*t, q, x, u))
     };
     table.times.iter().enumerate().map(state).collect()
 }

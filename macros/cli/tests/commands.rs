@@ -69,6 +69,10 @@ fn what_cannot_be_done_is_said() {
     std::fs::write(here.join("nothing.rs"), "pub struct Plain;").unwrap();
     std::fs::write(here.join("broken.rs"), "pub struct 3;").unwrap();
     std::fs::write(here.join("open.rs"), "#[mechanism]\n// A word.\nstruct Fan {").unwrap();
+    std::fs::write(here.join("comma.rs"), "struct Fan {\n    a: f64\n    b: f64,\n}").unwrap();
+    std::fs::write(here.join("bracket.rs"), "struct Fan {\n    #[body(mass = 1]\n    b: Body,\n}").unwrap();
+    std::fs::write(here.join("robot.usd"), "#usda 1.0\n").unwrap();
+    std::fs::write(here.join("image.png"), [0x89, b'P', b'N', b'G', 0xff]).unwrap();
     std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
     std::fs::write(here.join("two.rs"), format!("{PENDULUM}{}", PENDULUM.replace("Pendulum", "Other")))
         .unwrap();
@@ -80,6 +84,19 @@ fn what_cannot_be_done_is_said() {
         (&["show", "open.rs"], 1, "open.rs:3:12: error: this is never closed"),
         (&["check", "pendulum.rs", "--struct", "Pendulm"], 2, "no mechanism `Pendulm`, but Pendulum"),
         (&["export", "c", "two.rs"], 2, "several mechanisms"),
+        (&["check", "comma.rs"], 1, "comma.rs:2:11: error: expected `,`, found `b`"),
+        (
+            &["check", "bracket.rs"],
+            1,
+            "bracket.rs:2:20: error: mismatched closing delimiter: expected `)`, found `]`",
+        ),
+        (&["check", "bracket.rs"], 1, "note: `(` of line 2, column 11 is not closed"),
+        (
+            &["check", "robot.usd"],
+            2,
+            "robot.usd: unknown type of file: expected a Rust file (`.rs`), or a robot file (`.urdf`",
+        ),
+        (&["show", "image.png"], 2, "image.png: unknown type of file"),
         (&["chekc", "pendulum.rs"], 2, "check"),
         (&["check"], 2, "FILE"),
         (&["check", "pendulum.rs", "--with", "gravity = ("], 2, "--with"),
@@ -88,6 +105,45 @@ fn what_cannot_be_done_is_said() {
         let (found, _, error) = linkwork(&here, arguments);
         assert!(found == status && error.contains(told), "{arguments:?}: {found}, {error}");
     }
+}
+
+/// What a robot file needs is said as an option of the command, which has no attribute; and it works.
+#[test]
+fn advice_names_options_of_the_command() {
+    let here = folder("advice");
+    let robot = "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/>\
+                 <inertia ixx='1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
+                 <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
+    std::fs::write(here.join("r.urdf"), robot).unwrap();
+    let (status, _, told) = linkwork(&here, &["check", "r.urdf"]);
+    assert!(
+        status == 1 && told.contains("`--with \"inertia = trust\"`") && !told.contains("#[mech"),
+        "{told}"
+    );
+    assert_eq!(linkwork(&here, &["check", "r.urdf", "--with", "inertia = trust"]).0, 0);
+    std::fs::write(here.join("s.urdf"), "<sdf version='1.9'><model name='m'/></sdf>").unwrap();
+    let (status, _, told) = linkwork(&here, &["check", "s.urdf"]);
+    assert!(status == 1 && told.contains("give it a name that ends in `.sdf`"), "{told}");
+}
+
+/// Meshes that are not found are listed; a folder that is not there is an error.
+#[test]
+fn missing_meshes_are_listed() {
+    let here = folder("meshes");
+    let robot = "<robot name='r'><link name='a'><visual><geometry><mesh filename='package://r/a.stl'/></geometry></visual></link>\
+                 <link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
+                 <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
+    std::fs::write(here.join("r.urdf"), robot).unwrap();
+    for more in [&[][..], &["--meshes", "."]] {
+        let (status, _, told) =
+            linkwork(&here, &[&["view", "r.urdf", "--duration", "0.1"][..], more].concat());
+        assert!(
+            status == 0 && told.contains("these meshes are not found") && told.contains("package://r/a.stl"),
+            "{told}"
+        );
+    }
+    let (status, _, told) = linkwork(&here, &["view", "r.urdf", "--meshes", "nowhere"]);
+    assert!(status == 2 && told.contains("`--meshes`: nowhere: "), "{told}");
 }
 
 /// What cannot be read at all is told as any other mistake is.
@@ -179,6 +235,34 @@ fn block(language: &str) -> String {
     let guide = include_str!("../README.md");
     let (_, rest) = guide.split_once(&format!("```{language}\n")).unwrap();
     rest.split_once("```").unwrap().0.to_string()
+}
+
+/// The commands of the guide run as they are written, from the folder of the repository.
+#[test]
+#[cfg(unix)]
+fn documented_commands_run() {
+    let here = folder("documented_commands");
+    let _ = std::fs::remove_dir_all(&here);
+    std::fs::create_dir_all(&here).unwrap();
+    let models = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
+    std::os::unix::fs::symlink(models, here.join("models")).unwrap();
+    let commands = block("sh");
+    let commands = commands.lines().map(|line| line.split(['#', '>']).next().unwrap());
+    let commands: Vec<Vec<&str>> = commands
+        .filter_map(|line| line.strip_prefix("linkwork "))
+        // That for Python needs its package.
+        .filter(|line| !line.contains("python"))
+        .map(|line| line.split_whitespace().collect())
+        .collect();
+    assert!(commands.len() >= 10, "{commands:?}");
+    for mut command in commands {
+        if command[0] == "view" || command[0] == "simulate" {
+            command.retain(|word| !["--duration", "2"].contains(word));
+            command.extend(["--duration", "0.05"]);
+        }
+        let (status, _, told) = linkwork(&here, &command);
+        assert_eq!(status, 0, "{command:?}: {told}");
+    }
 }
 
 /// The example of the guide does what it says, in C.

@@ -10,6 +10,7 @@ use crate::Stop;
 use crate::commands::given;
 use crate::grid::{self, Grid};
 use crate::input::{Compiled, Input};
+use crate::sources::{self, dependency};
 use clap::ArgMatches;
 pub use functions::docs;
 use functions::{Function, Kind};
@@ -20,6 +21,7 @@ use linkwork_compiler::syntax::ScalarType;
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// The crate.
 pub struct Crate {
@@ -68,7 +70,8 @@ impl Known<'_, '_> {
     }
 }
 
-/// Writes the crate of a mechanism: with the sources of Linkwork in the folder `--linkwork`, if not with crates of a registry.
+/// Writes the crate of a mechanism. It depends on the sources of Linkwork in the folder `--linkwork`, on those of the command if they
+/// are there, or else on crates of a registry.
 pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
     let graph = Graph::new();
     let Compiled { source, model, output } = input.compiled(&graph)?;
@@ -102,7 +105,7 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
         equations: output.equations.plain.clone(),
     };
     let description = describe::description(&known);
-    let linkwork = given(matches, "linkwork").map(home).transpose()?;
+    let linkwork = given(matches, "linkwork").map(home).transpose()?.or_else(sources::of_command);
     let manifest = manifest(prefix, linkwork.as_deref());
     let text = match matches.get_flag("expanded") {
         true => write::library(&known, &description, "")? + &expansion,
@@ -121,12 +124,10 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
 }
 
 /// The folder of Linkwork's sources as a whole path.
-fn home(folder: &str) -> Result<String, Stop> {
-    let whole = std::path::Path::new(folder).canonicalize().ok();
+fn home(folder: &str) -> Result<PathBuf, Stop> {
+    let whole = Path::new(folder).canonicalize().ok();
     let whole = whole.filter(|whole| whole.join("runtime/library/Cargo.toml").is_file());
-    let whole =
-        whole.ok_or_else(|| Stop::Failure(format!("`--linkwork`: {folder} has no sources of Linkwork")))?;
-    Ok(whole.to_string_lossy().into_owned())
+    whole.ok_or_else(|| Stop::Failure(format!("`--linkwork`: {folder} has no sources of Linkwork")))
 }
 
 /// Contacts that slip have forces of their own, which steps with Jacobians do not have.
@@ -301,27 +302,15 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     std::iter::once(step).chain(with_jacobians.then_some(transition)).collect()
 }
 
-fn manifest(prefix: &str, linkwork: Option<&str>) -> String {
-    let version = env!("CARGO_PKG_VERSION");
-    let one = |name: &str, folder: &str| match linkwork {
-        None => format!("{name} = \"{version}\""),
-        Some(home) => {
-            let path = toml_text(&format!("{home}/{folder}"));
-            format!("{name} = {{ path = {path} }}")
-        }
-    };
+/// The manifest, with the sources of Linkwork in a folder or its release.
+fn manifest(prefix: &str, linkwork: Option<&Path>) -> String {
     format!(
         "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[lib]\nname = \"{prefix}\"\ncrate-type = [\"cdylib\", \"staticlib\"]\n\n\
          [dependencies]\n{}\n{}\n\n[workspace]\n",
         prefix.replace('_', "-"),
-        one("linkwork", "runtime"),
-        one("linkwork-library", "runtime/library"),
+        dependency("linkwork", "runtime", linkwork),
+        dependency("linkwork-library", "runtime/library", linkwork),
     )
-}
-
-/// A text as TOML writes it.
-fn toml_text(text: &str) -> String {
-    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
 /// Values of all names: where the parameters of a struct are, by field.

@@ -1,0 +1,169 @@
+//! Syntax errors of Rust files, located as the compiler of Rust locates them: brackets that are not closed, commas that are missing.
+
+use crate::input::Mistake;
+use proc_macro2::{Delimiter, LineColumn, TokenStream, TokenTree};
+use std::str::FromStr;
+
+/// The error of a text that is no Rust file. `error` is what the parser reports.
+pub fn located(text: &str, error: &syn::Error) -> Mistake {
+    let (at, message, notes) = match TokenStream::from_str(text) {
+        Ok(tokens) if error.to_string().starts_with("expected `,`") => {
+            let (before, after) = around(&tokens, error.span().start());
+            (before.unwrap_or(error.span().start()), format!("expected `,`{after}"), Vec::new())
+        }
+        Ok(_) => (error.span().start(), error.to_string(), Vec::new()),
+        Err(lexed) => unbalanced(text, lexed.span().start()),
+    };
+    Mistake { at: Some((at.line, at.column + 1)), message, notes, ..Mistake::default() }
+}
+
+/// The error of a text whose brackets do not match, or that has something else than tokens at the place where reading it stopped.
+fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
+    let (before, found) = text.split_at(index(text, at));
+    let found = found.chars().next();
+    match found {
+        Some(closing @ (')' | ']' | '}')) => match TokenStream::from_str(before) {
+            Ok(_) => (at, format!("unexpected closing delimiter: `{closing}` closes nothing"), Vec::new()),
+            // Of the text before it the innermost bracket is open.
+            Err(lexed) => {
+                let open = lexed.span().start();
+                let bracket = text[index(text, open)..].chars().next().unwrap_or('(');
+                let note =
+                    format!("`{bracket}` of line {}, column {} is not closed", open.line, open.column + 1);
+                (
+                    at,
+                    format!(
+                        "mismatched closing delimiter: expected `{}`, found `{closing}`",
+                        partner(bracket)
+                    ),
+                    vec![note],
+                )
+            }
+        },
+        Some(opening @ ('(' | '[' | '{')) => {
+            let (at, opening) = misaligned(text).map_or((at, opening), |at| (at, '{'));
+            (at, format!("this is never closed: `{}` is missing", partner(opening)), Vec::new())
+        }
+        _ => (at, "this is no token of Rust, or a text that is never closed".to_string(), Vec::new()),
+    }
+}
+
+/// Of a text that ends before all its brackets are closed, the brace whose partner is indented otherwise than its line: the one that is
+/// missing is rather its own.
+fn misaligned(text: &str) -> Option<LineColumn> {
+    let mut whole = text.to_string();
+    // Closed at the end as many brackets as are open there.
+    let tokens = loop {
+        match TokenStream::from_str(&whole) {
+            Ok(tokens) => break tokens,
+            Err(lexed) => {
+                let bracket = whole[index(&whole, lexed.span().start())..].chars().next()?;
+                if !"([{".contains(bracket) || whole.len() > text.len() + 64 {
+                    return None;
+                }
+                whole.push('\n');
+                whole.push(partner(bracket));
+            }
+        }
+    };
+    let last = text.lines().count();
+    let lines: Vec<&str> = text.lines().collect();
+    let indentation = |line: usize| lines.get(line - 1).map(|text| text.len() - text.trim_start().len());
+    let (mut found, mut todo) = (None, vec![tokens]);
+    while let Some(tokens) = todo.pop() {
+        for token in tokens {
+            let TokenTree::Group(group) = token else { continue };
+            let (open, close) = (group.span_open().start(), group.span_close().start());
+            let is_first = |at: LineColumn| indentation(at.line) == Some(at.column);
+            if group.delimiter() == Delimiter::Brace
+                && close.line <= last
+                && close.line > open.line
+                && is_first(close)
+                && indentation(open.line) != Some(close.column)
+            {
+                found = found.max(Some(open));
+            }
+            todo.push(group.stream());
+        }
+    }
+    found
+}
+
+/// The end of the token before a place, and the token there.
+fn around(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) {
+    let (mut before, mut after, mut todo): (Option<LineColumn>, _, _) =
+        (None, String::new(), vec![tokens.clone()]);
+    while let Some(tokens) = todo.pop() {
+        for token in tokens {
+            let (span, text) = match &token {
+                TokenTree::Group(group) => (group.span_open(), String::new()),
+                other => (other.span(), other.to_string()),
+            };
+            if span.start() == at && !text.is_empty() {
+                after = format!(", found `{text}`");
+            }
+            let end = token.span().end();
+            if end <= at {
+                before = before.max(Some(end));
+            } else if let TokenTree::Group(group) = token {
+                before = before.max(Some(group.span_open().end()).filter(|end| *end <= at));
+                todo.push(group.stream());
+            }
+        }
+    }
+    (before, after)
+}
+
+/// The closing bracket of an opening one.
+fn partner(opening: char) -> char {
+    match opening {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+/// The index of a place in a text, whose columns count characters.
+fn index(text: &str, at: LineColumn) -> usize {
+    let text = text.strip_prefix('\u{feff}').map_or((text, 0), |rest| (rest, '\u{feff}'.len_utf8()));
+    let (text, skipped) = text;
+    let start: usize = text.split_inclusive('\n').take(at.line - 1).map(str::len).sum();
+    let line = &text[start.min(text.len())..];
+    let column = line.char_indices().nth(at.column).map_or(line.len(), |(k, _)| k);
+    skipped + start.min(text.len()) + column
+}
+
+#[cfg(test)]
+mod tests {
+    use super::located;
+
+    /// Places as rustc 1.95 prints them, but for brackets that are open at the end of a file: there it points at the end, and
+    /// labels the bracket.
+    #[test]
+    fn errors_are_located_as_rustc_locates_them() {
+        for (text, at, message) in [
+            ("struct S {\n    a: f64\n    b: f64,\n}", (2, 11), "expected `,`, found `b`"),
+            ("struct S {\n    a: f64 #[x] b: f64,\n}", (2, 11), "expected `,`, found `#`"),
+            ("struct S {\n    é: [f64; 3] b: f64,\n}", (2, 16), "expected `,`, found `b`"),
+            (
+                "struct S {\n    #[body(mass = 1, com = -y]\n    b: Body,\n}",
+                (2, 30),
+                "expected `)`, found `]`",
+            ),
+            ("struct S {\n    a: f64,\n}\n}\n", (4, 1), "`}` closes nothing"),
+            ("// {\nstruct S {\n    a: f64, // }\n", (2, 10), "this is never closed: `}` is missing"),
+            ("#[mechanism(gravity = (1, 2)\nstruct S {}\n", (1, 12), "this is never closed: `)` is missing"),
+            ("mod a {\n    struct S {\n        a: f64,\n    fn f() {}\n}\n", (2, 14), "this is never closed"),
+            ("struct S {\n    a: \"text,\n}", (2, 8), "never closed"),
+        ] {
+            let Err(error) = syn::parse_file(text) else { panic!("{text} is a file of Rust") };
+            let found = located(text, &error);
+            assert!(
+                found.at == Some(at) && found.message.contains(message),
+                "{text}\n{:?} {}",
+                found.at,
+                found.message
+            );
+        }
+    }
+}
