@@ -193,7 +193,7 @@ impl Integrator {
         Some(end)
     }
 
-    /// One step towards a time, and the time that it leads to. `None` if there is none, or none within a number of evaluations.
+    /// Takes one step towards a time and returns the time reached. `None` if no step is possible, or none within a number of evaluations.
     fn step(
         &mut self,
         method: Method,
@@ -216,7 +216,8 @@ impl Integrator {
                 Method::Explicit => (Some(explicit(system.rates, t, y, &first, h)), 6),
                 Method::Implicit => {
                     let evaluations = if linear.is_none() { y.len() + 7 } else { 5 };
-                    let linear = linear.get_or_insert_with(|| Linear::of(system.rates, t, y, &first, h));
+                    let linear =
+                        linear.get_or_insert_with(|| Linear::derivatives(system.rates, t, y, &first, h));
                     (implicit(system.rates, t, y, &first, linear, h), evaluations)
                 }
             };
@@ -276,7 +277,13 @@ struct Linear {
 }
 
 impl Linear {
-    fn of(rates: &dyn Fn(f64, &[f64]) -> Vec<f64>, t: f64, y: &[f64], first: &[f64], h: f64) -> Linear {
+    fn derivatives(
+        rates: &dyn Fn(f64, &[f64]) -> Vec<f64>,
+        t: f64,
+        y: &[f64],
+        first: &[f64],
+        h: f64,
+    ) -> Linear {
         let column = |k: usize| {
             let mut moved = y.to_vec();
             moved[k] += f64::EPSILON.sqrt() * y[k].abs().max(1.0);
@@ -306,7 +313,7 @@ fn implicit(
         let diagonal = if i == j { 1.0 / (h * GAMMA) } else { 0.0 };
         diagonal - linear.by_state[j][i]
     };
-    let matrix = Factored::of((0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect())?;
+    let matrix = Factored::eliminate((0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect())?;
     let mut stages: Vec<Vec<f64>> = Vec::new();
     let sum = |weights: &[f64], stages: &[Vec<f64>], k: usize| -> f64 {
         weights.iter().zip(stages).map(|(w, stage)| w * stage[k]).sum()
@@ -334,7 +341,7 @@ struct Factored {
 
 impl Factored {
     /// `None` for a matrix that is singular or not finite.
-    fn of(mut rows: Vec<Vec<f64>>) -> Option<Factored> {
+    fn eliminate(mut rows: Vec<Vec<f64>>) -> Option<Factored> {
         let n = rows.len();
         let mut order: Vec<usize> = (0..n).collect();
         for k in 0..n {
