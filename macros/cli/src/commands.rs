@@ -134,7 +134,7 @@ fn export_library() -> Command {
             .value_parser(value_parser!(PathBuf)),
     )
     .arg(text("prefix", "NAME", "What names begin with [default: the mechanism's name]"))
-.arg(text(
+    .arg(text(
         "linkwork",
         "FOLDER",
         "The sources of Linkwork that it is built with [default: those of this command, or its release]",
