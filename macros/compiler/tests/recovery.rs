@@ -119,6 +119,100 @@ fn signature(f: &syn::ImplItemFn) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
+/// Outputs of one function of the language each, in a mechanism that has something of every kind.
+const MEASURES: [(&str, &str, &str); 57] = [
+    ("atan2", "atan2(sin(hinge), 2)", "Scalar"),
+    ("degrees", "hinge + degrees(30)", "Scalar"),
+    ("pow", "pow(hinge, 3)", "Scalar"),
+    ("min", "min(hinge, 1)", "Scalar"),
+    ("max", "max(hinge, 1)", "Scalar"),
+    ("dot", "dot(arm.x, x)", "Scalar"),
+    ("cross", "cross(arm.x, x)", "Vector"),
+    ("norm", "norm(r(wing / arm))", "Scalar"),
+    ("unit", "unit(r(wing / arm))", "Vector"),
+    ("r", "r(wing / arm)", "Vector"),
+    ("v", "v(wing / ground / ground)", "Vector"),
+    ("a", "a(wing / ground / ground)", "Vector"),
+    ("omega", "omega(wing / ground)", "Vector"),
+    ("alpha", "alpha(wing / ground / ground)", "Vector"),
+    ("rate", "rate(hinge)", "Scalar"),
+    ("angle", "angle(arm.x, x, z)", "Scalar"),
+    ("project", "project(arm.x, x)", "Vector"),
+    ("momentum", "momentum(arm)", "Vector"),
+    ("angular_momentum", "angular_momentum(arm / ground)", "Vector"),
+    ("kinetic_energy", "kinetic_energy(arm)", "Scalar"),
+    ("moment_of_inertia", "moment_of_inertia(wing / arm, z)", "Scalar"),
+    ("center_of_mass", "center_of_mass((arm, wing) / ground)", "Vector"),
+    ("center_of_percussion", "center_of_percussion(arm / ground, z)", "Vector"),
+    ("instant_center", "instant_center(plate / ground)", "Vector"),
+    ("acceleration_center", "acceleration_center(plate / ground)", "Vector"),
+    ("screw_axis", "screw_axis(wing / ground)", "Vector"),
+    ("screw_pitch", "screw_pitch(wing / ground)", "Scalar"),
+    ("projector", "projector(arm.x) * x", "Vector"),
+    ("skew", "skew(arm.x) * x", "Vector"),
+    ("outer", "outer(arm.x, arm.y) * x", "Vector"),
+    ("rotation", "rotation(arm / ground) * x", "Vector"),
+    ("inertia", "inertia(arm / ground) * x", "Vector"),
+    ("identity", "identity() * arm.x", "Vector"),
+    ("transpose", "transpose(rotation(arm / ground)) * x", "Vector"),
+    ("trace", "trace(rotation(arm / ground))", "Scalar"),
+    ("curvature", "curvature(hinge * x + hinge * hinge * y, hinge)", "Scalar"),
+    ("torsion", "torsion(hinge * x + hinge * hinge * y + hinge * hinge * hinge * z, hinge)", "Scalar"),
+    ("cable", "cable(ground.at(3 * y) / arm, wing.sphere(0.1))", "Scalar"),
+    ("gradient", "gradient(dot(r(wing / ground), x) / wing)", "Vector"),
+    ("power", "power(coil)", "Scalar"),
+    ("reaction_force", "reaction_force(hinge)", "Vector"),
+    ("reaction_torque", "reaction_torque(hinge)", "Vector"),
+    ("contact_force", "contact_force(floor)", "Vector"),
+    ("contact_moment", "contact_moment(floor)", "Vector"),
+    ("density", "density(hinge)", "Scalar"),
+    ("pressure", "pressure(hinge)", "Scalar"),
+    ("temperature", "temperature(hinge)", "Scalar"),
+    ("speed_of_sound", "speed_of_sound(hinge)", "Scalar"),
+    ("angle_of_attack", "angle_of_attack(wing, wind)", "Scalar"),
+    ("sideslip", "sideslip(wing, wind)", "Scalar"),
+    ("heading", "heading(wing)", "Scalar"),
+    ("elevation", "elevation(wing)", "Scalar"),
+    ("bank", "bank(wing)", "Scalar"),
+    ("course", "course(wind)", "Scalar"),
+    ("flight_path", "flight_path(wind)", "Scalar"),
+    ("stability_axes", "stability_axes(wing, wind, [1, 2, 3])", "Vector"),
+    ("wind_axes", "wind_axes(wing, wind, [1, 2, 3])", "Vector"),
+];
+
+const MEASURED: &str = "command: Input,
+    #[body(mass = 1, com = x / 2, inertia = sphere(1, 1))] arm: Body,
+    #[body(mass = 1, inertia = sphere(1, 1))] wing: Body,
+    #[joint(ground -> arm, about = z)] hinge: Pin,
+    #[body(mass = 1, inertia = sphere(1, 1))] plate: Body,
+    #[joint(ground -> wing)] flight: Free,
+    #[joint(ground -> plate, about = z)] table: Planar,
+    #[acts(on = hinge, stiffness = 1)] coil: Spring,
+    #[acts(on = hinge, value = command)] motor: Torque,
+    #[contact(wing.sphere(1), ground.plane(z), friction = 0.3, torsional = 0.1)] floor: Contact,
+    #[define(v(wing / ground / ground))] wind: Vector,";
+
+/// An error elsewhere changes the arguments of no output, whichever function of the language it is made of.
+#[test]
+fn an_error_keeps_the_arguments_of_every_measure() {
+    let listed = include_str!("../src/resolve/functions.rs").lines();
+    let listed: Vec<&str> =
+        listed.filter_map(|line| line.trim().strip_prefix("(\"")?.split('"').next()).collect();
+    assert_eq!(listed, MEASURES.map(|(name, ..)| name));
+    for (function, value, kind) in MEASURES {
+        let fields = format!("{MEASURED} #[output({value})] measure: {kind},");
+        let item = format!("pub struct Measured {{ {fields} }}");
+        let messages = expand("".parse().unwrap(), item.parse().unwrap(), Path::new("")).tokens.to_string();
+        let error = messages.find("compile_error").map(|at| &messages[at..]);
+        assert_eq!(error, None, "{function}");
+        let whole = generated("", "Measured", &fields);
+        let failed = generated("", "Measured", &format!("{fields} {MISTAKE}"));
+        let of = |all: &Generated| all.present.get("Measured::measure").cloned();
+        assert!(of(&whole).is_some(), "{function}");
+        assert_eq!(of(&failed), of(&whole), "{function}");
+    }
+}
+
 /// The bound of what is absent: the only one over a lifetime.
 fn reason(block: &ItemImpl) -> Option<String> {
     let bounds = block.generics.where_clause.as_ref()?.predicates.iter();
