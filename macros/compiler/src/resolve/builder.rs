@@ -137,9 +137,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// A placement that moves becomes a link without mass; one that is fixed stays as it is.
     pub fn link_if_moving(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
-        let matrix = pose.rotation.matrix();
-        let entries: Vec<_> = matrix.0.iter().flatten().chain(&pose.translation.0).copied().collect();
-        let moves = symbols_in(&entries)
+        let moves = symbols_in(&pose.entries())
             .into_iter()
             .any(|s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time));
         if !moves {
