@@ -67,6 +67,8 @@ pub struct Builder<'a, 'g> {
     pub applied: Vec<(String, Vec<expr::Expr<'g>>)>,
     /// Bodies and particles that move by what `at` and `frame` say: number among what can be released, and what carries them.
     pub moved_by_place: Vec<(usize, Option<LinkId>)>,
+    /// Links of frames that move with respect to what they start from.
+    pub frame_links: Vec<LinkId>,
     /// By constraint of surfaces that touch at a point: where, from the ground's origin.
     pub touching: BTreeMap<String, Terms<'g>>,
     /// Derivatives of the places of the links so far.
