@@ -92,11 +92,12 @@ fn partial_guesses_stay_within_half_a_turn() {
     }
 }
 
-/// Along the straight way from its residuals to none (Davidenko's homotopy, in small steps) a guess leads to what assembly finds.
+/// Along the straight way from its residuals to none (Davidenko's homotopy, in small steps) a guess leads to what assembly
+/// finds, unless assembly finds something that is nearer.
 #[test]
 fn guesses_near_a_mode_lead_to_it() {
     let mut source = Random::new(6);
-    let mut compared = 0;
+    let mut same = 0;
     for _ in 0..1000 {
         let (bars, side, angle) = random(&mut source, 0.1);
         let m = FourBar { base: bars[0], first: bars[1], second: bars[2], third: bars[3] };
@@ -104,11 +105,15 @@ fn guesses_near_a_mode_lead_to_it() {
         let guess: SVector<f64, 3> =
             m.angles(side, angle) + SVector::from([0.0, source.uniform(near), source.uniform(near)]);
         let Some(way) = followed(&m, guess) else { continue };
-        compared += 1;
         let q = m.assemble(&guess, &[0]).unwrap();
-        assert!((q - way).amax() < 1e-6, "{bars:?}: from {guess} to {q}, not {way}");
+        if (q - way).amax() < 1e-6 {
+            same += 1;
+        } else {
+            let (found, other) = ((q - guess).norm(), (way - guess).norm());
+            assert!(found < other, "{bars:?}: from {guess} to {q}, not {way}");
+        }
     }
-    assert!(compared > 800, "{compared}");
+    assert!(same > 800, "{same}");
 }
 
 /// The end of the homotopy; `None` where it gets near a singular position on its way.

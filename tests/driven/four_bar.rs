@@ -35,7 +35,7 @@ struct Driven {
 
 /// First and second derivatives, by differences of order six.
 fn differences(f: impl Fn(f64) -> f64) -> [f64; 2] {
-    let h = 1e-2;
+    let h = 2e-3;
     let [a, b, c, d, e, g, m] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 0.0].map(|k| f(k * h));
     [
         (g - a - 9.0 * (e - b) + 45.0 * (d - c)) / (60.0 * h),
@@ -82,12 +82,17 @@ fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64
 
 #[test]
 fn drives_of_random_four_bars_follow_dalembert() {
-    let mut source = Random::new(31);
+    let (mut source, mut checked) = (Random::new(31), 0);
     for _ in 0..300 {
-        let (bars, side, angle) = random(&mut source, 0.25);
+        let (bars, side, angle) = random(&mut source, 0.4);
         let [base, first, second, third] = bars;
         let (speed, growth) = (source.uniform(5.0), source.uniform(20.0));
         let expected = torque(bars, side, angle, speed, growth);
+        // Differences may go beyond where the coupler and the rocker are in line.
+        if !expected.is_finite() {
+            continue;
+        }
+        checked += 1;
         let m = FourBar { base, first, second, third };
         let at = m.angles(side, angle);
         let q = m.assemble(&at, &[0]).unwrap();
@@ -102,4 +107,5 @@ fn drives_of_random_four_bars_follow_dalembert() {
         assert_close("a", &again.data.0[0], &a.data.0[0], 1e-8);
         assert_close("λ", &multipliers.data.0[0], &[lambda[0], lambda[1], tau[0]], 1e-7);
     }
+    assert!(checked > 250, "{checked}");
 }

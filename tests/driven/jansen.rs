@@ -125,7 +125,7 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
     assert_eq!((Leg::NV, Leg::NC, Leg::NS), (6, 6, 0));
     let speed = 2.0;
     let m = Leg { speed };
-    let mut guess: Option<SVector<f64, 6>> = None;
+    let mut last: Option<SVector<f64, 6>> = None;
     for k in 0..=24 {
         let t = f64::from(k) * std::f64::consts::TAU / speed / 24.0;
         let s = skeleton(speed * t);
@@ -143,8 +143,8 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
             tilt(5, turned),
             tilt(6, s.angle(1)),
         ];
-        let guess = *guess.get_or_insert(corners.into());
-        let q = m.assemble(t, &guess, &[]).unwrap();
+        let q = m.assemble(t, &last.unwrap_or(corners.into()), &[]).unwrap();
+        last = Some(q);
         for (found, corner) in q.iter().zip(corners) {
             let off = found - corner;
             assert!(off.sin().atan2(off.cos()).abs() < 1e-7, "{k}: {q} {corners:?}");

@@ -31,7 +31,7 @@ macro_rules! slider_crank {
             #[output(reaction_force(main))]
             bearing: Vector,
             #[output(reaction_torque(main))]
-            no_torque: Vector,
+            turning: Vector,
             #[output(crank)]
             on_crank: FreeBody,
             #[output(dot(a(piston / ground / ground), x))]
@@ -199,15 +199,16 @@ macro_rules! check {
         assert_close("piston", &[-lambda[0].abs()], &[-(PISTON * hand.piston[2]).abs()], 1e-9);
         let bearing = m.bearing(t, &q, &v);
         assert_close("bearing", &bearing.data.0[0][..2], &hand.bearing, 1e-9);
-        assert!(m.no_torque(t, &q, &v)[2].abs() < 1e-9);
+        assert_close("turning", &[m.turning(t, &q, &v)[2]], &[hand.torque], 1e-9);
         assert_close("shaking", &[m.shaking(t, &q, &v, &a)], &[hand.piston[2]], 1e-9);
-        // All that acts on the crank, the drive among it.
+        // All that acts on the crank.
         let sum = m.on_crank(t, &q, &v);
         let crank =
             [-0.5 * R * OMEGA * OMEGA * (OMEGA * t).cos(), -0.5 * R * OMEGA * OMEGA * (OMEGA * t).sin()];
         assert_close("crank", &sum.force().data.0[0][..2], &crank.map(|a| CRANK * a), 1e-9);
-        let drive = sum.get("drive").unwrap();
-        assert_close("drive", &[drive.torque[2]], &[hand.torque], 1e-9);
+        // The joint transmits what drives it.
+        let joint = sum.get("main").unwrap();
+        assert_close("joint", &[joint.torque[2]], &[hand.torque], 1e-9);
     }};
 }
 

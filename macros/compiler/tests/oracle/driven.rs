@@ -120,7 +120,7 @@ fn solved(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     for k in 0..n {
         let all = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
         let (i, j) = all.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))?;
-        if rows[i][j].abs() < REGULAR * largest {
+        if rows[i][j].abs() < REGULAR * largest.max(0.1) {
             return None;
         }
         rows.swap(k, i);
