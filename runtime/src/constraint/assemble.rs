@@ -247,8 +247,9 @@ where
     let mut sign = 1;
     for k in 0..NV {
         let pivot = (k..NV).fold(k, |best, i| if rows[i][k].abs() > rows[best][k].abs() { i } else { best });
-        // Not so what is not a number.
-        if !(rows[pivot][k].abs() > epsilon::<T>().sqrt()) {
+        // A pivot that is not a number is none.
+        let is_regular = rows[pivot][k].abs() > epsilon::<T>().sqrt();
+        if !is_regular {
             return None;
         }
         if pivot != k {
