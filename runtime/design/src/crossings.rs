@@ -11,8 +11,8 @@ struct Pencil {
 }
 
 impl Pencil {
-    /// Finite eigenvalues, as `σ + 1 / μ` with the eigenvalues `μ` of `(M − σ E)⁻¹ E`. Infinite ones may come out as large ones.
-    /// A pencil that is singular for all `s` has none.
+    /// Finite eigenvalues, as `σ + 1 / μ` with the eigenvalues `μ` of `(M − σ E)⁻¹ E`. Infinite ones may come
+    /// out as large ones. A pencil that is singular for all `s` has none.
     fn eigenvalues(&self, shift: f64) -> Vec<C> {
         let inverse = solve("the pencil", &(&self.m - &self.e * shift), &self.e);
         let found = inverse.and_then(|inverse| eigenvalues(&inverse)).unwrap_or_default();
@@ -43,8 +43,8 @@ impl StateSpace {
         Ok(all)
     }
 
-    /// Frequencies that include all at which a singular value of the response is `level`, from low to high. Further ones may be
-    /// among them.
+    /// Frequencies that include all at which a singular value of the response is `level`, from low to high.
+    /// Further ones may be among them.
     pub(crate) fn level_frequencies(&self, level: f64) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let ((n, m), p) = (b.shape(), c.nrows());
@@ -73,8 +73,8 @@ impl StateSpace {
         self.pencil_frequencies(&Pencil { m: left, e: right })
     }
 
-    /// Frequencies that include all at which the response of a single channel is real, from low to high: zeros of
-    /// `G(s) − G(−s)`, or of `G(z) − G(1 / z)`. Further ones may be among them.
+    /// Frequencies that include all at which the response of a single channel is real, from low to high:
+    /// zeros of `G(s) − G(−s)`, or of `G(z) − G(1 / z)`. Further ones may be among them.
     pub(crate) fn real_frequencies(&self) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let n = a.nrows();
@@ -97,7 +97,8 @@ impl StateSpace {
         self.pencil_frequencies(&Pencil { m: left, e: right })
     }
 
-    /// Frequencies of a pencil's eigenvalues from several shifts: each is accurate for eigenvalues of about its magnitude.
+    /// Frequencies of a pencil's eigenvalues from several shifts: each is accurate for eigenvalues of about
+    /// its magnitude.
     fn pencil_frequencies(&self, pencil: &Pencil) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let mut scales = self.root_frequencies()?;

@@ -144,14 +144,15 @@ impl StateSpace {
 }
 
 impl ZerosPolesGain {
-    /// Discretises by matching poles and zeros: they become `e^{s h}`, zeros at infinity become −1 except for one, which stays
-    /// there, and the gain at low frequencies is kept. With poles or zeros at rest it is that of their limit: `1 / s` becomes
-    /// `h / (z − 1)`, and `1 / s²` becomes `h² (z + 1) / (2 (z − 1)²)`.
+    /// Discretises by matching poles and zeros: they become `e^{s h}`, zeros at infinity become −1 except for
+    /// one, which stays there, and the gain at low frequencies is kept. With poles or zeros at rest it is
+    /// that of their limit: `1 / s` becomes `h / (z − 1)`, and `1 / s²` becomes `h² (z + 1) / (2 (z − 1)²)`.
     ///
     /// # Errors
     ///
-    /// [`Error::Period`], [`Error::Improper`], [`Error::Time`] of a discrete one, [`Error::Singular`] where a pole or a zero that
-    /// is not at rest oscillates with a multiple of the sampling frequency, and looks like one at rest.
+    /// [`Error::Period`], [`Error::Improper`], [`Error::Time`] of a discrete one, [`Error::Singular`] where a
+    /// pole or a zero that is not at rest oscillates with a multiple of the sampling frequency, and looks
+    /// like one at rest.
     pub fn matched(&self, period: f64) -> Result<Self, Error> {
         check_period(period)?;
         if self.period.is_some() {
@@ -165,7 +166,8 @@ impl ZerosPolesGain {
         let mut zeros = map(&self.zeros);
         let excess = (denominator - numerator).saturating_sub(1);
         zeros.extend(std::iter::repeat_n(C::new(-1.0, 0.0), excess));
-        // A factor `s − r` has the value `−r` at rest, its image at `z = 1` has `1 − e^{r h}`: their ratio, in the limit `h`.
+        // A factor `s − r` has the value `−r` at rest, its image at `z = 1` has `1 − e^{r h}`: their ratio,
+        // in the limit `h`.
         let ratio = |root: &C| match root.norm() {
             0.0 => C::new(period, 0.0),
             _ => exponential_less_one(root * period) / root,

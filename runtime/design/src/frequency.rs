@@ -30,7 +30,8 @@ impl FrequencyMap {
         Ok(complex(&self.c) * x + complex(&self.d))
     }
 
-    /// `s I − A` as a product of row operations and a triangular matrix: Gauss' elimination of a Hessenberg matrix.
+    /// `s I − A` as a product of row operations and a triangular matrix: Gauss' elimination of a Hessenberg
+    /// matrix.
     fn factors(&self, s: C) -> Result<Factors, Error> {
         let n = self.h.nrows();
         let mut u = CMatrix::from_fn(n, n, |i, j| {
@@ -92,7 +93,8 @@ impl FrequencyMap {
 /// The factors of a Hessenberg matrix.
 struct Factors {
     u: CMatrix,
-    /// Whether rows `k` and `k + 1` are swapped, and the multiple of row `k` that is then subtracted from the next.
+    /// Whether rows `k` and `k + 1` are swapped, and the multiple of row `k` that is then subtracted from the
+    /// next.
     steps: Vec<(bool, C)>,
 }
 

@@ -14,7 +14,7 @@ pub use error::Error;
 pub use frequency::{FrequencyMap, FrequencyResponse, logarithmic};
 pub use margins::{GainMargin, Margins, PhaseMargin, StabilityMargin};
 pub use modes::Mode;
-/// The version of nalgebra that this crate takes, so that programs need not name one.
+/// The linear algebra library, in the version that this crate takes.
 pub use nalgebra;
 pub use norms::PeakGain;
 pub use polynomial::Polynomial;

@@ -5,7 +5,8 @@ use crate::matrices::C;
 use crate::norms::Extreme;
 use crate::{Error, PeakGain, StateSpace, TransferFunction};
 
-/// Where a loop's response is real and negative: the factor that would bring it to the border of stability.
+/// A frequency at which a loop's response is real and negative, with the factor that brings the loop to the
+/// border of stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainMargin {
     /// The factor; below one it is a reduction.
@@ -21,7 +22,8 @@ impl GainMargin {
     }
 }
 
-/// Where a loop's magnitude is one: the lag that would bring it to the border of stability.
+/// A frequency at which a loop's magnitude is one, with the phase lag that brings the loop to the border of
+/// stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseMargin {
     /// Degrees, within ±180; negative ones are leads.
@@ -31,7 +33,7 @@ pub struct PhaseMargin {
 }
 
 impl PhaseMargin {
-    /// The delay that takes the margin up, s; negative margins count the way round.
+    /// The delay that uses up the margin, s; to a negative margin 360° are added.
     pub fn delay(&self) -> f64 {
         self.degrees.rem_euclid(360.0).to_radians() / self.frequency
     }
@@ -42,18 +44,19 @@ impl PhaseMargin {
 pub struct StabilityMargin {
     /// The distance: one over the peak of the sensitivity.
     pub distance: f64,
-    /// rad/s; infinite where high frequencies come near it.
+    /// rad/s; infinite if high frequencies approach the distance.
     pub frequency: f64,
 }
 
 /// All crossings of a loop under negative feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
-    /// One for every frequency where the phase crosses 180°, from low to high; at rest and at Nyquist's frequency, too, where the
-    /// response is real and negative. A response that is real at all frequencies, as that of `1 / s²`, crosses nowhere.
+    /// One for every frequency where the phase crosses 180°, from low to high; at rest and at Nyquist's
+    /// frequency, too, where the response is real and negative. A response that is real at all frequencies,
+    /// as that of `1 / s²`, crosses nowhere.
     pub gain: Vec<GainMargin>,
-    /// One for every frequency where the magnitude crosses one, from low to high. A magnitude that is one at all frequencies, as that
-    /// of an all-pass, or only touches one crosses nowhere.
+    /// One for every frequency where the magnitude crosses one, from low to high. A magnitude that is one at
+    /// all frequencies, as that of an all-pass, or only touches one crosses nowhere.
     pub phase: Vec<PhaseMargin>,
     /// The least distance from −1.
     pub stability: StabilityMargin,
@@ -111,7 +114,7 @@ pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) 
 }
 
 /// Part of a response that rounding may change; beyond it the value is not certain.
-const CERTAIN: f64 = 1e-3;
+const CERTAIN: f64 = 0.05;
 
 /// A loop's response.
 struct Loop {
@@ -127,7 +130,8 @@ impl Loop {
         self.map.sample(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
     }
 
-    /// Frequencies where `f` changes its sign from one of the grid to the next. Where rounding decides the sign, it is none.
+    /// Frequencies where `f` changes its sign from one of the grid to the next. Where rounding decides the
+    /// sign, it is none.
     fn crossings(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
         let value = |w: f64| self.at(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
@@ -213,7 +217,8 @@ impl StateSpace {
         let mut shifted = self.clone();
         shifted.d[(0, 0)] += 1.0;
         let PeakGain { gain, frequency } = shifted.extreme_gain(Extreme::Least)?;
-        // Around its minimum the distance fixes the frequency to half of the digits; where its slope changes sign is sharper.
+        // Around its minimum the distance fixes the frequency to half of the digits; where its slope changes
+        // sign is sharper.
         let distance = |w: f64| open.at(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
         let slope = |w: f64| open.at(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
         let reach = [1e-8, 1e-7, 1e-6, 1e-5].map(|part| part * frequency);

@@ -164,8 +164,8 @@ impl Ord for Ranked {
 }
 
 impl ModalSum {
-    /// Separates the modes (Bavely and Stewart, *An algorithm for computing reducing subspaces by block diagonalization*, 1979).
-    /// Fast modes of a sampled system are left out.
+    /// Separates the modes (Bavely and Stewart, *An algorithm for computing reducing subspaces by block
+    /// diagonalization*, 1979). Fast modes of a sampled system are left out.
     ///
     /// # Errors
     ///
@@ -294,8 +294,8 @@ impl ModalSum {
         ends.windows(2).filter(|pair| pair[0] < pair[1]).map(|pair| (pair[0], pair[1])).collect()
     }
 
-    /// Where a function of the sum changes its sign on a monotone piece; of a sampled sum the sample on the side that is not
-    /// negative.
+    /// Where a function of the sum changes its sign on a monotone piece; of a sampled sum the sample on the
+    /// side that is not negative.
     fn sign_change(&self, f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
         if !self.sampled {
             return root_between(|t| f(self.at(t)), from, to);

@@ -30,9 +30,9 @@ impl StateSpace {
         Ok((square.max(0.0) + if self.period.is_some() { direct } else { 0.0 }).sqrt())
     }
 
-    /// The H∞ norm of a stable system and where it is taken: by the frequencies at which a singular value has a given level,
-    /// eigenvalues on the border of stability of a pencil (Bruinsma and Steinbuch, *A fast algorithm to compute the H∞-norm of a
-    /// transfer function matrix*, 1990).
+    /// The H∞ norm of a stable system and where it is taken: by the frequencies at which a singular value has
+    /// a given level, eigenvalues on the border of stability of a pencil (Bruinsma and Steinbuch, *A fast
+    /// algorithm to compute the H∞-norm of a transfer function matrix*, 1990).
     ///
     /// # Errors
     ///
@@ -42,14 +42,16 @@ impl StateSpace {
         self.extreme_gain(Extreme::Largest)
     }
 
-    /// The largest or the least of the largest singular values over all real frequencies, of a system that is stable or not.
+    /// The largest or the least of the largest singular values over all real frequencies, of a system that is
+    /// stable or not.
     pub(crate) fn extreme_gain(&self, extreme: Extreme) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
         let gain = |w: f64| {
             let response = if w.is_finite() { map.response(w) } else { Ok(complex(&self.d)) };
             match response {
                 Ok(m) if m.is_empty() => 0.0,
-                // At a pole that a zero cancels the value is rounding, and must not be taken for the least one.
+                // At a pole that a zero cancels the value is rounding, and must not be taken for the least
+                // one.
                 Ok(_) if w.is_finite() && extreme == Extreme::Least && !self.is_certain(&map, w) => {
                     f64::INFINITY
                 }

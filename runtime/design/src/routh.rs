@@ -175,7 +175,8 @@ impl Polynomial {
         Ok(ranges)
     }
 
-    /// Gains that include all at which a root is on the imaginary axis or at infinity. The others are harmless.
+    /// Gains that include all at which a root is on the imaginary axis or at infinity. The others are
+    /// harmless.
     fn critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
         let mirrored = |p: &Self| {
             let n = p.degree();

@@ -1,4 +1,4 @@
-//! Figures of a step response.
+//! Characteristic values of a step response.
 
 use crate::frequency::boundary;
 use crate::matrices::solve;
@@ -6,35 +6,35 @@ use crate::modal_sum::{FIRST_SAMPLES, ModalSum};
 use crate::{Error, StateSpace, TransferFunction};
 use nalgebra::DMatrix;
 
-/// Figures of the step response of a stable system, relative to its final value.
+/// Characteristic values of the step response of a stable system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepFigures {
-    /// Where it ends.
+    /// Final value.
     pub final_value: f64,
-    /// From when it first has the lower part of the final value to when it first has the upper one, s.
+    /// Time from the first crossing of the lower level to that of the upper one, s.
     pub rise_time: f64,
-    /// When it stays within the band around the final value for good, s.
+    /// Time after which the response stays within the band around the final value, s.
     pub settling_time: f64,
-    /// By how much it goes beyond the final value, %.
+    /// Largest excess over the final value, % of it.
     pub overshoot: f64,
-    /// By how much it goes the wrong way, %.
+    /// Largest value of the opposite sign, % of the final value.
     pub undershoot: f64,
-    /// The largest magnitude.
+    /// Largest magnitude.
     pub peak: f64,
-    /// When, s; infinite where it is only approached.
+    /// Time of the largest magnitude, s; infinite if the response only approaches it.
     pub peak_time: f64,
-    /// The least value after the rise.
+    /// Least value after the rise.
     pub least_after_rise: f64,
-    /// The largest value after the rise.
+    /// Largest value after the rise.
     pub largest_after_rise: f64,
 }
 
-/// What the figures are measured against.
+/// Levels that settling and rise times are measured against.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepLimits {
-    /// Band around the final value; 0.02 of it.
+    /// Half width of the band around the final value, relative to it; 0.02 by default.
     pub settling: f64,
-    /// Parts of the final value between which it rises; from 0.1 to 0.9.
+    /// Levels between which the response rises, relative to the final value; 0.1 and 0.9 by default.
     pub rise: (f64, f64),
 }
 
@@ -44,7 +44,8 @@ impl Default for StepLimits {
     }
 }
 
-/// The distance of a step response from its final value, relative to it, over time; of a discrete system over samples.
+/// The distance of a step response from its final value, relative to it, over time; of a discrete system over
+/// samples.
 struct Distance {
     /// The first samples of a discrete system.
     first: Vec<f64>,
@@ -52,7 +53,7 @@ struct Distance {
 }
 
 impl Distance {
-    /// Number of the first samples, from which on the modes describe the distance.
+    /// The first instant at which the modes alone describe the distance.
     fn start(&self) -> f64 {
         self.first.len() as f64
     }
@@ -71,8 +72,8 @@ impl Distance {
         Ok(self.modes.last_outside(band, self.start())?.or(early))
     }
 
-    /// The largest distance from an instant on for a `sign` of one, or the least for −1. If the distance only approaches zero it is
-    /// zero at an infinite time.
+    /// The largest distance from an instant on for a `sign` of one, or the least for −1. If the distance only
+    /// approaches zero it is zero at an infinite time.
     fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
@@ -90,8 +91,9 @@ impl Distance {
 }
 
 impl StateSpace {
-    /// Figures of the step response of a stable system with one input and one output, not from samples: crossings and peaks are
-    /// those of the sum of its modes, bounded over intervals of time.
+    /// Computes the characteristic values of the step response of a stable system with one input and one
+    /// output. Crossings and peaks are those of the sum of its modes, which is bounded over intervals of time
+    /// instead of sampled.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;
@@ -110,7 +112,7 @@ impl StateSpace {
         self.step_figures_within(StepLimits::default())
     }
 
-    /// [`step_figures`](Self::step_figures) with other limits.
+    /// Computes [`step_figures`](Self::step_figures) with other limits.
     ///
     /// # Errors
     ///
@@ -161,6 +163,7 @@ impl StateSpace {
         })
     }
 
+    /// The distance of the step response from its final value.
     fn distance(&self, final_value: f64) -> Result<Distance, Error> {
         let n = self.order();
         // x − x∞ is −x∞ at first.
@@ -183,7 +186,7 @@ impl StateSpace {
 }
 
 impl TransferFunction {
-    /// Figures of the step response.
+    /// Computes the characteristic values of the step response.
     ///
     /// # Errors
     ///

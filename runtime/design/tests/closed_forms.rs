@@ -41,8 +41,8 @@ fn close(what: &str, found: f64, expected: f64, relative: f64) {
     );
 }
 
-/// The largest of `|(s² + e s + f) / (s² + b s + c)|` over frequencies: in `x = ω²` its square is a quotient of quadratics, which is
-/// stationary at the roots of a further quadratic.
+/// The largest of `|(s² + e s + f) / (s² + b s + c)|` over frequencies: in `x = ω²` its square is a quotient
+/// of quadratics, which is stationary at the roots of a further quadratic.
 fn biproper_peak(e: f64, f: f64, b: f64, c: f64) -> f64 {
     let (n, d) = ([1.0, e * e - 2.0 * f, f * f], [1.0, b * b - 2.0 * c, c * c]);
     let square = |x: f64| ((f - x).powi(2) + e * e * x) / ((c - x).powi(2) + b * b * x);
@@ -73,8 +73,8 @@ fn peak_gains_of_biproper_systems() {
     }
 }
 
-/// The largest singular value of the direct term is one, that of the response is larger: SLICOT's AB13DD with a tolerance of 1e-13
-/// (slycot 0.7.1) finds 1.414487935024265 at 4.638148816470194 rad/s.
+/// The largest singular value of the direct term is one, that of the response is larger: SLICOT's AB13DD with
+/// a tolerance of 1e-13 (slycot 0.7.1) finds 1.414487935024265 at 4.638148816470194 rad/s.
 #[test]
 fn peak_gain_of_two_channels() {
     let system = StateSpace::new(
@@ -115,8 +115,9 @@ fn magnitudes_that_do_not_cross_one() {
     }
 }
 
-/// `k / (s (s + a) (s + b))` is real and negative at `ω = √(a b)`, where its magnitude is `k / (a b (a + b))`; Tustin's rule moves the
-/// frequency only. Neither has a margin at rest, where there is a pole, or at Nyquist's frequency, where there is a zero.
+/// `k / (s (s + a) (s + b))` is real and negative at `ω = √(a b)`, where its magnitude is `k / (a b (a +
+/// b))`; Tustin's rule moves the frequency only. Neither has a margin at rest, where there is a pole, or at
+/// Nyquist's frequency, where there is a zero.
 #[test]
 fn gain_margins_of_loops_with_an_integrator() {
     let mut random = Random(3);
@@ -137,8 +138,8 @@ fn gain_margins_of_loops_with_an_integrator() {
     }
 }
 
-/// An integrator with a hold is `h / (z − 1)`: real at Nyquist's frequency alone, with magnitude `h / 2`; of magnitude one at
-/// `sin(ω h / 2) = h / 2`. A double integrator by Tustin's rule is real everywhere.
+/// An integrator with a hold is `h / (z − 1)`: real at Nyquist's frequency alone, with magnitude `h / 2`; of
+/// magnitude one at `sin(ω h / 2) = h / 2`. A double integrator by Tustin's rule is real everywhere.
 #[test]
 fn margins_of_held_integrators() {
     let mut random = Random(4);
@@ -168,7 +169,8 @@ fn margins_of_held_integrators() {
     assert_eq!(margins.gain_reduction(), None);
 }
 
-/// In the limit of low frequencies `((z − 1) / h)^k` times the matched system is `s^k` times the continuous one.
+/// In the limit of low frequencies `((z − 1) / h)^k` times the matched system is `s^k` times the continuous
+/// one.
 #[test]
 fn matched_systems_keep_low_frequencies() {
     let coefficients = |g: &TransferFunction, h: f64| {
@@ -244,8 +246,8 @@ fn step_figures_of_second_order() {
     }
 }
 
-/// A fast oscillation on a slow rise: `½ / (s + 1) + ½ ω² / (s² + 0.1 ω s + ω²)` with `ω` = 1000 has 90 % of its final value within its
-/// first half period. The instants are those of 50 digits (mpmath).
+/// A fast oscillation on a slow rise: `½ / (s + 1) + ½ ω² / (s² + 0.1 ω s + ω²)` with `ω` = 1000 has 90 % of
+/// its final value within its first half period. The instants are those of 50 digits (mpmath).
 #[test]
 fn step_figures_of_two_time_scales() {
     let slow = transfer(&[0.5], &[1.0, 1.0]);
@@ -314,8 +316,8 @@ fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
     Polynomial::new(one.to_vec()).stable_gains(&Polynomial::new(other.to_vec())).unwrap()
 }
 
-/// By Hurwitz' criterion: `s³ + (3 + k) s² + 3 s + 1 + k` needs `k > −1`, and `s³ + k (s² + 2 s + 1)` needs `2 k² > k`; a polynomial and
-/// its multiple are as stable as the one for all gains that do not cancel them.
+/// By Hurwitz' criterion: `s³ + (3 + k) s² + 3 s + 1 + k` needs `k > −1`, and `s³ + k (s² + 2 s + 1)` needs
+/// `2 k² > k`; a polynomial and its multiple are as stable as the one for all gains that do not cancel them.
 #[test]
 fn stable_gains_by_hurwitz() {
     let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
