@@ -138,7 +138,7 @@ impl Loop {
         let mut before: Option<(f64, f64)> = None;
         for (w, sample) in grid.iter().zip(samples) {
             let here = f(sample.value);
-            if !(here.abs() > sample.error) {
+            if here.is_nan() || here.abs() <= sample.error {
                 continue;
             }
             if let Some((last, _)) = before.filter(|(_, there)| there * here < 0.0) {

@@ -50,7 +50,7 @@ impl Term {
             coefficients.push((c * &v)[(0, 0)]);
             let size = (c.norm() * v.norm()).ln() + logarithm_of_peak(j, exponent);
             largest = largest.max(size);
-            if k == 1 || (j + 1 >= k && !(size > largest - 46.0)) {
+            if k == 1 || (j + 1 >= k && (size.is_nan() || size <= largest - 46.0)) {
                 return Ok(Some(Self { exponent, coefficients }));
             }
             v = &nilpotent * v / C::new((j + 1) as f64, 0.0);
