@@ -216,13 +216,23 @@ impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
     }
 }
 
-/// What contacts make of the end of a step.
+/// End of a step with contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touched<T, const NQ: usize, const NV: usize> {
     /// The configuration.
     pub q: SVector<T, NQ>,
     /// The velocity.
     pub v: SVector<T, NV>,
+    /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have at the end: divided by the
+    /// length of the step, an estimate of their effect where the next step starts.
+    pub held: SVector<T, NV>,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
+    /// State that no contact has changed.
+    pub(crate) fn free(q: SVector<T, NQ>, v: SVector<T, NV>) -> Self {
+        Self { q, v, held: SVector::zeros() }
+    }
 }
 
 /// Velocity and impulses after contacts have acted.
@@ -400,23 +410,27 @@ where
     Ok(problem.spread(&impulses) / h)
 }
 
-/// What has acted: the contacts that are closed, with their impulses and what these do to velocities. Its matrices are large, so it
-/// stays where it is.
+/// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its matrices are large, so it
+/// is filled in place.
 struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
     problem: Problem<T, NK, NR>,
     impulses: Total<T, NR>,
+    /// Velocity before the impulses, with the correction for contact forces that rotate in the step.
+    free: SVector<T, NV>,
     /// None if nothing has acted.
     responses: Option<Responses<T, NV, NR>>,
 }
 
 impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK, NR> {
     fn nothing() -> Self {
-        Self { problem: Problem::none(), impulses: Total::repeat(T::zero()), responses: None }
+        let (impulses, free) = (Total::repeat(T::zero()), SVector::zeros());
+        Self { problem: Problem::none(), impulses, free, responses: None }
     }
 }
 
-/// [`solve`] for the contacts that are `closed`, and what `acted`, if anything has. The rates `before` are asked for where
-/// they matter; impulses are about those that add `given` to the velocity, if they are known.
+/// Solves [`solve`]'s problem for the contacts that are `closed`, and fills `acted`. The rates `before` are evaluated only where
+/// they matter. If the contact forces at the start of a step are known, which would add `given` to the velocity, their rotation in the
+/// step is taken into account, and the search for impulses begins with them.
 fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -447,6 +461,15 @@ where
     let failed = |contact: usize| ConstraintError::Contact {
         constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
     };
+    let mut factors = problem.weights;
+    let start = given.filter(|given| **given != SVector::<T, NV>::zeros()).map(|given| {
+        let rates = mechanism.contact_rates(t, q, &(free + given)) - after;
+        problem.transport(given, &rates, responses, &mut factors)
+    });
+    if let Some((_, correction)) = &start {
+        solved.v += correction;
+    }
+    acted.free = solved.v;
     problem.compress(&laws, &before).map_err(failed)?;
     problem.aim(&laws, &before, T::one());
     // What is driven may give energy, and without restitution nothing does.
@@ -454,9 +477,7 @@ where
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
         driven.iter().all(|rate| *rate == T::zero())
     };
-    let given = given.filter(|given| **given != SVector::<T, NV>::zeros());
-    let given = || given.map(|given| mechanism.contact_rates(t, q, &(free + given)) - after);
-    let impulses = match problem.solve_from(&given) {
+    let impulses = match problem.solve_from(start.as_ref().map(|(start, _)| start), &mut factors) {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
         Err(contact) if !problem.rebounds() => return Err(failed(contact)),
         _ => tempered(problem, &laws, &before, may_gain).map_err(failed)?,

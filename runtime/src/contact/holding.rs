@@ -265,7 +265,7 @@ where
         given: &SVector<T, NV>,
         _h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
-        Ok(Touched { q: *q, v: free + given })
+        Ok(Touched::free(*q, free + given))
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

@@ -12,6 +12,7 @@ mod linear;
 mod newton;
 mod restitution;
 mod search;
+mod transport;
 mod trial;
 
 use trial::{Mode, Trial};
@@ -50,7 +51,7 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// `u₀`: the rates with what acts anyway.
     free: List<T, NR>,
     /// `W`.
-    weights: Square<T, NR>,
+    pub(super) weights: Square<T, NR>,
     /// What the normal rate is at least.
     least: Total<T, NK>,
     /// The part of the normal impulse of restitution that acts anyway, and presses friction as well.
@@ -157,12 +158,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         places
     }
 
-    /// Impulses by their rates in the mechanism, with those that act anyway.
+    /// Impulses at the rates of the mechanism, with those that act anyway.
     pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
+        let mut all = *impulses;
+        all.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse += *base);
+        self.scatter(&all)
+    }
+
+    /// Values for the rates of closed contacts at the rates of the mechanism; zeros elsewhere.
+    fn scatter(&self, values: &List<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
-        let impulses = impulses.iter().zip(self.base.iter());
-        for (place, (impulse, base)) in self.places().iter().zip(impulses).take(self.size) {
-            put(&mut all, *place, *impulse + *base);
+        for (place, value) in self.places().iter().zip(values.iter()).take(self.size) {
+            put(&mut all, *place, *value);
         }
         all
     }
@@ -199,9 +206,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
+    /// Changes of the rates by impulses.
+    fn changes(&self, impulses: &List<T, NR>) -> List<T, NR> {
+        self.added(List::repeat(T::zero()), impulses)
+    }
+
     /// The rates with impulses.
     fn rates(&self, impulses: &List<T, NR>) -> List<T, NR> {
-        let mut rates = self.free;
+        self.added(self.free, impulses)
+    }
+
+    /// Rates, and their changes by impulses.
+    fn added(&self, mut rates: List<T, NR>, impulses: &List<T, NR>) -> List<T, NR> {
         for (rate, row) in rates.iter_mut().zip(self.weights.iter()).take(self.size) {
             for (weight, impulse) in row.iter().zip(impulses.iter()).take(self.size) {
                 *rate += *weight * *impulse;

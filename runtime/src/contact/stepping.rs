@@ -148,32 +148,46 @@ where
     let half = h * constant(0.5);
     let came = Came::from((start, v), h, given * half);
     // What impulses do to the velocity they do in the mean of the step.
-    let led = |after: &SVector<T, NV>| {
+    let led = |after: &SVector<T, NV>, by_contacts: &SVector<T, NV>| {
         let moved = (after - free - given) * half;
-        Touched { q: mechanism.integrate(q, &moved), v: mechanism.carry(t, q, &moved, after) }
+        // Smooth forces move it by so little that their axes stay the same.
+        Touched {
+            q: mechanism.integrate(q, &moved),
+            v: mechanism.carry(t, q, &moved, after),
+            held: *by_contacts,
+        }
     };
+    let still = SVector::<T, NV>::zeros();
     let Some(closed) = closed(mechanism, t, q, free, Some(&came))? else {
-        let is_led = h != T::zero() && *given != SVector::<T, NV>::zeros();
-        return Ok(if is_led { led(free) } else { Touched { q: *q, v: *free } });
+        let is_led = h != T::zero() && *given != still;
+        return Ok(if is_led { led(free, &still) } else { Touched::free(*q, *free) });
     };
     let mut acted = Acted::nothing();
     let before = || came.rates(mechanism, t, q);
-    let after = act(mechanism, t, (q, free), &closed, (before, Some(given)), &mut acted)?.v;
+    // Contact forces on bodies at rest do not rotate.
+    let is_moving = v.iter().any(|v| v.abs() * h > near());
+    let after = act(mechanism, t, (q, free), &closed, (before, is_moving.then_some(given)), &mut acted)?.v;
     if h == T::zero() {
-        return Ok(Touched { q: *q, v: after });
+        return Ok(Touched { q: *q, v: after, held: after - free });
     }
-    let mut touched = led(&after);
-    let Acted { problem, impulses, responses: Some(responses) } = &mut acted else { return Ok(touched) };
+    let Acted { problem, impulses, free: corrected, responses: Some(responses) } = &mut acted else {
+        return Ok(led(&after, &still));
+    };
+    let corrected = *corrected;
+    let mut touched = led(&after, &(after - corrected));
     let responses = &responses.velocities;
     // The energy without what contacts have done: they have worked along the mean of the velocities.
     let most = || {
         let carried = mechanism.carry(t, start, &mechanism.difference(start, q), v);
         let mean = (carried + free + given) * constant::<T>(0.5);
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
-        energy(mechanism, t, &Touched { q: *q, v: free + given }) - work
+        energy(mechanism, t, &Touched::free(*q, free + given)) - work
     };
     if problem.rebounds() {
-        let led = |impulses: &SVector<T, NR>| led(&(free + responses * impulses));
+        let led = |impulses: &SVector<T, NR>| {
+            let by_contacts = responses * impulses;
+            led(&(corrected + by_contacts), &by_contacts)
+        };
         let before = came.rates(mechanism, t, q);
         if let Some(less) = tempered(mechanism, t, problem, &before, &led, (&touched, most())) {
             (touched, *impulses) = less;
@@ -235,7 +249,7 @@ fn rounding<T: Real>(energy: T) -> T {
 fn energy<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
-    Touched { q, v }: &Touched<T, NQ, NV>,
+    Touched { q, v, .. }: &Touched<T, NQ, NV>,
 ) -> T
 where
     T: Real,
@@ -266,6 +280,7 @@ where
         let to = Touched {
             q: mechanism.integrate(&from.q, &push),
             v: mechanism.carry(t, &from.q, &push, &from.v),
+            held: from.held,
         };
         // Without overlaps there is little to be pushed.
         if deepest < -near::<T>()

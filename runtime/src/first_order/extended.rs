@@ -312,7 +312,8 @@ where
         let ((m, v), (free, x)) = (self.at(v), apart::<_, NV, NX, NE>(free));
         let (given, added) = apart::<_, NV, NX, NE>(given);
         let touched = m.contact_step(t, (q, &v), (end, &free), &given, h)?;
-        Ok(Touched { q: touched.q, v: together(&touched.v, &(x + added)) })
+        let held = together(&touched.held, &SVector::<_, NX>::zeros());
+        Ok(Touched { q: touched.q, v: together(&touched.v, &(x + added)), held })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

@@ -155,10 +155,9 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         };
         let free = settled(system, free, start.t)?;
         let v = free.v - given;
-        let Touched { q, v: end } =
+        let Touched { q, v, held } =
             system.contact_step(t, (&start.q, &start.v), (&free.q, &v), &given, h).map_err(reported)?;
-        memory.note((end - v) / h);
-        let v = end;
+        memory.note(held / h);
         let end = State { q, v, ..free };
         let end = if end == free { end } else { settled(system, end, start.t)? };
         Ok(Step::linear(*start, end, (start.v + v) * (h * constant(0.5))))
@@ -209,10 +208,12 @@ fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
     let middle = system.integrate(&start.q, &(start.v * half));
     let at_middle = system.acceleration(start.t + half, &middle, &(start.v + (before + rate) * half));
     let still = SVector::zeros();
-    let given = match *rate == still {
-        true => still,
-        false => system.carry(start.t, &start.q, &(start.v * h), &(*rate * h)),
-    };
-    let v = start.v + at_middle * h + given;
-    (State { t, q: system.integrate(&middle, &(v * half)), v }, given)
+    if *rate == still {
+        let v = start.v + at_middle * h;
+        return (State { t, q: system.integrate(&middle, &(v * half)), v }, still);
+    }
+    // Impulses keep their directions in space, like forces that act in the middle.
+    let carry = |h: T| system.carry(start.t, &start.q, &(start.v * h), rate);
+    let v = start.v + (at_middle + carry(half)) * h;
+    (State { t, q: system.integrate(&middle, &(v * half)), v }, carry(h) * h)
 }

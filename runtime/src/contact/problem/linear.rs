@@ -17,77 +17,96 @@ const PASSES: usize = 3;
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
     pub(in super::super) fn together(&self, kept: &Total<bool, NK>) -> List<T, NR> {
-        self.together_with(kept, &mut { self.weights }).0
+        self.together_with(kept, &mut { self.weights }, false).0
     }
 
-    /// [`together`](Self::together), and whether `system`, which is `W` before, has its factors after it.
+    /// [`together`](Self::together), and whether `system` has the factors of the whole of `W` after it, or before it as
+    /// `is_factorised` says; else it is `W` before.
     pub(super) fn together_with(
         &self,
         kept: &Total<bool, NK>,
         system: &mut Square<T, NR>,
+        is_factorised: bool,
     ) -> (List<T, NR>, bool) {
-        // Which rates are held, and at what.
-        let (mut held, mut wanted, mut size) =
-            (List::<_, NR>::repeat(0), List::<_, NR>::repeat(T::zero()), 0);
+        let (held, size) = self.held_rows(kept);
+        let mut changes = List::repeat(T::zero());
+        for k in (0..self.count).filter(|k| kept[*k]) {
+            let (n, _) = self.of(k);
+            for i in self.all_of(k) {
+                let wanted = if i == n { self.least[k] } else { T::zero() };
+                changes[i] = wanted - self.free[i];
+            }
+        }
+        let (impulses, is_regular) = self.reach((&held, size), &changes, (system, is_factorised), PASSES);
+        (impulses, is_regular && size == self.size)
+    }
+
+    /// Impulses that change the rates of all contacts by `changes`, of least norm and less exact where they are shared; whether they are
+    /// not shared; and whether `system`, which is `W` before, has the factors of the whole of `W` after it.
+    pub(in super::super) fn impulses_for(
+        &self,
+        changes: &SVector<T, NR>,
+        system: &mut Square<T, NR>,
+    ) -> (List<T, NR>, bool, bool) {
+        let (held, size) = self.held_rows(&Total::repeat(true));
+        let (mut wanted, places) = (List::repeat(T::zero()), self.places());
+        for (wanted, place) in wanted.iter_mut().zip(places.iter()).take(self.size) {
+            *wanted = entry(changes, *place);
+        }
+        let (impulses, is_regular) = self.reach((&held, size), &wanted, (system, false), 1);
+        (impulses, is_regular, is_regular && size == self.size)
+    }
+
+    /// Rows in which some contacts may have impulses, and their number: those of friction only where there is friction.
+    fn held_rows(&self, kept: &Total<bool, NK>) -> (List<usize, NR>, usize) {
+        let (mut held, mut size) = (List::repeat(0), 0);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && kept[*k]) {
             let (n, _) = self.of(k);
             let holds = self.friction[k] > T::zero();
             for i in self.all_of(k).filter(|i| *i == n || holds) {
                 held[size] = i;
-                wanted[size] = if i == n { self.least[k] } else { T::zero() };
                 size += 1;
             }
         }
-        let is_whole = size == self.size;
-        if !is_whole {
-            self.among(&held, size, system);
+        (held, size)
+    }
+
+    /// Impulses in the first `size` rows `held` that change their rates by `changes`, and whether the motion tells them apart. `system`
+    /// is `W`, or its factors if it is factorised; impulses that are shared are found in as many `passes`.
+    fn reach(
+        &self,
+        (held, size): (&List<usize, NR>, usize),
+        changes: &List<T, NR>,
+        (system, is_factorised): (&mut Square<T, NR>, bool),
+        passes: usize,
+    ) -> (List<T, NR>, bool) {
+        if size != self.size {
+            self.among(held, size, system);
         }
         let mut impulses = List::repeat(T::zero());
-        if factorise(system, size, false) {
+        if (is_factorised && size == self.size) || factorise(system, size, false) {
             let mut right = List::repeat(T::zero());
-            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
-                *r = wanted - self.free[*i];
-            }
+            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = changes[*i]);
             substitute(system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, impulse)| impulses[*i] = impulse);
-            return (impulses, is_whole);
+            return (impulses, true);
         }
-        self.among(&held, size, system);
+        self.among(held, size, system);
         if !factorise(system, size, true) {
             return (impulses, false);
         }
         // Impulses that move nothing stay small, and what they leave is made up for.
-        for _ in 0..3 {
-            let rates = self.rates(&impulses);
+        for pass in 0..passes {
             let mut right = List::repeat(T::zero());
-            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
-                *r = wanted - rates[*i];
+            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = changes[*i]);
+            if pass > 0 {
+                let changed = self.changes(&impulses);
+                right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r -= changed[*i]);
             }
             substitute(system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
         }
         (impulses, false)
-    }
-
-    /// The impulses that add these rates, if the motion tells all of them apart; `factors` are those of `W`, if they are known.
-    pub(super) fn answering(
-        &self,
-        rates: &SVector<T, NR>,
-        factors: Option<&Square<T, NR>>,
-    ) -> Option<List<T, NR>> {
-        let mut own = self.weights;
-        let system = match factors {
-            Some(factors) => factors,
-            None if factorise(&mut own, self.size, false) => &own,
-            None => return None,
-        };
-        let mut impulses = List::repeat(T::zero());
-        for (impulse, place) in impulses.iter_mut().zip(self.places().iter()).take(self.size) {
-            *impulse = entry(rates, *place);
-        }
-        substitute(system, self.size, &mut impulses);
-        impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
-        Some(impulses)
     }
 
     /// Whether the motion cannot tell the impulses of these contacts apart; of those that slip it matters for the normal ones.
