@@ -365,12 +365,13 @@ where
 /// where none do they are what keeps it so, or what is there when motion begins. Surfaces that are about to strike each other are
 /// taken to rest: an impact has no force but an [`impact`]'s impulse.
 ///
-/// Outputs read them as `contact_force(name)`. They fulfil [`forces`] of a short time, so that slip which friction stops within
-/// `1.5e-8` s (`3.5e-4` s with `f32`) is none.
+/// Outputs read them as `contact_force(name)`. They are mean forces of a short time: friction that stops slip within `1.5e-8` s
+/// (`3.5e-4` s with `f32`) acts as in a contact that sticks.
 ///
 /// # Errors
 ///
-/// Those of [`impact`], and of the accelerations of a mechanism with constraints.
+/// Those of [`impact`]; [`ConstraintError::Contact`] for a contact that slips where no finite forces satisfy the contact conditions
+/// (Painlevé's paradox); those of the accelerations of a mechanism with constraints.
 pub fn acting<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -402,12 +403,40 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
-    problem.weigh(&mechanism.contact_responses(t, q, &closed).rates);
-    let impulses = problem.solve().map_err(|contact| ConstraintError::Contact {
-        constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
-    })?;
-    Ok(problem.spread(&impulses) / h)
+    let laws = lawful(mechanism)?;
+    let responses = mechanism.contact_responses(t, q, &closed);
+    let solved = |free: &SVector<T, NR>| {
+        let mut problem = Problem::new(layout, &laws, &closed, free);
+        problem.weigh(&responses.rates);
+        let found = problem.solve().map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?;
+        Ok((problem.spread(&found), problem.touches(&found).0))
+    };
+    let (impulses, touches) = solved(&free)?;
+    let forces = impulses / h;
+    let slip = mechanism.contact_rates(t, q, v);
+    if phase::stopped(&slip, &touches, &laws, layout).is_none() {
+        return Ok(forces);
+    }
+    // Friction stops slip within this short time: it may be strong, or there is no finite force.
+    let mut accelerations = mechanism.contact_bias(t, q, v) + moved;
+    phase::sustain_slip(&mut accelerations, &slip, layout);
+    let (lasting, touches) = solved(&accelerations)?;
+    match phase::stopped(&slip, &touches, &laws, layout) {
+        Some(contact) => Err(failed::<M, T, NQ, NV, NU, NK, NR>(contact)),
+        None if forces.amax() <= lasting.amax() * constant(2.0) => Ok(forces),
+        None => Ok(lasting),
+    }
+}
+
+/// The error for a contact whose conditions no impulses satisfy.
+fn failed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    contact: usize,
+) -> ConstraintError
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    ConstraintError::Contact { constraint: M::CONTACTS.get(contact).copied().unwrap_or_default() }
 }
 
 /// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its matrices are large, so it
@@ -458,9 +487,7 @@ where
     }
     let responses = acted.responses.insert(mechanism.contact_responses(t, q, closed));
     problem.weigh(&responses.rates);
-    let failed = |contact: usize| ConstraintError::Contact {
-        constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
-    };
+    let failed = failed::<M, T, NQ, NV, NU, NK, NR>;
     let mut factors = problem.weights;
     let start = given.filter(|given| **given != SVector::<T, NV>::zeros()).map(|given| {
         let rates = mechanism.contact_rates(t, q, &(free + given)) - after;

@@ -287,8 +287,9 @@ where
         self.with_event(Event::new(function, crossing, Report))
     }
 
-    /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. Its sample holds
-    /// the velocity after it, which constraints have changed to the nearest that fulfils them (they give impulses, too).
+    /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. It has two samples of the same time: one
+    /// before it, whose [`Sample::event`] is `None`, and one that reports the event with the velocity after it, which constraints
+    /// have changed to the nearest that fulfils them (they give impulses, too).
     ///
     /// Nothing rests on the surface of an event. Where the impact stops the motion towards it (a plastic one) and the motion
     /// then goes on through, or impacts follow each other ever faster without end, the run ends with [`Error::Impacts`].

@@ -10,6 +10,7 @@ mod files;
 mod forces;
 mod gains;
 mod gallery;
+mod lasting;
 mod laws;
 mod mechanisms;
 mod orders;

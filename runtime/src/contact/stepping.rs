@@ -1,7 +1,7 @@
 //! What contacts make of a step: impulses, and displacements that take overlaps away.
 
 use super::layout::Layout;
-use super::problem::{Problem, entry};
+use super::problem::{Problem, entry, put};
 use super::total::Total;
 use super::{Acted, Contacts, Rows, Touched, act, near};
 use crate::Real;
@@ -193,6 +193,12 @@ where
             (touched, *impulses) = less;
         }
     }
+    if !is_moving {
+        let creep = creep(mechanism, t, ((start, v), q, &touched, &after), h, problem);
+        if let Some(creep) = creep {
+            touched.q = mechanism.integrate(&touched.q, &(responses * creep));
+        }
+    }
     let gaps = mechanism.contact_gaps(t, &touched.q);
     if problem.is_shut(&gaps, near()) {
         return Ok(touched);
@@ -203,6 +209,43 @@ where
         Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most)),
         None => Ok(touched),
     }
+}
+
+/// Impulses that, as displacements, take the bodies of a mechanism at rest back by what contacts that stick have crept in a step; `None`
+/// if they have not. The forces of a step are constant, and loads that change in it move what they hold.
+#[allow(clippy::type_complexity, reason = "states at both ends of the step")]
+fn creep<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    ((start, v), q, touched, after): (
+        (&SVector<T, NQ>, &SVector<T, NV>),
+        &SVector<T, NQ>,
+        &Touched<T, NQ, NV>,
+        &SVector<T, NV>,
+    ),
+    h: T,
+    problem: &Problem<T, NK, NR>,
+) -> Option<SVector<T, NR>>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let mean = (v + after) * (h * constant(0.5));
+    let excess = mechanism.difference(start, &touched.q) - mean;
+    if excess.iter().all(|x| x.abs() <= epsilon()) {
+        return None;
+    }
+    let driven = mechanism.contact_rates(t, q, &SVector::zeros());
+    let (crept, slip) =
+        (mechanism.contact_rates(t, q, &excess) - driven, mechanism.contact_rates(t, q, after));
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let mut back = SVector::<T, NR>::zeros();
+    for tangents in (0..NK).map(|k| layout.tangents(k)) {
+        if tangents.clone().all(|i| entry(&slip, i).abs() <= near::<T>() * near()) {
+            tangents.for_each(|i| put(&mut back, i, -entry(&crept, i)));
+        }
+    }
+    Some(problem.displacements(&back))
 }
 
 /// A state with the largest part of all restitutions after which the energy is no more than `most`, and the impulses that lead there;

@@ -29,15 +29,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         is_factorised: bool,
     ) -> (List<T, NR>, bool) {
         let (held, size) = self.held_rows(kept);
-        let mut changes = List::repeat(T::zero());
-        for k in (0..self.count).filter(|k| kept[*k]) {
-            let (n, _) = self.of(k);
-            for i in self.all_of(k) {
-                let wanted = if i == n { self.least[k] } else { T::zero() };
-                changes[i] = wanted - self.free[i];
-            }
+        let mut wanted = List::repeat(T::zero());
+        for k in (0..self.count).filter(|k| kept[*k] && self.is_gap(*k)) {
+            wanted[self.of(k).0] = self.least[k];
         }
-        let (impulses, is_regular) = self.reach((&held, size), &changes, (system, is_factorised), PASSES);
+        let rates = (&self.free, &wanted);
+        let (impulses, is_regular) = self.reach((&held, size), rates, (system, is_factorised), PASSES);
         (impulses, is_regular && size == self.size)
     }
 
@@ -53,7 +50,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for (wanted, place) in wanted.iter_mut().zip(places.iter()).take(self.size) {
             *wanted = entry(changes, *place);
         }
-        let (impulses, is_regular) = self.reach((&held, size), &wanted, (system, false), 1);
+        let rates = (&List::repeat(T::zero()), &wanted);
+        let (impulses, is_regular) = self.reach((&held, size), rates, (system, false), 1);
         (impulses, is_regular, is_regular && size == self.size)
     }
 
@@ -71,12 +69,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (held, size)
     }
 
-    /// Impulses in the first `size` rows `held` that change their rates by `changes`, and whether the motion tells them apart. `system`
+    /// Impulses in the first `size` rows `held` that change their rates from `free` to `wanted`, and whether the motion tells them apart. `system`
     /// is `W`, or its factors if it is factorised; impulses that are shared are found in as many `passes`.
     fn reach(
         &self,
         (held, size): (&List<usize, NR>, usize),
-        changes: &List<T, NR>,
+        (free, wanted): (&List<T, NR>, &List<T, NR>),
         (system, is_factorised): (&mut Square<T, NR>, bool),
         passes: usize,
     ) -> (List<T, NR>, bool) {
@@ -86,7 +84,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let mut impulses = List::repeat(T::zero());
         if (is_factorised && size == self.size) || factorise(system, size, false) {
             let mut right = List::repeat(T::zero());
-            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = changes[*i]);
+            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = wanted[*i] - free[*i]);
             substitute(system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, impulse)| impulses[*i] = impulse);
             return (impulses, true);
@@ -96,13 +94,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             return (impulses, false);
         }
         // Impulses that move nothing stay small, and what they leave is made up for.
-        for pass in 0..passes {
-            let mut right = List::repeat(T::zero());
-            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = changes[*i]);
-            if pass > 0 {
-                let changed = self.changes(&impulses);
-                right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r -= changed[*i]);
-            }
+        for _ in 0..passes {
+            let (rates, mut right) = (self.added(*free, &impulses), List::repeat(T::zero()));
+            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = wanted[*i] - rates[*i]);
             substitute(system, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
         }

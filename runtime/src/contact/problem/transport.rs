@@ -43,7 +43,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 changes[i] = (entry(rates, places[i]) - changed[i]) * half;
             }
         }
-        if let Some(turned) = self.slip_correction(&impulses, rates) {
+        if is_regular && let Some(turned) = self.slip_correction(&impulses, rates) {
             correction += responses.velocities * self.scatter(&turned);
             changes = self.added(changes, &turned);
         }
@@ -57,6 +57,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             correction = SVector::zeros();
         }
         (Start { impulses, is_regular, is_factorised }, correction)
+    }
+
+    /// Impulses that change the rates of the mechanism by `changes`.
+    pub(in super::super) fn displacements(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
+        self.scatter(&self.impulses_for(changes, &mut { self.weights }).0)
     }
 
     /// Half of the difference of friction impulses from those against the slip at the end of the step, for contacts that slip on
