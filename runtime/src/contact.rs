@@ -75,7 +75,7 @@ use layout::Layout;
 pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
-use problem::Problem;
+use problem::{Equations, Problem};
 #[doc(hidden)]
 pub use stepping::step;
 use stepping::{Came, closed};
@@ -488,10 +488,10 @@ where
     let responses = acted.responses.insert(mechanism.contact_responses(t, q, closed));
     problem.weigh(&responses.rates);
     let failed = failed::<M, T, NQ, NV, NU, NK, NR>;
-    let mut factors = problem.weights;
+    let mut equations = Equations::of(problem);
     let start = given.filter(|given| **given != SVector::<T, NV>::zeros()).map(|given| {
         let rates = mechanism.contact_rates(t, q, &(free + given)) - after;
-        problem.transport(given, &rates, responses, &mut factors)
+        problem.transport(given, &rates, responses, &mut equations)
     });
     if let Some((_, correction)) = &start {
         solved.v += correction;
@@ -504,7 +504,7 @@ where
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
         driven.iter().all(|rate| *rate == T::zero())
     };
-    let impulses = match problem.solve_from(start.as_ref().map(|(start, _)| start), &mut factors) {
+    let impulses = match problem.solve_from(start.as_ref().map(|(start, _)| start), &mut equations) {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
         Err(contact) if !problem.rebounds() => return Err(failed(contact)),
         _ => tempered(problem, &laws, &before, may_gain).map_err(failed)?,

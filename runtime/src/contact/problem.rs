@@ -15,6 +15,7 @@ mod search;
 mod transport;
 mod trial;
 
+pub(super) use linear::Equations;
 use trial::{Mode, Trial};
 
 /// A number for each rate.
@@ -41,6 +42,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// turning alone.
     pressed_by: Total<usize, NK>,
     size: usize,
+    /// Index of each rate among those of the mechanism.
+    places: List<usize, NR>,
     /// The rates without any impulses.
     given: List<T, NR>,
     /// The impulses of compression, if restitution is a ratio of these, and whether there are any.
@@ -51,7 +54,7 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// `u₀`: the rates with what acts anyway.
     free: List<T, NR>,
     /// `W`.
-    pub(super) weights: Square<T, NR>,
+    weights: Square<T, NR>,
     /// What the normal rate is at least.
     least: Total<T, NK>,
     /// The part of the normal impulse of restitution that acts anyway, and presses friction as well.
@@ -73,6 +76,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             rows: Total::repeat(none),
             pressed_by: Total::repeat(0),
             size: 0,
+            places: Total::repeat(0),
             given: Total::repeat(T::zero()),
             compression: Total::repeat(T::zero()),
             is_compressed: false,
@@ -122,6 +126,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             problem.pressed_by[c] = by;
             problem.friction[c] = law.friction;
             for i in 0..of.count {
+                problem.places[first + i] = of.first + i;
                 problem.free[first + i] = entry(free, of.first + i);
                 problem.given[first + i] = problem.free[first + i];
             }
@@ -147,17 +152,6 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         first..first + count
     }
 
-    /// Of each rate its number among those of the mechanism; the first `size` are used.
-    fn places(&self) -> List<usize, NR> {
-        let mut places = List::repeat(0);
-        for ((_, of), rows) in self.contacts.iter().zip(*self.rows).take(self.count) {
-            for i in 0..rows.count {
-                places[rows.first + i] = of.first + i;
-            }
-        }
-        places
-    }
-
     /// Impulses at the rates of the mechanism, with those that act anyway.
     pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
         let mut all = *impulses;
@@ -168,7 +162,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Values for the rates of closed contacts at the rates of the mechanism; zeros elsewhere.
     fn scatter(&self, values: &List<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
-        for (place, value) in self.places().iter().zip(values.iter()).take(self.size) {
+        for (place, value) in self.places.iter().zip(values.iter()).take(self.size) {
             put(&mut all, *place, *value);
         }
         all
@@ -188,7 +182,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Takes `W = G M⁻¹ Gᵀ` of all contacts.
     pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
-        let places = self.places();
+        let places = self.places;
         let none = T::zero();
         for (j, place) in places.iter().enumerate().take(self.size) {
             let Some(column) = weights.data.0.get(*place) else { continue };
@@ -308,6 +302,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     (overlap, distance) = (overlap.max(-gap), distance.max(gap));
                 }
                 kept.contacts[c] = (contact, Rows { first, count: 1 });
+                kept.places[c] = first;
                 kept.rows[c] = Rows { first: n, count: 1 };
                 kept.pressed_by[c] = c;
                 kept.free[c] = gap;

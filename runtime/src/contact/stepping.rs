@@ -165,7 +165,8 @@ where
     let mut acted = Acted::nothing();
     let before = || came.rates(mechanism, t, q);
     // Contact forces on bodies at rest do not rotate.
-    let is_moving = v.iter().any(|v| v.abs() * h > near());
+    let moves = |far: T| v.iter().any(|v| v.abs() * h > far);
+    let is_moving = moves(near::<T>() * constant(10.0));
     let after = act(mechanism, t, (q, free), &closed, (before, is_moving.then_some(given)), &mut acted)?.v;
     if h == T::zero() {
         return Ok(Touched { q: *q, v: after, held: after - free });
@@ -193,7 +194,7 @@ where
             (touched, *impulses) = less;
         }
     }
-    if !is_moving {
+    if !is_moving && !moves(near::<T>() * constant(1e-3)) {
         let creep = creep(mechanism, t, ((start, v), q, &touched, &after), h, problem);
         if let Some(creep) = creep {
             touched.q = mechanism.integrate(&touched.q, &(responses * creep));
@@ -232,7 +233,8 @@ where
 {
     let mean = (v + after) * (h * constant(0.5));
     let excess = mechanism.difference(start, &touched.q) - mean;
-    if excess.iter().all(|x| x.abs() <= epsilon()) {
+    let largest = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+    if largest(&excess) <= largest(&touched.held) * h * epsilon::<T>().sqrt() {
         return None;
     }
     let driven = mechanism.contact_rates(t, q, &SVector::zeros());

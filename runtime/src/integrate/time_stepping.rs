@@ -196,9 +196,9 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
 ) -> (State<T, NQ, NV>, SVector<T, NV>) {
     let still = SVector::zeros();
     let added = (*rate != still).then_some(rate);
-    let (displacement, change) = through(system, start, h, *before, added);
+    let ((displacement, change), at_end) = through(system, start, h, *before, added);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
-    (end, added.map_or(still, |rate| system.carry(start.t, &start.q, &displacement, &(*rate * h))))
+    (end, at_end.map_or(still, |rate| rate * h))
 }
 
 /// Where a step through the [midpoint](TimeStepping::midpoint) leads from the accelerations `before`, under impulses that add `rate` to

@@ -14,45 +14,64 @@ const ALIKE: f64 = 256.0;
 /// How often what is left of equations that were told apart by a little is made up for.
 const PASSES: usize = 3;
 
+/// Room for the equations of impulses, which keeps the factors of the whole of `W`.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Equations<T, const NR: usize> {
+    matrix: Square<T, NR>,
+    content: Content,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Content {
+    /// All of `W`.
+    Weights,
+    /// Its factors.
+    Factors,
+    /// Its factors with rows told apart by a little.
+    Lifted,
+    Other,
+}
+
+impl<T: Real, const NR: usize> Equations<T, NR> {
+    /// The equations of a problem.
+    pub(in super::super) fn of<const NK: usize>(problem: &Problem<T, NK, NR>) -> Self {
+        Self { matrix: problem.weights, content: Content::Weights }
+    }
+}
+
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
     pub(in super::super) fn together(&self, kept: &Total<bool, NK>) -> List<T, NR> {
-        self.together_with(kept, &mut { self.weights }, false).0
+        self.together_with(kept, &mut Equations::of(self))
     }
 
-    /// [`together`](Self::together), and whether `system` has the factors of the whole of `W` after it, or before it as
-    /// `is_factorised` says; else it is `W` before.
+    /// [`together`](Self::together) with given equations.
     pub(super) fn together_with(
         &self,
         kept: &Total<bool, NK>,
-        system: &mut Square<T, NR>,
-        is_factorised: bool,
-    ) -> (List<T, NR>, bool) {
+        equations: &mut Equations<T, NR>,
+    ) -> List<T, NR> {
         let (held, size) = self.held_rows(kept);
         let mut wanted = List::repeat(T::zero());
         for k in (0..self.count).filter(|k| kept[*k] && self.is_gap(*k)) {
             wanted[self.of(k).0] = self.least[k];
         }
-        let rates = (&self.free, &wanted);
-        let (impulses, is_regular) = self.reach((&held, size), rates, (system, is_factorised), PASSES);
-        (impulses, is_regular && size == self.size)
+        self.reach((&held, size), (&self.free, &wanted), equations, PASSES).0
     }
 
-    /// Impulses that change the rates of all contacts by `changes`, of least norm and less exact where they are shared; whether they are
-    /// not shared; and whether `system`, which is `W` before, has the factors of the whole of `W` after it.
+    /// Impulses that change the rates of all contacts by `changes`, and whether the motion tells them apart; otherwise they are those
+    /// of least norm, and less exact.
     pub(in super::super) fn impulses_for(
         &self,
         changes: &SVector<T, NR>,
-        system: &mut Square<T, NR>,
-    ) -> (List<T, NR>, bool, bool) {
+        equations: &mut Equations<T, NR>,
+    ) -> (List<T, NR>, bool) {
         let (held, size) = self.held_rows(&Total::repeat(true));
-        let (mut wanted, places) = (List::repeat(T::zero()), self.places());
-        for (wanted, place) in wanted.iter_mut().zip(places.iter()).take(self.size) {
+        let mut wanted = List::repeat(T::zero());
+        for (wanted, place) in wanted.iter_mut().zip(self.places.iter()).take(self.size) {
             *wanted = entry(changes, *place);
         }
-        let rates = (&List::repeat(T::zero()), &wanted);
-        let (impulses, is_regular) = self.reach((&held, size), rates, (system, false), 1);
-        (impulses, is_regular, is_regular && size == self.size)
+        self.reach((&held, size), (&List::repeat(T::zero()), &wanted), equations, 1)
     }
 
     /// Rows in which some contacts may have impulses, and their number: those of friction only where there is friction.
@@ -69,38 +88,45 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (held, size)
     }
 
-    /// Impulses in the first `size` rows `held` that change their rates from `free` to `wanted`, and whether the motion tells them apart. `system`
-    /// is `W`, or its factors if it is factorised; impulses that are shared are found in as many `passes`.
+    /// Impulses in the first `size` rows `held` that change their rates from `free` to `wanted`, and whether the motion tells them
+    /// apart. Impulses that are shared are improved in as many `passes`.
     fn reach(
         &self,
         (held, size): (&List<usize, NR>, usize),
         (free, wanted): (&List<T, NR>, &List<T, NR>),
-        (system, is_factorised): (&mut Square<T, NR>, bool),
+        equations: &mut Equations<T, NR>,
         passes: usize,
     ) -> (List<T, NR>, bool) {
-        if size != self.size {
-            self.among(held, size, system);
+        let Equations { matrix, content } = equations;
+        let is_whole = size == self.size;
+        let mut known = if is_whole { *content } else { Content::Other };
+        if known == Content::Other {
+            self.among(held, size, matrix);
+            known = Content::Weights;
         }
+        if known == Content::Weights {
+            known = Content::Factors;
+            if !factorise(matrix, size, false) {
+                self.among(held, size, matrix);
+                known = if factorise(matrix, size, true) { Content::Lifted } else { Content::Other };
+            }
+        }
+        *content = if is_whole { known } else { Content::Other };
         let mut impulses = List::repeat(T::zero());
-        if (is_factorised && size == self.size) || factorise(system, size, false) {
-            let mut right = List::repeat(T::zero());
-            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = wanted[*i] - free[*i]);
-            substitute(system, size, &mut right);
-            held.iter().zip(*right).take(size).for_each(|(i, impulse)| impulses[*i] = impulse);
-            return (impulses, true);
-        }
-        self.among(held, size, system);
-        if !factorise(system, size, true) {
-            return (impulses, false);
-        }
         // Impulses that move nothing stay small, and what they leave is made up for.
-        for _ in 0..passes {
-            let (rates, mut right) = (self.added(*free, &impulses), List::repeat(T::zero()));
+        let passes = match known {
+            Content::Factors => 1,
+            Content::Lifted => passes,
+            _ => 0,
+        };
+        for pass in 0..passes {
+            let rates = if pass == 0 { *free } else { self.added(*free, &impulses) };
+            let mut right = List::repeat(T::zero());
             right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = wanted[*i] - rates[*i]);
-            substitute(system, size, &mut right);
+            substitute(matrix, size, &mut right);
             held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
         }
-        (impulses, false)
+        (impulses, known == Content::Factors)
     }
 
     /// Whether the motion cannot tell the impulses of these contacts apart; of those that slip it matters for the normal ones.
@@ -217,7 +243,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// The matrix of the equations that hold contacts: rates of those that are held, and friction against the slip `rates`.
     fn held_system(&self, slips: &Total<bool, NK>, rates: &SVector<T, NR>) -> Square<T, NR> {
-        let places = self.places();
+        let places = self.places;
         let mut system = square();
         identify(&mut system);
         for k in 0..self.count {
@@ -254,7 +280,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
     ) -> SMatrix<T, NR, NR> {
-        let (slips, places) = (self.slipping(touches), self.places());
+        let (slips, places) = (self.slipping(touches), self.places);
         if let Some(found) = self.answers_of_independent(&slips) {
             return found;
         }
@@ -302,7 +328,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if !(0..self.count).all(is_plain) || !factorise(&mut system, self.size, false) {
             return None;
         }
-        let places = self.places();
+        let places = self.places;
         let mut all = SMatrix::<T, NR, NR>::zeros();
         // Rows of all columns at once, which are columns as well.
         let mut changes = [[T::zero(); NR]; NR];

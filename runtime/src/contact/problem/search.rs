@@ -1,9 +1,10 @@
 //! How impulses are found that fulfil the laws of all contacts.
 
 use super::super::total::Total;
+use super::linear::Equations;
 use super::transport::Start;
 use super::trial::Trial;
-use super::{List, Problem, Square};
+use super::{List, Problem};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
@@ -42,16 +43,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// The contact of the mechanism whose law is fulfilled least, where more is left than half of the digits.
     pub(in super::super) fn solve(&mut self) -> Result<List<T, NR>, usize> {
-        self.solve_from(None, &mut { self.weights })
+        self.solve_from(None, &mut Equations::of(self))
     }
 
-    /// [`solve`](Self::solve), where the impulses are about those of `start`. `factors` are those of `W` if it says so, else `W`.
+    /// [`solve`](Self::solve) with given equations, where the impulses are about those of `start`.
     pub(in super::super) fn solve_from(
         &mut self,
         start: Option<&Start<T, NR>>,
-        factors: &mut Square<T, NR>,
+        equations: &mut Equations<T, NR>,
     ) -> Result<List<T, NR>, usize> {
-        let mut impulses = self.search(start, factors).map_err(|k| self.contacts[k].0)?;
+        let mut impulses = self.search(start, equations).map_err(|k| self.contacts[k].0)?;
         // Rounding may have left them beside their cones.
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
@@ -68,15 +69,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn search(
         &mut self,
         start: Option<&Start<T, NR>>,
-        factors: &mut Square<T, NR>,
+        equations: &mut Equations<T, NR>,
     ) -> Result<List<T, NR>, usize> {
         // Where all stick that approach, there is nothing to search for.
-        let is_factorised = start.is_some_and(|start| start.is_factorised);
-        if start.is_some() && !is_factorised {
-            *factors = self.weights;
-        }
         let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
-        let (mut impulses, _) = self.together_with(&approach, factors, is_factorised);
+        let mut impulses = self.together_with(&approach, equations);
         let stuck = self.tried(impulses);
         if self.solves(&stuck) {
             return Ok(impulses);

@@ -1,7 +1,8 @@
 //! Contact forces that rotate in a step: corrections that make the impulses of a step of second order.
 
 use super::super::Responses;
-use super::{List, Problem, Square, entry};
+use super::linear::Equations;
+use super::{List, Problem, entry};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -15,8 +16,6 @@ pub(in super::super) struct Start<T, const NR: usize> {
     pub(super) impulses: List<T, NR>,
     /// Whether the motion tells them apart.
     pub(super) is_regular: bool,
-    /// Whether the factors of the whole of `W` are known.
-    pub(super) is_factorised: bool,
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
@@ -31,16 +30,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         given: &SVector<T, NV>,
         rates: &SVector<T, NR>,
         responses: &Responses<T, NV, NR>,
-        factors: &mut Square<T, NR>,
+        equations: &mut Equations<T, NR>,
     ) -> (Start<T, NR>, SVector<T, NV>) {
         let half = constant::<T>(0.5);
-        let (impulses, is_regular, is_factorised) = self.impulses_for(rates, factors);
+        let (impulses, is_regular) = self.impulses_for(rates, equations);
         let mut correction = (given - responses.velocities * self.scatter(&impulses)) * half;
         let mut changes = List::<T, NR>::repeat(T::zero());
-        if !is_factorised {
-            let (places, changed) = (self.places(), self.changes(&impulses));
+        if !is_regular {
+            let changed = self.changes(&impulses);
             for i in 0..self.size {
-                changes[i] = (entry(rates, places[i]) - changed[i]) * half;
+                changes[i] = (entry(rates, self.places[i]) - changed[i]) * half;
             }
         }
         if is_regular && let Some(turned) = self.slip_correction(&impulses, rates) {
@@ -56,23 +55,22 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         } else {
             correction = SVector::zeros();
         }
-        (Start { impulses, is_regular, is_factorised }, correction)
+        (Start { impulses, is_regular }, correction)
     }
 
     /// Impulses that change the rates of the mechanism by `changes`.
     pub(in super::super) fn displacements(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
-        self.scatter(&self.impulses_for(changes, &mut { self.weights }).0)
+        self.scatter(&self.impulses_for(changes, &mut Equations::of(self)).0)
     }
 
     /// Half of the difference of friction impulses from those against the slip at the end of the step, for contacts that slip on
     /// throughout it; none if there are no such contacts.
     fn slip_correction(&self, impulses: &List<T, NR>, rates: &SVector<T, NR>) -> Option<List<T, NR>> {
         let (mut turned, mut is_any) = (List::repeat(T::zero()), false);
-        let places = self.places();
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
             let (n, tangents) = self.of(k);
             let largest = self.friction[k] * impulses[n];
-            let slip = |i: usize| self.free[i] + entry(rates, places[i]);
+            let slip = |i: usize| self.free[i] + entry(rates, self.places[i]);
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip(i) * slip(i)).sqrt();
             // Friction of a step stops what is slower.
             let slides = largest > T::zero() && speed * self.step[k] > largest;
