@@ -14,6 +14,7 @@ mod assemble;
 mod careful;
 mod complete;
 mod differentiable;
+mod graded;
 mod layout;
 mod linearize;
 mod second;
@@ -27,6 +28,7 @@ pub use assemble::{Loops, assemble, assembly_mode};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
 pub(crate) use differentiable::{Frozen, column, each_column, multipliers, set_column};
+pub(crate) use graded::change_rates;
 #[doc(hidden)]
 pub use layout::{ConstraintCurvature, Elimination, InputDerivatives, MotionDerivatives, Responses};
 pub use linearize::Linearization;

@@ -52,6 +52,7 @@ mod holding;
 mod landing;
 mod lawful;
 mod layout;
+mod light;
 mod overlap;
 mod phase;
 mod problem;
@@ -75,7 +76,7 @@ use layout::Layout;
 pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
-use problem::{Equations, Problem};
+use problem::{Equations, Problem, entry};
 #[doc(hidden)]
 pub use stepping::step;
 use stepping::{Came, closed};
@@ -411,9 +412,23 @@ where
         let found = problem.solve().map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?;
         Ok((problem.spread(&found), problem.touches(&found).0))
     };
+    // Rates change in the short time as the accelerations of contacts that stick do, if their forces press and friction holds them.
+    let slip = mechanism.contact_rates(t, q, v);
+    let sticking = closed.map(|is_closed| if is_closed { Touch::Sticks } else { Touch::Open });
+    if phase::stopped(&slip, &sticking, &laws, layout).is_none()
+        && let Some((_, impulses)) = light::stuck(mechanism, t, q, (&sticking, &laws), &-free)
+    {
+        let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
+            let (_, first) = layout.pressing(k);
+            let largest = laws.get(k).map_or(T::zero(), |law| law.friction) * entry(&impulses, first);
+            entry(&impulses, first) >= T::zero() && phase::length(&impulses, layout.tangents(k)) <= largest
+        });
+        if presses {
+            return Ok(impulses / h);
+        }
+    }
     let (impulses, touches) = solved(&free)?;
     let forces = impulses / h;
-    let slip = mechanism.contact_rates(t, q, v);
     if phase::stopped(&slip, &touches, &laws, layout).is_none() {
         return Ok(forces);
     }

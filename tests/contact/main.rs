@@ -12,6 +12,7 @@ mod gains;
 mod gallery;
 mod lasting;
 mod laws;
+mod light;
 mod mechanisms;
 mod orders;
 mod piles;

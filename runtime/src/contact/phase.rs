@@ -92,7 +92,7 @@ pub(super) fn stopped<T: Real, const NK: usize, const NR: usize>(
 }
 
 /// The length of a part of a vector.
-fn length<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
+pub(super) fn length<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
     part.fold(T::zero(), |sum, i| sum + entry(vector, i) * entry(vector, i)).sqrt()
 }
 

@@ -59,10 +59,8 @@ pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
         (displacement, added.map_or(acceleration, |added| acceleration + added))
     };
     let k1 = sum((start.v, before), &added.copied());
-    // Both stages in the middle have the same axes but for terms of third order.
-    let in_middle = carry(system, &(k1.0 * half));
-    let k2 = sum(rates(system, start, half, &k1), &in_middle);
-    let k3 = sum(rates(system, start, half, &k2), &in_middle);
+    let k2 = sum(rates(system, start, half, &k1), &carry(system, &(k1.0 * half)));
+    let k3 = sum(rates(system, start, half, &k2), &carry(system, &(k2.0 * half)));
     let at_end = carry(system, &(k3.0 * h));
     let k4 = sum(rates(system, start, h, &k3), &at_end);
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));

@@ -71,7 +71,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for (wanted, place) in wanted.iter_mut().zip(self.places.iter()).take(self.size) {
             *wanted = entry(changes, *place);
         }
-        self.reach((&held, size), (&List::repeat(T::zero()), &wanted), equations, 1)
+        self.reach((&held, size), (&List::repeat(T::zero()), &wanted), equations, 2)
     }
 
     /// Rows in which some contacts may have impulses, and their number: those of friction only where there is friction.
@@ -164,7 +164,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// The forces that hold contacts as they are said to be, where impulses are forces and rates accelerations; `rates` are those
-    /// of all contacts, along which slip is braked.
+    /// of all contacts, along which slip is braked. Sets `loses_digits` where nothing slips and `W` does not determine them well.
     ///
     /// # Errors
     ///
@@ -173,11 +173,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         &self,
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
+        loses_digits: &mut bool,
     ) -> Result<List<T, NR>, usize> {
         let slips = self.slipping(touches);
         let mut forces = List::repeat(T::zero());
         if !slips.contains(&true) {
-            forces = self.together(&Total::repeat(true));
+            let mut equations = Equations::of(self);
+            forces = self.together_with(&Total::repeat(true), &mut equations);
+            *loses_digits = self.loses_digits(&equations);
             let (accelerations, most) = (self.rates(&forces), self.rounding(&forces));
             if accelerations.iter().take(self.size).all(|left| left.abs() <= most) {
                 return Ok(forces);
@@ -229,6 +232,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             Some(k) => Err(self.contacts[k].0),
             None => Ok(forces),
         }
+    }
+
+    /// Whether factors of `W` have pivots that are little of what they were, or are no factors of `W` itself.
+    fn loses_digits(&self, equations: &Equations<T, NR>) -> bool {
+        let Equations { matrix, content } = equations;
+        let least = epsilon::<T>().sqrt().sqrt();
+        let is_small = |i: usize| matrix[i][i] * self.weights[i][i] * least > T::one();
+        *content != Content::Factors || (0..self.size).any(is_small)
     }
 
     /// Which contacts slip, or have no friction that would hold them.
