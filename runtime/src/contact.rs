@@ -224,8 +224,8 @@ pub struct Touched<T, const NQ: usize, const NV: usize> {
     pub q: SVector<T, NQ>,
     /// The velocity.
     pub v: SVector<T, NV>,
-    /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have at the end: divided by the
-    /// length of the step, an estimate of their effect where the next step starts.
+    /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have
+    /// at the end: divided by the length of the step, an estimate of their effect where the next step starts.
     pub held: SVector<T, NV>,
 }
 
@@ -366,13 +366,13 @@ where
 /// where none do they are what keeps it so, or what is there when motion begins. Surfaces that are about to strike each other are
 /// taken to rest: an impact has no force but an [`impact`]'s impulse.
 ///
-/// Outputs read them as `contact_force(name)`. They are mean forces of a short time: friction that stops slip within `1.5e-8` s
-/// (`3.5e-4` s with `f32`) acts as in a contact that sticks.
+/// Outputs read them as `contact_force(name)`. They are mean forces of a short time: friction that stops slip
+/// within `1.5e-8` s (`3.5e-4` s with `f32`) acts as in a contact that sticks.
 ///
 /// # Errors
 ///
-/// Those of [`impact`]; [`ConstraintError::Contact`] for a contact that slips where no finite forces satisfy the contact conditions
-/// (Painlevé's paradox); those of the accelerations of a mechanism with constraints.
+/// Those of [`impact`]; [`ConstraintError::Contact`] for a contact that slips where no finite forces satisfy
+/// the contact conditions (Painlevé's paradox); those of the accelerations of a mechanism with constraints.
 pub fn acting<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -412,11 +412,12 @@ where
         let found = problem.solve().map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?;
         Ok((problem.spread(&found), problem.touches(&found).0))
     };
-    // Rates change in the short time as the accelerations of contacts that stick do, if their forces press and friction holds them.
+    // Rates change in the short time as the accelerations of contacts that stick do, if their forces press
+    // and friction holds them.
     let slip = mechanism.contact_rates(t, q, v);
     let sticking = closed.map(|is_closed| if is_closed { Touch::Sticks } else { Touch::Open });
-    if phase::stopped(&slip, &sticking, &laws, layout).is_none()
-        && let Some((_, impulses)) = light::stuck(mechanism, t, q, (&sticking, &laws), &-free)
+    if phase::stopped_contact(&slip, &sticking, &laws, layout).is_none()
+        && let Some((_, impulses)) = light::sticking_change(mechanism, t, q, (&sticking, &laws), &-free)
     {
         let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
             let (_, first) = layout.pressing(k);
@@ -429,14 +430,14 @@ where
     }
     let (impulses, touches) = solved(&free)?;
     let forces = impulses / h;
-    if phase::stopped(&slip, &touches, &laws, layout).is_none() {
+    if phase::stopped_contact(&slip, &touches, &laws, layout).is_none() {
         return Ok(forces);
     }
     // Friction stops slip within this short time: it may be strong, or there is no finite force.
     let mut accelerations = mechanism.contact_bias(t, q, v) + moved;
     phase::sustain_slip(&mut accelerations, &slip, layout);
     let (lasting, touches) = solved(&accelerations)?;
-    match phase::stopped(&slip, &touches, &laws, layout) {
+    match phase::stopped_contact(&slip, &touches, &laws, layout) {
         Some(contact) => Err(failed::<M, T, NQ, NV, NU, NK, NR>(contact)),
         None if forces.amax() <= lasting.amax() * constant(2.0) => Ok(forces),
         None => Ok(lasting),
@@ -454,8 +455,8 @@ where
     ConstraintError::Contact { constraint: M::CONTACTS.get(contact).copied().unwrap_or_default() }
 }
 
-/// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its matrices are large, so it
-/// is filled in place.
+/// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its
+/// matrices are large, so it is filled in place.
 struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
     problem: Problem<T, NK, NR>,
     impulses: Total<T, NR>,
@@ -472,9 +473,10 @@ impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK
     }
 }
 
-/// Solves [`solve`]'s problem for the contacts that are `closed`, and fills `acted`. The rates `before` are evaluated only where
-/// they matter. If the contact forces at the start of a step are known, which would add `given` to the velocity, their rotation in the
-/// step is taken into account, and the search for impulses begins with them.
+/// Solves [`solve`]'s problem for the contacts that are `closed`, and fills `acted`. The rates `before` are
+/// evaluated only where they matter. If the contact forces at the start of a step are known, which would add
+/// `given` to the velocity, their rotation in the step is taken into account, and the search for impulses
+/// begins with them.
 fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,

@@ -257,9 +257,9 @@ struct Rod {
     force: Vector,
 }
 
-/// The normal acceleration of the end of a rod at the angle `θ` that slides with friction `μ` in the direction `s` is
-/// `a + p N` with `p m = 1 + 3 cos θ (cos θ + s μ sin θ)`. Where `p < 0 < −a` no finite force keeps it from the floor (Painlevé); where
-/// `p > 0` the force is `−a / p`.
+/// The normal acceleration of the end of a rod at the angle `θ` that slides with friction `μ` in the
+/// direction `s` is `a + p N` with `p m = 1 + 3 cos θ (cos θ + s μ sin θ)`. Where `p < 0 < −a` no finite
+/// force keeps it from the floor (Painlevé); where `p > 0` the force is `−a / p`.
 #[test]
 fn no_finite_force_is_an_error() {
     let mut random = Random(3);

@@ -169,10 +169,12 @@ fn ball(method: Stepping) -> f64 {
     (energy!(m, &s.q, &s.v) - energy!(m, &q, &v)).abs()
 }
 
-/// Energy of Euler's disk, and how far its centre moves, which rests in the steady motion with `Ω² = 4 g / (r sin α)`.
+/// Energy of Euler's disk, and how far its centre moves, which rests in the steady motion with
+/// `Ω² = 4 g / (r sin α)`.
 fn disk(method: Stepping) -> f64 {
     let (m, r) = (Disk {}, 0.0375_f64);
-    // The axis of the disk leans by `alpha` from the vertical; the circle turns about a horizontal diameter of the disk.
+    // The axis of the disk leans by `alpha` from the vertical; the circle turns about a horizontal diameter
+    // of the disk.
     let alpha = 30.0_f64.to_radians();
     let lean = std::f64::consts::FRAC_PI_2 - alpha;
     let (s, c) = (lean / 2.0).sin_cos();
@@ -219,7 +221,8 @@ fn slides(method: Stepping) -> f64 {
     (s.v[0] - 0.4 - a).abs() + (s.q[0] - 0.4 - 0.5 * a).abs() + s.v[2].abs()
 }
 
-/// Sum of speed and velocity down a slope of a block that crosses it with the friction `μ = tan α`: a constant.
+/// Sum of speed and velocity down a slope of a block that crosses it with the friction `μ = tan α`: a
+/// constant.
 fn crosses(method: Stepping) -> f64 {
     let m = Slope { slope: 0.3, friction: 0.3_f64.tan() };
     let s = end!(&m, [0.0; 3], [0.1, 1.0, 0.0], method, 0.6);
@@ -252,7 +255,8 @@ fn the_order_is_two_where_surfaces_stay_together() {
     check_order("block across a slope", 4e-3, 1e-4, crosses);
 }
 
-/// An unbalanced ball that rolls: its energy changes by `8e-6` of it in a second at 2 ms, and by less with shorter steps.
+/// An unbalanced ball that rolls: its energy changes by `8e-6` of it in a second at 2 ms, and by less with
+/// shorter steps.
 #[test]
 fn an_unbalanced_ball_keeps_its_energy() {
     for (h, largest) in [(2e-3, 8e-6), (1e-3, 1e-6), (5e-4, 2.5e-7)] {
@@ -285,8 +289,8 @@ fn contacts_that_stick_do_not_creep() {
     }
 }
 
-/// A ball that moves and spins on a smooth level floor has no horizontal force on it: it keeps its velocity. (Steps through the midpoint
-/// approximate its rotation with order 2; they lost 0.098 m/s.)
+/// A ball that moves and spins on a smooth level floor has no horizontal force on it: it keeps its velocity.
+/// (Steps through the midpoint approximate its rotation with order 2; they lost 0.098 m/s.)
 #[test]
 fn a_spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
     let m = Ball { offset: 0.0, friction: 0.0 };
@@ -307,7 +311,8 @@ fn a_spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
     });
 }
 
-/// Bounces of a ball: apices by the coefficient of restitution, with the order 1 of impacts that are not located.
+/// Bounces of a ball: apices by the coefficient of restitution, with the order 1 of impacts that are not
+/// located.
 #[test]
 fn bounces_have_order_one() {
     let fall = (2.0 / 9.81_f64).sqrt();
@@ -319,8 +324,8 @@ fn bounces_have_order_one() {
     }
 }
 
-/// Random bobs in a bowl, rolling balls and blocks on slopes: as [`EventDriven`] moves them with tight tolerances, and with an error
-/// that falls with the square of the step on average.
+/// Random bobs in a bowl, rolling balls and blocks on slopes: as [`EventDriven`] moves them with tight
+/// tolerances, and with an error that falls with the square of the step on average.
 #[test]
 fn random_motions_have_order_two() {
     let mut random = Random(11);

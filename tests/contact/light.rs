@@ -4,7 +4,8 @@ use super::laws::Random;
 use linkwork::contact::{self, Touch};
 use linkwork::prelude::*;
 
-/// A hip of 1 kg on a massless leg of 1 m with a foot; the simplest walker in stance (Garcia, Chatterjee, Ruina and Coleman, 1998).
+/// A hip of 1 kg on a massless leg of 1 m with a foot; the simplest walker in stance (Garcia, Chatterjee,
+/// Ruina and Coleman, 1998).
 #[mechanism(gravity = -9.81 * y)]
 struct Walker {
     foot: f64,
@@ -20,7 +21,8 @@ struct Walker {
     toe: Contact,
 }
 
-/// The leg is an inverted pendulum, whose foot bears its own weight besides. After touchdown the hip keeps its velocity across the leg.
+/// The leg is an inverted pendulum, whose foot bears its own weight besides. After touchdown the hip keeps
+/// its velocity across the leg.
 #[test]
 fn light_feet_lose_no_digits() {
     let mut random = Random(8);

@@ -4,11 +4,11 @@ use super::span::{Metric, Span, at, rounding};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
-/// Returns the change `x` of the velocity with `J x = changes` in the rows that are `held`, and impulses `λ` in these rows with
-/// `M x = Jᵀ λ`; `None` if the rows depend on each other.
+/// Returns the change `x` of the velocity with `J x = changes` in the rows that are `held`, and impulses `λ`
+/// in these rows with `M x = Jᵀ λ`; `None` if the rows depend on each other.
 ///
-/// The rows are factorised in the metric of the kinetic energy, so that light bodies lose no digits to heavy ones. Rows of one number
-/// in `groups` are components of one vector.
+/// The rows are factorised in the metric of the kinetic energy, so that light bodies lose no digits to heavy
+/// ones. Rows of one number in `groups` are components of one vector.
 pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,

@@ -2,7 +2,7 @@
 
 use super::lawful::lawful;
 use super::layout::Layout;
-use super::light::stuck;
+use super::light::sticking_change;
 use super::problem::{Problem, entry, put};
 use super::{Contacts, Responses, Touch, failed};
 use crate::Real;
@@ -134,7 +134,8 @@ where
     problem.weigh(&responses.rates);
     let mut loses_digits = false;
     let found = problem.hold(touches, along, &mut loses_digits);
-    if loses_digits && let Some((change, forces)) = stuck(mechanism, t, q, (touches, &laws), &-free) {
+    if loses_digits && let Some((change, forces)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
+    {
         return Ok((Held { a: a + change, forces }, Some(responses)));
     }
     let forces = problem.spread(&found.map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?);

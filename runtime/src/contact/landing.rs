@@ -3,7 +3,7 @@
 use super::derivatives::ContactDerivatives;
 use super::lawful::lawful;
 use super::layout::Layout;
-use super::light::stuck;
+use super::light::sticking_change;
 use super::problem::Problem;
 use super::{Contacts, Solved, Touch, failed};
 use crate::Real;
@@ -86,7 +86,9 @@ where
     problem.weigh(&responses.rates);
     let mut loses_digits = false;
     let found = problem.hold(touches, &SVector::zeros(), &mut loses_digits);
-    if loses_digits && let Some((change, impulses)) = stuck(mechanism, t, q, (touches, &laws), &-free) {
+    if loses_digits
+        && let Some((change, impulses)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
+    {
         return Ok((Solved { v: v + change, impulses }, problem, responses.velocities));
     }
     let impulses = problem.spread(&found.map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?);

@@ -7,17 +7,19 @@ use crate::constraint::change_rates;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// Ratio of the largest to the smallest diagonal entry of the mass matrix from which on bodies count as light.
+/// Ratio of the largest to the smallest diagonal entry of the mass matrix from which on bodies count as
+/// light.
 const GRADED: f64 = 1e6;
 
-/// Returns the change of the velocity that changes the rates of contacts that stick by `changes`, and the impulses that cause it.
-/// `None` for mechanisms without light bodies, with constraints, and with contacts that slip or share impulses.
+/// Returns the change of the velocity that changes the rates of contacts that stick by `changes`, and the
+/// impulses that cause it. `None` for mechanisms without light bodies, with constraints, and with contacts
+/// that slip or share impulses.
 ///
-/// Rows of contacts with light bodies have an inverse inertia `G M⁻¹ Gᵀ` in which the heavy ones are lost to rounding. They are
-/// factorised in the metric of the kinetic energy instead, as rows of constraints are.
+/// Rows of contacts with light bodies have an inverse inertia `G M⁻¹ Gᵀ` in which the heavy ones are lost to
+/// rounding. They are factorised in the metric of the kinetic energy instead, as rows of constraints are.
 #[cold]
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-pub(super) fn stuck<
+pub(super) fn sticking_change<
     M,
     T,
     const NQ: usize,

@@ -59,7 +59,8 @@ fn still<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
     most * epsilon::<T>() * constant(512.0)
 }
 
-/// Adds the slip of contacts, divided by a time so short that friction does not stop it, to their accelerations `free`.
+/// Adds the slip of contacts, divided by a time so short that friction does not stop it, to their
+/// accelerations `free`.
 pub(super) fn sustain_slip<T: Real, const NK: usize, const NR: usize>(
     free: &mut SVector<T, NR>,
     rates: &SVector<T, NR>,
@@ -79,7 +80,7 @@ pub(super) fn sustain_slip<T: Real, const NK: usize, const NR: usize>(
 }
 
 /// Returns the first contact that sticks by friction although its surfaces slip with these rates.
-pub(super) fn stopped<T: Real, const NK: usize, const NR: usize>(
+pub(super) fn stopped_contact<T: Real, const NK: usize, const NR: usize>(
     rates: &SVector<T, NR>,
     touches: &[Touch; NK],
     laws: &[Law<T>; NK],
@@ -181,7 +182,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
                 constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
             })?;
             let (touches, along) = problem.touches(&forces);
-            if let Some(k) = stopped(&rates, &touches, &mechanism.contact_laws(), layout) {
+            if let Some(k) = stopped_contact(&rates, &touches, &mechanism.contact_laws(), layout) {
                 // No forces let it slip on (Painlevé's paradox): it stops at once.
                 return Err(ConstraintError::Contact {
                     constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),

@@ -195,7 +195,7 @@ where
         }
     }
     if !is_moving && !moves(near::<T>() * constant(1e-3)) {
-        let creep = creep(mechanism, t, ((start, v), q, &touched, &after), h, problem);
+        let creep = creep_reversal(mechanism, t, ((start, v), q, &touched, &after), h, problem);
         if let Some(creep) = creep {
             touched.q = mechanism.integrate(&touched.q, &(responses * creep));
         }
@@ -212,10 +212,11 @@ where
     }
 }
 
-/// Impulses that, as displacements, take the bodies of a mechanism at rest back by what contacts that stick have crept in a step; `None`
-/// if they have not. The forces of a step are constant, and loads that change in it move what they hold.
+/// Impulses that, as displacements, take the bodies of a mechanism at rest back by what contacts that stick
+/// have crept in a step; `None` if they have not. The forces of a step are constant, and loads that change in
+/// it move what they hold.
 #[allow(clippy::type_complexity, reason = "states at both ends of the step")]
-fn creep<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn creep_reversal<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     ((start, v), q, touched, after): (

@@ -18,28 +18,35 @@ use nalgebra::SVector;
 /// v₁ = v_f + M⁻¹ Gᵀ Λ − w₀ + c,   q₁ = q_f ⊕ (h/2) (v₁ − v_f)
 /// ```
 ///
-/// `w₀` is the change of velocity by `Λ₀`, and `c` makes the sum a trapezoidal rule for contact forces that rotate: half of the part of
-/// `w₀` that no impulses at the end of the step can give, and half of the part of `Λ₀` that is not opposite to the slip there. Without it
-/// the directions of the end would hold for the whole step, which is of order 1 and brakes what rolls.
+/// `w₀` is the change of velocity by `Λ₀`, and `c` makes the sum a trapezoidal rule for contact forces that
+/// rotate: half of the part of `w₀` that no impulses at the end of the step can give, and half of the part of
+/// `Λ₀` that is not opposite to the slip there. Without it the directions of the end would hold for the whole
+/// step, which is of order 1 and brakes what rolls.
 ///
-/// Between impacts the order is 4, under lasting contact 2 and through impacts 1. The impulses satisfy Coulomb's and Newton's
-/// laws to rounding ([`contact::solve`](crate::contact::solve)): at the end of a step surfaces that stick have no slip, and bodies at
-/// rest do not creep under any load that friction holds. No impulse of an impact gives energy. Under lasting contact the energy is
-/// exact to order 2: a bob of 1 kg in a smooth bowl of 1 m is off by `3e-6` of its energy after 2 s in steps of 1 ms.
-/// Surfaces overlap by what they approach in a step when they meet, at most. Where they stay together the overlap is taken away by
-/// displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing time-stepping schemes*,
-/// Comput. Methods Appl. Mech. Eng. 256, 2013), as far as the energy allows that impacts and friction take in the step: contacts
-/// do not lift what rests in each other. Restitution is lowered where a step would end with more energy than without contacts. What
-/// the energy still gains is the error of the order above: in drops of boxes of some kilograms that turn about their edges `25 h²` J
-/// in a step of `h` seconds at most, and `35 h²` J without friction.
+/// Between impacts the order is 4, under lasting contact 2 and through impacts 1. The impulses satisfy
+/// Coulomb's and Newton's laws to rounding ([`contact::solve`](crate::contact::solve)): at the end of a step
+/// surfaces that stick have no slip, and bodies at rest do not creep under any load that friction holds. No
+/// impulse of an impact gives energy. Under lasting contact the energy is exact to order 2: a bob of 1 kg in
+/// a smooth bowl of 1 m is off by `3e-6` of its energy after 2 s in steps of 1 ms. The order is 1 where slip
+/// turns at contacts that share forces in more than one way, such as the corners of a box.
+///
+/// Surfaces overlap by what
+/// they approach in a step when they meet, at most. Where they stay together the overlap is taken away by
+/// displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing
+/// time-stepping schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013), as far as the energy allows that
+/// impacts and friction take in the step: contacts do not lift what rests in each other. Restitution is
+/// lowered where a step would end with more energy than without contacts. What the energy still gains is the
+/// error of the order above: in drops of boxes of some kilograms that turn about their edges `25 h²` J in a
+/// step of `h` seconds at most, and `35 h²` J without friction.
 ///
 /// `Λ₀` are those of the step before if they have hardly changed, and are computed again otherwise.
 ///
-/// A step takes four evaluations of the dynamics, or [two](Self::midpoint), and with contacts that are closed one of gaps,
-/// Jacobian and mass matrix and two of rates, or twice as many if the contacts have changed.
-/// Its matrices are on the stack, up to six of `R × R` numbers for the `R` rates of all contacts, open ones too, and several times
-/// that in unoptimised builds: 5 KiB for two feet, 2.5 MiB for the 240 rates of ten boxes on each other, where a thread needs
-/// [more stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than it has by default.
+/// A step takes four evaluations of the dynamics, or [two](Self::midpoint), and with contacts that are closed
+/// one of gaps, Jacobian and mass matrix and two of rates, or twice as many if the contacts have changed. Its
+/// matrices are on the stack, up to six of `R × R` numbers for the `R` rates of all contacts, open ones too,
+/// and several times that in unoptimised builds: 5 KiB for two feet, 2.5 MiB for the 240 rates of ten boxes
+/// on each other, where a thread needs [more
+/// stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than it has by default.
 ///
 /// Constraints hold at the end of each step. Source: Jean, *The non-smooth contact dynamics method*, Comput. Methods Appl. Mech.
 /// Eng. 177 (1999).

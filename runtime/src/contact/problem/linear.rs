@@ -59,8 +59,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.reach((&held, size), (&self.free, &wanted), equations, PASSES).0
     }
 
-    /// Impulses that change the rates of all contacts by `changes`, and whether the motion tells them apart; otherwise they are those
-    /// of least norm, and less exact.
+    /// Impulses that change the rates of all contacts by `changes`, and whether the motion tells them apart;
+    /// otherwise they are those of least norm, and less exact.
     pub(in super::super) fn impulses_for(
         &self,
         changes: &SVector<T, NR>,
@@ -74,7 +74,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.reach((&held, size), (&List::repeat(T::zero()), &wanted), equations, 2)
     }
 
-    /// Rows in which some contacts may have impulses, and their number: those of friction only where there is friction.
+    /// Rows in which some contacts may have impulses, and their number: those of friction only where there is
+    /// friction.
     fn held_rows(&self, kept: &Total<bool, NK>) -> (List<usize, NR>, usize) {
         let (mut held, mut size) = (List::repeat(0), 0);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && kept[*k]) {
@@ -88,8 +89,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (held, size)
     }
 
-    /// Impulses in the first `size` rows `held` that change their rates from `free` to `wanted`, and whether the motion tells them
-    /// apart. Impulses that are shared are improved in as many `passes`.
+    /// Impulses in the first `size` rows `held` that change their rates from `free` to `wanted`, and whether
+    /// the motion tells them apart. Impulses that are shared are improved in as many `passes`.
     fn reach(
         &self,
         (held, size): (&List<usize, NR>, usize),
@@ -163,8 +164,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
-    /// The forces that hold contacts as they are said to be, where impulses are forces and rates accelerations; `rates` are those
-    /// of all contacts, along which slip is braked. Sets `loses_digits` where nothing slips and `W` does not determine them well.
+    /// The forces that hold contacts as they are said to be, where impulses are forces and rates
+    /// accelerations; `rates` are those of all contacts, along which slip is braked. Sets `loses_digits`
+    /// where nothing slips and `W` does not determine them well.
     ///
     /// # Errors
     ///

@@ -7,7 +7,8 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// Largest part of the impulses at the start that a correction may be: contact forces that rotate by more in a step are not smooth.
+/// Largest part of the impulses at the start that a correction may be: contact forces that rotate by more in
+/// a step are not smooth.
 const LARGEST: f64 = 0.125;
 
 /// Impulses at the contacts where a step ends, equivalent to those that act at its start.
@@ -19,12 +20,15 @@ pub(in super::super) struct Start<T, const NR: usize> {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// Corrects the velocity without impulses, so that impulses `Λ` at the end of a step act as in the mean of the step.
+    /// Corrects the velocity without impulses, so that impulses `Λ` at the end of a step act as in the mean
+    /// of the step.
     ///
-    /// The impulses `Λ₀` at its start have added `given` to the velocity, and `rates` to the rates. Contact forces rotate with the
-    /// surfaces and with the slip; their impulse is `½ M⁻¹(q₀) G(q₀)ᵀ Λ₀ + ½ M⁻¹(q₁) G(q₁)ᵀ Λ` (trapezoidal rule). It differs from
-    /// `M⁻¹(q₁) G(q₁)ᵀ Λ` by half of the part of `given` that impulses at the end cannot give, which changes no rate of a contact, and
-    /// by half of the impulse across the slip at the end. Changes of `Λ` itself are found by the contact conditions.
+    /// The impulses `Λ₀` at its start have added `given` to the velocity, and `rates` to the rates. Contact
+    /// forces rotate with the surfaces and with the slip; their impulse is
+    /// `½ M⁻¹(q₀) G(q₀)ᵀ Λ₀ + ½ M⁻¹(q₁) G(q₁)ᵀ Λ` (trapezoidal rule). It differs from `M⁻¹(q₁) G(q₁)ᵀ Λ` by
+    /// half of the part of `given` that impulses at the end cannot give, which changes no rate of a contact,
+    /// and by half of the impulse across the slip at the end. Changes of `Λ` itself are found by the contact
+    /// conditions.
     pub(in super::super) fn transport<const NV: usize>(
         &mut self,
         given: &SVector<T, NV>,
@@ -63,8 +67,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.scatter(&self.impulses_for(changes, &mut Equations::of(self)).0)
     }
 
-    /// Half of the difference of friction impulses from those against the slip at the end of the step, for contacts that slip on
-    /// throughout it; none if there are no such contacts.
+    /// Half of the difference of friction impulses from those against the slip at the end of the step, for
+    /// contacts that slip on throughout it; none if there are no such contacts.
     fn slip_correction(&self, impulses: &List<T, NR>, rates: &SVector<T, NR>) -> Option<List<T, NR>> {
         let (mut turned, mut is_any) = (List::repeat(T::zero()), false);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
