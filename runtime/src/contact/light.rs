@@ -9,7 +9,7 @@ use nalgebra::SVector;
 
 /// Ratio of the largest to the smallest diagonal entry of the mass matrix from which on bodies count as
 /// light.
-const GRADED: f64 = 1e6;
+const GRADED: f64 = 1e4;
 
 /// Returns the change of the velocity that changes the rates of contacts that stick by `changes`, and the
 /// impulses that cause it. `None` for mechanisms without light bodies, with constraints, and with contacts
