@@ -68,6 +68,10 @@ impl<'a> Reader<'a> {
         if !self.options.contacts {
             return;
         }
+        if !self.settings.contacts() {
+            self.left_out.push("contacts, which the file switches off".to_string());
+            return;
+        }
         if self.planes.is_empty() {
             let place = &self.options.path.place;
             cx.error(place, "the world of the file has no plane to touch", |d| d.help(TOUCHES));

@@ -69,7 +69,8 @@ fn find_leader(
     Some(leader)
 }
 
-const MOVE_ALONE: &str = "to leave `mimic` tags out, write `#[mechanism(…, mimic = independent)]`";
+const MOVE_ALONE: &str =
+    "to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
 
 /// Reports joints that follow one another, each circle once.
 fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'_>) {

@@ -88,7 +88,7 @@ fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Opti
         reader.mark(&mut robot, cx);
         robot::close_loops(&mut robot, cx);
     }
-    robot::check_names(&robot, cx);
+    robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
     robot::check_ends(&robot, cx);

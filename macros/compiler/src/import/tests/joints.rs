@@ -119,7 +119,8 @@ fn a_follower_follows_unless_independent() {
 
 #[test]
 fn a_follower_needs_somebody_to_follow() {
-    let help = "= help: to leave `mimic` tags out, write `#[mechanism(…, mimic = independent)]`";
+    let help =
+        "= help: to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
     check(
         &chain(&[
             ("revolute", "<mimic joint='j22'/>"),

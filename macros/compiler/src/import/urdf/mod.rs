@@ -24,7 +24,7 @@ pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Op
         return None;
     }
     let mut robot = read_robot(node, options, cx)?;
-    robot::check_names(&robot, cx);
+    robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
     robot::check_ends(&robot, cx);
