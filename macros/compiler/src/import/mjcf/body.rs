@@ -54,7 +54,11 @@ impl<'a> Reader<'a> {
             let nodes = root.descendants().filter(move |node| node.is_element() && kind(*node));
             nodes.filter_map(|node| node.attribute("name")).map(str::to_string)
         };
-        self.joint_names = named(is_joint).collect();
+        let of_body = |node: Node<'_>| {
+            let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
+            is_joint(node) && ["body", "frame"].contains(&parent)
+        };
+        self.joint_names = named(of_body).collect();
         self.link_names = named(|node| node.tag_name().name() == "body").collect();
         self.link_names.extend([GROUND.to_string(), WORLD.to_string()]);
         let worlds: Vec<Node<'a>> =

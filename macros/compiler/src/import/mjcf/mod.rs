@@ -31,7 +31,7 @@ mod medium;
 mod mesh;
 mod reader;
 mod rest;
-mod schema;
+pub(in crate::import) mod schema;
 mod settings;
 mod site;
 mod spatial;

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// Elements with their attributes as MuJoCo 4.0.0 prints them (`mj_printSchema`), with words of older versions that mean the same
 /// today. The motion of a mechanism without contacts does not depend on attributes behind the bar. A name that begins with `@`
 /// stands for a list of attributes. Elements that are refused as a whole have no attributes here.
-pub(super) const SCHEMA: &str = "
+const SCHEMA: &str = "
 @axes: quat axisangle euler xyaxes zaxis
 @soft: solref solimp
 @limits: solreflimit solimplimit solreffriction solimpfriction margin
@@ -137,15 +137,15 @@ const WHOLE: [&str; 10] = [
 
 /// Attributes of an element: those that may change the motion, and those that do not.
 #[derive(Clone, Default)]
-pub(super) struct Attributes {
+pub(in crate::import) struct Attributes {
     /// Attributes that may change the motion.
-    pub(super) moving: Vec<&'static str>,
+    pub(in crate::import) moving: Vec<&'static str>,
     /// Attributes on which the motion does not depend.
-    pub(super) idle: Vec<&'static str>,
+    pub(in crate::import) idle: Vec<&'static str>,
 }
 
 /// Attributes of every element, by `parent/element`; those of the root's children by their names.
-pub(super) fn read() -> BTreeMap<String, Attributes> {
+pub(in crate::import) fn read() -> BTreeMap<String, Attributes> {
     let mut lists: BTreeMap<&str, Vec<&'static str>> = BTreeMap::new();
     let mut all = BTreeMap::new();
     for line in SCHEMA.lines() {

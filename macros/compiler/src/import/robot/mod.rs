@@ -5,6 +5,7 @@
 mod assemble;
 mod closing;
 mod collision;
+mod couplings;
 mod drives;
 mod figures;
 mod joint;

@@ -15,6 +15,18 @@ pub(in crate::import) enum Motion {
     Frozen(f64),
 }
 
+/// The coordinates of the joints that stand still.
+pub(in crate::import) fn frozen(joints: &[Option<(FileJoint, Motion)>]) -> BTreeMap<&str, f64> {
+    joints
+        .iter()
+        .flatten()
+        .filter_map(|(joint, motion)| match motion {
+            Motion::Frozen(at) => Some((joint.name.text.as_str(), *at)),
+            _ => None,
+        })
+        .collect()
+}
+
 /// Finds out what moves each joint. Locks come first: what follows a locked joint stands still as well.
 pub(in crate::import) fn resolve_motions(
     joints: &[FileJoint],
