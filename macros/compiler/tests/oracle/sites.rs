@@ -14,11 +14,14 @@ use linkwork_compiler::{derive, read};
 use std::array::from_fn;
 use std::path::Path;
 
+/// Generalized forces of a configuration, velocities and inputs.
+type Function = dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>;
+
 /// Names of coordinates and inputs of a file, and its generalized forces.
 struct Forces {
     coordinates: Vec<String>,
     inputs: Vec<String>,
-    values: Box<dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>>,
+    values: Box<Function>,
 }
 
 fn forces(text: &str, locked: &[String]) -> Forces {

@@ -361,6 +361,10 @@ fn planes_are_touched() {
         ),
         "b_geom1_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.3 0.01 0.002\n"
     );
+    for force in ["adhesion='1'", "surfacevel='1 0 0'"] {
+        let refused = contacts(&format!("<geom type='plane' {force}/>"));
+        assert!(refused.contains("of a shape that touches others is not supported"), "{refused}");
+    }
     let none = contacts("<geom type='box' size='1 1 1'/>");
     assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");
 }
