@@ -121,7 +121,8 @@ fn loops() {
     }
 }
 
-/// Sums of coordinates and polynomials of them that stay equal; and actuators of a class that several shortcuts write.
+/// Sums of coordinates and polynomials of them that stay equal; and actuators of a class that several
+/// shortcuts write.
 #[test]
 fn conditions() {
     #[mechanism(mjcf = "data/mjcf/conditions.xml")]
@@ -204,7 +205,8 @@ fn options() {
     assert!((fall / there - 3.7 / 9.81).abs() < 1e-12, "{fall} {there}");
 }
 
-/// Limits are in the file's units; the effort of a joint is at most that of all its motors, and that of the joint itself.
+/// Limits are in the file's units; the effort of a joint is at most that of all its motors, and that of the
+/// joint itself.
 #[test]
 fn limits() {
     let (lower, upper) = (Everything.lower_limits(), Everything.upper_limits());

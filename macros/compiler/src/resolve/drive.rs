@@ -10,7 +10,8 @@ use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, CoulombFriction, Dashpot, Input, Spring};
 use crate::syntax::{Description, Drive, DriveLaw, DriveOn, Expr, Law, Wrench};
 
-/// Inputs among the force elements of a file, in their order in `u`: after the driven joints, before all others.
+/// Inputs among the force elements of a file, in their order in `u`: after the driven joints, before all
+/// others.
 pub fn inputs(d: &Description) -> impl Iterator<Item = &Drive> {
     d.drives.iter().filter(|drive| matches!(drive.law, DriveLaw::Input(_)))
 }

@@ -164,7 +164,8 @@ impl Robot {
         robot
     }
 
-    /// The robot as an MJCF file, with what `inside` writes into the body of each link and `behind` the bodies.
+    /// The robot as an MJCF file, with what `inside` writes into the body of each link and `behind` the
+    /// bodies.
     pub fn mjcf(&self, inside: &dyn Fn(usize) -> String, behind: &str) -> String {
         let follows = |link: &Link| {
             let joint = link.joint.as_ref()?;

@@ -90,7 +90,8 @@ struct Motor {
 }
 
 impl Motor {
-    /// The power of the motor at a unit input: the work of its force and torque on what moves relative to the other site.
+    /// The power of the motor at a unit input: the work of its force and torque on what moves relative to
+    /// the other site.
     fn power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
         let [on, against] = self.sites.map(|k| sites[k].pose(robot, state));
         let axes = if self.against { &against } else { &on };

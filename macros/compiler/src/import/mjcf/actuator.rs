@@ -168,7 +168,8 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Adds the rotor and the viscous losses of an actuator, which the joint or the tendon has even while nothing drives it.
+    /// Adds the rotor and the viscous losses of an actuator, which the joint or the tendon has even while
+    /// nothing drives it.
     fn add_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let damping = element.linear("damping", OTHER_INPUTS, cx).filter(|_| self.dampers);
         let rotor = element.nonzero("armature", cx);

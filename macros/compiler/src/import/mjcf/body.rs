@@ -238,7 +238,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports a free joint that moves the axes of its body into the principal ones, where coordinates would be others.
+    /// Reports a free joint that moves the axes of its body into the principal ones, where coordinates would
+    /// be others.
     fn refuse_alignment(&self, inside: &Inside<'a>, cx: &mut Cx<'_>) {
         for (joint, ..) in &inside.jointed {
             let aligned = joint.tag_name().name() == "freejoint"

@@ -106,8 +106,8 @@ impl<'a> Defaults<'a> {
         Element { node, layers: std::iter::once(node).chain(defaults).collect() }
     }
 
-    /// The defaults written for any of `tags` that apply to an element, of each class that its own is made from, the outermost
-    /// first.
+    /// The defaults written for any of `tags` that apply to an element, of each class that its own is made
+    /// from, the outermost first.
     pub(super) fn by_class(
         &self,
         node: Node<'_>,
@@ -158,7 +158,8 @@ impl<'a> Element<'a> {
         self.number(attribute, cx).filter(|found| found.value != 0.0)
     }
 
-    /// The linear coefficient of a force that newer versions of the format give as a polynomial: reports others.
+    /// The linear coefficient of a force that newer versions of the format give as a polynomial: reports
+    /// others.
     pub(super) fn linear(&self, attribute: &str, help: &'static str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
         let Placed { value: [linear, square, cube], place } = self.some(attribute, [0.0; 3], cx)?;
         if square != 0.0 || cube != 0.0 {
@@ -177,7 +178,8 @@ impl<'a> Element<'a> {
         numbers(self.with(attribute)?, attribute, cx)
     }
 
-    /// Up to `N` finite numbers: the first ones of the element, then further ones of its defaults, then those that are given.
+    /// Up to `N` finite numbers: the first ones of the element, then further ones of its defaults, then
+    /// those that are given.
     pub(super) fn some<const N: usize>(
         &self,
         attribute: &str,

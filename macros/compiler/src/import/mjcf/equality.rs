@@ -220,7 +220,8 @@ impl<'a> Reader<'a> {
             return Some([(first, at), (second, Pose { at: between.then(&at).at, ..Pose::ZERO })]);
         }
         let said = element.numbers::<7>("relpose", cx).map(|said| said.value);
-        // A pose in the first body is that of the anchor on the second; without one they are as in the pose of the file.
+        // A pose in the first body is that of the anchor on the second; without one they are as in the pose
+        // of the file.
         let (pose, own) = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {
             Some([x, y, z, quat @ ..]) => {
                 let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -1,9 +1,9 @@
 //! The words of an actuator and of its defaults → gain and bias.
 //!
-//! A class of defaults has one record of an actuator's law, which its elements write in the order of the file (MuJoCo 4.0,
-//! *Modeling*, "Shortcuts"). A shortcut begins with its own usual values, or with those of the nearest class whose record it
-//! can read as its own: one that the same shortcut has written last, or `<general>` with a constant gain. `<general>` changes
-//! the record of its class.
+//! A class of defaults has one record of an actuator's law, which its elements write in the order of the
+//! file (MuJoCo 4.0, *Modeling*, "Shortcuts"). A shortcut begins with its own usual values, or with those of
+//! the nearest class whose record it can read as its own: one that the same shortcut has written last, or
+//! `<general>` with a constant gain. `<general>` changes the record of its class.
 
 use super::defaults::{Element, some};
 use crate::import::context::{Cx, quote};
@@ -41,8 +41,8 @@ struct Record<'a> {
     bias: [f64; 10],
 }
 
-/// Gain and bias of an actuator with its defaults, which `classes` has from the outermost class on; nothing if they are more
-/// than that.
+/// Gain and bias of an actuator with its defaults, which `classes` has from the outermost class on; nothing
+/// if they are more than that.
 pub(super) fn read_force<'a>(
     actuator: &Element<'a>,
     classes: &[Vec<Node<'a>>],
@@ -94,7 +94,8 @@ pub(super) fn read_force<'a>(
     good.then_some(Force { gain: g0, bias: if affine { [b0, b1, b2] } else { [0.0; 3] } })
 }
 
-/// Writes what an actuator or a default says into the last record; those before it are the records of the classes around it.
+/// Writes what an actuator or a default says into the last record; those before it are the records of the
+/// classes around it.
 fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
     let kind = node.tag_name().name();
     let readable = |record: &&Record<'a>| {

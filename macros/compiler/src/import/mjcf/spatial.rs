@@ -1,7 +1,8 @@
 //! `<spatial>`: the path of a cable from site to site, around balls and cylinders → a length in the words of the language.
 //!
-//! The path is MuJoCo's (*Modeling*, "spatial"), which is that of a taut cable. A cable around a cylinder with a `sidesite` runs about
-//! its axis in the direction in which the path by way of that site does in the pose of the file, as in MuJoCo 4.0.
+//! The path is MuJoCo's (*Modeling*, "spatial"), which is that of a taut cable. A cable around a cylinder
+//! with a `sidesite` runs about its axis in the direction in which the path by way of that site does in the
+//! pose of the file, as in MuJoCo 4.0.
 
 use super::defaults::Element;
 use super::geometry::dimensions;
@@ -170,7 +171,8 @@ impl<'a> Reader<'a> {
         seen(&self.poses, frame, spot)
     }
 
-    /// Says in which direction a part passes a cylinder with a side: the one in which the path by way of the side runs about the axis.
+    /// Says in which direction a part passes a cylinder with a side: the one in which the path by way of the
+    /// side runs about the axis.
     fn choose_side(&self, piece: &mut Piece, place: &Place) -> Option<Refusal> {
         let Some(Around { frame, radius, way: Way::Turning(side) }) = &mut piece.around else { return None };
         let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));

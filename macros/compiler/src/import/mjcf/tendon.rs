@@ -178,8 +178,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A spring of a tendon. It is free where the tendon says, or while all joints stand where their own springs are free: of any
-/// two lengths, and of any one but −1, which stands for none.
+/// A spring of a tendon. It is free where the tendon says, or while all joints stand where their own springs
+/// are free: of any two lengths, and of any one but −1, which stands for none.
 fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
     const NONE: f64 = -1.0;
     // One length of a tendon stands for two equal ones, whatever its defaults have.

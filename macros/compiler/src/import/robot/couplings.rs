@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 /// Residuals below this part of what a condition adds up are rounding errors.
 const ROUNDING: f64 = 1e-9;
 
-/// Returns the conditions on what still moves. One that binds only joints that stand still is reported unless it is met.
+/// Returns the conditions on what still moves. One that binds only joints that stand still is reported
+/// unless it is met.
 pub(in crate::import) fn resolve(
     constraints: Vec<Constraint>,
     joints: &[Option<(FileJoint, Motion)>],

@@ -111,8 +111,9 @@ fn sums_and_polynomials_are_conditions() {
     }
 }
 
-/// Gains and biases by MuJoCo 4.0.0 (`actuator_gainprm`, `actuator_biasprm`): a shortcut reads the defaults of the same shortcut
-/// or of `<general>` with a constant gain in the nearest class that has them, and never the constant force of a bias.
+/// Gains and biases by MuJoCo 4.0.0 (`actuator_gainprm`, `actuator_biasprm`): a shortcut reads the defaults
+/// of the same shortcut or of `<general>` with a constant gain in the nearest class that has them, and never
+/// the constant force of a bias.
 #[test]
 fn defaults_of_actuators_are_one_record() {
     for (defaults, actuator, expected) in [
@@ -252,7 +253,8 @@ fn loops_are_closed() {
     );
 }
 
-/// Rotors and viscous losses of actuators count with the square of the gear ratio, even where actuators are left out.
+/// Rotors and viscous losses of actuators count with the square of the gear ratio, even where actuators are
+/// left out.
 #[test]
 fn rotors_of_actuators() {
     let model = "<worldbody><body name='b'><joint name='j'/></body></worldbody>
@@ -278,8 +280,8 @@ fn rotors_of_actuators() {
     );
 }
 
-/// The largest effort of a joint: the sum of those of its actuators, nothing if one of them has no limit, and at most the largest
-/// one of the joint itself.
+/// The largest effort of a joint: the sum of those of its actuators, nothing if one of them has no limit,
+/// and at most the largest one of the joint itself.
 #[test]
 fn efforts_of_several_actuators() {
     let site = "<motor site='s' gear='0 0 1' ctrlrange='-1 1'/>";
@@ -342,7 +344,8 @@ fn actuators_that_do_not_act() {
     );
 }
 
-/// The spring of a fixed tendon: lengths by MuJoCo 4.0.0 (`tendon_lengthspring`), with the joint's own spring free at 17°.
+/// The spring of a fixed tendon: lengths by MuJoCo 4.0.0 (`tendon_lengthspring`), with the joint's own
+/// spring free at 17°.
 #[test]
 fn springs_of_tendons_are_free_where_they_say() {
     let rest = 2.0 * 17.0_f64.to_radians();
@@ -392,7 +395,7 @@ fn a_weld_with_anchor_and_pose() {
     }
 }
 
-/// What is blamed is the coupling that contradicts those before it; one that is met by joints that stand still is none.
+/// The coupling that contradicts others is the one reported; one that joints at rest satisfy is left out.
 #[test]
 fn couplings_of_joints_that_stand_still() {
     let model = |last: &str| {

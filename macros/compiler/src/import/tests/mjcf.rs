@@ -382,7 +382,8 @@ fn every_beginning_of_a_file_gets_an_answer() {
     assert!(run(&mjcf(), FILE).contains("the root is"));
 }
 
-/// Flags of `<option>` switch off what they name; constraints of all kinds are couplings, limits and dry friction.
+/// Flags of `<option>` switch off what they name; constraints of all kinds are couplings, limits and dry
+/// friction.
 #[test]
 fn flags() {
     let model = |flags: &str| {
@@ -424,7 +425,8 @@ fn flags() {
     );
 }
 
-/// Joints and mass properties in a `<frame>`: places and axes by MuJoCo 4.0.0 (`jnt_pos`, `jnt_axis`, `body_ipos`).
+/// Joints and mass properties in a `<frame>`: places and axes by MuJoCo 4.0.0 (`jnt_pos`, `jnt_axis`,
+/// `body_ipos`).
 #[test]
 fn what_stands_in_a_frame_is_placed_by_it() {
     check_body(
@@ -435,7 +437,8 @@ fn what_stands_in_a_frame_is_placed_by_it() {
     );
 }
 
-/// The axes of a site between two points: z from the second to the first, as MuJoCo 4.0.0 has it (`site_xmat`).
+/// The axes of a site between two points: z from the second to the first, as MuJoCo 4.0.0 has it
+/// (`site_xmat`).
 #[test]
 fn sites_between_two_points_have_their_axes() {
     check_body(
