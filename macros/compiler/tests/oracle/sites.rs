@@ -25,9 +25,8 @@ struct Forces {
 }
 
 fn forces(text: &str, locked: &[String]) -> Forces {
-    let folder = std::env::temp_dir().join(format!("linkwork-sites-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
-    let file = folder.join(format!("{:?}.xml", std::thread::current().id()));
+    let thread = std::thread::current().id();
+    let file = std::env::temp_dir().join(format!("linkwork-sites-{}-{thread:?}.xml", std::process::id()));
     std::fs::write(&file, text).expect("a file");
     let mut cx = Diagnostics::new();
     let arguments = format!("mjcf = {:?}, lock = {locked:?}", file.to_string_lossy());
@@ -38,7 +37,7 @@ fn forces(text: &str, locked: &[String]) -> Forces {
         &mut cx,
     );
     // What is left in the folder for temporary files harms nobody.
-    let _ = std::fs::remove_dir_all(&folder);
+    let _ = std::fs::remove_file(&file);
     let source = source.filter(|_| cx.is_empty()).unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
     let graph = Graph::new();
     let model = build_model(&source.mechanism.description, &graph, &mut cx);
