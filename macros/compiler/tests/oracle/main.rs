@@ -17,6 +17,7 @@ mod motion;
 mod programs;
 mod random;
 mod robot;
+mod sdf;
 mod sites;
 mod spec;
 mod words;

@@ -7,7 +7,8 @@ use crate::random::Random;
 use std::array::from_fn;
 use std::fmt::Write;
 
-const KINDS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
+pub const KINDS: [&str; 7] =
+    ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
 pub struct Link {
     name: String,
@@ -18,19 +19,19 @@ pub struct Link {
     pub inertia: [[f64; 3]; 3],
     inertial: String,
     /// None for the root.
-    joint: Option<Joint>,
+    pub joint: Option<Joint>,
 }
 
-struct Joint {
-    name: String,
-    kind: usize,
-    parent: usize,
-    xyz: [f64; 3],
-    rpy: [f64; 3],
-    axis: [f64; 3],
+pub struct Joint {
+    pub name: String,
+    pub kind: usize,
+    pub parent: usize,
+    pub xyz: [f64; 3],
+    pub rpy: [f64; 3],
+    pub axis: [f64; 3],
     locked: bool,
     /// The link whose joint leads, factor, offset.
-    mimic: Option<(usize, f64, f64)>,
+    pub mimic: Option<(usize, f64, f64)>,
 }
 
 pub struct Robot {
@@ -82,8 +83,8 @@ pub fn spaced(numbers: [f64; 3]) -> String {
 }
 
 impl Joint {
-    fn random(child: usize, links: &[Link], random: &mut Random) -> Joint {
-        let kind = random.below(KINDS.len());
+    fn random(child: usize, links: &[Link], kinds: &[usize], random: &mut Random) -> Joint {
+        let kind = kinds[random.below(kinds.len())];
         let axis = match (KINDS[kind], random.below(3)) {
             // Where x and y point is a convention: about a coordinate axis the other two in cyclic order.
             ("planar", k) => from_fn(|i| if i == k { 2.0 } else { 0.0 }),
@@ -124,12 +125,13 @@ impl Link {
 }
 
 impl Robot {
-    pub fn random(random: &mut Random) -> Robot {
+    /// A robot whose joints are of these types.
+    pub fn random(kinds: &[usize], random: &mut Random) -> Robot {
         let n = 2 + random.below(6);
         let mut links = vec![Link::random(0, random)];
         for k in 1..n {
             let mut link = Link::random(k, random);
-            link.joint = Some(Joint::random(k, &links, random));
+            link.joint = Some(Joint::random(k, &links, kinds, random));
             links.push(link);
         }
         let mut shuffle: Vec<usize> = (0..2 * n - 1).collect();
