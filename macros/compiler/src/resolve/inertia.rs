@@ -308,6 +308,10 @@ pub fn check_inertia(
         cx.error(place.clone(), format!("no real body has the inertia of `{body}`"))
             .help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
             .help(hint);
+    } else if mass == Some(0.0) && place.file.is_some() {
+        cx.error(place.clone(), format!("`{body}` has an inertia and no mass"))
+            .help("no real body has that: give it a mass, or an inertia of zero")
+            .help(hint);
     }
 }
 
