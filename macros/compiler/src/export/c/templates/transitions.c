@@ -1,5 +1,5 @@
 /* Accelerations under inputs with their derivatives. */
-static void linear_motion(@OWN_DECLARED@@T_DECLARED@const double *q, const double *v, const double *u, double *a, double *by_q,
+static void lw_linear_motion(@OWN_DECLARED@@T_DECLARED@const double *q, const double *v, const double *u, double *a, double *by_q,
     double *by_v, double *by_u) {
     double tau[@NV@], by_tau[@NV@ * @NV@];
     @FORCES@
@@ -10,7 +10,7 @@ static void linear_motion(@OWN_DECLARED@@T_DECLARED@const double *q, const doubl
 enum { CHANGING = (1 + @COLUMNS@) * @NV@, BY_Q = @N@, BY_V = (1 + @N@) * @N@, BY_U = (1 + 2 * @N@) * @N@, BY_H = (1 + 2 * @N@ + @M@) * @N@ };
 
 /* a + s b, where s is a part of the step's length. */
-static void plus_part(const double *a, double part, double h, const double *b, double *sum) {
+static void lw_plus_part(const double *a, double part, double h, const double *b, double *sum) {
     for (int k = 0; k < CHANGING; ++k) {
         sum[k] = a[k] + part * h * b[k];
     }
@@ -20,19 +20,19 @@ static void plus_part(const double *a, double part, double h, const double *b, d
 }
 
 @WAYS@/* The acceleration of a motion and a velocity that change. */
-static void changing_acceleration(@OWN_DECLARED@@T_DECLARED@const double *q, const double *motion, const double *v, const double *u,
+static void lw_changing_acceleration(@OWN_DECLARED@@T_DECLARED@const double *q, const double *motion, const double *v, const double *u,
     double *result) {
     double by_q[@NV@ * @NV@], by_v[@NV@ * @NV@];
     for (int k = BY_Q; k < CHANGING; ++k) {
         result[k] = 0.0;
     }
-    linear_motion(@OWN@@T@q, v, u, result, by_q, by_v, result + BY_U);
-    add_products(@COLUMNS@, by_q, motion + BY_Q, result + BY_Q);
-    add_products(@COLUMNS@, by_v, v + BY_Q, result + BY_Q);
+    lw_linear_motion(@OWN@@T@q, v, u, result, by_q, by_v, result + BY_U);
+    lw_add_products(@COLUMNS@, by_q, motion + BY_Q, result + BY_Q);
+    lw_add_products(@COLUMNS@, by_v, v + BY_Q, result + BY_Q);
 }
 
 /* Where the columns go. */
-static void put_columns(const double *motion, const double *v, double *next_v, double *by_state, double *by_input@H_DECLARED@) {
+static void lw_put_columns(const double *motion, const double *v, double *next_v, double *by_state, double *by_input@H_DECLARED@) {
 @UNUSED@    for (int k = 0; k < @N@; ++k) {
         next_v[k] = v[k];
         for (int j = 0; j < 2 * @N@; ++j) {
@@ -53,12 +53,12 @@ static void put_columns(const double *motion, const double *v, double *next_v, d
         start[k] = v[k];
         start[BY_V + k * @N@ + k] = 1.0;
     }
-    linear_motion(@OWN@@T@q, v, u, a, a + BY_Q, a + BY_V, a + BY_U);
-    plus_part(start, 1.0, h, a, w);
-    plus_part(displacement, 1.0, h, w, displacement);
-    moved(@START@displacement, motion);
+    lw_linear_motion(@OWN@@T@q, v, u, a, a + BY_Q, a + BY_V, a + BY_U);
+    lw_plus_part(start, 1.0, h, a, w);
+    lw_plus_part(displacement, 1.0, h, w, displacement);
+    lw_moved(@START@displacement, motion);
     @PREFIX@_integrate(@OWN@q, displacement, next_q);
-    put_columns(motion, w, next_v, by_state, by_input@H_PASSED@);
+    lw_put_columns(motion, w, next_v, by_state, by_input@H_PASSED@);
 }
 
 @rk4_transition@ {
@@ -77,28 +77,28 @@ static void put_columns(const double *motion, const double *v, double *next_v, d
         rate[k] = start[k];
         a[k] = 0.0;
     }
-    linear_motion(@OWN@@T@q, v, u, a, a + BY_Q, a + BY_V, a + BY_U);
+    lw_linear_motion(@OWN@@T@q, v, u, a, a + BY_Q, a + BY_V, a + BY_U);
     for (int k = 0; k < CHANGING; ++k) {
         sum_rate[k] = rate[k];
         sum_a[k] = a[k];
     }
     for (int stage = 1; stage < 4; ++stage) {
         const double part = parts[stage], weight = stage < 3 ? 2.0 : 1.0;
-@S@        plus_part(zero, part, h, rate, displacement);
-        plus_part(start, part, h, a, w);
-        rate_of(@START@displacement, w, rate);
-        moved(@START@displacement, motion);
+@S@        lw_plus_part(zero, part, h, rate, displacement);
+        lw_plus_part(start, part, h, a, w);
+        lw_rate_of(@START@displacement, w, rate);
+        lw_moved(@START@displacement, motion);
         @PREFIX@_integrate(@OWN@q, displacement, at);
-        changing_acceleration(@OWN@@LATER@at, motion, w, u, a);
+        lw_changing_acceleration(@OWN@@LATER@at, motion, w, u, a);
         for (int k = 0; k < CHANGING; ++k) {
             sum_rate[k] += weight * rate[k];
             sum_a[k] += weight * a[k];
         }
     }
-    plus_part(zero, 1.0 / 6.0, h, sum_rate, displacement);
-    plus_part(start, 1.0 / 6.0, h, sum_a, w);
-    moved(@START@displacement, motion);
+    lw_plus_part(zero, 1.0 / 6.0, h, sum_rate, displacement);
+    lw_plus_part(start, 1.0 / 6.0, h, sum_a, w);
+    lw_moved(@START@displacement, motion);
     @PREFIX@_integrate(@OWN@q, displacement, next_q);
-    put_columns(motion, w, next_v, by_state, by_input@H_PASSED@);
+    lw_put_columns(motion, w, next_v, by_state, by_input@H_PASSED@);
 }
 
