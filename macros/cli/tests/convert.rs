@@ -61,10 +61,18 @@ fn frames(model: &Model<'_>) -> usize {
 }
 
 fn check(format: &str, file: &Path, with: &str) {
+    check_beside(format, file, with, &[]);
+}
+
+/// Compares a struct with its file; `notes` are told besides names.
+fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let (code, told) = converted(file, with);
     let (arguments, item) = parts(&code);
-    let names = |line: &str| line.starts_with("linkwork: other names than in the file: ");
-    assert!(told.lines().all(names), "{}: {told}", file.display());
+    let is_expected = |line: &str| {
+        line.starts_with("linkwork: other names than in the file: ")
+            || notes.iter().any(|note| line.contains(note))
+    };
+    assert!(told.lines().all(is_expected), "{}: {told}", file.display());
     let given = format!("{format} = {:?}, {with}", file.display().to_string());
     let functions =
         ["mass_matrix", "inverse_dynamics", "forward_dynamics", "generalized_forces", "potential_energy"];
@@ -147,9 +155,104 @@ fn elements_of_files_become_fields() {
     ] {
         assert!(code.contains(part), "{part}: {code}");
     }
-    let one_to_one = CRANE.replace("gear=\"12\"", "");
-    std::fs::write(&file, one_to_one).unwrap();
     check("mjcf", &file, "");
+}
+
+/// Writes a file for one test.
+fn written(name: &str, text: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("structs");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join(name);
+    std::fs::write(&file, text).unwrap();
+    file
+}
+
+/// The robot files of the tests of other packages.
+#[test]
+fn robot_files_of_the_tests_become_structs() {
+    let follows = "by a constraint, and has a velocity of its own here";
+    for (format, file, with, notes) in [
+        ("urdf", "tests/data/urdf/arm_after.urdf", "mimic = independent", &[][..]),
+        ("urdf", "tests/data/urdf/limits.urdf", "mimic = independent", &[]),
+        ("urdf", "tests/data/sdf/tree.urdf", "mimic = independent", &[]),
+        ("sdf", "tests/data/sdf/arm.sdf", "mimic = independent", &[]),
+        ("sdf", "tests/data/sdf/joints.sdf", "", &[]),
+        ("sdf", "tests/data/sdf/tree.sdf", "mimic = independent", &[]),
+        ("mjcf", "tests/data/mjcf/cables.xml", "", &["acts between points of two bodies"]),
+        ("mjcf", "tests/data/mjcf/free_bodies.xml", "", &[]),
+        ("mjcf", "tests/data/mjcf/coupled.xml", "mimic = independent", &[follows]),
+        ("mjcf", "tests/data/mjcf/medium.xml", "", &[]),
+    ] {
+        check_beside(format, &repository().join(file), with, notes);
+    }
+}
+
+/// In expressions of the medium, of damping and of cables the name is the body's, in those of couplings the joint's.
+#[test]
+fn links_and_joints_share_a_name() {
+    let file = written(
+        "shared.xml",
+        r#"<mujoco><option density="1.2" viscosity="0.1"/><worldbody>
+  <site name="o" pos="0 0.2 1"/>
+  <body name="b"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.02 0.03"/>
+    <joint name="b" type="ball" damping="0.1"/><site name="p" pos="0.1 0 0.2"/>
+    <body name="c" pos="0 0 1"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.02 0.03"/><joint name="c" axis="0 1 0"/>
+      <body name="d" pos="0 0 1"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.02 0.03"/><joint name="d" axis="1 0 0"/></body>
+    </body></body></worldbody>
+  <tendon><spatial name="b" stiffness="5" springlength="0.1"><site site="o"/><site site="p"/></spatial></tendon>
+  <equality><joint joint1="c" joint2="d" polycoef="0.1 2 0.3 0 0"/></equality></mujoco>"#,
+    );
+    let given = format!("mjcf = {:?}", file.display().to_string());
+    let functions = ["mass_matrix", "bias_forces", "potential_energy", "constraint_residuals"];
+    let all = |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
+    let expected = compiled(&given, "struct Robot;", all);
+    let (code, _) = converted(&file, "");
+    let (arguments, item) = parts(&code);
+    for (a, b) in compiled(&arguments, &item, all).iter().zip(&expected) {
+        assert!(a.len() == b.len() && !a.is_empty(), "{a:?} {b:?}");
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * b.abs().max(1.0)), "{a:?} {b:?}");
+    }
+}
+
+/// Damping that brings energy in, gears, elements on several joints, and lengths that do not change.
+#[test]
+fn elements_of_any_sign_and_on_several_joints_become_fields() {
+    let file = written(
+        "signs.xml",
+        r#"<mujoco><worldbody><site name="o" pos="0 0 1"/><site name="o2" pos="0 1 1"/>
+  <body name="b"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/><joint name="j" axis="0 1 0"/>
+    <site name="p" pos="0.1 0 0.2"/><site name="on_axis" pos="0 1 0"/>
+    <body name="c"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/><joint name="k" type="slide" axis="0 1 0" stiffness="0"/></body>
+  </body></worldbody>
+  <tendon>
+    <spatial name="still" stiffness="5" springlength="0.1"><site site="o"/><site site="o2"/></spatial>
+    <spatial name="round" stiffness="5" damping="1"><site site="o"/><site site="on_axis"/></spatial>
+    <spatial name="gains" damping="-1" stiffness="-3" springlength="0.1 0.2"><site site="o"/><site site="p"/></spatial>
+    <fixed name="none" stiffness="3"><joint joint="j" coef="0"/></fixed>
+    <fixed name="one" damping="-2" frictionloss="0.3"><joint joint="j" coef="3"/></fixed>
+    <fixed name="slack" stiffness="4" springlength="0 0.1" damping="0.2" frictionloss="0.1"><joint joint="j" coef="2"/><joint joint="k" coef="-1"/></fixed>
+  </tendon>
+  <actuator>
+    <motor name="m" tendon="still"/><motor name="gear" joint="j" gear="12"/><motor name="both" tendon="slack"/>
+    <general name="g" joint="j" biastype="affine" biasprm="1 -2 0.5"/><general name="h" tendon="slack" biastype="affine" biasprm="1 -2 0.5" gear="-3"/>
+    <position name="lazy" joint="j" kp="0"/>
+  </actuator></mujoco>"#,
+    );
+    check_beside("mjcf", &file, "", &["acts on a length that does not change"]);
+    let inertia = |xx: &str, xy: &str| {
+        format!(
+            "<inertial><mass value='2'/><inertia ixx='{xx}' iyy='1' izz='1' ixy='{xy}' ixz='0' iyz='0'/></inertial>"
+        )
+    };
+    for (name, inertia) in [("diagonal.urdf", inertia("-0.1", "0")), ("full.urdf", inertia("-0.1", "-0.2"))] {
+        let file = written(
+            name,
+            &format!(
+                "<robot name='r'><link name='a'/><link name='b'>{inertia}</link><joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 1 1'/></joint></robot>"
+            ),
+        );
+        check("urdf", &file, "inertia = trust");
+    }
 }
 
 /// Names that fields cannot have, and those of motors.
