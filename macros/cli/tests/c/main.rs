@@ -362,7 +362,7 @@ fn any_name_of_a_mechanism_compiles() {
     // The helper's name stood for the mechanism's function, too.
     for (k, name) in [
         "Ball", "Free", "SinCos", "MulAdd", "Lw", "LwBall", "Which", "Given", "Product", "Arg", "Q", "W",
-        "Self_", "Index", "Isnan", "FloatT", "Sinf", "Memcpy",
+        "Self_", "Index", "Isnan", "FloatT", "Sinf", "Memcpy", "By", "Ffsll",
     ]
     .into_iter()
     .enumerate()

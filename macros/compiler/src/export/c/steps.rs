@@ -22,8 +22,8 @@ const METHODS: [(&str, &str); 2] = [
     ("rk4", "the classical method of Runge and Kutta"),
 ];
 
-const PUT_H: &str = "        by_h[k] = motion[BY_H + k];\n        by_h[@N@ + k] = v[BY_H + k];\n";
-const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            by_input[j * 2 * @N@ + k] = motion[BY_U + j * @N@ + k];\n            by_input[j * 2 * @N@ + @N@ + k] = v[BY_U + j * @N@ + k];\n        }\n";
+const PUT_H: &str = "        by_h[k] = motion[LW_BY_H + k];\n        by_h[@N@ + k] = v[LW_BY_H + k];\n";
+const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            by_input[j * 2 * @N@ + k] = motion[LW_BY_U + j * @N@ + k];\n            by_input[j * 2 * @N@ + @N@ + k] = v[LW_BY_U + j * @N@ + k];\n        }\n";
 
 const STATE: [Argument; 3] = [Argument::Q, Argument::V, Argument::U];
 const NEXT: [&str; 2] = ["next_q", "next_v"];
