@@ -414,7 +414,8 @@ fn joints_of_the_world_hold_models() {
         let trim = |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_string()).collect() };
         let (mut found, mut expected) = (trim(&run(&sdf(), &world(&inside))), trim(&expected));
         // The order of bodies follows the names of the joints.
-        (found.sort(), expected.sort());
+        found.sort();
+        expected.sort();
         assert_eq!(found, expected);
     }
     let answer = run(&sdf(), &world(&slide("m::b", "")));
