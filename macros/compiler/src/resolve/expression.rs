@@ -349,7 +349,7 @@ impl<'a, 'g> Scope<'a, 'g> {
         let known: Vec<&str> = known.collect();
         let error = cx.error(function.place.clone(), format!("unknown function `{text}`"));
         let greek = words::spelt_otherwise(text, &known);
-        match (greek, super::inertia::SOLIDS.iter().any(|(solid, _)| *solid == text)) {
+        match (greek, super::inertia::SOLIDS.iter().any(|(solid, ..)| *solid == text)) {
             (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
             (_, true) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
             _ => words::point(error, words::FUNCTIONS, text, &known),

@@ -10,6 +10,7 @@ pub mod crate_path;
 pub mod declaration;
 pub mod description;
 pub mod element;
+pub mod element_kind;
 pub mod expression;
 mod field;
 pub mod figures;
@@ -36,6 +37,7 @@ pub use description::{
     FreeCoordinate, Inertias, Joint, Law, Limit, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
     ScalarType, Shape, SlipFriction, Softness, Table, Target, Visual, Wrench,
 };
+pub use element_kind::{ElementKind, ForceKind, OtherKind};
 pub use expression::IF;
 pub use joint_kind::JointKind;
 pub use mechanism::{
