@@ -330,6 +330,20 @@ fn what_moves_is_added_to_like() {
     );
 }
 
+/// The number that the mechanism's gravity has is an acceleration beside parameters, too; no other number is.
+#[test]
+fn the_number_of_gravity_is_an_acceleration() {
+    let hovering = |gravity: &str, number: &str| {
+        let item = machine(&format!(
+            "m: f64, #[body(mass = m)] load: Body, #[joint(cart -> load)] fixed: Weld,
+            #[acts(on = load, value = {number} * m * y)] lift: Force,"
+        ));
+        units(gravity, &item).is_ok()
+    };
+    assert!(hovering("gravity = -9.81 * y", "9.81") && hovering("gravity = [0, -9.8, 0]", "9.8"));
+    assert!(!hovering("gravity = -9.81 * y", "9.8") && !hovering("", "9.81"));
+}
+
 /// Whatever its value is, a number beside a parameter is a plain factor.
 #[test]
 fn numbers_beside_parameters_are_plain() {

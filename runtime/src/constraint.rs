@@ -53,7 +53,7 @@ const TURN: f64 = 0.01;
 const MOST_STEPS: usize = 20;
 
 /// Why a state could not be brought onto the constraints.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ConstraintError {
     /// No configuration near the given one fulfils the constraints.
@@ -128,6 +128,13 @@ pub enum ConstraintError {
     },
     /// Residuals or rates are infinite or NaN there.
     NotFinite,
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for ConstraintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for ConstraintError {

@@ -86,7 +86,7 @@ pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives}
 #[doc(inline)]
 pub use drawing::Drawn;
 pub use first_order::{Extended, FirstOrder, FirstOrderDerivatives, OutputsByStates, RateDerivatives};
-pub use frame::{FrameIndex, Frames, NamedFrame, index_of, placement_difference};
+pub use frame::{FrameIndex, FrameName, Frames, NamedFrame, index_of, placement_difference};
 pub use inertial::{Inertial, Placement};
 #[doc(inline)]
 pub use lanes::Lanes;

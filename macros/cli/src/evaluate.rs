@@ -44,6 +44,52 @@ const CONTRADICTION: f64 = 1e-6;
 /// A rotation matrix row by row, and a position: those of the ground.
 const GROUND: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
 
+/// The functions that accelerations are computed with.
+pub struct Dynamics<'e, 'g> {
+    of: &'e Evaluated<'e, 'g>,
+    passive: Option<&'e Function>,
+    inputs: &'e Function,
+    law: Law<'e>,
+}
+
+/// How accelerations follow from forces.
+enum Law<'e> {
+    /// By forward dynamics.
+    Free(&'e Function),
+    /// By Gauss' principle.
+    Constrained { mass: &'e Function, bias: &'e Function, jacobian: &'e Function, target: &'e Function },
+}
+
+impl Dynamics<'_, '_> {
+    /// Accelerations under inputs; not finite where constraints determine none.
+    pub fn accelerations(&self, t: f64, q: &[f64], v: &[f64], u: &[f64]) -> Vec<f64> {
+        let run = |f: &Function, state| self.of.run(&f.program, state);
+        let state = Values { t, q, v, u, ..Values::default() };
+        let passive = self.passive.map_or(Vec::new(), |f| run(f, state));
+        let state = Values { passive: &passive, ..state };
+        let mut force = run(self.inputs, state);
+        match self.law {
+            Law::Free(forward) => run(forward, Values { tau: &force, ..state }),
+            Law::Constrained { mass, bias, jacobian, target } => {
+                let bias = run(bias, state);
+                force.iter_mut().zip(bias).for_each(|(f, h)| *f -= h);
+                let target: Vec<f64> = run(target, state).iter().map(|b| -b).collect();
+                let metric = Metric::of(&run(mass, state), v.len());
+                let found = metric.map(|metric| metric.nearest(force, &run(jacobian, state), &target));
+                found
+                    .filter(|(a, off)| is_satisfied(a, *off, &target))
+                    .map_or(vec![f64::NAN; v.len()], |f| f.0)
+            }
+        }
+    }
+}
+
+/// Whether accelerations that miss the constraints' target by `off` fulfil them up to rounding.
+fn is_satisfied(a: &[f64], off: f64, target: &[f64]) -> bool {
+    let scale = target.iter().chain(a).fold(1.0_f64, |most, x| most.max(x.abs()));
+    off <= CONTRADICTION * scale
+}
+
 impl<'a, 'g> Evaluated<'a, 'g> {
     /// A mechanism with values of all parameters, and its tables.
     pub fn new(
@@ -126,18 +172,28 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         }
     }
 
-    /// Accelerations under inputs; nothing where constraints determine none.
-    pub fn accelerations(&self, t: f64, q: &[f64], v: &[f64], u: &[f64]) -> Vec<f64> {
-        let state = Values { t, q, v, u, ..Values::default() };
-        let passive = self.find("__passive_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
-        let state = Values { passive: &passive, ..state };
-        let tau = self.find("generalized_forces").map_or(Vec::new(), |f| self.run(&f.program, state));
-        let tau = if tau.is_empty() { vec![0.0; v.len()] } else { tau };
-        if self.is_constrained() {
-            return self.constrained(state, tau).unwrap_or(vec![f64::NAN; v.len()]);
-        }
-        self.find("forward_dynamics")
-            .map_or(Vec::new(), |f| self.run(&f.program, Values { tau: &tau, ..state }))
+    /// The functions that accelerations are computed with.
+    ///
+    /// # Errors
+    ///
+    /// An internal error if one of them is missing.
+    pub fn dynamics(&self) -> Result<Dynamics<'_, 'g>, Stop> {
+        let need = |name: &str| {
+            let missing = || Stop::Failure(format!("internal error of Linkwork: no function `{name}`"));
+            self.find(name).ok_or_else(missing)
+        };
+        let law = match self.is_constrained() {
+            false => Law::Free(need("forward_dynamics")?),
+            true => Law::Constrained {
+                mass: need("mass_matrix")?,
+                bias: need("bias_forces")?,
+                jacobian: need("constraint_jacobian")?,
+                target: need("constraint_bias")?,
+            },
+        };
+        // Long passive forces alone have a function of their own.
+        let passive = self.find("__passive_forces");
+        Ok(Dynamics { of: self, passive, inputs: need("generalized_forces")?, law })
     }
 
     fn find(&self, name: &str) -> Option<&Function> {
@@ -161,17 +217,6 @@ impl<'a, 'g> Evaluated<'a, 'g> {
 
     fn metric(&self, state: Values<'_>) -> Option<Metric> {
         Metric::of(&self.called("mass_matrix", state)?, self.model.nv())
-    }
-
-    /// Of all accelerations that the constraints allow those next to what forces alone would do.
-    fn constrained(&self, state: Values<'_>, mut force: Vec<f64>) -> Option<Vec<f64>> {
-        let bias = self.called("bias_forces", state)?;
-        force.iter_mut().zip(bias).for_each(|(f, h)| *f -= h);
-        let jacobian = self.called("constraint_jacobian", state)?;
-        let target: Vec<f64> = self.called("constraint_bias", state)?.iter().map(|b| -b).collect();
-        let (a, off) = self.metric(state)?.nearest(force, &jacobian, &target);
-        let scale = target.iter().chain(&a).fold(1.0_f64, |most, x| most.max(x.abs()));
-        (off <= CONTRADICTION * scale).then_some(a)
     }
 
     /// Why its accelerations cannot be computed here.
@@ -275,4 +320,41 @@ fn spin(q: &[f64], w: &[f64], rate: &mut [f64]) {
     rate[1] = 0.5 * (s * w[1] + z * w[0] - x * w[2]);
     rate[2] = 0.5 * (s * w[2] + x * w[1] - y * w[0]);
     rate[3] = -0.5 * (x * w[0] + y * w[1] + z * w[2]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use linkwork_compiler::diag::Diagnostics;
+    use linkwork_compiler::expr::Graph;
+    use linkwork_compiler::{compile, read};
+    use std::path::Path;
+
+    /// A function that is missing is reported, not taken for zero.
+    #[test]
+    fn missing_functions_are_internal_errors() {
+        let cart = "#[body(mass = 2)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,
+            #[acts(on = rail)] push: Force,";
+        let held = format!("{cart} #[constraint(rail = 3 * t)] drive: Holonomic,");
+        let free = ["generalized_forces", "forward_dynamics"];
+        let constrained =
+            ["generalized_forces", "mass_matrix", "bias_forces", "constraint_jacobian", "constraint_bias"];
+        for (fields, names) in [(cart, &free[..]), (&held, &constrained)] {
+            let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
+            let item = format!("struct Machine {{ {fields} }}").parse().unwrap();
+            let source = read("".parse().unwrap(), item, Path::new(""), cx).unwrap();
+            let (model, mut output) = compile(&source, &graph, cx).unwrap();
+            let all = Evaluated::new(&model, &output, Vec::new(), Vec::new());
+            let a = all.dynamics().ok().unwrap().accelerations(0.0, &[0.0], &[3.0], &[5.0]);
+            assert_eq!(a, [if names.len() == 2 { 2.5 } else { 0.0 }]);
+            for name in names {
+                let at = output.functions.iter().position(|f| f.name == *name).unwrap();
+                let removed = output.functions.remove(at);
+                let left = Evaluated::new(&model, &output, Vec::new(), Vec::new());
+                let Err(Stop::Failure(message)) = left.dynamics() else { panic!("{name} is not missed") };
+                assert_eq!(message, format!("internal error of Linkwork: no function `{name}`"));
+                output.functions.insert(at, removed);
+            }
+        }
+    }
 }

@@ -136,12 +136,13 @@ impl<'a, 'g> Start<'a, 'g> {
             };
             (0..self.u.len()).map(at).collect()
         };
+        let dynamics = self.mechanism.dynamics()?;
         let (nq, count) = (self.q.len(), (duration / every * (1.0 + 1e-12)).floor() as usize);
         let rates = |t: f64, y: &[f64]| {
             let (q, v) = y.split_at(nq);
             let mut rates = vec![0.0; nq];
             self.mechanism.rates(q, v, &mut rates);
-            rates.extend(self.mechanism.accelerations(t, q, v, &given(t)));
+            rates.extend(dynamics.accelerations(t, q, v, &given(t)));
             rates
         };
         let settle = |t: f64, y: &mut Vec<f64>| {

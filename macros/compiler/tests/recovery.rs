@@ -1,6 +1,8 @@
 //! A mechanism with a mistake has every name that it would have without: nothing that uses it is told of a second mistake.
 //! What a mechanism does not have on purpose stands under a bound that says why.
 
+mod generated;
+
 use linkwork_compiler::expand;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -77,12 +79,12 @@ struct Generated {
     traits: BTreeSet<String>,
 }
 
-fn generated(arguments: &str, name: &str, fields: &str) -> Generated {
+fn code(arguments: &str, name: &str, fields: &str) -> Generated {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
     let mut all = Generated { present: Names::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
-    for item in file.items {
+    for item in generated::items(file) {
         if let Item::Impl(block) = item {
             all.read(&block);
         }
@@ -110,7 +112,11 @@ const UNSIZED: [&str; 12] = [
 fn signature(f: &syn::ImplItemFn) -> String {
     let (name, inputs, output) = (f.sig.ident.to_string(), &f.sig.inputs, &f.sig.output);
     // After a mistake it is not known which frames there are.
-    let text = quote::quote!((#inputs) #output).to_string().replace(":: linkwork :: FrameIndex < I >", "F");
+    let mut text = quote::quote!((#inputs) #output).to_string();
+    if let Some(start) = text.find("impl :: linkwork :: FrameName <") {
+        let end = text[start..].find('>').map_or(text.len(), |end| start + end + 1);
+        text.replace_range(start..end, "F");
+    }
     if !UNSIZED.iter().any(|start| name.starts_with(start)) {
         return text;
     }
@@ -258,12 +264,13 @@ impl Generated {
 fn a_mistake_leaves_every_name() {
     for (name, fields) in MECHANISMS {
         for words in ["", "derivatives", "batch", WORDS] {
-            let whole = generated(words, name, fields);
-            let failed = generated(words, name, &format!("{fields} {MISTAKE}"));
+            let whole = code(words, name, fields);
+            let failed = code(words, name, &format!("{fields} {MISTAKE}"));
             for (function, arguments) in &whole.present {
                 assert_eq!(failed.present.get(function), Some(arguments), "{name}, {words}: `{function}`");
             }
-            let hidden = ["NamedFrame", "Evaluate", "Body"].map(|hidden| format!("{name}: {hidden}"));
+            let hidden =
+                ["NamedFrame", "Evaluate", "Body", "__Steps"].map(|hidden| format!("{name}: {hidden}"));
             let hidden =
                 hidden.into_iter().chain(["Evaluate", "Body"].map(|h| format!("Prepared{name}: {h}")));
             let wanted: BTreeSet<String> = whole.traits.iter().cloned().collect();
@@ -279,7 +286,7 @@ fn a_mistake_leaves_every_name() {
 fn every_word_is_named_by_what_needs_it() {
     let of = |name: &str| name.split_once("::").unwrap().1.to_string();
     for (name, fields) in MECHANISMS {
-        let (bare, all) = (generated("", name, fields), generated(WORDS, name, fields));
+        let (bare, all) = (code("", name, fields), code(WORDS, name, fields));
         // Whatever all words together give, without them either is there or says why it is not.
         for function in all.present.keys().filter(|function| function.starts_with(name)) {
             let known = bare.present.contains_key(function) || bare.absent.contains_key(function);
@@ -292,7 +299,7 @@ fn every_word_is_named_by_what_needs_it() {
         let one_less = WORDS.split(", ").filter(|_| ["CartPole", "FourBar"].contains(&name));
         for word in one_less {
             let others: Vec<&str> = WORDS.split(", ").filter(|other| *other != word).collect();
-            let without = generated(&others.join(", "), name, fields);
+            let without = code(&others.join(", "), name, fields);
             let lost = all.present.keys().filter(|function| !without.present.contains_key(*function));
             for function in lost.filter(|function| !function.starts_with("Prepared") || word != "prepare") {
                 let reason = without.absent.get(function).map(|reason| reason.to_lowercase());
@@ -325,7 +332,7 @@ fn every_word_is_named_by_what_needs_it() {
 
 #[test]
 fn kinematics_alone_say_what_they_lack() {
-    let kinematic = generated(
+    let kinematic = code(
         "inertia = none",
         "CartPole",
         "#[body] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,",
@@ -390,11 +397,11 @@ fn names(arguments: &str, name: &str, fields: &str) -> String {
     assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
     let mut by: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for item in file.items {
+    for item in generated::items(file) {
         let Item::Impl(block) = item else { continue };
         if let Some((path, _)) = &block.trait_ {
             let of = path.segments.last().unwrap().ident.to_string();
-            if !["NamedFrame", "Evaluate", "Body"].contains(&of.as_str()) {
+            if !["NamedFrame", "Evaluate", "Body", "__Steps"].contains(&of.as_str()) {
                 by.entry("traits".to_string()).or_default().insert(of);
             }
             continue;

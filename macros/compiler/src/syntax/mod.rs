@@ -28,6 +28,7 @@ pub mod skipped;
 pub mod sound;
 mod state;
 mod table;
+mod twice;
 pub mod words;
 
 pub use attribute::parse_mechanism;
@@ -45,6 +46,7 @@ pub use mechanism::{
 };
 pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::separate;
+pub use twice::second_definition;
 
 /// What stands after a state's name in that of the function for its rate.
 pub const RATE_OF_STATE: &str = "_rate";

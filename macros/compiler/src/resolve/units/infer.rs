@@ -1,7 +1,7 @@
 //! Expressions → dimensions: every expression is walked once, and what must be alike is equated.
 //!
 //! A number that is a term or stands alone is a quantity of any unit, and so is a direction that stands alone (it means one
-//! metre where a length is expected). As a factor beside a parameter a number is a plain number. Beside coordinates, rates,
+//! metre where a length is expected). As a factor beside a parameter a number is a plain number, but that of the gravity an acceleration. Beside coordinates, rates,
 //! time and inputs alone it is a coefficient: it takes a unit where nothing else fits, and is a plain number otherwise. Terms of
 //! a sum have one unit. A place takes an expression of coordinates, rates and time alone, whatever its unit is, as a
 //! number of the unit that it needs.
@@ -80,12 +80,20 @@ pub struct Inference<'a> {
     pub origins: BTreeMap<Variable, Origin<'a>>,
     /// By unknown: how its unit is written where it stands alone.
     pub hints: BTreeMap<Variable, String>,
+    /// The numbers of the mechanism's gravity, which are accelerations beside parameters, too.
+    pub gravity: Vec<f64>,
     /// What is a plain number unless something else demands a unit; the second one if the first is.
     pub wishes: Vec<(Dimension, Option<Dimension>)>,
     /// Contradictions.
     pub mismatches: Vec<Mismatch<'a>>,
     /// There was too much to do.
     pub gave_up: bool,
+}
+
+/// The numbers that gravity is given by, such as 9.81, without signs.
+fn numbers_of_gravity(description: &Description) -> Vec<f64> {
+    let parts = description.gravity.iter().flat_map(Expr::parts);
+    parts.filter_map(Expr::literal).map(f64::abs).filter(|g| *g > 0.0).collect()
 }
 
 impl<'a> Inference<'a> {
@@ -98,6 +106,7 @@ impl<'a> Inference<'a> {
             locals: Vec::new(),
             origins: BTreeMap::new(),
             hints: BTreeMap::new(),
+            gravity: numbers_of_gravity(description),
             wishes: Vec::new(),
             mismatches: Vec::new(),
             gave_up: false,

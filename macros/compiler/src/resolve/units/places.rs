@@ -242,8 +242,15 @@ impl<'a> Places<'a> {
         let work = Work { coordinate: on.unwrap_or(LENGTH), units };
         let force = match action.kind {
             ActionKind::Torque { .. } if on_point => Some(ENERGY),
-            ActionKind::Force { .. } if on_point => Some(FORCE),
-            _ => ENERGY.over(&work.coordinate),
+            // A force at a point works on a length.
+            ActionKind::Force { .. }
+            | ActionKind::Torque { .. }
+            | ActionKind::Spring { .. }
+            | ActionKind::Dashpot { .. }
+            | ActionKind::Inerter { .. }
+            | ActionKind::Friction { .. }
+            | ActionKind::Gravity { .. }
+            | ActionKind::Attraction { .. } => ENERGY.over(&work.coordinate),
         };
         if let Some(force) = force {
             self.element(action, &work, &force, inference);
@@ -304,17 +311,27 @@ impl<'a> Places<'a> {
                 self.all(mu, &ATTRACTION, "");
             }
             ActionKind::Attraction { strength } => self.add(strength, &STRENGTH, ""),
-            ActionKind::Force { along: direction, value }
-            | ActionKind::Torque { about: direction, value } => {
-                let unit = match &action.kind {
-                    ActionKind::Torque { .. } => "N·m",
-                    _ => "N",
-                };
-                self.all(value, force, unit);
-                if value.is_none() {
-                    input(action, direction.as_ref(), force, inference);
-                }
+            ActionKind::Force { along: direction, value } => {
+                self.acting(action, direction.as_ref(), value.as_ref(), (force, "N"), inference);
             }
+            ActionKind::Torque { about: direction, value } => {
+                self.acting(action, direction.as_ref(), value.as_ref(), (force, "N·m"), inference);
+            }
+        }
+    }
+
+    /// A force or a torque with a value, or an input.
+    fn acting(
+        &mut self,
+        action: &'a Action,
+        direction: Option<&'a Expr>,
+        value: Option<&'a Expr>,
+        (force, unit): (&Dimension, &'static str),
+        inference: &mut Inference<'a>,
+    ) {
+        match value {
+            Some(value) => self.add(value, force, unit),
+            None => input(action, direction, force, inference),
         }
     }
 

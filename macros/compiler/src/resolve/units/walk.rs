@@ -144,7 +144,13 @@ impl<'a> Inference<'a> {
     /// The product of factors; those marked divide.
     fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
         let (value, free) = product(factors);
-        let (Value::Quantity { dimension, anchor }, true) = (&value, free) else { return value };
+        let is_gravity = factors.iter().any(|(_, factor)| match factor {
+            Value::Number(g) => self.gravity.contains(&g.abs()),
+            _ => false,
+        });
+        let (Value::Quantity { dimension, anchor }, true) = (&value, free || is_gravity) else {
+            return value;
+        };
         let number = Dimension::variable(self.system.variable());
         self.wish(number.clone());
         match dimension.times(&number) {
