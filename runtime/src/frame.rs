@@ -92,8 +92,8 @@ macro_rules! index {
     };
 }
 
-/// An index that the compiler has computed: made by [`index!`](crate::index!). As the argument of a type it is known to
-/// `cargo check` as well, which a constant expression is not.
+/// An index that is computed at compile time, made by [`index!`](crate::index!). As an argument of a type it is evaluated by
+/// `cargo check` as well, which a constant expression in a function is not.
 pub struct Index<const I: usize>;
 
 impl<const I: usize> Index<I> {
@@ -137,7 +137,7 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
     fn jacobian(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
 }
 
-/// What names a frame of the mechanism `M`: [`frame!`](crate::frame!) of it.
+/// The name of a frame of the mechanism `M`, made by [`frame!`](crate::frame!).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no frame of `{M}`",
     label = "a frame is named by `frame!`",

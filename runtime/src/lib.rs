@@ -189,7 +189,7 @@ pub mod __private {
     pub use crate::contact::held_derivatives;
     pub use crate::derivatives::acceleration_derivatives;
     pub use crate::first_order::columns;
-    pub use crate::frame::{Message, identity_placement, join, origin, placement, six, sum, twist};
+    pub use crate::frame::{Index, Message, identity_placement, join, origin, placement, six, sum, twist};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};
     pub use crate::lie::curvature::{
         ball_tangent_rate_second_derivatives, free_tangent_rate_second_derivatives,

@@ -260,6 +260,31 @@ impl Generated {
     }
 }
 
+/// What generated code alone calls is hidden from documentation, that of binaries included.
+#[test]
+fn internals_are_hidden() {
+    for (name, fields) in MECHANISMS {
+        for words in ["", WORDS] {
+            let item = format!("pub struct {name} {{ {fields} }}");
+            let emitted = expand(words.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+            let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
+            for item in generated::items(file) {
+                let Item::Impl(ItemImpl { trait_: None, items, .. }) = item else { continue };
+                for item in items {
+                    let (ident, attributes) = match item {
+                        ImplItem::Fn(f) => (f.sig.ident.to_string(), f.attrs),
+                        ImplItem::Const(c) => (c.ident.to_string(), c.attrs),
+                        _ => continue,
+                    };
+                    let is_hidden =
+                        attributes.iter().any(|a| quote::quote!(#a).to_string() == "# [doc (hidden)]");
+                    assert!(is_hidden || !ident.starts_with("__"), "{name}, {words}: `{ident}` is shown");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_mistake_leaves_every_name() {
     for (name, fields) in MECHANISMS {

@@ -55,7 +55,7 @@ pub fn write_frames(
     out.push_str("};\n");
 }
 
-/// The methods of a trait.
+/// Declarations of a trait's methods, and the methods with their bodies.
 #[derive(Default)]
 struct Steps {
     declarations: String,

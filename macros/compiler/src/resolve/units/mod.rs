@@ -105,7 +105,7 @@ fn name_everything<'a>(
         let anchor = if acting.contains(name.text.as_str()) { Anchor::Input } else { Anchor::Motion };
         inference.names.insert(name.text.clone(), Meaning::Moving(dimension, anchor));
     }
-    let definitions = in_order(&d.definitions);
+    let definitions = sort_by_dependency(&d.definitions);
     for definition in &definitions {
         let anchors = definition.value.parts().into_iter().filter_map(|part| match &part.kind {
             ExprKind::Name(name) => match inference.names.get(name)? {
@@ -120,8 +120,8 @@ fn name_everything<'a>(
     definitions
 }
 
-/// Definitions, each after those that it mentions.
-fn in_order(definitions: &[Definition]) -> Vec<&Definition> {
+/// Sorts definitions so that each comes after those that it mentions.
+fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     let numbers: BTreeMap<&str, usize> =
         definitions.iter().enumerate().map(|(k, d)| (d.name.text.as_str(), k)).collect();
     let mentioned = |d: &Definition| -> BTreeSet<usize> {
@@ -155,7 +155,7 @@ fn in_order(definitions: &[Definition]) -> Vec<&Definition> {
     order.into_iter().filter_map(|k| definitions.get(k)).collect()
 }
 
-/// Walks all places; those first that say the dimension of one thing, so that the others are measured by them.
+/// Infers from all places. Places that give the dimension of one name come first, so that the others are compared with them.
 fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
     let simple = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
         tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))
@@ -168,7 +168,7 @@ fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
     others.into_iter().for_each(|task| solve_one(task, inference));
 }
 
-/// Walks one place.
+/// Infers from one place.
 fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
     let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);

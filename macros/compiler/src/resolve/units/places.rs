@@ -320,7 +320,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// A force or a torque with a value, or an input.
+    /// Adds the value of a force or a torque; without one it is an input, which gets its unit.
     fn acting(
         &mut self,
         action: &'a Action,

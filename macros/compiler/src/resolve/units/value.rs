@@ -4,7 +4,7 @@ use super::ratio::Ratio;
 use super::si::PLAIN;
 use super::unify::Dimension;
 
-/// What gives a quantity its unit. Of several factors or terms the last one here counts.
+/// Source of a quantity's unit, in rising order: a product or a sum has the highest source of its factors or terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Anchor {
     /// Coordinates, rates and time: a number beside them is a coefficient with any unit, and alone they may be numbers
@@ -60,7 +60,7 @@ impl Value {
         }
     }
 
-    /// What gives a quantity its unit; the motion if this is none.
+    /// Returns the source of the unit; `Motion` for a value that is no quantity.
     pub fn anchor(&self) -> Anchor {
         match self {
             Value::Quantity { anchor, .. } => *anchor,
