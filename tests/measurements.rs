@@ -9,8 +9,10 @@ use support::random::Random;
 struct Carrier {
     mass: f64,
     reach: f64,
-    #[body(mass = mass, com = 0.02 * z, inertia = diagonal(0.01 * mass, 0.012 * mass, 0.02 * mass))]
+    #[body(mass = mass, com = 0.02 * z, inertia = diagonal(mass * gyration, 1.2 * mass * gyration, 2 * mass * gyration))]
     frame: Body,
+    #[define(0.01)]
+    gyration: Scalar,
     #[body(mass = 0.3, com = -reach * z, inertia = diagonal(0.004, 0.005, 0.001))]
     load: Body,
     #[joint(ground -> frame)]
@@ -57,8 +59,10 @@ struct Bodies {
     mass: f64,
     #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
     hull: Body,
-    #[body(mass = mass, com = 0.2 * z, inertia = diagonal(0.1, 0.2, 0.15 * mass))]
+    #[body(mass = mass, com = 0.2 * z, inertia = diagonal(0.1, 0.2, gyration * mass))]
     table: Body,
+    #[define(0.15)]
+    gyration: Scalar,
     #[joint(ground -> hull)]
     flight: Free,
     #[joint(hull.at(0.3 * x).rotated(y(0.4)) -> table.at(0.1 * y), about = z)]

@@ -2,6 +2,8 @@
 
 #[path = "units/gallery.rs"]
 mod gallery;
+#[path = "units/random.rs"]
+mod random;
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -164,15 +166,17 @@ fn expressions_carry_units() {
 #[test]
 fn numbers_take_any_unit() {
     for fields in [
-        "#[acts(on = cart, value = -9.81 * a * y)] s: Force, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
+        "#[acts(on = cart, value = -g * a * y)] s: Force, #[define(9.81)] g: Scalar, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
         "#[acts(on = rail, value = a + 0.1)] s: Force,",
         "#[acts(on = rail, value = -2 * rail + a)] s: Force,",
         "#[acts(on = rail, value = a * tanh(rate(rail) / 0.01))] s: Force,",
         "#[acts(on = rail, value = a * (1 - cos(2 * t)))] s: Force,",
-        "#[acts(on = rail, value = -rail - rate(rail) + 0 * a)] s: Force,",
-        "#[acts(on = rail, force = stretch + pow(stretch, 3))] k: Spring, #[energy(a)] e: Potential,",
+        "#[acts(on = rail, value = -200 * rail - 30 * rate(rail) + 0 * a)] s: Force,",
+        "#[acts(on = rail, force = 4 * stretch + pow(stretch, 3))] k: Spring, #[energy(a)] e: Potential,",
         "#[particle(mass = a, at = sin(hinge) * x - cos(hinge) * y)] p: Particle,",
-        "#[energy(a * sin(rail + t))] e: Potential,",
+        "#[energy(a * sin(rail + 0.2 * t))] e: Potential,",
+        "#[acts(on = rail, value = -rail)] s: Force, #[energy(a * sin(t))] e: Potential,",
+        "#[acts(on = cart, value = sin(t) * x - 3 * v(cart / ground / ground))] s: Force, #[energy(a)] e: Potential,",
     ] {
         if let Err(messages) = of_machine(&format!("a: f64, {fields}")) {
             panic!("{fields}: {messages:?}");
@@ -298,10 +302,70 @@ fn like_is_added_to_like() {
     );
 }
 
+/// Sums of coordinates, rates, time and inputs alone.
+#[test]
+fn what_moves_is_added_to_like() {
+    let input = "#[acts(on = rail)] f: Force, #[acts(on = hinge)] m: Torque,";
+    for (sum, message) in [
+        ("f + rail", "a length (m) cannot be added to a force (N)"),
+        ("f - m", "a torque or an energy (N·m) cannot be subtracted from a force (N)"),
+        ("rail + rate(rail)", "a speed (m/s) cannot be added to a length (m)"),
+        ("sin(rail + t)", "a time (s) cannot be added to a length (m)"),
+        ("kinetic_energy(arm) + rail", "a length (m) cannot be added to a torque or an energy (N·m)"),
+        ("max(f, hinge)", "`max` cannot compare a force (N) with a plain number"),
+    ] {
+        refuse(&format!("{input} #[output({sum})] o: Scalar,"), &[message]);
+        refuse(
+            &format!("{input} #[output(2 * inner)] o: Scalar, #[define({sum})] inner: Scalar,"),
+            &[message],
+        );
+    }
+    refuse(
+        &format!("{input} #[output(f * x + rail * y)] o: Vector,"),
+        &["a length (m) cannot be added to a force (N)"],
+    );
+    refuse(
+        &format!("{input} #[acts(on = hinge, value = f)] o: Torque,"),
+        &["expected a torque or an energy (N·m), found a force (N)"],
+    );
+}
+
+/// The number that the mechanism's gravity has is an acceleration beside parameters, too; no other number is.
+#[test]
+fn the_number_of_gravity_is_an_acceleration() {
+    let hovering = |gravity: &str, number: &str| {
+        let item = machine(&format!(
+            "m: f64, #[body(mass = m)] load: Body, #[joint(cart -> load)] fixed: Weld,
+            #[acts(on = load, value = {number} * m * y)] lift: Force,"
+        ));
+        units(gravity, &item).is_ok()
+    };
+    assert!(hovering("gravity = -9.81 * y", "9.81") && hovering("gravity = [0, -9.8, 0]", "9.8"));
+    assert!(!hovering("gravity = -9.81 * y", "9.8") && !hovering("", "9.81"));
+}
+
+/// Whatever its value is, a number beside a parameter is a plain factor.
+#[test]
+fn numbers_beside_parameters_are_plain() {
+    for number in ["0.5", "0.6", "9.81", "40", "2 / 7", "1e-3", "sin(0.3)", "pi"] {
+        let mass = |value: &str| {
+            format!("#[unit(kg / m)] rho: f64, #[body(mass = {value})] w: Body, #[joint(cart -> w)] j: Weld,")
+        };
+        for value in [format!("rho * {number}"), format!("{number} * rho"), format!("rho / ({number})")] {
+            let messages = of_machine(&mass(&value)).unwrap_err();
+            assert!(
+                messages[0].starts_with("`rho` is declared as a quantity in kg/m, but used as a mass (kg)")
+            );
+            assert!(messages[0].contains("`#[define(9.81)] g: Scalar`"), "{messages:?}");
+        }
+        of_machine(&format!("{} #[define({number})] length: Scalar,", mass("rho * length"))).unwrap();
+    }
+}
+
 #[test]
 fn attributes_pin_units_down() {
     let unit = |written: &str| {
-        let units = of_machine(&format!("#[unit({written})] a: f64, #[energy(3.5 * a)] e: Potential,"))?;
+        let units = of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
         Ok::<String, Vec<String>>(units.parameters[0].clone())
     };
     for (written, shown) in [
@@ -326,13 +390,10 @@ fn attributes_pin_units_down() {
     assert!(message("kg +").contains("nothing stands behind this operator"));
     assert!(message("").contains("this says no unit"));
     refuse(
-        "#[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
+        "#[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar, #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
         &["`a` is declared as a length (m), but used as a mass (kg)", "it is a mass (kg) in"],
     );
-    refuse(
-        "#[unit(m)] #[unit(m)] a: f64, #[energy(3.5 * a)] e: Potential,",
-        &["a parameter has one `#[unit]`"],
-    );
+    refuse("#[unit(m)] #[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar,", &["a parameter has one `#[unit]`"]);
 }
 
 /// The struct keeps its fields without the attribute, and its documentation has all units.

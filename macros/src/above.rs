@@ -1,17 +1,8 @@
 //! What stands above the attribute: a `#[derive(…)]` there has seen the struct with its elements. Neither the struct nor the
 //! compiler tells, so the source file is asked.
 
-use proc_macro::Span;
-
-/// The line of a `#[derive(…)]` above the attribute, if there is one.
-pub fn is_below_a_derive() -> bool {
-    let here = Span::call_site();
-    let text = here.local_file().and_then(|path| std::fs::read_to_string(path).ok());
-    text.is_some_and(|text| stands_below_a_derive(&text, here.line(), here.column()))
-}
-
 /// True if an attribute that begins at a line and column, counted from one, stands below a `#[derive(…)]` of the same item.
-fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
+pub fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
     let lines: Vec<&str> = text.lines().take(line).collect();
     let Some((own, above)) = lines.split_last() else { return false };
     let own: String = own.chars().take(column.saturating_sub(1)).collect();

@@ -3,7 +3,7 @@
 
 mod above;
 
-use proc_macro::TokenStream;
+use proc_macro::{Span, TokenStream};
 use std::path::PathBuf;
 
 /// Compiles a mechanism: derives the equations of motion of the struct below and implements them for it.
@@ -150,9 +150,14 @@ use std::path::PathBuf;
 #[proc_macro_attribute]
 pub fn mechanism(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
-    let emitted = match above::is_below_a_derive() {
-        false => linkwork_compiler::expand(arguments.into(), item.into(), &folder),
-        true => linkwork_compiler::expand_below_a_derive(arguments.into(), item.into(), &folder),
+    let (here, item) = (Span::call_site(), item.into());
+    let text = here.local_file().and_then(|path| std::fs::read_to_string(path).ok()).unwrap_or_default();
+    if let Some(bare) = linkwork_compiler::second_definition(&item, &text, here.line()) {
+        return bare.into();
+    }
+    let emitted = match above::stands_below_a_derive(&text, here.line(), here.column()) {
+        false => linkwork_compiler::expand(arguments.into(), item, &folder),
+        true => linkwork_compiler::expand_below_a_derive(arguments.into(), item, &folder),
     };
     let mut tokens = TokenStream::from(emitted.tokens);
     match emitted.text.parse::<TokenStream>() {

@@ -14,6 +14,7 @@ mod assemble;
 mod careful;
 mod complete;
 mod differentiable;
+mod graded;
 mod layout;
 mod linearize;
 mod second;
@@ -23,10 +24,11 @@ mod span;
 mod stabilized;
 
 #[doc(hidden)]
-pub use assemble::{Loops, assemble};
+pub use assemble::{Loops, assemble, assembly_mode};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
 pub(crate) use differentiable::{Frozen, column, each_column, multipliers, set_column};
+pub(crate) use graded::change_rates;
 #[doc(hidden)]
 pub use layout::{ConstraintCurvature, Elimination, InputDerivatives, MotionDerivatives, Responses};
 pub use linearize::Linearization;
@@ -51,7 +53,7 @@ const TURN: f64 = 0.01;
 const MOST_STEPS: usize = 20;
 
 /// Why a state could not be brought onto the constraints.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ConstraintError {
     /// No configuration near the given one fulfils the constraints.
@@ -67,6 +69,27 @@ pub enum ConstraintError {
         constraint: &'static str,
         /// What is left of its rate, m/s or rad/s.
         rate: f64,
+    },
+    /// No acceleration fulfils the constraints: entries that are given contradict them, or the configuration is singular.
+    Acceleration {
+        /// The constraint that is violated most.
+        constraint: &'static str,
+        /// The remainder of its second rate, m/s² or rad/s².
+        acceleration: f64,
+    },
+    /// No configuration of the assembly mode that was asked for was found around the guess
+    /// ([`Constrained::assemble_in_mode`]).
+    Mode {
+        /// The assembly mode.
+        mode: i8,
+    },
+    /// Forces at the velocities that are driven cannot give the motion: another velocity has to be driven as well
+    /// ([`Constrained::constrained_inverse_dynamics`]).
+    Undriven {
+        /// The velocity whose equation is violated most.
+        velocity: &'static str,
+        /// The force that is missing there, N or N·m.
+        force: f64,
     },
     /// Constraints depend on each other here that are independent elsewhere: the motion is not determined to first order.
     Singular,
@@ -107,6 +130,13 @@ pub enum ConstraintError {
     NotFinite,
 }
 
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for ConstraintError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
 impl fmt::Display for ConstraintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -115,6 +145,21 @@ impl fmt::Display for ConstraintError {
             }
             Self::Velocity { constraint, rate } => {
                 write!(f, "the constraint `{constraint}` is left at a rate of {rate}")
+            }
+            Self::Acceleration { constraint, acceleration } => {
+                write!(f, "the constraint `{constraint}` is left at an acceleration of {acceleration}")
+            }
+            Self::Mode { mode } => {
+                write!(
+                    f,
+                    "no configuration of the assembly mode {mode} was found: give a guess that is nearer to one"
+                )
+            }
+            Self::Undriven { velocity, force } => {
+                write!(
+                    f,
+                    "the driven velocities leave a force of {force} at `{velocity}`, which is not driven"
+                )
             }
             Self::Singular => write!(f, "the constraints lose rank in this configuration"),
             Self::Jammed { constraint } => write!(f, "friction jams at the contact `{constraint}`"),
@@ -144,6 +189,20 @@ pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVect
 /// Accelerations `v̇` and multipliers `λ`.
 pub type Solution<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
 
+/// The constraints on configurations of a mechanism at a time, for assembly.
+macro_rules! loops {
+    ($mechanism:ident, $t:ident) => {
+        Loops {
+            names: Self::CONSTRAINTS,
+            angles: Self::ANGLES,
+            turns: core::array::from_fn(|k| Self::VELOCITY_UNITS.get(k) == Some(&"rad/s")),
+            residuals: |q: &_| $mechanism.constraint_residuals($t, q),
+            jacobian: |q: &_| $mechanism.constraint_jacobian($t, q),
+            integrate: |q: &_, dv: &_| $mechanism.integrate(q, dv),
+        }
+    };
+}
+
 /// What mechanisms with closed loops, rolling or other constraints offer, for generic code.
 ///
 /// There are `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
@@ -162,6 +221,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 {
     /// Name of every constraint.
     const CONSTRAINTS: [&'static str; NC];
+
+    /// Indices of the entries of `q` that are angles, rad: those of pins and of other coordinates that rotate something.
+    const ANGLES: &'static [usize] = &[];
 
     /// `φ(t, q)`, m and rad: zero where the constraints hold.
     fn constraint_residuals(
@@ -261,9 +323,13 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         self.constraint_response(t, q, p, &gap)
     }
 
-    /// A configuration near `q` in which the constraints hold, by damped Newton steps with bounded count
+    /// A configuration near `q` in which the constraints hold, by damped Newton steps of bounded length and number
     /// (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3), if need be from around `q`. The
-    /// coordinates whose velocities have the indices `held` stay as they are.
+    /// coordinates whose velocities have the indices `held` stay as they are. Angles are found within half a turn of `q`,
+    /// unless the constraints turn them farther, as gears do.
+    ///
+    /// Most linkages can be assembled in several ways. The one that is found is usually next to `q`:
+    /// [`assembly_mode`](Self::assembly_mode) tells which it is, [`assemble_in_mode`](Self::assemble_in_mode) finds another.
     ///
     /// # Errors
     ///
@@ -274,13 +340,35 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         q: &SVector<Self::Scalar, NQ>,
         held: &[usize],
     ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
-        let loops = Loops {
-            names: Self::CONSTRAINTS,
-            residuals: |q: &_| self.constraint_residuals(t, q),
-            jacobian: |q: &_| self.constraint_jacobian(t, q),
-            integrate: |q: &_, dv: &_| self.integrate(q, dv),
-        };
-        assemble(&loops, q, held)
+        assemble(&loops!(self, t), q, held, None)
+    }
+
+    /// A configuration around `q` in which the constraints hold, as [`assemble`](Self::assemble) finds it, of the given
+    /// [`assembly_mode`](Self::assembly_mode).
+    ///
+    /// # Errors
+    ///
+    /// Those of [`assemble`](Self::assemble), and [`ConstraintError::Mode`] where only others are found.
+    fn assemble_in_mode(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        held: &[usize],
+        mode: i8,
+    ) -> Result<SVector<Self::Scalar, NQ>, ConstraintError> {
+        assemble(&loops!(self, t), q, held, Some(mode))
+    }
+
+    /// The assembly mode of the configuration `q`, 1 or −1: the sign of the determinant of the derivatives of the
+    /// constraints on configurations by the coordinates whose velocities are not `held`. It changes only in singular
+    /// positions, where the coordinates that are held no longer determine the others to first order. The two modes of a
+    /// four-bar with a given crank, open and crossed, have different signs; linkages of several loops may have more modes
+    /// than two, of which some share a sign.
+    ///
+    /// `None` in a singular position, and where the coordinates that are not held are more or fewer than the constraints on
+    /// configurations.
+    fn assembly_mode(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>, held: &[usize]) -> Option<i8> {
+        assembly_mode(&loops!(self, t), q, held)
     }
 
     /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy. For what has
@@ -370,6 +458,45 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         held: &[usize],
     ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
         complete::complete(self, t, q, v, held)
+    }
+
+    /// The acceleration whose entries `held` (indices) are those of `a`, while the others follow from the constraints:
+    /// `J a + b = 0`, m/s² and rad/s². What the constraints leave open is nearest to `a` in the metric of the kinetic energy.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Acceleration`] where the held entries contradict the constraints or nothing finite follows from
+    /// them, [`ConstraintError::Held`] for an index that is none.
+    fn complete_acceleration(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        held: &[usize],
+    ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
+        complete::complete_acceleration(self, t, (q, v), a, held)
+    }
+
+    /// Inverse dynamics under the constraints: the generalized forces `τ` at the velocities `driven` (indices) and the
+    /// multipliers `λ` that give a motion, `M a + h = τ + Jᵀ λ`. As many velocities are driven as there are degrees of
+    /// freedom, none where the constraints drive the mechanism themselves: then the drives are in `λ`. Where constraints are
+    /// redundant or more velocities are driven, the multipliers of least norm. Dry friction of contacts that slip is left out.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Velocity`] and [`ConstraintError::Acceleration`] for a motion that does not fulfil the constraints,
+    /// [`ConstraintError::Undriven`] where forces at other velocities would be needed, [`ConstraintError::Held`] for an index
+    /// that is none.
+    fn constrained_inverse_dynamics(
+        &self,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+        driven: &[usize],
+    ) -> Result<Solution<Self::Scalar, NV, NC>, ConstraintError> {
+        complete::drive(self, t, (q, v), a, driven)
     }
 
     /// Both: configuration first.

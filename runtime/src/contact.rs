@@ -52,6 +52,7 @@ mod holding;
 mod landing;
 mod lawful;
 mod layout;
+mod light;
 mod overlap;
 mod phase;
 mod problem;
@@ -75,7 +76,7 @@ use layout::Layout;
 pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
-use problem::Problem;
+use problem::{Equations, Problem, entry};
 #[doc(hidden)]
 pub use stepping::step;
 use stepping::{Came, closed};
@@ -216,13 +217,23 @@ impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
     }
 }
 
-/// What contacts make of the end of a step.
+/// End of a step with contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touched<T, const NQ: usize, const NV: usize> {
     /// The configuration.
     pub q: SVector<T, NQ>,
     /// The velocity.
     pub v: SVector<T, NV>,
+    /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have
+    /// at the end: divided by the length of the step, an estimate of their effect where the next step starts.
+    pub held: SVector<T, NV>,
+}
+
+impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
+    /// State that no contact has changed.
+    pub(crate) fn free(q: SVector<T, NQ>, v: SVector<T, NV>) -> Self {
+        Self { q, v, held: SVector::zeros() }
+    }
 }
 
 /// Velocity and impulses after contacts have acted.
@@ -355,12 +366,13 @@ where
 /// where none do they are what keeps it so, or what is there when motion begins. Surfaces that are about to strike each other are
 /// taken to rest: an impact has no force but an [`impact`]'s impulse.
 ///
-/// Outputs read them as `contact_force(name)`. They fulfil [`forces`] of a short time, so that slip which friction stops within
-/// `1.5e-8` s (`3.5e-4` s with `f32`) is none.
+/// Outputs read them as `contact_force(name)`. They are mean forces of a short time: friction that stops slip
+/// within `1.5e-8` s (`3.5e-4` s with `f32`) acts as in a contact that sticks.
 ///
 /// # Errors
 ///
-/// Those of [`impact`], and of the accelerations of a mechanism with constraints.
+/// Those of [`impact`]; [`ConstraintError::Contact`] for a contact that slips where no finite forces satisfy
+/// the contact conditions (Painlevé's paradox); those of the accelerations of a mechanism with constraints.
 pub fn acting<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -392,31 +404,79 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
-    problem.weigh(&mechanism.contact_responses(t, q, &closed).rates);
-    let impulses = problem.solve().map_err(|contact| ConstraintError::Contact {
-        constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
-    })?;
-    Ok(problem.spread(&impulses) / h)
+    let laws = lawful(mechanism)?;
+    let responses = mechanism.contact_responses(t, q, &closed);
+    let solved = |free: &SVector<T, NR>| {
+        let mut problem = Problem::new(layout, &laws, &closed, free);
+        problem.weigh(&responses.rates);
+        let found = problem.solve().map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?;
+        Ok((problem.spread(&found), problem.touches(&found).0))
+    };
+    // Rates change in the short time as the accelerations of contacts that stick do, if their forces press
+    // and friction holds them.
+    let slip = mechanism.contact_rates(t, q, v);
+    let sticking = closed.map(|is_closed| if is_closed { Touch::Sticks } else { Touch::Open });
+    if phase::stopped_contact(&slip, &sticking, &laws, layout).is_none()
+        && let Some((_, impulses)) = light::sticking_change(mechanism, t, q, (&sticking, &laws), &-free)
+    {
+        let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
+            let (_, first) = layout.pressing(k);
+            let largest = laws.get(k).map_or(T::zero(), |law| law.friction) * entry(&impulses, first);
+            entry(&impulses, first) >= T::zero() && phase::length(&impulses, layout.tangents(k)) <= largest
+        });
+        if presses {
+            return Ok(impulses / h);
+        }
+    }
+    let (impulses, touches) = solved(&free)?;
+    let forces = impulses / h;
+    if phase::stopped_contact(&slip, &touches, &laws, layout).is_none() {
+        return Ok(forces);
+    }
+    // Friction stops slip within this short time: it may be strong, or there is no finite force.
+    let mut accelerations = mechanism.contact_bias(t, q, v) + moved;
+    phase::sustain_slip(&mut accelerations, &slip, layout);
+    let (lasting, touches) = solved(&accelerations)?;
+    match phase::stopped_contact(&slip, &touches, &laws, layout) {
+        Some(contact) => Err(failed::<M, T, NQ, NV, NU, NK, NR>(contact)),
+        None if forces.amax() <= lasting.amax() * constant(2.0) => Ok(forces),
+        None => Ok(lasting),
+    }
 }
 
-/// What has acted: the contacts that are closed, with their impulses and what these do to velocities. Its matrices are large, so it
-/// stays where it is.
+/// The error for a contact whose conditions no impulses satisfy.
+fn failed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    contact: usize,
+) -> ConstraintError
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    ConstraintError::Contact { constraint: M::CONTACTS.get(contact).copied().unwrap_or_default() }
+}
+
+/// The closed contacts that have acted, with their impulses and the effects of these on velocities. Its
+/// matrices are large, so it is filled in place.
 struct Acted<T, const NV: usize, const NK: usize, const NR: usize> {
     problem: Problem<T, NK, NR>,
     impulses: Total<T, NR>,
+    /// Velocity before the impulses, with the correction for contact forces that rotate in the step.
+    free: SVector<T, NV>,
     /// None if nothing has acted.
     responses: Option<Responses<T, NV, NR>>,
 }
 
 impl<T: Real, const NV: usize, const NK: usize, const NR: usize> Acted<T, NV, NK, NR> {
     fn nothing() -> Self {
-        Self { problem: Problem::none(), impulses: Total::repeat(T::zero()), responses: None }
+        let (impulses, free) = (Total::repeat(T::zero()), SVector::zeros());
+        Self { problem: Problem::none(), impulses, free, responses: None }
     }
 }
 
-/// [`solve`] for the contacts that are `closed`, and what `acted`, if anything has. The rates `before` are asked for where
-/// they matter; impulses are about those that add `given` to the velocity, if they are known.
+/// Solves [`solve`]'s problem for the contacts that are `closed`, and fills `acted`. The rates `before` are
+/// evaluated only where they matter. If the contact forces at the start of a step are known, which would add
+/// `given` to the velocity, their rotation in the step is taken into account, and the search for impulses
+/// begins with them.
 fn act<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -444,9 +504,16 @@ where
     }
     let responses = acted.responses.insert(mechanism.contact_responses(t, q, closed));
     problem.weigh(&responses.rates);
-    let failed = |contact: usize| ConstraintError::Contact {
-        constraint: M::CONTACTS.get(contact).copied().unwrap_or_default(),
-    };
+    let failed = failed::<M, T, NQ, NV, NU, NK, NR>;
+    let mut equations = Equations::of(problem);
+    let start = given.filter(|given| **given != SVector::<T, NV>::zeros()).map(|given| {
+        let rates = mechanism.contact_rates(t, q, &(free + given)) - after;
+        problem.transport(given, &rates, responses, &mut equations)
+    });
+    if let Some((_, correction)) = &start {
+        solved.v += correction;
+    }
+    acted.free = solved.v;
     problem.compress(&laws, &before).map_err(failed)?;
     problem.aim(&laws, &before, T::one());
     // What is driven may give energy, and without restitution nothing does.
@@ -454,9 +521,7 @@ where
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
         driven.iter().all(|rate| *rate == T::zero())
     };
-    let given = given.filter(|given| **given != SVector::<T, NV>::zeros());
-    let given = || given.map(|given| mechanism.contact_rates(t, q, &(free + given)) - after);
-    let impulses = match problem.solve_from(&given) {
+    let impulses = match problem.solve_from(start.as_ref().map(|(start, _)| start), &mut equations) {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
         Err(contact) if !problem.rebounds() => return Err(failed(contact)),
         _ => tempered(problem, &laws, &before, may_gain).map_err(failed)?,

@@ -129,4 +129,70 @@ macro_rules! kind {
     ($n:ident) => { &SVector<Self::Scalar, $n> };
 }
 
-pub(crate) use {each_function, kind, write_functions as write};
+/// Writes the functions of [`Rheonomic`](crate::Rheonomic) that programs call as functions of a type itself, which has them
+/// without that trait in scope: the prelude has the trait of mechanisms without time alone.
+macro_rules! inherent_functions {
+    (impl<$($lifetime:lifetime,)? $($parameter:ident),* $(; const $($size:ident),+)?> $type:ty) => {
+        impl<$($lifetime,)? $($parameter,)* $($(const $size: usize,)+)?> $type {
+            $crate::forward::inherent_functions! { @
+                /// Returns the acceleration under the forces `tau` ([`Rheonomic::forward_dynamics`](crate::Rheonomic::forward_dynamics)).
+                forward_dynamics(t: T, q: Q, v: V, tau: V) -> nalgebra::SVector<T, N>;
+                /// Returns the forces that give the acceleration `a` ([`Rheonomic::inverse_dynamics`](crate::Rheonomic::inverse_dynamics)).
+                inverse_dynamics(t: T, q: Q, v: V, a: V) -> nalgebra::SVector<T, N>;
+                /// Returns the mass matrix ([`Rheonomic::mass_matrix`](crate::Rheonomic::mass_matrix)).
+                mass_matrix(t: T, q: Q) -> nalgebra::SMatrix<T, N, N>;
+                /// Returns the bias forces ([`Rheonomic::bias_forces`](crate::Rheonomic::bias_forces)).
+                bias_forces(t: T, q: Q, v: V) -> nalgebra::SVector<T, N>;
+                /// Returns the generalized forces of inputs ([`Rheonomic::generalized_forces`](crate::Rheonomic::generalized_forces)).
+                generalized_forces(t: T, q: Q, v: V, u: U) -> nalgebra::SVector<T, N>;
+                /// Returns the kinetic energy ([`Rheonomic::kinetic_energy`](crate::Rheonomic::kinetic_energy)).
+                kinetic_energy(t: T, q: Q, v: V) -> T;
+                /// Returns the potential energy ([`Rheonomic::potential_energy`](crate::Rheonomic::potential_energy)).
+                potential_energy(t: T, q: Q) -> T;
+                /// Returns the generalized momentum ([`Rheonomic::generalized_momentum`](crate::Rheonomic::generalized_momentum)).
+                generalized_momentum(t: T, q: Q, v: V) -> nalgebra::SVector<T, N>;
+                /// Returns the configuration after a displacement ([`Rheonomic::integrate`](crate::Rheonomic::integrate)).
+                integrate(q: Q, dv: V) -> nalgebra::SVector<T, NQ>;
+                /// Returns the displacement between configurations ([`Rheonomic::difference`](crate::Rheonomic::difference)).
+                difference(from: Q, to: Q) -> nalgebra::SVector<T, N>;
+            }
+
+            /// Returns the acceleration under the forces `tau`, or why they determine none
+            /// ([`Rheonomic::try_forward_dynamics`](crate::Rheonomic::try_forward_dynamics)).
+            ///
+            /// # Errors
+            ///
+            /// Those of [`Rheonomic::try_forward_dynamics`](crate::Rheonomic::try_forward_dynamics).
+            pub fn try_forward_dynamics<T: $crate::Real, const NQ: usize, const N: usize, const NU: usize>(
+                &self,
+                t: T,
+                q: &nalgebra::SVector<T, NQ>,
+                v: &nalgebra::SVector<T, N>,
+                tau: &nalgebra::SVector<T, N>,
+            ) -> Result<nalgebra::SVector<T, N>, $crate::ConstraintError>
+            where
+                Self: $crate::Rheonomic<NQ, N, NU, Scalar = T>,
+            {
+                <Self as $crate::Rheonomic<NQ, N, NU>>::try_forward_dynamics(self, t, q, v, tau)
+            }
+        }
+    };
+    (@ $($(#[$docs:meta])* $name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
+        $(#[$docs])*
+        #[must_use]
+        pub fn $name<T: $crate::Real, const NQ: usize, const N: usize, const NU: usize>(
+            &self $(, $argument: $crate::forward::inherent_functions!(# $kind))*
+        ) -> $result
+        where
+            Self: $crate::Rheonomic<NQ, N, NU, Scalar = T>,
+        {
+            <Self as $crate::Rheonomic<NQ, N, NU>>::$name(self $(, $argument)*)
+        }
+    )+};
+    (# T) => { T };
+    (# Q) => { &nalgebra::SVector<T, NQ> };
+    (# V) => { &nalgebra::SVector<T, N> };
+    (# U) => { &nalgebra::SVector<T, NU> };
+}
+
+pub(crate) use {each_function, inherent_functions, kind, write_functions as write};

@@ -41,7 +41,8 @@ macro_rules! frame {
 
 /// The index of an entry of `q`, `v`, `u` or of another list of names, checked at compile time:
 /// `index!(Panda::VELOCITIES, "panda_joint4")`. A name that the list does not have does not compile, and the message has the
-/// nearest ones; editors and `cargo check` show it already where the index is a constant, builds everywhere, in generic functions too.
+/// nearest ones. In a function that is generic over mechanisms the names are not known yet: [`index_of`](crate::index_of) finds them
+/// there.
 ///
 /// ```
 /// use linkwork::{index, prelude::*};
@@ -77,16 +78,27 @@ macro_rules! frame {
 #[macro_export]
 macro_rules! index {
     ($names:expr, $name:expr) => {
-        const {
-            match $crate::index_of(&$names, $name) {
-                Some(index) => index,
-                None => panic!(
-                    "{}",
-                    $crate::__private::Message::unknown_name(stringify!($names), &$names, $name).text()
-                ),
-            }
-        }
+        $crate::__private::Index::<
+            {
+                match $crate::index_of(&$names, $name) {
+                    Some(index) => index,
+                    None => panic!(
+                        "{}",
+                        $crate::__private::Message::unknown_name(stringify!($names), &$names, $name).text()
+                    ),
+                }
+            },
+        >::VALUE
     };
+}
+
+/// An index that is computed at compile time, made by [`index!`](crate::index!). As an argument of a type it is evaluated by
+/// `cargo check` as well, which a constant expression in a function is not.
+pub struct Index<const I: usize>;
+
+impl<const I: usize> Index<I> {
+    /// The index.
+    pub const VALUE: usize = I;
 }
 
 /// Frame number `I` of a mechanism with `NQ` configuration numbers and `NV` velocities. Implemented by generated code;
@@ -123,6 +135,87 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
 
     /// Twist per unit of each velocity, 6 × `NV`.
     fn jacobian(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
+}
+
+/// The name of a frame of the mechanism `M`, made by [`frame!`](crate::frame!).
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no frame of `{M}`",
+    label = "a frame is named by `frame!`",
+    note = "write `frame!({M}, \"tool\")`; for a name that is known at run time alone, `index_of` and the trait `Frames`"
+)]
+pub trait FrameName<M, const NQ: usize, const NV: usize> {
+    /// The scalar type.
+    type Scalar: Real;
+
+    /// Placement in the ground.
+    fn placement(
+        self,
+        m: &M,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+    ) -> IsometryMatrix3<Self::Scalar>;
+
+    /// Velocity of the origin (m/s), then angular velocity (rad/s), in ground axes.
+    fn velocity(
+        self,
+        m: &M,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, 6>;
+
+    /// Acceleration of the origin (m/s²), then angular acceleration (rad/s²), in ground axes, without gravity.
+    fn acceleration(
+        self,
+        m: &M,
+        t: Self::Scalar,
+        q: &SVector<Self::Scalar, NQ>,
+        v: &SVector<Self::Scalar, NV>,
+        a: &SVector<Self::Scalar, NV>,
+    ) -> SVector<Self::Scalar, 6>;
+
+    /// Twist per unit of each velocity, 6 × `NV`.
+    fn jacobian(self, m: &M, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
+}
+
+impl<M, const I: usize, const NQ: usize, const NV: usize> FrameName<M, NQ, NV> for FrameIndex<I>
+where
+    M: NamedFrame<I, NQ, NV>,
+{
+    type Scalar = M::Scalar;
+
+    #[inline(always)]
+    fn placement(self, m: &M, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> IsometryMatrix3<M::Scalar> {
+        placement(&m.placement(t, q))
+    }
+
+    #[inline(always)]
+    fn velocity(
+        self,
+        m: &M,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+    ) -> SVector<M::Scalar, 6> {
+        six(m.twist(t, q, v))
+    }
+
+    #[inline(always)]
+    fn acceleration(
+        self,
+        m: &M,
+        t: M::Scalar,
+        q: &SVector<M::Scalar, NQ>,
+        v: &SVector<M::Scalar, NV>,
+        a: &SVector<M::Scalar, NV>,
+    ) -> SVector<M::Scalar, 6> {
+        six(m.acceleration(t, q, v, a))
+    }
+
+    #[inline(always)]
+    fn jacobian(self, m: &M, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> SMatrix<M::Scalar, 6, NV> {
+        m.jacobian(t, q)
+    }
 }
 
 /// The frames of a mechanism with `NQ` configuration numbers and `NV` velocities by number, for code that learns at run time

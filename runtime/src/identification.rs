@@ -32,7 +32,7 @@ pub trait Identifiable<const N: usize, const B: usize> {
 }
 
 /// Why base parameters cannot be put back.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum PutBackError {
     /// A link has no mass properties of a body to begin with: a mass that is not positive, or an inertia that no body has.
@@ -47,6 +47,13 @@ pub enum PutBackError {
     },
     /// A base parameter is infinite or NaN.
     NotFinite,
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for PutBackError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for PutBackError {

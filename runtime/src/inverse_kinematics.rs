@@ -69,7 +69,7 @@ pub struct Reached<T, const NQ: usize> {
 }
 
 /// Why no configuration was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum Unreached<T, const NQ: usize> {
     /// There is no frame of this number.
     UnknownFrame {
@@ -94,6 +94,13 @@ pub enum Unreached<T, const NQ: usize> {
     },
 }
 
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl<T, const NQ: usize> core::fmt::Debug for Unreached<T, NQ> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        core::fmt::Display::fmt(self, f)
+    }
+}
+
 impl<T, const NQ: usize> core::fmt::Display for Unreached<T, NQ> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
@@ -112,7 +119,7 @@ impl<T, const NQ: usize> core::fmt::Display for Unreached<T, NQ> {
     }
 }
 
-impl<T: core::fmt::Debug, const NQ: usize> core::error::Error for Unreached<T, NQ> {}
+impl<T, const NQ: usize> core::error::Error for Unreached<T, NQ> {}
 
 /// The settings of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -86,7 +86,7 @@ pub use derivatives::{ByMotion, Derivatives, LinearMotion, RheonomicDerivatives}
 #[doc(inline)]
 pub use drawing::Drawn;
 pub use first_order::{Extended, FirstOrder, FirstOrderDerivatives, OutputsByStates, RateDerivatives};
-pub use frame::{FrameIndex, Frames, NamedFrame, index_of, placement_difference};
+pub use frame::{FrameIndex, FrameName, Frames, NamedFrame, index_of, placement_difference};
 pub use inertial::{Inertial, Placement};
 #[doc(inline)]
 pub use lanes::Lanes;
@@ -180,7 +180,7 @@ pub mod __private {
     pub use crate::arithmetic::{Arithmetic, Compiled, Vector};
     pub use crate::constraint::{
         ConstraintCurvature, Elimination, InputDerivatives, Loops, Motion, MotionDerivatives, Responses,
-        Structure, assemble, careful_dynamics, careful_response, constrained_derivatives,
+        Structure, assemble, assembly_mode, careful_dynamics, careful_response, constrained_derivatives,
         constrained_second_derivatives, independent_solution, least_solution, nearly_singular,
         pressing_solution, regular_solution, slipping_response, slipping_solution, stabilized_derivatives,
         with_curvature,
@@ -189,7 +189,7 @@ pub mod __private {
     pub use crate::contact::held_derivatives;
     pub use crate::derivatives::acceleration_derivatives;
     pub use crate::first_order::columns;
-    pub use crate::frame::{Message, identity_placement, join, origin, placement, six, sum, twist};
+    pub use crate::frame::{Index, Message, identity_placement, join, origin, placement, six, sum, twist};
     pub use crate::lanes::{Lanes, lane, lane_by_lane, set_lane, splat};
     pub use crate::lie::curvature::{
         ball_tangent_rate_second_derivatives, free_tangent_rate_second_derivatives,

@@ -154,7 +154,7 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         given: &SVector<Self::Scalar, NV>,
         _h: Self::Scalar,
     ) -> Result<Touched<Self::Scalar, NQ, NV>, ConstraintError> {
-        Ok(Touched { q: *q, v: free + given })
+        Ok(Touched::free(*q, free + given))
     }
 
     /// Hands the mechanism to `visitor` with the numbers of its contacts, where it has any; `None` where it has none, or where it stands

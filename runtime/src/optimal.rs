@@ -115,10 +115,17 @@ pub struct Policy<T, const NV: usize, const NU: usize> {
 }
 
 /// Why there is no best change of inputs: the costs are not convex in them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Indefinite {
     /// The input where the factorisation of the Hessian by inputs meets a pivot that is not positive.
     pub input: usize,
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl core::fmt::Debug for Indefinite {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        core::fmt::Display::fmt(self, f)
+    }
 }
 
 impl core::fmt::Display for Indefinite {

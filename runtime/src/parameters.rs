@@ -28,7 +28,7 @@ use core::fmt;
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct ParameterError {
     /// What is wrong with it.
     pub fault: Fault,
@@ -65,6 +65,13 @@ pub enum Fault {
     EmptyRange,
     /// It is an inertia that no body has: a principal moment is negative, or exceeds the sum of the others.
     Inertia,
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for ParameterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for ParameterError {

@@ -156,10 +156,11 @@ pub enum Overlaps {
 
 /// A simulation: first what is to be simulated and how, then the iterator over its samples.
 ///
-/// Made by [`simulate`]. The samples are the initial state, then one every [`sample_every`](Self::sample_every)
-/// seconds (or one per step of the integrator, or those [`asked for`](Self::sample_at)), one per event, and the last exactly at the end of the
-/// [`duration`](Self::duration). After an error the iterator ends. Changing a setting
-/// starts over. Nothing is allocated.
+/// Made by [`simulate`]. The samples are the initial state, then one every
+/// [`sample_every`](Self::sample_every) seconds (or one per step of the integrator, or those
+/// [`asked for`](Self::sample_at)), one per event (two per [`impact`](Self::impact)), and the last exactly at
+/// the end of the [`duration`](Self::duration). After an error the iterator ends. Changing a setting starts
+/// over. Nothing is allocated.
 #[must_use = "a simulation does nothing until its samples are asked for"]
 pub struct Simulation<'m, M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
 where
@@ -333,8 +334,10 @@ where
         self.with_event(Event::new(function, crossing, Report))
     }
 
-    /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. Its sample holds
-    /// the velocity after it, which constraints have changed to the nearest that fulfils them (they give impulses, too).
+    /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. It has two
+    /// samples of the same time: one before it, whose [`Sample::event`] is `None`, and one that reports the
+    /// event with the velocity after it, which constraints have changed to the nearest that fulfils them
+    /// (they give impulses, too).
     ///
     /// Nothing rests on the surface of an event. Where the impact stops the motion towards it (a plastic one) and the motion
     /// then goes on through, or impacts follow each other ever faster without end, the run ends with [`Error::Impacts`].

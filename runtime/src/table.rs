@@ -53,7 +53,7 @@ pub struct Table<const N: usize> {
 }
 
 /// Why figures are no table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
     /// An axis, counted from zero, has fewer than two points.
@@ -92,6 +92,13 @@ impl TableError {
             TableError::Size { .. } => "this table has not as many values as its grid has points",
             TableError::NotFinite { .. } => "a value of this table is not a finite number",
         }
+    }
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

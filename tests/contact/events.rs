@@ -246,3 +246,43 @@ fn a_block_rocks_as_housner_says() {
     }
     assert!(impacts >= 6, "{impacts}");
 }
+
+/// A ball that bounces has two samples for each impact: before it and after it, at the same time and place.
+#[test]
+fn impacts_have_samples_before_and_after() {
+    #[mechanism(gravity = -9.81 * z)]
+    struct Ball {
+        #[particle(mass = 0.1)]
+        ball: Particle,
+        #[joint(ground -> ball, along = z)]
+        height: Sleeve,
+        #[contact(ball, ground.plane(z), restitution = 0.5)]
+        bounce: Contact,
+    }
+    let fall = (2.0 / 9.81_f64).sqrt();
+    let run = simulate(&Ball {}).from([1.0], [0.0]).method(EventDriven::new()).duration(2.6 * fall);
+    let samples: Vec<_> = run.map(|sample| sample.unwrap()).collect();
+    let impacts: Vec<_> = samples.windows(2).filter(|pair| pair[0].t == pair[1].t).collect();
+    // Impacts after the times 1, 2 and 2.5 of the fall, with speeds that halve.
+    assert_eq!(impacts.len(), 3);
+    for (k, (pair, time)) in impacts.iter().zip([1.0, 2.0, 2.5]).enumerate() {
+        let speed = 9.81 * fall * 0.5_f64.powi(k as i32);
+        assert!((pair[0].t - time * fall).abs() < 1e-10);
+        assert!((pair[0].v[0] + speed).abs() < 1e-9 && (pair[1].v[0] - 0.5 * speed).abs() < 1e-9);
+        assert!(pair[0].q == pair[1].q && pair[0].q[0].abs() < 1e-12);
+    }
+    // So do impacts that are declared as events.
+    #[mechanism(gravity = -9.81 * z)]
+    struct Dropped {
+        #[particle(mass = 0.1)]
+        ball: Particle,
+        #[joint(ground -> ball, along = z)]
+        height: Sleeve,
+    }
+    let run = simulate(&Dropped {}).from([1.0], [0.0]).sample_every(10.0).duration(1.5 * fall);
+    let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
+    let samples: Vec<_> = run.map(|sample| sample.unwrap()).collect();
+    let events: Vec<_> = samples.iter().map(|sample| sample.event).collect();
+    assert_eq!(events, [None, None, Some(0), None]);
+    assert!(samples[1].t == samples[2].t && samples[1].v * -0.5 == samples[2].v);
+}

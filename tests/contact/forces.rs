@@ -1,5 +1,6 @@
 //! Forces at contacts in a state, and outputs that name them.
 
+use super::laws::Random;
 use linkwork::contact::{self, Touch};
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
@@ -240,4 +241,48 @@ fn contacts_that_contradict_each_other_are_errors() {
         &[Touch::Sticks],
     );
     assert_eq!(held.unwrap_err(), ConstraintError::Contact { constraint: "stop.from" });
+}
+
+/// A rod of 1 m and 1 kg that slides on its end, falling against its slip.
+#[mechanism(gravity = -9.81 * y)]
+struct Rod {
+    friction: f64,
+    #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
+    rod: Body,
+    #[joint(ground -> rod, about = z)]
+    pose: Planar,
+    #[contact(rod.at(0), ground.plane(y), friction = friction)]
+    tip: Contact,
+    #[output(contact_force(tip))]
+    force: Vector,
+}
+
+/// The normal acceleration of the end of a rod at the angle `θ` that slides with friction `μ` in the
+/// direction `s` is `a + p N` with `p m = 1 + 3 cos θ (cos θ + s μ sin θ)`. Where `p < 0 < −a` no finite
+/// force keeps it from the floor (Painlevé); where `p > 0` the force is `−a / p`.
+#[test]
+fn no_finite_force_is_an_error() {
+    let mut random = Random(3);
+    let mut jammed = 0;
+    for _ in 0..1000 {
+        let (angle, friction) = (0.8 + 0.6 * random.next(), 1.5 + 1.5 * random.next());
+        let slip = random.next();
+        let m = Rod { friction };
+        let (sine, cosine) = angle.sin_cos();
+        let (q, v) = ([0.0, 0.0, angle].into(), [slip, 0.0, 0.0].into());
+        // Friction is −s μ N along x: its moment about the centre turns the end up or down.
+        let answer = 1.0 + 3.0 * cosine * (cosine + slip.signum() * friction * sine);
+        let found = m.force(&q, &v);
+        if answer < -1e-3 {
+            jammed += 1;
+            assert!(matches!(found, Err(ConstraintError::Contact { constraint: "tip" })), "{found:?}");
+            assert!(contact::acting(&m, 0.0, &q, &v, &SVector::zeros()).is_err());
+        } else if answer > 1e-2 && slip.abs() > 1e-3 {
+            let press = 9.81 / answer;
+            let force = found.unwrap();
+            let expected = Vector3::new(-slip.signum() * friction * press, press, 0.0);
+            assert!((force - expected).amax() < 1e-6 * (1.0 + press), "{force} {expected}");
+        }
+    }
+    assert!(jammed > 50, "{jammed}");
 }

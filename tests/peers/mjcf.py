@@ -59,7 +59,7 @@ class Evaluated:
         numbers = np.concatenate([q, v, u, tau])
         self.process.stdin.write(" ".join(repr(float(x)) for x in numbers) + "\n")
         self.process.stdin.flush()
-        lines = [self.process.stdout.readline() for _ in range(4)]
+        lines = [self.process.stdout.readline() for _ in range(6)]
         return [np.array([float(x) for x in line.split()]) for line in lines]
 
     def close(self):

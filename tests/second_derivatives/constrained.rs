@@ -79,7 +79,7 @@ struct Driven {
     peg: Point,
     #[constraint(dot(r(lower.at(-0.7 * y) / peg), r(lower.at(-0.7 * y) / peg)) = 0.64)]
     string: Holonomic,
-    #[constraint(rate(elbow) - sin(shoulder) * rate(rail) = 0)]
+    #[constraint(rate(elbow) - 1 * sin(shoulder) * rate(rail) = 0)]
     gear: Nonholonomic,
     #[acts(on = cart, along = x)]
     push: Force,

@@ -11,8 +11,10 @@ struct Carrier {
     mass: f64,
     #[body(mass = 3, com = 0.1 * x - 0.2 * y, inertia = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]])]
     hull: Body,
-    #[body(mass = mass, com = 0.2 * z, inertia = diagonal(0.1, 0.2, 0.15 * mass))]
+    #[body(mass = mass, com = 0.2 * z, inertia = diagonal(0.1, 0.2, gyration * mass))]
     wheel: Body,
+    #[define(0.15)]
+    gyration: Scalar,
     #[joint(ground -> hull)]
     flight: Free,
     #[joint(hull.at(0.3 * x).rotated(y(0.4)) -> wheel, about = z)]

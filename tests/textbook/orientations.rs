@@ -137,7 +137,7 @@ struct Words {
     size: Scalar,
     #[output(unit(arrow), resolved_in = arm)]
     direction: Vector,
-    #[output(rate(pin) * pin + dot(cross(arm.x, arm.y), z))]
+    #[output(rate(pin) * pin + 1 * dot(cross(arm.x, arm.y), z))]
     mixed: Scalar,
     #[output(min(pin, 1) + max(pin, 1))]
     sum: Scalar,

@@ -2,13 +2,17 @@
 
 use crate::constrained::Metric;
 use crate::evaluate::{Evaluated, Values};
+use linkwork::nalgebra::DMatrix;
 use linkwork_compiler::mechanism::Chart;
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Velocities that miss a constraint by this part contradict it.
 const CONTRADICTION: f64 = 1e-6;
 /// Residuals of a configuration that lies on the constraints, m and rad.
 const SETTLED: f64 = 1e-12;
+/// Residuals of a configuration on the constraints from which whole turns were taken, m and rad.
+const UNWOUND: f64 = 1e-10;
 /// Steps of Newton's method.
 const ATTEMPTS: usize = 50;
 /// A step that must be shorter than this part of Newton's leads nowhere.
@@ -19,6 +23,10 @@ const DECREASE: f64 = 1e-4;
 const STEPS: u8 = 40;
 /// How often a mechanism is assembled from another beginning.
 const ASSEMBLIES: u8 = 100;
+/// The longest step of an angle, rad: from a beginning near an assembly mode the steps lead into this one.
+const LONGEST: f64 = 0.3;
+/// Determinants of rows of length one that count as zero.
+const SINGULAR: f64 = 1e-9;
 
 impl Evaluated<'_, '_> {
     /// Projects a state onto the constraints: the configuration, then the velocity. `None` where no state is near.
@@ -102,7 +110,7 @@ impl Evaluated<'_, '_> {
         for k in (0..q.len()).filter(|k| is_apart[*k]) {
             zero[k] = q[k];
         }
-        let Some(begin) = self.assembled(t, &zero, &is_apart, apart) else { return q.to_vec() };
+        let Some(begin) = self.assembled(t, (&zero, &zero), &is_apart, apart) else { return q.to_vec() };
         let mut at = begin.clone();
         for step in 1..=STEPS {
             let part = f64::from(step) / f64::from(STEPS);
@@ -118,9 +126,17 @@ impl Evaluated<'_, '_> {
         at
     }
 
-    /// A configuration on the constraints, from this one or from others that are more and more off in what is not held.
-    pub fn assembled(&self, t: f64, q: &[f64], given: &[bool], held: &[bool]) -> Option<Vec<f64>> {
-        (0..=ASSEMBLIES).find_map(|attempt| {
+    /// Returns a configuration on the constraints, from `q` or from others that are more and more off in what is not held: the
+    /// first whose angles are within half a turn of the guess, if there is one.
+    pub fn assembled(
+        &self,
+        t: f64,
+        (q, guess): (&[f64], &[f64]),
+        given: &[bool],
+        held: &[bool],
+    ) -> Option<Vec<f64>> {
+        let mut far = None;
+        let found = (0..=ASSEMBLIES).find_map(|attempt| {
             let mut from = q.to_vec();
             let size = 0.02 * f64::from(attempt);
             for (k, x) in from.iter_mut().enumerate().filter(|(k, _)| !given[*k]) {
@@ -128,8 +144,69 @@ impl Evaluated<'_, '_> {
             }
             self.normalise(&mut from).ok()?;
             self.configure(t, &mut from, held)?;
-            Some(from)
+            let found = self.unwound(t, guess, from);
+            let is_near = self.angles().all(|k| (found[k] - guess[k]).abs() <= PI + SETTLED);
+            if is_near {
+                return Some(found);
+            }
+            far.get_or_insert(found);
+            None
+        });
+        found.or(far)
+    }
+
+    /// Entries of a configuration that are angles.
+    fn angles(&self) -> impl Iterator<Item = usize> {
+        let units = self.model.units.configuration.iter().enumerate();
+        units.filter(|(_, unit)| *unit == "rad").map(|(k, _)| k)
+    }
+
+    /// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints hold without
+    /// these turns as well: all together, or else each by itself.
+    fn unwound(&self, t: f64, guess: &[f64], q: Vec<f64>) -> Vec<f64> {
+        let v = vec![0.0; self.model.nv()];
+        let without = |mut q: Vec<f64>, k: usize| {
+            q[k] -= 2.0 * PI * ((q[k] - guess[k]) / (2.0 * PI)).round();
+            q
+        };
+        let holds = |q: &[f64]| {
+            let left = self.called("constraint_residuals", Values { t, q, v: &v, ..Values::default() });
+            left.is_some_and(|left| left.iter().all(|x| x.abs() <= UNWOUND))
+        };
+        let all = self.angles().fold(q.clone(), without);
+        if all == q || holds(&all) {
+            return all;
+        }
+        self.angles().fold(q, |q, k| {
+            let next = without(q.clone(), k);
+            if holds(&next) { next } else { q }
         })
+    }
+
+    /// Returns the assembly mode of a configuration, as generated code computes it: the sign of the determinant of the
+    /// derivatives of the constraints by the coordinates that are not held; none where they do not determine one.
+    pub fn assembly_mode(&self, t: f64, q: &[f64], held: &[bool]) -> Option<i8> {
+        let v = vec![0.0; held.len()];
+        let state = Values { t, q, v: &v, ..Values::default() };
+        let all = self.model.constraints.len();
+        let open = self.model.holonomic();
+        let jacobian = self.called("constraint_jacobian", state)?;
+        let free: Vec<usize> = (0..held.len()).filter(|k| !held[*k]).collect();
+        let fixed: Vec<usize> = (0..held.len()).filter(|k| held[*k]).collect();
+        if open == 0 || open != free.len() {
+            return None;
+        }
+        let mut rows = DMatrix::from_fn(held.len(), held.len(), |i, j| match i.checked_sub(open) {
+            Some(k) if fixed[k] == j => 1.0,
+            None if !held[j] => jacobian[j * all + i],
+            _ => 0.0,
+        });
+        rows.row_iter_mut().for_each(|mut row| {
+            let length = row.norm();
+            row /= length;
+        });
+        let determinant = rows.determinant();
+        (determinant.abs() > SINGULAR).then(|| if determinant > 0.0 { 1 } else { -1 })
     }
 
     /// Brings a configuration onto the constraints by Newton's method, the next one in the metric of the mass matrix, without the
@@ -156,7 +233,12 @@ impl Evaluated<'_, '_> {
             let mass = self.by_joints(state, transposed(&self.by_joints(state, mass), held.len()));
             let (moved, _) = nearest(&mass, &jacobian, &target, held)?;
             let rates = self.rates_of_joints(q, &moved);
-            let mut part = 1.0;
+            // Steps of declared speeds have no unit that tells rotations.
+            let units = self.model.speeds.is_none().then_some(&self.model.units.velocities);
+            let rotations =
+                moved.iter().zip(units.into_iter().flatten()).filter(|(_, unit)| *unit == "rad/s");
+            let longest = rotations.fold(0.0_f64, |longest, (rotation, _)| longest.max(rotation.abs()));
+            let mut part = (LONGEST / longest).min(1.0);
             (*q, left) = loop {
                 let mut next: Vec<f64> = q.iter().zip(&rates).map(|(q, rate)| q + part * rate).collect();
                 self.normalise(&mut next).ok()?;

@@ -4,13 +4,16 @@ use crate::Stop;
 use crate::export::put;
 use crate::input::Input;
 use crate::names::Names;
-use crate::written::{self, number, vector};
+use crate::written::{self, Role, number, vector};
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{
-    Body, ConstraintKind, Description, Drive, DriveLaw, DriveOn, Endpoint, Expr, GROUND, Inertias, Joint,
-    JointKind, Limit,
+    Body, ConstraintKind, Description, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, GROUND, Inertias,
+    Joint, JointKind, Limit, Name, Wrench,
 };
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -49,6 +52,8 @@ struct Struct<'a> {
     links: Names,
     joints: Names,
     others: Names,
+    /// Lengths of cables that do not change.
+    constant: BTreeSet<String>,
     fields: String,
     /// What is different from the file.
     notes: Vec<String>,
@@ -65,7 +70,8 @@ impl<'a> Struct<'a> {
         let links = taken.add(description.bodies.iter().map(|body| &*body.name.text), "link");
         let joints = taken.add(description.joints.iter().map(|joint| &*joint.name.text), "joint");
         let (fields, notes, renamed) = (String::new(), Vec::new(), Vec::new());
-        let mut made = Struct { description, links, joints, others: taken, fields, notes, renamed };
+        let constant = constant_lengths(description);
+        let mut made = Struct { description, links, joints, others: taken, constant, fields, notes, renamed };
         let links =
             description.bodies.iter().map(|body| ("link", &body.name.text, made.links.of(&body.name.text)));
         let joints = description
@@ -126,6 +132,7 @@ impl<'a> Struct<'a> {
         }
         let file = input.file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let mut text = format!("use linkwork::prelude::*;\n\n/// From `{file}`.\n");
+        self.notes.dedup();
         let aside: Vec<String> =
             d.left_out.iter().chain(&self.notes).map(|line| line.replace('\n', " ")).collect();
         if !aside.is_empty() {
@@ -250,26 +257,79 @@ impl<'a> Struct<'a> {
                 let on = self.joints.of(&joint.text);
                 let kind = push(self.kind(&joint.text));
                 self.named(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
-            } else if let DriveOn::Length(length) = &drive.on {
-                let on = self.expression(length);
+            } else if let Some(on) = self.length(drive) {
                 self.named(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), "Force");
-            } else if let DriveOn::Wrench(_) = &drive.on {
-                self.notes
-                    .push(format!("`{}`, which acts at a point of a body, is left out", drive.name.text));
             } else {
                 let name = self.others.fresh(&drive.name.text, "input");
                 self.rename("input", &drive.name.text, &name);
                 let _ = writeln!(self.fields, "    {name}: Input,");
-                for (joint, weight) in drive.on.terms() {
-                    let (on, kind) = (self.joints.of(&joint.text), push(self.kind(&joint.text)));
-                    let attribute = format!("#[acts(on = {on}, value = {} * {name})]", number(*weight));
-                    self.element(&attribute, &format!("{name}_on_{on}"), kind);
+                if let DriveOn::Wrench(wrench) = &drive.on {
+                    self.add_wrench(wrench, &name, &name);
                 }
-                self.notes.push(format!(
-                    "the input `{name}` comes after those that act on one joint without a gear"
-                ));
             }
         }
+    }
+
+    /// Returns the length or the weighted sum of coordinates that a drive acts on; `None` if it does not change with the motion, and for
+    /// a drive at a point of a body.
+    fn length(&self, drive: &Drive) -> Option<String> {
+        match &drive.on {
+            DriveOn::Length(length) => {
+                (!self.constant.contains(&drive.name.text)).then(|| self.expression(length))
+            }
+            DriveOn::Sum(terms) => {
+                let terms = terms.iter().filter(|(_, weight)| *weight != 0.0);
+                let term = |(joint, weight): &(Name, f64)| {
+                    format!("{} * {}", number(*weight), self.joints.of(&joint.text))
+                };
+                terms.map(term).reduce(|sum, term| format!("{sum} + {term}"))
+            }
+            DriveOn::Wrench(_) => None,
+        }
+    }
+
+    /// Adds the force and the torque of a wrench times a factor.
+    fn add_wrench(&mut self, wrench: &Wrench, name: &str, factor: &str) {
+        let Some((point, body)) = self.body_of(wrench, name) else { return };
+        for (kind, on, vector) in [("Force", &point, wrench.force), ("Torque", &body, wrench.torque)] {
+            if vector != [0.0; 3] {
+                let value = vector_in_axes(vector, &body);
+                let attribute = format!("#[acts(on = {on}, value = {factor} * ({value}))]");
+                self.element(&attribute, &format!("{name}_{}", kind.to_ascii_lowercase()), kind);
+            }
+        }
+    }
+
+    /// Adds damping of the rate that a wrench works on.
+    fn add_wrench_damping(&mut self, wrench: &Wrench, name: &str, damping: f64) {
+        let Some((point, body)) = self.body_of(wrench, name) else { return };
+        let mut rates = Vec::new();
+        if wrench.force != [0.0; 3] {
+            rates.push(format!("dot(v({point} / ground / ground), {})", vector_in_axes(wrench.force, &body)));
+        }
+        if wrench.torque != [0.0; 3] {
+            rates.push(format!("dot(omega({body} / ground), {})", vector_in_axes(wrench.torque, &body)));
+        }
+        if !rates.is_empty() {
+            let rate = rates.join(" + ");
+            let loss = format!("#[dissipation({} * pow({rate}, 2))]", number(damping / 2.0));
+            self.named(&loss, ("element", name), "Rayleigh");
+        }
+    }
+
+    /// Returns the point that a wrench acts at, and its body; notes a wrench with a reaction on another body, which is left out.
+    fn body_of(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
+        if wrench.against.is_some() {
+            self.notes.push(format!("`{name}`, which acts between points of two bodies, has no effect here"));
+            return None;
+        }
+        let body = match &wrench.on.kind {
+            ExprKind::Method(body, ..) => body.name(),
+            _ => wrench.on.name(),
+        };
+        let body = body.filter(|body| *body != GROUND)?;
+        let point = written::place(&wrench.on, &|name| self.links.known(name));
+        Some((point, self.links.of(body)))
     }
 
     fn kind(&self, joint: &str) -> JointKind {
@@ -277,24 +337,31 @@ impl<'a> Struct<'a> {
         found.map_or(JointKind::Pin, |joint| joint.kind)
     }
 
-    /// Springs and their kin. On one joint, weights go into the figures.
+    /// Adds a spring or another element of a file. On one joint, its weight is a factor of the coefficients.
     fn drive(&mut self, drive: &Drive) {
-        let sum = || {
-            let term = |(joint, weight): &(linkwork_compiler::syntax::Name, f64)| {
-                (self.joints.of(&joint.text), number(*weight))
-            };
-            drive.on.terms().iter().map(term).collect::<Vec<_>>()
-        };
-        let terms = sum();
-        let name = drive.name.text.clone();
-        match &drive.on {
-            DriveOn::Sum(_) => {}
-            DriveOn::Length(length) => return self.on_length(&self.expression(length), &name, drive.law),
-            DriveOn::Wrench(_) => {
-                return self.notes.push(format!("`{name}`, which acts at a point of a body, is left out"));
-            }
+        let name = drive.name.text.as_str();
+        if matches!(drive.law, DriveLaw::Input(_)) {
+            return;
         }
-        if let [(joint, w)] = drive.on.terms() {
+        if let DriveOn::Wrench(wrench) = &drive.on {
+            match drive.law {
+                DriveLaw::Push(force) => self.add_wrench(wrench, name, &number(force)),
+                DriveLaw::Damper(damping) => self.add_wrench_damping(wrench, name, damping),
+                // No other law has an effect without a length.
+                _ => {}
+            }
+            return;
+        }
+        let Some(on) = self.length(drive) else {
+            return self
+                .notes
+                .push(format!("`{name}`, which acts on a length that does not change, is left out"));
+        };
+        // Friction is smooth in the rate of the sum.
+        let is_scaled = matches!(drive.law, DriveLaw::Friction(_));
+        if let [(joint, w)] = drive.on.terms()
+            && (w.abs() == 1.0 || !is_scaled)
+        {
             let (on, w, kind) = (self.joints.of(&joint.text), *w, self.kind(&joint.text));
             let (figures, element) = match drive.law {
                 DriveLaw::Slack { stiffness, range } => {
@@ -310,7 +377,7 @@ impl<'a> Struct<'a> {
                     };
                     (format!("stiffness = {}{free}", number(stiffness * w * w)), "Spring")
                 }
-                DriveLaw::Damper(damping) => (format!("damping = {}", number(damping * w * w)), "Dashpot"),
+                DriveLaw::Damper(damping) => (damper(damping * w * w), "Dashpot"),
                 DriveLaw::Friction(force) => (format!("coulomb = {}", number((force * w).abs())), "Friction"),
                 DriveLaw::Inerter(inertance) => {
                     (format!("inertance = {}", number(inertance * w * w)), "Inerter")
@@ -318,40 +385,19 @@ impl<'a> Struct<'a> {
                 DriveLaw::Push(force) => (format!("value = {}", number(force * w)), push(kind)),
                 DriveLaw::Input(_) => return,
             };
-            return self.named(&format!("#[acts(on = {on}, {figures})]"), ("element", &name), element);
+            return self.named(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
         }
-        let joined = |rate: bool| {
-            let one = |(joint, w): &(String, String)| {
-                if rate { format!("{w} * rate({joint})") } else { format!("{w} * {joint}") }
-            };
-            terms.iter().map(one).collect::<Vec<_>>().join(" + ")
-        };
-        match drive.law {
-            DriveLaw::Spring { stiffness, free } => {
-                let stretch = format!("({} - {})", joined(false), number(free));
-                let energy = format!("#[energy({} * {stretch} * {stretch})]", number(stiffness / 2.0));
-                self.named(&energy, ("element", &name), "Potential");
-            }
-            DriveLaw::Damper(damping) => {
-                let rate = format!("({})", joined(true));
-                let loss = format!("#[dissipation({} * {rate} * {rate})]", number(damping / 2.0));
-                self.named(&loss, ("element", &name), "Rayleigh");
-            }
-            DriveLaw::Input(_) => {}
-            DriveLaw::Slack { .. } | DriveLaw::Friction(_) | DriveLaw::Inerter(_) | DriveLaw::Push(_) => {
-                self.notes.push(format!("`{name}`, which acts on several joints, is left out"));
-            }
-        }
+        self.on_length(&on, name, drive.law);
     }
 
-    /// Springs and their kin on the length of a cable.
+    /// Adds a spring or another element on the length of a cable, or on a sum of coordinates.
     fn on_length(&mut self, on: &str, name: &str, law: DriveLaw) {
         let (figures, element) = match law {
             DriveLaw::Spring { stiffness, free } => {
                 (format!("stiffness = {}, free_length = {}", number(stiffness), number(free)), "Spring")
             }
             DriveLaw::Slack { stiffness, range } => (slack(stiffness, range), "Spring"),
-            DriveLaw::Damper(damping) => (format!("damping = {}", number(damping)), "Dashpot"),
+            DriveLaw::Damper(damping) => (damper(damping), "Dashpot"),
             DriveLaw::Friction(force) => (format!("coulomb = {}", number(force)), "Friction"),
             DriveLaw::Inerter(inertance) => (format!("inertance = {}", number(inertance)), "Inerter"),
             DriveLaw::Push(force) => (format!("value = {}", number(force)), "Force"),
@@ -379,13 +425,46 @@ impl<'a> Struct<'a> {
     }
 
     fn expression(&self, e: &Expr) -> String {
-        written::expression(e, &|name| self.joints.known(name).or_else(|| self.links.known(name)))
+        written::expression(e, &|name, role| match role {
+            Role::Body => self.links.known(name),
+            Role::Coordinate => self.joints.known(name).or_else(|| self.links.known(name)),
+        })
     }
 }
 
 /// A motor's type.
 fn push(kind: JointKind) -> &'static str {
     if kind == JointKind::Sleeve { "Force" } else { "Torque" }
+}
+
+/// Returns a vector in the axes of a body.
+fn vector_in_axes(vector: [f64; 3], body: &str) -> String {
+    let parts = vector.into_iter().zip(["x", "y", "z"]).filter(|(x, _)| *x != 0.0);
+    parts.map(|(x, axis)| format!("{} * {body}.{axis}", number(x))).collect::<Vec<_>>().join(" + ")
+}
+
+/// Returns the law of a damper; one that brings energy in is written by its force.
+fn damper(damping: f64) -> String {
+    match damping < 0.0 {
+        true => format!("force = {} * speed", number(damping)),
+        false => format!("damping = {}", number(damping)),
+    }
+}
+
+/// Returns the names of the lengths among the drives that do not change with the motion: nothing on them has an effect.
+fn constant_lengths(description: &Description) -> BTreeSet<String> {
+    let is_length = |drive: &&Drive| matches!(drive.on, DriveOn::Length(_));
+    let lengths: Vec<&Drive> = description.drives.iter().filter(is_length).collect();
+    // A force of another magnitude on each length tells which of them the model has.
+    let push =
+        |(k, drive): (usize, &&Drive)| Drive { law: DriveLaw::Push(k as f64 + 1.0), ..(*drive).clone() };
+    let probe = Description { drives: lengths.iter().enumerate().map(push).collect(), ..description.clone() };
+    let graph = Graph::new();
+    let Some(model) = build_model(&probe, &graph, &mut Diagnostics::new()) else { return BTreeSet::new() };
+    let forces: Vec<f64> = model.loads.iter().filter_map(|load| load.force.value()).collect();
+    let is_constant = |k: usize| !forces.contains(&(k as f64 + 1.0));
+    let names = lengths.iter().enumerate().filter(|(k, _)| is_constant(*k));
+    names.map(|(_, drive)| drive.name.text.clone()).collect()
 }
 
 /// The energy of a spring that is free in a range.

@@ -160,6 +160,25 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         a
     }
 
+    /// Checks that the functions which accelerations are computed with exist.
+    ///
+    /// # Errors
+    ///
+    /// An internal error that names a missing function.
+    pub fn require_dynamics(&self) -> Result<(), Stop> {
+        let laws: &[&str] = match self.is_constrained() {
+            false => &["forward_dynamics"],
+            true => &["mass_matrix", "bias_forces", "constraint_jacobian", "constraint_bias"],
+        };
+        let rates: Vec<String> = self.states.iter().map(|(name, _)| rate_of(name)).collect();
+        let names =
+            laws.iter().copied().chain(["generalized_forces"]).chain(rates.iter().map(String::as_str));
+        match names.into_iter().find(|name| self.find(name).is_none()) {
+            None => Ok(()),
+            Some(name) => Err(Stop::Failure(format!("internal error of Linkwork: no function `{name}`"))),
+        }
+    }
+
     fn find(&self, name: &str) -> Option<&Function> {
         self.output.functions.iter().find(|f| f.name == name)
     }
@@ -310,4 +329,45 @@ fn spin(q: &[f64], w: &[f64], rate: &mut [f64]) {
     rate[1] = 0.5 * (s * w[1] + z * w[0] - x * w[2]);
     rate[2] = 0.5 * (s * w[2] + x * w[1] - y * w[0]);
     rate[3] = -0.5 * (x * w[0] + y * w[1] + z * w[2]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use linkwork_compiler::diag::Diagnostics;
+    use linkwork_compiler::expr::Graph;
+    use linkwork_compiler::{compile, read};
+    use std::path::Path;
+
+    /// A function that is missing is reported, not taken for zero.
+    #[test]
+    fn missing_functions_are_internal_errors() {
+        let cart = "#[body(mass = 2)] cart: Body, #[joint(ground -> cart, along = (x, y))] plane: Stage,
+            #[acts(on = plane.x)] push: Force,";
+        let held = format!("{cart} #[constraint(plane.y = 3 * t)] drive: Holonomic,");
+        let free = ["generalized_forces", "forward_dynamics"];
+        let constrained =
+            ["generalized_forces", "mass_matrix", "bias_forces", "constraint_jacobian", "constraint_bias"];
+        for (fields, names) in [(cart, &free[..]), (&held, &constrained)] {
+            let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
+            let item = format!("struct Machine {{ {fields} }}").parse().unwrap();
+            let source = read("".parse().unwrap(), item, Path::new(""), cx).unwrap();
+            let (model, mut output) = compile(&source, &graph, cx).unwrap();
+            let all = Evaluated::new(&model, &output, Vec::new(), Vec::new(), Vec::new());
+            assert!(all.require_dynamics().is_ok());
+            let state = Values { q: &[0.0; 2], v: &[0.0, 3.0], u: &[5.0], ..Values::default() };
+            let a = all.accelerations(state);
+            assert!((a[0] - 2.5).abs() < 1e-15 && a[1].abs() < 1e-15, "{a:?}");
+            for name in names {
+                let at = output.functions.iter().position(|f| f.name == *name).unwrap();
+                let removed = output.functions.remove(at);
+                let left = Evaluated::new(&model, &output, Vec::new(), Vec::new(), Vec::new());
+                let Err(Stop::Failure(message)) = left.require_dynamics() else {
+                    panic!("{name} is not missed")
+                };
+                assert_eq!(message, format!("internal error of Linkwork: no function `{name}`"));
+                output.functions.insert(at, removed);
+            }
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! `--table NAME=FILE`: the figures of a table, a line of comma-separated values for each point of its grid: the variables, then the value.
 
 use crate::Stop;
+use crate::table::text_of;
 use clap::ArgMatches;
 use linkwork::{Table, TableError};
 use linkwork_compiler::expr::Lookup;
@@ -142,10 +143,8 @@ pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Gri
             }
             file = before;
         }
-        let text = std::fs::read_to_string(Path::new(file.trim()))
-            .map_err(|error| fail(format!("cannot read {file}: {error}")))?;
-        let grid = Grid::parse(text.trim_start_matches('\u{feff}'), tables[at].1)
-            .map_err(|why| fail(format!("{file}: {why}")))?;
+        let text = text_of(Path::new(file.trim())).map_err(fail)?;
+        let grid = Grid::parse(&text, tables[at].1).map_err(|why| fail(format!("{file}: {why}")))?;
         found[at] = Some(Grid { smooth, extrapolated, ..grid });
     }
     let missing: Vec<String> = (tables.iter().zip(&found))

@@ -9,11 +9,12 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::syntax::FileFormat;
-use linkwork_compiler::{Source, compile, read};
+use linkwork_compiler::{Source, compile, derive_above, read};
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use syn::spanned::Spanned;
 
 /// What `#[mechanism]` is given, and where it stands.
 pub struct Input {
@@ -29,6 +30,8 @@ pub struct Input {
     pub folder: PathBuf,
     /// A robot file, not one of Rust.
     pub is_robot: bool,
+    /// The attribute, if a `#[derive(…)]` stands above it.
+    pub derive_above: Option<Span>,
 }
 
 /// A mechanism without mistakes.
@@ -97,6 +100,9 @@ impl Input {
 
     /// What the user wrote. Mistakes are in `cx`.
     pub fn read(&self, cx: &mut Diagnostics) -> Option<Source> {
+        if let Some(attribute) = self.derive_above {
+            cx.add(derive_above(attribute));
+        }
         read(self.arguments.clone(), self.item.clone(), &self.folder, cx)
     }
 
@@ -232,6 +238,10 @@ fn is_mechanism(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
 }
 
+fn is_derive(attribute: &syn::Attribute) -> bool {
+    attribute.path().segments.last().is_some_and(|segment| segment.ident == "derive")
+}
+
 /// The mechanisms of a Rust file, those in modules within it included. Paths in them are relative to the package.
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
@@ -253,8 +263,16 @@ fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
                             arguments = list.tokens.clone();
                         }
                     }
+                    let derive = item.attrs.iter().position(is_derive);
+                    let derive_above = item
+                        .attrs
+                        .iter()
+                        .enumerate()
+                        .find(|(k, attribute)| derive.is_some_and(|d| d < *k) && is_mechanism(attribute))
+                        .map(|(_, attribute)| attribute.span());
                     item.attrs.retain(|attribute| !is_mechanism(attribute));
                     found.push(Input {
+                        derive_above,
                         file: path.to_path_buf(),
                         arguments,
                         name: item.ident.to_string(),
@@ -304,6 +322,7 @@ fn from_robot(path: &Path) -> Result<Input, Stop> {
         name,
         folder,
         is_robot: true,
+        derive_above: None,
     })
 }
 

@@ -154,6 +154,7 @@ impl<'a, 'g> Start<'a, 'g> {
             };
             (0..self.u.len()).map(at).collect()
         };
+        self.mechanism.require_dynamics()?;
         let (nq, nv) = (self.q.len(), self.v.len());
         let begin = match self.mechanism.is_constrained() {
             true => self.begin()?,
@@ -226,9 +227,10 @@ impl<'a, 'g> Start<'a, 'g> {
             true => self.q.clone(),
             false => m.led(0.0, &self.q, in_q, &apart, &moving),
         };
-        let held = m.assembled(0.0, &near, &m.entries(&moving), &moving);
+        let from = (&near[..], &self.q[..]);
+        let held = m.assembled(0.0, from, &m.entries(&moving), &moving);
         let mut kept = held.is_some();
-        let q = held.or_else(|| m.assembled(0.0, &near, &m.entries(&apart), &apart));
+        let q = held.or_else(|| m.assembled(0.0, from, &m.entries(&apart), &apart));
         let q = q.ok_or_else(|| {
             Stop::Failure(format!(
                 "`{}` cannot be assembled: no configuration near the beginning fulfils the constraints; give another by `--set` or `--guess q.NAME=VALUE`",
@@ -259,7 +261,13 @@ impl<'a, 'g> Start<'a, 'g> {
             (true, false) => "zero does not fulfil the constraints; the motion begins near it,",
         };
         if !moves.is_empty() {
-            crate::note!("linkwork: {why} at {moves}");
+            let held = if kept { &moving } else { &apart };
+            let mode = m.assembly_mode(0.0, &begins[..self.q.len()], held).map_or(String::new(), |mode| {
+                format!(
+                    "; this is assembly mode {mode}, and `--guess q.NAME=VALUE` near another begins there"
+                )
+            });
+            crate::note!("linkwork: {why} at {moves}{mode}");
         }
         Ok(begins)
     }

@@ -1,6 +1,7 @@
 //! Comma-separated values with a line of names: inputs over time, and motions.
 
 use crate::Stop;
+use linkwork_compiler::import::with_plain_blanks;
 use std::path::Path;
 
 /// Columns of numbers with their names, by times that do not decrease.
@@ -14,17 +15,20 @@ pub struct Table {
 impl Table {
     /// Reads a file; one column is `t`.
     pub fn read(path: &Path) -> Result<Table, Stop> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Stop::Failure(format!("cannot read {}: {error}", path.display())))?;
-        // Spreadsheets begin their files with a byte order mark.
-        Table::parse(text.trim_start_matches('\u{feff}'))
-            .map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
+        let text = text_of(path).map_err(Stop::Failure)?;
+        Table::parse(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
     }
 
     fn parse(text: &str) -> Result<Table, String> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let head = lines.next().map(|(_, line)| fields(line)).unwrap_or_default();
-        let time = head.iter().position(|name| name == "t").ok_or("there is no column `t`")?;
+        let time = head.iter().position(|name| name == "t").ok_or_else(|| {
+            let found: Vec<String> = head.iter().map(|name| format!("`{name}`")).collect();
+            match found.is_empty() {
+                true => "there is no column `t`".to_string(),
+                false => format!("there is no column `t`, but {}", found.join(", ")),
+            }
+        })?;
         if let Some(twice) = (1..head.len()).find(|k| head[..*k].contains(&head[*k])) {
             return Err(format!("there are two columns `{}`", head[twice]));
         }
@@ -81,6 +85,13 @@ impl Table {
     }
 }
 
+/// Reads a file of numbers. Byte order marks, which spreadsheets write, and no-break spaces count as blanks.
+pub fn text_of(path: &Path) -> Result<String, String> {
+    let text =
+        std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    Ok(with_plain_blanks(&text).into_owned())
+}
+
 /// Fields of a line; those in quotes may have commas and doubled quotes.
 fn fields(line: &str) -> Vec<String> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
@@ -106,6 +117,25 @@ mod tests {
         assert_eq!(fields("t, q.a,\"b,\"\"c\"\"\"\r"), ["t", "q.a", "b,\"c\""]);
     }
 
+    /// Files of spreadsheets begin with a byte order mark, and may have no-break spaces.
+    #[test]
+    fn marks_and_strange_blanks_are_blanks() {
+        let file = std::env::temp_dir().join(format!("linkwork-table-{}.csv", std::process::id()));
+        for text in [
+            "\u{feff}t,u.a\r\n0,1\r\n2,3\r\n",
+            "t,\u{a0}u.a\n0,1\u{a0}\n\u{feff}2,3\n",
+            "\u{feff}\"t\",u.a\n0,1\n2,3",
+        ] {
+            std::fs::write(&file, text).expect("a file");
+            let table = Table::read(&file).unwrap_or_else(|_| panic!("{text:?}"));
+            assert_eq!(
+                (table.times.as_slice(), table.column("u.a")),
+                (&[0.0, 2.0][..], Some(&[1.0, 3.0][..]))
+            );
+        }
+        let _ = std::fs::remove_file(&file);
+    }
+
     #[test]
     fn values_lie_on_straight_lines() {
         let table = Table::parse("t,u.a\n0,1\n2,3\n2,5\n").unwrap_or_else(|why| panic!("{why}"));
@@ -118,6 +148,7 @@ mod tests {
     fn what_is_no_table_is_told() {
         for (text, part) in [
             ("", "no column `t`"),
+            ("time;u.a\n0;1\n", "there is no column `t`, but `time;u.a`"),
             ("t,a\n", "no values"),
             ("t,a\n0,x\n", "line 2: `x` is no number"),
             ("t,a\n0\n", "expected 2 values"),

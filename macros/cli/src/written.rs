@@ -15,15 +15,36 @@ pub fn angle(text: &str) -> String {
     if turns { format!("1 * {text}") } else { text.to_string() }
 }
 
-/// An expression; `rename` gives the fields of names.
-pub fn expression(e: &Expr, rename: &dyn Fn(&str) -> Option<String>) -> String {
-    let inner = |e: &Expr| expression(e, rename);
-    let list = |all: &[Expr]| all.iter().map(inner).collect::<Vec<_>>().join(", ");
+/// What a name in an expression stands for: a link and a joint of a file may share one.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// A body: in arguments of functions, and where it has a point or an axis.
+    Body,
+    /// The coordinate of a joint.
+    Coordinate,
+}
+
+/// Returns an expression of coordinates as text; `rename` gives the fields of names.
+pub fn expression(e: &Expr, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
+    spelled(e, Role::Coordinate, rename)
+}
+
+/// Returns a point of a body as text; `rename` gives the fields of bodies.
+pub fn place(e: &Expr, rename: &dyn Fn(&str) -> Option<String>) -> String {
+    spelled(e, Role::Body, &|name, _| rename(name))
+}
+
+fn spelled(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
+    let inner = |e: &Expr| spelled(e, role, rename);
+    let on_body = |e: &Expr| spelled(e, Role::Body, rename);
+    let list = |all: &[Expr]| all.iter().map(on_body).collect::<Vec<_>>().join(", ");
     match &e.kind {
         ExprKind::Number(x) => number(*x),
-        ExprKind::Name(name) => rename(name).unwrap_or_else(|| name.clone()),
-        ExprKind::Field(of, name) => format!("{}.{}", inner(of), name.text),
-        ExprKind::Method(of, name, arguments) => format!("{}.{}({})", inner(of), name.text, list(arguments)),
+        ExprKind::Name(name) => rename(name, role).unwrap_or_else(|| name.clone()),
+        ExprKind::Field(of, name) => format!("{}.{}", on_body(of), name.text),
+        ExprKind::Method(of, name, arguments) => {
+            format!("{}.{}({})", on_body(of), name.text, list(arguments))
+        }
         ExprKind::Call(name, arguments) => format!("{}({})", name.text, list(arguments)),
         ExprKind::Neg(of) => format!("-({})", inner(of)),
         ExprKind::Binary(op, a, b, _) => {
@@ -81,12 +102,12 @@ pub fn vector(e: &Expr) -> Option<String> {
 
 /// Gravity as a vector.
 pub fn gravity(e: &Expr) -> String {
-    vector(e).unwrap_or_else(|| expression(e, &|_| None))
+    vector(e).unwrap_or_else(|| expression(e, &|_, _| None))
 }
 
 /// A direction of unit length.
 pub fn axis(e: &Expr) -> String {
-    let Some(numbers) = values(e) else { return expression(e, &|_| None) };
+    let Some(numbers) = values(e) else { return expression(e, &|_, _| None) };
     let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
     // Along a coordinate axis the length is that entry's.
     let unit = numbers.map(|x| if x.abs() == size { x.signum() } else { x / size });
@@ -95,12 +116,12 @@ pub fn axis(e: &Expr) -> String {
     vector(&unit).unwrap_or_default()
 }
 
-/// An inertia: by its diagonal, if it has no more.
+/// Returns an inertia as text: by its moments, if it has no more and none is negative.
 pub fn inertia(e: &Expr, written: &str) -> String {
     let ExprKind::Array(rows) = &e.kind else { return written.to_string() };
     let Some(rows) = rows.iter().map(values).collect::<Option<Vec<_>>>() else { return written.to_string() };
     match rows.as_slice() {
-        [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0, 0.0, zz]] => {
+        [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0, 0.0, zz]] if xx.min(yy.min(*zz)) >= 0.0 => {
             format!("diagonal({}, {}, {})", number(*xx), number(*yy), number(*zz))
         }
         _ => written.to_string(),

@@ -62,6 +62,22 @@ fn mistakes_are_listed_with_their_places() {
     assert!(status == 1 && !here.join("pendulum.c").exists());
 }
 
+/// As rustc does it: the derives would see the elements.
+#[test]
+fn a_derive_above_the_attribute_is_an_error() {
+    let here = folder("derives");
+    let derive = "#[derive(Clone, Debug)]\n";
+    let above = format!("{derive}{}", PENDULUM.trim_start());
+    std::fs::write(here.join("above.rs"), &above).unwrap();
+    let (status, _, told) = linkwork(&here, &["check", "above.rs"]);
+    assert_eq!(status, 1);
+    assert!(told.contains("above.rs:2:1: error: `#[derive(…)]` stands above `#[mechanism]`"), "{told}");
+    assert!(told.contains("= help: write it below"), "{told}");
+    std::fs::write(here.join("below.rs"), PENDULUM.replace("pub struct", &format!("{derive}pub struct")))
+        .unwrap();
+    assert_eq!(linkwork(&here, &["check", "below.rs"]).0, 0);
+}
+
 #[test]
 fn what_cannot_be_done_is_said() {
     let here = folder("failures");

@@ -549,3 +549,118 @@ fn what_cannot_be_done_is_told() {
         assert!(status == 2 && out.is_empty() && told.contains(part), "{arguments:?}: {told}");
     }
 }
+
+/// A crank that turns at a given speed, with a piston on its rod: no degree of freedom is left.
+const DRIVEN: &str = "
+#[mechanism(gravity = -9.81 * y)]
+pub struct Driven {
+    pub speed: f64,
+    #[frame(ground, z(speed * t))]
+    turned: Frame,
+    #[body(mass = 1, com = 0.02 * x, inertia = rod(1, 0.04, x), frame = turned)]
+    crank: Body,
+    #[body(mass = 1, com = 0.06 * x, inertia = rod(1, 0.13, x))]
+    rod: Body,
+    #[body(mass = 0.5)]
+    piston: Body,
+    #[joint(crank.at(0.04 * x) -> rod, about = z)]
+    big_end: Pin,
+    #[joint(ground -> piston, along = x)]
+    cylinder: Sleeve,
+    #[joint(rod.at(0.13 * x) -> piston, about = z)]
+    small_end: Pin,
+    #[output(crank)]
+    loads: FreeBody,
+}
+";
+
+/// Every command takes a mechanism that time alone moves; it goes where it is driven.
+#[test]
+fn driven_mechanisms_follow_time() {
+    let here = folder("driven");
+    std::fs::write(here.join("driven.rs"), DRIVEN).unwrap();
+    let simulate = ["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"];
+    let (status, log, _) = linkwork(&here, &simulate);
+    assert_eq!(status, 0);
+    let rows = rows(&log);
+    assert_eq!(rows.len(), 9);
+    for row in rows {
+        let (sine, cosine) = (7.0 * row[0]).sin_cos();
+        let piston = 0.04 * cosine + (0.13_f64.powi(2) - (0.04 * sine).powi(2)).sqrt();
+        assert!((row[2] - piston).abs() < 1e-8, "{row:?}");
+    }
+    for command in [&["check", "driven.rs"][..], &["show", "driven.rs"], &["export", "c", "driven.rs"]] {
+        assert_eq!(linkwork(&here, command).0, 0, "{command:?}");
+    }
+    assert_eq!(linkwork(&here, &["view", "driven.rs", "--set", "speed=7", "--duration", "1"]).0, 0);
+    // Twice as fast and once cannot both be.
+    let twice = DRIVEN
+        .replace("#[output(crank)]\n    loads: FreeBody", "#[constraint(cylinder = 0.13)] stop: Holonomic");
+    std::fs::write(here.join("twice.rs"), twice).unwrap();
+    let simulate = ["simulate", "twice.rs", "--set", "speed=7", "--duration", "1"];
+    let (status, _, told) = linkwork(&here, &simulate);
+    assert!(status != 0 && told.contains("cannot be assembled"), "{told}");
+}
+
+/// A leg of Jansen's beast.
+const LEG: &str = "
+#[mechanism(gravity = -9.81 * y)]
+struct Leg {
+    #[body(mass = 0.1, com = 0.075 * x, inertia = rod(0.1, 0.15, x))]
+    crank: Body,
+    #[body(mass = 0.9, com = 0.2 * x + 0.13 * y, inertia = diagonal(0.02, 0.02, 0.03))]
+    upper: Body,
+    #[body(mass = 0.4, com = 0.1965 * x, inertia = rod(0.4, 0.393, x))]
+    lower: Body,
+    #[body(mass = 1.1, com = 0.2 * x + 0.2 * y, inertia = diagonal(0.03, 0.03, 0.05))]
+    foot: Body,
+    #[body(mass = 0.5, com = 0.25 * x, inertia = rod(0.5, 0.5, x))]
+    to_upper: Body,
+    #[body(mass = 0.6, com = 0.3095 * x, inertia = rod(0.6, 0.619, x))]
+    to_lower: Body,
+    #[body(mass = 0.4, com = 0.197 * x, inertia = rod(0.4, 0.394, x))]
+    coupling: Body,
+    #[joint(ground -> crank, about = z)]
+    shaft: Pin,
+    #[joint(ground.at(-0.38 * x - 0.078 * y) -> upper, about = z)]
+    upper_pivot: Pin,
+    #[joint(ground.at(-0.38 * x - 0.078 * y) -> lower, about = z)]
+    lower_pivot: Pin,
+    #[joint(lower.at(0.393 * x) -> foot, about = z)]
+    ankle: Pin,
+    #[joint(crank.at(0.15 * x) -> to_upper, about = z)]
+    upper_pin: Pin,
+    #[joint(crank.at(0.15 * x) -> to_lower, about = z)]
+    lower_pin: Pin,
+    #[joint(upper.at(0.0260987951807229 * x + 0.400149788067062 * y) -> coupling, about = z)]
+    knee: Pin,
+    #[joint(to_upper.at(0.5 * x) -> upper.at(0.415 * x), about = z)]
+    first: Pin,
+    #[joint(to_lower.at(0.619 * x) -> lower.at(0.393 * x), about = z)]
+    second: Pin,
+    #[joint(coupling.at(0.394 * x) -> foot.at(0.367 * x), about = z)]
+    third: Pin,
+}
+";
+
+/// Whatever is given of a leg, its angles are found within half a turn, and it is told which way it was assembled.
+#[test]
+fn legs_are_assembled_within_half_a_turn() {
+    let here = folder("leg");
+    std::fs::write(here.join("leg.rs"), LEG).unwrap();
+    for (given, wanted) in [
+        ("q.knee=2.787", [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.787]),
+        ("q.knee=-3.037", [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -3.037]),
+        ("q.ankle=-2.418", [0.0, 0.0, 0.0, -2.418, 0.0, 0.0, 0.0]),
+        ("q.lower_pin=-1.285", [0.0, 0.0, 0.0, 0.0, 0.0, -1.285, 0.0]),
+        ("q.shaft=-0.308", [-0.308, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+    ] {
+        let simulate = ["simulate", "leg.rs", "--set", given, "--duration", "0.01", "--every", "0.01"];
+        let (status, log, told) = linkwork(&here, &simulate);
+        assert!(status == 0 && told.contains("this is assembly mode "), "{given}: {told}");
+        let first = &rows(&log)[0];
+        for (angle, wanted) in first[1..8].iter().zip(wanted) {
+            assert!((angle - wanted).abs() < std::f64::consts::PI + 1e-9, "{given}: {first:?}");
+        }
+    }
+}

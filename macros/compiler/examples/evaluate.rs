@@ -3,9 +3,10 @@
 //! `cargo run -p linkwork-compiler --example evaluate -- FORMAT FILE [OPTION…]`
 //!
 //! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, as `"passive = ignore"`. Prints the names of
-//! configuration, velocities and inputs, tabs between them, and what is left out; then for each line `q v u τ` of numbers a line
-//! each with the mass matrix, the bias forces, the generalized forces and the accelerations, empty where there is none. Mistakes
-//! of the file go to the standard error. `tests/peers/run` compares what it prints with other programs.
+//! configuration, velocities and inputs, tabs between them, and what is left out; then for each line `q v u
+//! τ` of numbers a line each with the mass matrix, the bias forces, the generalized forces, the
+//! accelerations, and residuals and Jacobian of the constraints, empty where there is none. Errors of the
+//! file go to the standard error. `tests/peers/run` compares what it prints with other programs.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
@@ -16,8 +17,15 @@ use std::io::{BufRead, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What is printed of each state.
-const FUNCTIONS: [&str; 4] = ["mass_matrix", "bias_forces", "generalized_forces", "forward_dynamics"];
+/// Functions whose values are printed for each state.
+const FUNCTIONS: [&str; 6] = [
+    "mass_matrix",
+    "bias_forces",
+    "generalized_forces",
+    "forward_dynamics",
+    "constraint_residuals",
+    "constraint_jacobian",
+];
 
 type Failure = Box<dyn std::error::Error>;
 

@@ -31,6 +31,7 @@ use syntax::{Description, Mechanism};
 
 pub use derive::{derive, derive_with, equations, equations_latex};
 pub use source::{Source, read};
+pub use syntax::second_definition;
 
 /// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for each mistake.
 /// Files are looked up in `folder`.
@@ -70,10 +71,15 @@ pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: 
     let Some(source) = read(arguments, item, folder, &mut cx) else {
         return Emitted { tokens: cx.into_tokens(), text: String::new() };
     };
-    let mut mistake =
-        Diagnostic::new(proc_macro2::Span::call_site(), "`#[derive(…)]` stands above `#[mechanism]`");
-    mistake.help("write it below: there it sees the struct without its elements, which do not stay");
-    a_type_of_mistakes(&source, [mistake.tokens(), cx.into_tokens()].into_iter())
+    let error = derive_above(proc_macro2::Span::call_site());
+    a_type_of_mistakes(&source, [error.tokens(), cx.into_tokens()].into_iter())
+}
+
+/// The error for a `#[derive(…)]` above the attribute, which is at this span.
+pub fn derive_above(attribute: proc_macro2::Span) -> Diagnostic {
+    let mut error = Diagnostic::new(attribute, "`#[derive(…)]` stands above `#[mechanism]`");
+    error.help("write it below: there it sees the struct without its elements, which do not stay");
+    error
 }
 
 /// A mechanism as C99: the text of a source file and of its header. `None` with the reasons in `cx`.

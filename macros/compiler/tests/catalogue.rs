@@ -1,5 +1,6 @@
 //! What is generated is what the catalogue says, and a program that does not fit its row is no code.
 
+mod generated;
 mod mechanisms;
 
 use linkwork_compiler::catalogue::{self, Facts};
@@ -33,7 +34,7 @@ fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, 
 fn public(text: &str, name: &str) -> BTreeSet<String> {
     let file = syn::parse_file(text).unwrap();
     let mut found = BTreeSet::new();
-    for item in file.items {
+    for item in generated::items(file) {
         let syn::Item::Impl(item) = item else { continue };
         let own = matches!(&*item.self_ty, syn::Type::Path(path) if path.path.is_ident(name));
         let text = |tokens: &dyn quote::ToTokens| tokens.to_token_stream().to_string();

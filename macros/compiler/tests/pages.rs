@@ -1,7 +1,7 @@
 //! What pages for readers and lists of tests name is what the compiler has: joints, words that ask for functions, passes of programs.
 
 use linkwork_compiler::lower::pipeline::{DRAFT, FINISH};
-use linkwork_compiler::syntax::{Word, joint_kind};
+use linkwork_compiler::syntax::{ElementKind, Word, element_kind, joint_kind};
 use std::path::Path;
 
 /// Files, by their paths in the repository, and how `NAME` stands in each.
@@ -38,6 +38,28 @@ fn joints_are_listed() {
             ("macros/compiler/tests/oracle/features/source.rs", "(\"NAME\","),
             ("tests/random_tree/mod.rs", "\"NAME\""),
         ],
+    );
+}
+
+/// The guide, the runtime's tables and types, and for force elements the random mechanisms of the oracle.
+#[test]
+fn elements_are_listed() {
+    let names: Vec<String> = element_kind::names().map(ToString::to_string).collect();
+    assert!(names.iter().all(|name| ElementKind::of_name(name).is_some()));
+    check(
+        &names,
+        &[
+            ("runtime/guide/language.md", "[`NAME`](crate::elements::NAME)"),
+            ("runtime/src/elements.rs", "[`NAME`]"),
+        ],
+    );
+    let forces =
+        names.into_iter().filter(|name| matches!(ElementKind::of_name(name), Some(ElementKind::Force(_))));
+    // These two are tried against their closed forms alone.
+    let forces: Vec<String> = forces.filter(|name| name != "Friction" && name != "Gravity").collect();
+    check(
+        &forces,
+        &[("runtime/src/lib.rs", " NAME,"), ("macros/compiler/tests/oracle/features/source.rs", "\"NAME\"")],
     );
 }
 

@@ -1,6 +1,8 @@
 //! A mechanism with a mistake has every name that it would have without: nothing that uses it is told of a second mistake.
 //! What a mechanism does not have on purpose stands under a bound that says why.
 
+mod generated;
+
 use linkwork_compiler::expand;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -77,12 +79,12 @@ struct Generated {
     traits: BTreeSet<String>,
 }
 
-fn generated(arguments: &str, name: &str, fields: &str) -> Generated {
+fn code(arguments: &str, name: &str, fields: &str) -> Generated {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
     let mut all = Generated { present: Names::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
-    for item in file.items {
+    for item in generated::items(file) {
         if let Item::Impl(block) = item {
             all.read(&block);
         }
@@ -110,13 +112,111 @@ const UNSIZED: [&str; 12] = [
 fn signature(f: &syn::ImplItemFn) -> String {
     let (name, inputs, output) = (f.sig.ident.to_string(), &f.sig.inputs, &f.sig.output);
     // After a mistake it is not known which frames there are.
-    let text = quote::quote!((#inputs) #output).to_string().replace(":: linkwork :: FrameIndex < I >", "F");
+    let mut text = quote::quote!((#inputs) #output).to_string();
+    if let Some(start) = text.find("impl :: linkwork :: FrameName <") {
+        let end = text[start..].find('>').map_or(text.len(), |end| start + end + 1);
+        text.replace_range(start..end, "F");
+    }
     if !UNSIZED.iter().any(|start| name.starts_with(start)) {
         return text;
     }
     let is_size = |word: &str| word.trim_end_matches([']', ')']).parse::<usize>().is_ok();
     let words = text.split(' ').map(|word| if is_size(word) { "_" } else { word });
     words.collect::<Vec<_>>().join(" ")
+}
+
+/// Outputs of one function of the language each, in a mechanism that has something of every kind.
+const MEASURES: [(&str, &str, &str); 57] = [
+    ("atan2", "atan2(sin(hinge), 2)", "Scalar"),
+    ("degrees", "hinge + degrees(30)", "Scalar"),
+    ("pow", "pow(hinge, 3)", "Scalar"),
+    ("min", "min(hinge, 1)", "Scalar"),
+    ("max", "max(hinge, 1)", "Scalar"),
+    ("dot", "dot(arm.x, x)", "Scalar"),
+    ("cross", "cross(arm.x, x)", "Vector"),
+    ("norm", "norm(r(wing / arm))", "Scalar"),
+    ("unit", "unit(r(wing / arm))", "Vector"),
+    ("r", "r(wing / arm)", "Vector"),
+    ("v", "v(wing / ground / ground)", "Vector"),
+    ("a", "a(wing / ground / ground)", "Vector"),
+    ("omega", "omega(wing / ground)", "Vector"),
+    ("alpha", "alpha(wing / ground / ground)", "Vector"),
+    ("rate", "rate(hinge)", "Scalar"),
+    ("angle", "angle(arm.x, x, z)", "Scalar"),
+    ("project", "project(arm.x, x)", "Vector"),
+    ("momentum", "momentum(arm)", "Vector"),
+    ("angular_momentum", "angular_momentum(arm / ground)", "Vector"),
+    ("kinetic_energy", "kinetic_energy(arm)", "Scalar"),
+    ("moment_of_inertia", "moment_of_inertia(wing / arm, z)", "Scalar"),
+    ("center_of_mass", "center_of_mass((arm, wing) / ground)", "Vector"),
+    ("center_of_percussion", "center_of_percussion(arm / ground, z)", "Vector"),
+    ("instant_center", "instant_center(plate / ground)", "Vector"),
+    ("acceleration_center", "acceleration_center(plate / ground)", "Vector"),
+    ("screw_axis", "screw_axis(wing / ground)", "Vector"),
+    ("screw_pitch", "screw_pitch(wing / ground)", "Scalar"),
+    ("projector", "projector(arm.x) * x", "Vector"),
+    ("skew", "skew(arm.x) * x", "Vector"),
+    ("outer", "outer(arm.x, arm.y) * x", "Vector"),
+    ("rotation", "rotation(arm / ground) * x", "Vector"),
+    ("inertia", "inertia(arm / ground) * x", "Vector"),
+    ("identity", "identity() * arm.x", "Vector"),
+    ("transpose", "transpose(rotation(arm / ground)) * x", "Vector"),
+    ("trace", "trace(rotation(arm / ground))", "Scalar"),
+    ("curvature", "curvature(hinge * x + hinge * hinge * y, hinge)", "Scalar"),
+    ("torsion", "torsion(hinge * x + hinge * hinge * y + hinge * hinge * hinge * z, hinge)", "Scalar"),
+    ("cable", "cable(ground.at(3 * y) / arm, wing.sphere(0.1))", "Scalar"),
+    ("gradient", "gradient(dot(r(wing / ground), x) / wing)", "Vector"),
+    ("power", "power(coil)", "Scalar"),
+    ("reaction_force", "reaction_force(hinge)", "Vector"),
+    ("reaction_torque", "reaction_torque(hinge)", "Vector"),
+    ("contact_force", "contact_force(floor)", "Vector"),
+    ("contact_moment", "contact_moment(floor)", "Vector"),
+    ("density", "density(hinge)", "Scalar"),
+    ("pressure", "pressure(hinge)", "Scalar"),
+    ("temperature", "temperature(hinge)", "Scalar"),
+    ("speed_of_sound", "speed_of_sound(hinge)", "Scalar"),
+    ("angle_of_attack", "angle_of_attack(wing, wind)", "Scalar"),
+    ("sideslip", "sideslip(wing, wind)", "Scalar"),
+    ("heading", "heading(wing)", "Scalar"),
+    ("elevation", "elevation(wing)", "Scalar"),
+    ("bank", "bank(wing)", "Scalar"),
+    ("course", "course(wind)", "Scalar"),
+    ("flight_path", "flight_path(wind)", "Scalar"),
+    ("stability_axes", "stability_axes(wing, wind, [1, 2, 3])", "Vector"),
+    ("wind_axes", "wind_axes(wing, wind, [1, 2, 3])", "Vector"),
+];
+
+const MEASURED: &str = "command: Input,
+    #[body(mass = 1, com = x / 2, inertia = sphere(1, 1))] arm: Body,
+    #[body(mass = 1, inertia = sphere(1, 1))] wing: Body,
+    #[joint(ground -> arm, about = z)] hinge: Pin,
+    #[body(mass = 1, inertia = sphere(1, 1))] plate: Body,
+    #[joint(ground -> wing)] flight: Free,
+    #[joint(ground -> plate, about = z)] table: Planar,
+    #[acts(on = hinge, stiffness = 1)] coil: Spring,
+    #[acts(on = hinge, value = command)] motor: Torque,
+    #[contact(wing.sphere(1), ground.plane(z), friction = 0.3, torsional = 0.1)] floor: Contact,
+    #[define(v(wing / ground / ground))] wind: Vector,";
+
+/// An error elsewhere changes the arguments of no output, whichever function of the language it is made of.
+#[test]
+fn an_error_keeps_the_arguments_of_every_measure() {
+    let listed = include_str!("../src/resolve/functions.rs").lines();
+    let listed: Vec<&str> =
+        listed.filter_map(|line| line.trim().strip_prefix("(\"")?.split('"').next()).collect();
+    assert_eq!(listed, MEASURES.map(|(name, ..)| name));
+    for (function, value, kind) in MEASURES {
+        let fields = format!("{MEASURED} #[output({value})] measure: {kind},");
+        let item = format!("pub struct Measured {{ {fields} }}");
+        let messages = expand("".parse().unwrap(), item.parse().unwrap(), Path::new("")).tokens.to_string();
+        let error = messages.find("compile_error").map(|at| &messages[at..]);
+        assert_eq!(error, None, "{function}");
+        let whole = generated("", "Measured", &fields);
+        let failed = generated("", "Measured", &format!("{fields} {MISTAKE}"));
+        let of = |all: &Generated| all.present.get("Measured::measure").cloned();
+        assert!(of(&whole).is_some(), "{function}");
+        assert_eq!(of(&failed), of(&whole), "{function}");
+    }
 }
 
 /// The bound of what is absent: the only one over a lifetime.
@@ -160,16 +260,42 @@ impl Generated {
     }
 }
 
+/// What generated code alone calls is hidden from documentation, that of binaries included.
+#[test]
+fn internals_are_hidden() {
+    for (name, fields) in MECHANISMS {
+        for words in ["", WORDS] {
+            let item = format!("pub struct {name} {{ {fields} }}");
+            let emitted = expand(words.parse().unwrap(), item.parse().unwrap(), Path::new(""));
+            let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
+            for item in generated::items(file) {
+                let Item::Impl(ItemImpl { trait_: None, items, .. }) = item else { continue };
+                for item in items {
+                    let (ident, attributes) = match item {
+                        ImplItem::Fn(f) => (f.sig.ident.to_string(), f.attrs),
+                        ImplItem::Const(c) => (c.ident.to_string(), c.attrs),
+                        _ => continue,
+                    };
+                    let is_hidden =
+                        attributes.iter().any(|a| quote::quote!(#a).to_string() == "# [doc (hidden)]");
+                    assert!(is_hidden || !ident.starts_with("__"), "{name}, {words}: `{ident}` is shown");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_mistake_leaves_every_name() {
     for (name, fields) in MECHANISMS {
         for words in ["", "derivatives", "batch", WORDS] {
-            let whole = generated(words, name, fields);
-            let failed = generated(words, name, &format!("{fields} {MISTAKE}"));
+            let whole = code(words, name, fields);
+            let failed = code(words, name, &format!("{fields} {MISTAKE}"));
             for (function, arguments) in &whole.present {
                 assert_eq!(failed.present.get(function), Some(arguments), "{name}, {words}: `{function}`");
             }
-            let hidden = ["NamedFrame", "Evaluate", "Body"].map(|hidden| format!("{name}: {hidden}"));
+            let hidden =
+                ["NamedFrame", "Evaluate", "Body", "__Steps"].map(|hidden| format!("{name}: {hidden}"));
             let hidden =
                 hidden.into_iter().chain(["Evaluate", "Body"].map(|h| format!("Prepared{name}: {h}")));
             let wanted: BTreeSet<String> = whole.traits.iter().cloned().collect();
@@ -185,7 +311,7 @@ fn a_mistake_leaves_every_name() {
 fn every_word_is_named_by_what_needs_it() {
     let of = |name: &str| name.split_once("::").unwrap().1.to_string();
     for (name, fields) in MECHANISMS {
-        let (bare, all) = (generated("", name, fields), generated(WORDS, name, fields));
+        let (bare, all) = (code("", name, fields), code(WORDS, name, fields));
         // Whatever all words together give, without them either is there or says why it is not.
         for function in all.present.keys().filter(|function| function.starts_with(name)) {
             let known = bare.present.contains_key(function) || bare.absent.contains_key(function);
@@ -198,7 +324,7 @@ fn every_word_is_named_by_what_needs_it() {
         let one_less = WORDS.split(", ").filter(|_| ["CartPole", "FourBar"].contains(&name));
         for word in one_less {
             let others: Vec<&str> = WORDS.split(", ").filter(|other| *other != word).collect();
-            let without = generated(&others.join(", "), name, fields);
+            let without = code(&others.join(", "), name, fields);
             let lost = all.present.keys().filter(|function| !without.present.contains_key(*function));
             for function in lost.filter(|function| !function.starts_with("Prepared") || word != "prepare") {
                 let reason = without.absent.get(function).map(|reason| reason.to_lowercase());
@@ -231,7 +357,7 @@ fn every_word_is_named_by_what_needs_it() {
 
 #[test]
 fn kinematics_alone_say_what_they_lack() {
-    let kinematic = generated(
+    let kinematic = code(
         "inertia = none",
         "CartPole",
         "#[body] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,",
@@ -296,11 +422,11 @@ fn names(arguments: &str, name: &str, fields: &str) -> String {
     assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
     let mut by: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for item in file.items {
+    for item in generated::items(file) {
         let Item::Impl(block) = item else { continue };
         if let Some((path, _)) = &block.trait_ {
             let of = path.segments.last().unwrap().ident.to_string();
-            if !["NamedFrame", "Evaluate", "Body"].contains(&of.as_str()) {
+            if !["NamedFrame", "Evaluate", "Body", "__Steps"].contains(&of.as_str()) {
                 by.entry("traits".to_string()).or_default().insert(of);
             }
             continue;

@@ -1,6 +1,8 @@
 //! Generated code of small mechanisms, as a reviewer of a change of the compiler reads it. A difference is no mistake by itself:
 //! look at it, and write the files anew with `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test snapshots`.
 
+mod generated;
+
 use linkwork_compiler::expand;
 use proc_macro2::TokenTree;
 use quote::ToTokens;
@@ -166,9 +168,7 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
             "generalized_forces_derivatives",
             "forward_dynamics_second_derivatives",
             "validate",
-            "__link2_path_placement",
-            "__link2_path_motion",
-            "__link2_path_columns",
+            "__Steps::*",
             "Limits::*",
             "Mechanism::*",
             "Derivatives::*",
@@ -268,6 +268,7 @@ fn is_passed_on(function: &syn::ImplItemFn) -> bool {
 /// The code without documentation, without what only says what is missing, and without frames.
 fn shown(text: &str, functions: &[&str]) -> String {
     let mut file = syn::parse_file(text).unwrap();
+    file.items = generated::items(file.clone());
     file.items.retain_mut(|item| {
         let syn::Item::Impl(block) = item else { return false };
         let clause = block.generics.where_clause.to_token_stream().to_string();

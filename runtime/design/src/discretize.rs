@@ -144,12 +144,15 @@ impl StateSpace {
 }
 
 impl ZerosPolesGain {
-    /// Discretised by matching: zeros and poles become `e^{s h}`, zeros at infinity −1 but for one that stays there, and the
-    /// gain at rest is kept (with poles or zeros at rest, that at a tenth of Nyquist's frequency).
+    /// Discretises by matching poles and zeros: they become `e^{s h}`, zeros at infinity become −1 except for
+    /// one, which stays there, and the gain at low frequencies is kept. With poles or zeros at rest it is
+    /// that of their limit: `1 / s` becomes `h / (z − 1)`, and `1 / s²` becomes `h² (z + 1) / (2 (z − 1)²)`.
     ///
     /// # Errors
     ///
-    /// [`Error::Period`], [`Error::Improper`], [`Error::Time`] of a discrete one.
+    /// [`Error::Period`], [`Error::Improper`], [`Error::Time`] of a discrete one, [`Error::Singular`] where a
+    /// pole or a zero that is not at rest oscillates with a multiple of the sampling frequency, and looks
+    /// like one at rest.
     pub fn matched(&self, period: f64) -> Result<Self, Error> {
         check_period(period)?;
         if self.period.is_some() {
@@ -163,14 +166,27 @@ impl ZerosPolesGain {
         let mut zeros = map(&self.zeros);
         let excess = (denominator - numerator).saturating_sub(1);
         zeros.extend(std::iter::repeat_n(C::new(-1.0, 0.0), excess));
-        let mut matched = Self { zeros, poles: map(&self.poles), gain: 1.0, period: Some(period) };
-        let at_rest = |x: &C| x.norm() <= 1e-9 / period;
-        let s = if self.zeros.iter().chain(&self.poles).any(at_rest) {
-            C::new(0.1 * std::f64::consts::PI / period, 0.0)
-        } else {
-            C::new(0.0, 0.0)
+        // A factor `s − r` has the value `−r` at rest, its image at `z = 1` has `1 − e^{r h}`: their ratio,
+        // in the limit `h`.
+        let ratio = |root: &C| match root.norm() {
+            0.0 => C::new(period, 0.0),
+            _ => exponential_less_one(root * period) / root,
         };
-        matched.gain = (self.at(s) / matched.at((s * period).exp())).re;
-        Ok(matched)
+        let all = || self.zeros.iter().chain(&self.poles);
+        if all().any(|root| exponential_less_one(root * period).norm() < 1e-12 * (root * period).norm()) {
+            return Err(Error::Singular { what: "the gain of the matched system at rest" });
+        }
+        let mut gain = C::new(self.gain * (-(excess as f64)).exp2(), 0.0);
+        for k in 0..denominator {
+            gain *= ratio(&self.poles[k]);
+            gain /= self.zeros.get(k).map_or(C::new(1.0, 0.0), ratio);
+        }
+        Ok(Self { zeros, poles: map(&self.poles), gain: gain.re, period: Some(period) })
     }
+}
+
+/// `e^x − 1` without cancellation near zero.
+fn exponential_less_one(x: C) -> C {
+    let half = (0.5 * x.im).sin();
+    C::new(x.re.exp_m1() * x.im.cos() - 2.0 * half * half, x.re.exp() * x.im.sin())
 }

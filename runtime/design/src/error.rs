@@ -16,7 +16,7 @@ impl fmt::Display for Counted {
 }
 
 /// Why a result does not exist. Every variant names what is to blame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
     /// A matrix has another shape than the others ask for.
@@ -165,6 +165,13 @@ pub enum Error {
     },
     /// A picture could not be drawn.
     Picture(String),
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for Error {

@@ -25,46 +25,56 @@ impl FrequencyMap {
         if let Some(value) = [s.re, s.im].into_iter().find(|part| !part.is_finite()) {
             return Err(Error::Range { what: "a frequency", value });
         }
-        let n = self.h.nrows();
-        let mut m = CMatrix::from_fn(n, n, |i, j| {
-            let entry = C::new(-self.h[(i, j)], 0.0);
-            if i == j { entry + s } else { entry }
-        });
         let mut x = complex(&self.b);
-        for k in 0..n.saturating_sub(1) {
-            if m[(k + 1, k)].norm() > m[(k, k)].norm() {
-                m.swap_rows(k, k + 1);
-                x.swap_rows(k, k + 1);
-            }
-            let pivot = m[(k, k)];
-            if pivot.norm() == 0.0 {
-                return Err(Error::Singular { what: "s I − A, at a pole," });
-            }
-            let factor = m[(k + 1, k)] / pivot;
-            for j in k..n {
-                let above = m[(k, j)];
-                m[(k + 1, j)] -= factor * above;
-            }
-            for j in 0..x.ncols() {
-                let above = x[(k, j)];
-                x[(k + 1, j)] -= factor * above;
-            }
-        }
-        for i in (0..n).rev() {
-            if m[(i, i)].norm() == 0.0 {
-                return Err(Error::Singular { what: "s I − A, at a pole," });
-            }
-            for j in 0..x.ncols() {
-                let sum: C = (i + 1..n).map(|k| m[(i, k)] * x[(k, j)]).sum();
-                x[(i, j)] = (x[(i, j)] - sum) / m[(i, i)];
-            }
-        }
+        self.factors(s)?.solve(&mut x);
         Ok(complex(&self.c) * x + complex(&self.d))
     }
 
-    /// The direct way of a single channel: the response at an infinite frequency.
-    pub(crate) fn direct(&self) -> C {
-        self.d.iter().next().map_or(C::new(0.0, 0.0), |d| C::new(*d, 0.0))
+    /// `s I − A` as a product of row operations and a triangular matrix: Gauss' elimination of a Hessenberg
+    /// matrix.
+    fn factors(&self, s: C) -> Result<Factors, Error> {
+        let n = self.h.nrows();
+        let mut u = CMatrix::from_fn(n, n, |i, j| {
+            let entry = C::new(-self.h[(i, j)], 0.0);
+            if i == j { entry + s } else { entry }
+        });
+        let mut steps = Vec::with_capacity(n);
+        for k in 0..n.saturating_sub(1) {
+            let swapped = u[(k + 1, k)].norm() > u[(k, k)].norm();
+            if swapped {
+                u.swap_rows(k, k + 1);
+            }
+            let factor = u[(k + 1, k)] / u[(k, k)];
+            for j in k..n {
+                let above = u[(k, j)];
+                u[(k + 1, j)] -= factor * above;
+            }
+            steps.push((swapped, factor));
+        }
+        if (0..n).all(|k| u[(k, k)].norm() > 0.0) {
+            Ok(Factors { u, steps })
+        } else {
+            Err(Error::Singular { what: "s I − A, at a pole," })
+        }
+    }
+
+    /// A single channel at a complex frequency, with its slope and a bound of its rounding error.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Singular`] at a pole.
+    pub(crate) fn sample(&self, s: C) -> Result<Sample, Error> {
+        let factors = self.factors(s)?;
+        let (mut x, mut y) = (complex(&self.b), complex(&self.c));
+        factors.solve(&mut x);
+        factors.solve_left(&mut y);
+        let value = (complex(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
+        // Entries are known to rounding: how much an error of each changes the value.
+        let (size_x, size_y) = (x.norm(), y.norm());
+        let through = size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x;
+        let rounding = 4.0 * f64::EPSILON * (self.h.nrows() + 1) as f64;
+        let error = rounding * (through + self.d[(0, 0)].abs());
+        Ok(Sample { value, slope: -(y * x)[(0, 0)], error })
     }
 
     /// The response at a real frequency, rad/s: at `s = iω`, or `z = e^{iωh}`.
@@ -78,6 +88,61 @@ impl FrequencyMap {
         }
         self.at(boundary(self.period, frequency))
     }
+}
+
+/// The factors of a Hessenberg matrix.
+struct Factors {
+    u: CMatrix,
+    /// Whether rows `k` and `k + 1` are swapped, and the multiple of row `k` that is then subtracted from the
+    /// next.
+    steps: Vec<(bool, C)>,
+}
+
+impl Factors {
+    /// Solves `M X = R` in place.
+    fn solve(&self, x: &mut CMatrix) {
+        let n = self.u.nrows();
+        for (k, (swapped, factor)) in self.steps.iter().enumerate() {
+            if *swapped {
+                x.swap_rows(k, k + 1);
+            }
+            for j in 0..x.ncols() {
+                let above = x[(k, j)];
+                x[(k + 1, j)] -= factor * above;
+            }
+        }
+        for i in (0..n).rev() {
+            for j in 0..x.ncols() {
+                let sum: C = (i + 1..n).map(|k| self.u[(i, k)] * x[(k, j)]).sum();
+                x[(i, j)] = (x[(i, j)] - sum) / self.u[(i, i)];
+            }
+        }
+    }
+
+    /// Solves `y M = r` for a row in place.
+    fn solve_left(&self, y: &mut CMatrix) {
+        for j in 0..self.u.ncols() {
+            let sum: C = (0..j).map(|k| y[k] * self.u[(k, j)]).sum();
+            y[j] = (y[j] - sum) / self.u[(j, j)];
+        }
+        for (k, (swapped, factor)) in self.steps.iter().enumerate().rev() {
+            let below = y[k + 1];
+            y[k] -= factor * below;
+            if *swapped {
+                y.swap_columns(k, k + 1);
+            }
+        }
+    }
+}
+
+/// A response at one complex frequency.
+#[derive(Clone, Copy)]
+pub(crate) struct Sample {
+    pub value: C,
+    /// Its derivative with respect to the complex frequency.
+    pub slope: C,
+    /// Bound of what rounding of the matrices changes.
+    pub error: f64,
 }
 
 /// The point on the border of stability.

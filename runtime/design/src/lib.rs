@@ -14,6 +14,8 @@ pub use error::Error;
 pub use frequency::{FrequencyMap, FrequencyResponse, logarithmic};
 pub use margins::{GainMargin, Margins, PhaseMargin, StabilityMargin};
 pub use modes::Mode;
+/// The linear algebra library, in the version that this crate takes.
+pub use nalgebra;
 pub use norms::PeakGain;
 pub use polynomial::Polynomial;
 pub use regulator::{Kalman, Noise};
@@ -27,6 +29,7 @@ pub use structure::{KalmanRanks, Staircase};
 pub use transfer::{TransferFunction, ZerosPolesGain};
 
 mod connect;
+mod crossings;
 mod discretize;
 mod error;
 pub mod flight;
@@ -34,6 +37,7 @@ mod frequency;
 mod margins;
 pub mod matrices;
 pub mod mechanism;
+mod modal_sum;
 mod modes;
 mod norms;
 

@@ -1,11 +1,12 @@
 //! Margins of a loop.
 
-use crate::frequency::{FrequencyMap, boundary};
+use crate::frequency::{FrequencyMap, Sample, boundary};
 use crate::matrices::C;
-use crate::{Error, StateSpace, TransferFunction};
-use nalgebra::DMatrix;
+use crate::norms::Extreme;
+use crate::{Error, PeakGain, StateSpace, TransferFunction};
 
-/// Where a loop's response is real and negative: the factor that would bring it to the border of stability.
+/// A frequency at which a loop's response is real and negative, with the factor that brings the loop to the
+/// border of stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainMargin {
     /// The factor; below one it is a reduction.
@@ -21,7 +22,8 @@ impl GainMargin {
     }
 }
 
-/// Where a loop's magnitude is one: the lag that would bring it to the border of stability.
+/// A frequency at which a loop's magnitude is one, with the phase lag that brings the loop to the border of
+/// stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseMargin {
     /// Degrees, within ±180; negative ones are leads.
@@ -31,7 +33,7 @@ pub struct PhaseMargin {
 }
 
 impl PhaseMargin {
-    /// The delay that takes the margin up, s; negative margins count the way round.
+    /// The delay that uses up the margin, s; to a negative margin 360° are added.
     pub fn delay(&self) -> f64 {
         self.degrees.rem_euclid(360.0).to_radians() / self.frequency
     }
@@ -42,17 +44,19 @@ impl PhaseMargin {
 pub struct StabilityMargin {
     /// The distance: one over the peak of the sensitivity.
     pub distance: f64,
-    /// rad/s; infinite where high frequencies come near it.
+    /// rad/s; infinite if high frequencies approach the distance.
     pub frequency: f64,
 }
 
 /// All crossings of a loop under negative feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
-    /// At every frequency where the phase becomes 180°, from low to high; at rest too. A response that is real at all frequencies, as
-    /// that of `1 / s²`, has none but at rest.
+    /// One for every frequency where the phase crosses 180°, from low to high; at rest and at Nyquist's
+    /// frequency, too, where the response is real and negative. A response that is real at all frequencies,
+    /// as that of `1 / s²`, crosses nowhere.
     pub gain: Vec<GainMargin>,
-    /// At every frequency where the magnitude is one, from low to high.
+    /// One for every frequency where the magnitude crosses one, from low to high. A magnitude that is one at
+    /// all frequencies, as that of an all-pass, or only touches one crosses nowhere.
     pub phase: Vec<PhaseMargin>,
     /// The least distance from −1.
     pub stability: StabilityMargin,
@@ -109,49 +113,38 @@ pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) 
     if at_low.abs() < at_high.abs() { low } else { high }
 }
 
-/// The least value of `f` between neighbours of a point that is lower than both, by golden sections.
-fn least_between(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    const RATIO: f64 = 0.6180339887498949;
-    let (mut left, mut right) = (high - RATIO * (high - low), low + RATIO * (high - low));
-    let (mut at_left, mut at_right) = (f(left), f(right));
-    for _ in 0..120 {
-        if at_left < at_right {
-            (high, right, at_right) = (right, left, at_left);
-            left = high - RATIO * (high - low);
-            at_left = f(left);
-        } else {
-            (low, left, at_left) = (left, right, at_right);
-            right = low + RATIO * (high - low);
-            at_right = f(right);
-        }
-    }
-    0.5 * (low + high)
-}
+/// Part of a response that rounding may change; beyond it the value is not certain.
+const CERTAIN: f64 = 0.05;
 
-/// A loop's response, infinite at poles on the border.
+/// A loop's response.
 struct Loop {
     map: FrequencyMap,
     period: Option<f64>,
 }
 
 impl Loop {
-    fn at(&self, frequency: f64) -> C {
-        let infinite = C::new(f64::INFINITY, 0.0);
-        self.map.at(boundary(self.period, frequency)).map_or(infinite, |m| m[(0, 0)])
+    /// The response and its slope by the frequency; `None` at a pole.
+    fn at(&self, frequency: f64) -> Option<Sample> {
+        let s = boundary(self.period, frequency);
+        let turn = self.period.map_or(C::new(0.0, 1.0), |h| C::new(0.0, h) * s);
+        self.map.sample(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
     }
 
-    /// Frequencies where `f` changes its sign from one of the grid to the next; `response` is that on the grid.
-    fn crossings(&self, grid: &[f64], response: &[C], f: impl Fn(C) -> f64) -> Vec<f64> {
-        let of = |w: f64| f(self.at(w));
-        let values: Vec<f64> = response.iter().map(|value| f(*value)).collect();
+    /// Frequencies where `f` changes its sign from one of the grid to the next. Where rounding decides the
+    /// sign, it is none.
+    fn crossings(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
+        let value = |w: f64| self.at(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
-        for k in 1..grid.len() {
-            let (before, after) = (values[k - 1], values[k]);
-            if before.is_finite() && after.is_finite() && before * after < 0.0 {
-                found.push(root_between(of, grid[k - 1], grid[k]));
-            } else if after == 0.0 {
-                found.push(grid[k]);
+        let mut before: Option<(f64, f64)> = None;
+        for (w, sample) in grid.iter().zip(samples) {
+            let here = f(sample.value);
+            if here.is_nan() || here.abs() <= sample.error {
+                continue;
             }
+            if let Some((last, _)) = before.filter(|(_, there)| there * here < 0.0) {
+                found.push(root_between(value, last, *w));
+            }
+            before = Some((*w, here));
         }
         found
     }
@@ -177,140 +170,67 @@ impl StateSpace {
     pub fn margins(&self) -> Result<Margins, Error> {
         self.check_single()?;
         let open = Loop { map: self.frequency_map()?, period: self.period };
-        let known = if self.period.is_none() { self.margin_frequencies() } else { None };
-        let grid = match &known {
-            Some((grid, _)) => grid.clone(),
-            None => self.margin_grid()?,
+        let (grid, samples): (Vec<f64>, Vec<Sample>) =
+            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.at(w)?))).unzip();
+        let crosses = |frequency: f64| {
+            let Sample { value, error, .. } = open.at(frequency)?;
+            // At a pole or a zero on the border the sign changes, too, and the value is rounding.
+            let is_certain = error <= CERTAIN * value.norm();
+            let is_negative = value.re < 0.0 && value.im.abs() <= 1e-6 * value.norm();
+            (is_certain && is_negative).then_some(GainMargin { factor: -1.0 / value.re, frequency })
         };
-        let response: Vec<C> = grid.iter().map(|w| open.at(*w)).collect();
-        let mut gain = Vec::new();
-        let mut take = |frequency: f64, value: C| {
-            if value.re < 0.0 && value.re.is_finite() {
-                gain.push(GainMargin { factor: -1.0 / value.re, frequency });
-            }
-        };
-        let at_rest = open.at(0.0);
-        take(0.0, at_rest);
-        // Where the response is real at all frequencies, as that of 1 / s², none of them is a crossing.
-        let is_real =
-            response.iter().filter(|x| x.norm().is_finite()).all(|x| x.im.abs() <= 1e-12 * x.norm());
-        let crossings = if is_real { Vec::new() } else { open.crossings(&grid, &response, |x| x.im) };
-        for w in crossings {
-            let value = open.at(w);
-            // A pole on the border changes the sign, too.
-            if value.im.abs() <= 1e-6 * value.norm() {
-                take(w, value);
-            }
-        }
-        if let Some(h) = self.period {
-            let w = std::f64::consts::PI / h;
-            take(w, C::new(open.at(w).re, 0.0));
-        }
-        let phase = open.crossings(&grid, &response, |x| x.norm().ln());
-        let phase = phase
-            .into_iter()
-            .map(|w| PhaseMargin { degrees: (-open.at(w)).arg().to_degrees(), frequency: w });
-        gain.dedup_by(|a, b| (a.frequency - b.frequency).abs() <= 1e-9 * b.frequency);
-        let stability = match known {
-            Some((_, nearest)) => open.stability_at(nearest),
-            None => open.stability(&grid, &response),
-        };
-        Ok(Margins { gain, phase: phase.collect(), stability })
+        let ends = [0.0, self.highest_frequency()];
+        let crossings = open.crossings(&grid, &samples, |x| x.im);
+        let all = ends[..1].iter().chain(&crossings).chain(&ends[1..]);
+        let gain = all.filter(|w| w.is_finite()).filter_map(|w| crosses(*w)).collect();
+        let phase = open.crossings(&grid, &samples, |x| x.norm() - 1.0).into_iter();
+        let phase = phase.filter_map(|frequency| {
+            let degrees = (-open.at(frequency)?.value).arg().to_degrees();
+            Some(PhaseMargin { degrees, frequency })
+        });
+        Ok(Margins { gain, phase: phase.collect(), stability: self.stability_margin(&open)? })
     }
 
-    /// Frequencies close together, over all that the system does and eight decades beyond, where a small or a large gain alone
-    /// crosses one.
+    /// Frequencies between all at which the response is real or its magnitude one, from low to high.
     fn margin_grid(&self) -> Result<Vec<f64>, Error> {
-        let grid = self.natural_frequencies(1500)?;
-        let (Some(first), Some(last)) = (grid.first().copied(), grid.last().copied()) else {
-            return Ok(grid);
+        let mut points = self.root_frequencies()?;
+        points.extend(self.level_frequencies(1.0)?);
+        points.extend(self.real_frequencies()?);
+        points.sort_by(f64::total_cmp);
+        points.dedup_by(|a, b| *a - *b <= 1e-12 * *b);
+        let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
+            return Ok(Vec::new());
         };
-        let below = (1..=200).rev().map(|k| first * 10f64.powf(-f64::from(k) / 25.0));
-        let above = (1..=200).map(|k| last * 10f64.powf(f64::from(k) / 25.0));
-        let above = above.filter(|_| self.period.is_none());
-        Ok(below.chain(grid.iter().copied()).chain(above).collect())
+        let top = self.highest_frequency();
+        points.insert(0, 0.01 * first);
+        points.push(if top.is_finite() { top } else { 100.0 * last });
+        let between = points.windows(2).flat_map(|pair| {
+            let (low, high) = (pair[0], pair[1]);
+            let middle = (low * high).sqrt();
+            if high > 8.0 * low { vec![2.0 * low, middle, 0.5 * high] } else { vec![middle] }
+        });
+        Ok(between.collect())
     }
 
-    /// Frequencies between all crossings of a continuous system, and where the sensitivity `1 / (1 + G)` is largest. The magnitude
-    /// is one at imaginary eigenvalues of a Hamiltonian matrix, and the response is real at the imaginary zeros of
-    /// `G(s) − G(−s)`. `None` where these are not to be had: of direct ways of magnitude one, or a sensitivity with poles on the
-    /// border.
-    fn margin_frequencies(&self) -> Option<(Vec<f64>, f64)> {
-        const NEAR: f64 = 1e-3;
-        let n = self.order();
-        let mut found = self.level_crossings(1.0, NEAR).ok()?;
-        let mut a = DMatrix::zeros(2 * n, 2 * n);
-        a.view_mut((0, 0), (n, n)).copy_from(&self.a);
-        a.view_mut((n, n), (n, n)).copy_from(&-&self.a);
-        let (mut b, mut c) = (DMatrix::zeros(2 * n, 1), DMatrix::zeros(1, 2 * n));
-        for k in [0, n] {
-            b.view_mut((k, 0), (n, 1)).copy_from(&self.b);
-            c.view_mut((0, k), (1, n)).copy_from(&self.c);
-        }
-        let odd = StateSpace::new(a, b, c, DMatrix::zeros(1, 1)).ok()?;
-        found.extend(odd.zeros().ok()?.iter().filter(|s| s.re.abs() <= NEAR * s.norm()).map(|s| s.im.abs()));
-        found.extend(self.poles().ok()?.iter().chain(&self.zeros().ok()?).map(|s| s.norm()));
-        found.retain(|w| *w > 0.0 && w.is_finite());
-        found.sort_by(f64::total_cmp);
-        found.dedup_by(|a, b| *a - *b <= 1e-10 * *a);
-        let between = found.windows(2).map(|pair| (pair[0] * pair[1]).sqrt());
-        let ends = found.first().map(|w| 0.1 * w).into_iter().chain(found.last().map(|w| 10.0 * w));
-        let mut grid: Vec<f64> = between.chain(ends).collect();
-        grid.sort_by(f64::total_cmp);
-        // `S = 1 / (1 + G)`, in the states of `G`.
-        let factor = 1.0 / (1.0 + self.d[(0, 0)]);
-        let closed = &self.a - &self.b * &self.c * factor;
-        let (b, c) = (&self.b * factor, &self.c * -factor);
-        let sensitivity = StateSpace::new(closed, b, c, DMatrix::from_element(1, 1, factor)).ok()?;
-        Some((grid, sensitivity.largest_gain().ok()?.frequency))
-    }
-}
-
-impl Loop {
-    /// The least distance from −1, which is taken near a frequency.
-    fn stability_at(&self, near: f64) -> StabilityMargin {
-        let distance = |w: f64| {
-            let at = if w.is_finite() { self.at(w) } else { self.map.direct() };
-            (at + 1.0).norm()
-        };
-        let polished = if near > 0.0 && near.is_finite() { self.polish(near) } else { near };
-        let frequency = if distance(polished) <= distance(near) { polished } else { near };
-        StabilityMargin { distance: distance(frequency), frequency }
-    }
-
-    fn stability(&self, grid: &[f64], response: &[C]) -> StabilityMargin {
-        let distance = |w: f64| (self.at(w) + 1.0).norm();
-        let values: Vec<f64> = response.iter().map(|value| (value + 1.0).norm()).collect();
-        let mut best = StabilityMargin { distance: distance(0.0), frequency: 0.0 };
-        if !best.distance.is_finite() {
-            best.distance = f64::INFINITY;
-        }
-        for k in 0..grid.len() {
-            if values[k] >= best.distance * 1.1 {
-                continue;
-            }
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(grid.len() - 1));
-            let frequency = if values[k] <= values[before] && values[k] <= values[after] {
-                let near = least_between(&|w| distance(w), grid[before], grid[after]);
-                self.polish(near)
-            } else {
-                grid[k]
-            };
-            if distance(frequency) < best.distance {
-                best = StabilityMargin { distance: distance(frequency), frequency };
-            }
-        }
-        best
-    }
-
-    /// Sections find the place of the least value to half of the digits; where its slope changes the sign is sharper.
-    fn polish(&self, near: f64) -> f64 {
-        let (reach, h) = (1e-5 * near, 1e-5 * near);
-        let slope = |w: f64| ((self.at(w + h) - self.at(w - h)) * (self.at(w) + 1.0).conj()).re;
-        if slope(near - reach) < 0.0 && slope(near + reach) > 0.0 {
-            return root_between(slope, near - reach, near + reach);
-        }
-        near
+    /// The least distance of the response from −1, the least gain of `1 + G`.
+    fn stability_margin(&self, open: &Loop) -> Result<StabilityMargin, Error> {
+        let mut shifted = self.clone();
+        shifted.d[(0, 0)] += 1.0;
+        let PeakGain { gain, frequency } = shifted.extreme_gain(Extreme::Least)?;
+        // Around its minimum the distance fixes the frequency to half of the digits; where its slope changes
+        // sign is sharper.
+        let distance = |w: f64| open.at(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
+        let slope = |w: f64| open.at(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
+        let reach = [1e-8, 1e-7, 1e-6, 1e-5].map(|part| part * frequency);
+        let sharper = reach.into_iter().find_map(|reach| {
+            let (low, high) = (frequency - reach, frequency + reach);
+            (slope(low) < 0.0 && slope(high) > 0.0).then(|| root_between(slope, low, high))
+        });
+        let better = sharper.filter(|w| distance(*w) <= gain * (1.0 + 1e-12));
+        Ok(better.map_or(StabilityMargin { distance: gain, frequency }, |frequency| StabilityMargin {
+            distance: distance(frequency),
+            frequency,
+        }))
     }
 }
 

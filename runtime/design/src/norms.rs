@@ -1,15 +1,15 @@
 //! Norms of systems.
 
-use crate::matrices::{C, eigenvalues, solve};
-use crate::{Error, Hold, StateSpace};
-use nalgebra::DMatrix;
+use crate::frequency::{FrequencyMap, boundary};
+use crate::matrices::complex;
+use crate::{Error, StateSpace};
 
 /// The largest gain over all frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakGain {
     /// The largest singular value of the response.
     pub gain: f64,
-    /// Where, rad/s; infinite where it is approached by high frequencies.
+    /// Its frequency, rad/s; infinite where high frequencies approach it.
     pub frequency: f64,
 }
 
@@ -30,89 +30,100 @@ impl StateSpace {
         Ok((square.max(0.0) + if self.period.is_some() { direct } else { 0.0 }).sqrt())
     }
 
-    /// The H∞ norm of a stable system and where it is taken: by the imaginary eigenvalues of Hamiltonian matrices (Bruinsma and
-    /// Steinbuch, *A fast algorithm to compute the H∞-norm of a transfer function matrix*, 1990). A discrete system is mapped by
-    /// Tustin's rule, which keeps the norm.
+    /// The H∞ norm of a stable system and where it is taken: by the frequencies at which a singular value has
+    /// a given level, eigenvalues on the border of stability of a pencil (Bruinsma and Steinbuch, *A fast
+    /// algorithm to compute the H∞-norm of a transfer function matrix*, 1990).
     ///
     /// # Errors
     ///
     /// [`Error::Unstable`] names a pole; [`Error::NotConverged`].
     pub fn peak_gain(&self) -> Result<PeakGain, Error> {
         self.check_stable()?;
-        if let Some(h) = self.period {
-            let PeakGain { gain, frequency } = self.undiscretize(Hold::Tustin)?.peak_gain()?;
-            return Ok(PeakGain { gain, frequency: 2.0 / h * (0.5 * frequency * h).atan() });
-        }
-        self.largest_gain()
+        self.extreme_gain(Extreme::Largest)
     }
 
-    /// The largest gain at real frequencies of a continuous system, stable or not.
-    pub(crate) fn largest_gain(&self) -> Result<PeakGain, Error> {
+    /// The largest or the least of the largest singular values over all real frequencies, of a system that is
+    /// stable or not.
+    pub(crate) fn extreme_gain(&self, extreme: Extreme) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
-        let gain = |w: f64| -> Result<f64, Error> {
-            let m = map.response(w)?;
-            Ok(if m.is_empty() { 0.0 } else { m.svd_unordered(false, false).singular_values.max() })
-        };
-        let direct = if self.d.is_empty() {
-            0.0
-        } else {
-            self.d.clone().svd_unordered(false, false).singular_values.max()
-        };
-        let mut best = PeakGain { gain: direct, frequency: f64::INFINITY };
-        let own = self.poles()?.into_iter().flat_map(|p: C| [p.norm(), p.im.abs()]);
-        for w in own.chain([0.0]) {
-            let gain = gain(w)?;
-            if gain > best.gain {
-                best = PeakGain { gain, frequency: w };
+        let gain = |w: f64| {
+            let response = if w.is_finite() { map.response(w) } else { Ok(complex(&self.d)) };
+            match response {
+                Ok(m) if m.is_empty() => 0.0,
+                // At a pole that a zero cancels the value is rounding, and must not be taken for the least
+                // one.
+                Ok(_) if w.is_finite() && extreme == Extreme::Least && !self.is_certain(&map, w) => {
+                    f64::INFINITY
+                }
+                Ok(m) => m.svd_unordered(false, false).singular_values.max(),
+                Err(_) => f64::INFINITY,
             }
-        }
-        for _ in 0..60 {
-            let level = best.gain * (1.0 + 1e-12);
-            if level == 0.0 {
-                break;
-            }
-            // Where the level is nearly the peak, two eigenvalues that nearly coincide may lie beside the axis.
-            let crossings = self.level_crossings(level, 1e-4)?;
-            let mut higher = best;
-            let between = crossings.windows(2).flat_map(|pair| {
-                let w = (pair[0] * pair[1]).sqrt().max(0.5 * pair[0]);
-                [w, 0.5 * (pair[0] + pair[1])]
-            });
-            for w in between.chain(crossings.iter().copied()) {
-                let gain = gain(w)?;
-                if gain > higher.gain {
-                    higher = PeakGain { gain, frequency: w };
+        };
+        let top = self.highest_frequency();
+        let mut best = PeakGain { gain: gain(top), frequency: top };
+        let mut improve = |frequencies: &mut dyn Iterator<Item = f64>| {
+            let before = best.gain;
+            for w in frequencies {
+                let gain = gain(w);
+                // Smaller differences are rounding.
+                if extreme.is_beyond(gain, extreme.beyond(best.gain, 1e-14)) {
+                    best = PeakGain { gain, frequency: w };
                 }
             }
-            if higher.gain <= best.gain * (1.0 + 1e-13) {
-                break;
+            (before, best)
+        };
+        let (_, mut found) = improve(&mut self.root_frequencies()?.into_iter().chain([0.0]));
+        // Levels near the gain of high frequencies are crossed at very high ones, too: coarse steps first.
+        for step in [1e-3, 1e-6, 1e-9, 1e-12] {
+            for _ in 0..60 {
+                let level = extreme.beyond(found.gain, step);
+                if !(level > 0.0 && level.is_finite()) {
+                    return Ok(found);
+                }
+                let crossings = self.level_frequencies(level)?;
+                let between = crossings.windows(2).flat_map(|pair| {
+                    let (low, high) = (pair[0], pair[1]);
+                    [(low * high).sqrt(), 0.5 * (low + high)]
+                });
+                // The first interval begins at rest, the last one does not end.
+                let ends = [crossings.first().map(|w| 0.1 * w), crossings.last().map(|w| 10.0 * w)];
+                let ends = ends.into_iter().flatten().filter(|w| *w < top);
+                let (before, now) = improve(&mut between.chain(ends).chain(crossings.iter().copied()));
+                found = now;
+                if !extreme.is_beyond(now.gain, extreme.beyond(before, step)) {
+                    break;
+                }
             }
-            best = higher;
         }
-        Ok(best)
+        Ok(found)
     }
 
-    /// Frequencies at which a singular value is `level`, from low to high: eigenvalues as near to the imaginary axis, beside their
-    /// size, as is said.
-    pub(crate) fn level_crossings(&self, level: f64, near: f64) -> Result<Vec<f64>, Error> {
-        let (a, b, c, _) = crate::matrices::balance_system(&self.a, &self.b, &self.c);
-        let (n, m) = b.shape();
-        let d = &self.d;
-        let r = DMatrix::identity(m, m) * (level * level) - d.transpose() * d;
-        let inverse_b = solve("γ² − DᵀD", &r, &b.transpose())?;
-        let inverse_dc = solve("γ² − DᵀD", &r, &(d.transpose() * &c))?;
-        let f = &a + &b * &inverse_dc;
-        let mut h = DMatrix::zeros(2 * n, 2 * n);
-        h.view_mut((0, 0), (n, n)).copy_from(&f);
-        h.view_mut((0, n), (n, n)).copy_from(&(&b * inverse_b * level));
-        let lower = c.transpose() * &c + c.transpose() * d * inverse_dc;
-        h.view_mut((n, 0), (n, n)).copy_from(&(lower * (-1.0 / level)));
-        h.view_mut((n, n), (n, n)).copy_from(&-f.transpose());
-        let size = a.norm();
-        let near = |s: &C| s.re.abs() <= near * s.norm() + 1e-8 * size;
-        let mut all: Vec<f64> =
-            eigenvalues(&h)?.iter().filter(|s| near(s) && s.im >= 0.0).map(|s| s.im).collect();
-        all.sort_by(f64::total_cmp);
-        Ok(all)
+    /// Whether rounding changes the response of a single channel by less than a thousandth.
+    fn is_certain(&self, map: &FrequencyMap, frequency: f64) -> bool {
+        map.sample(boundary(self.period, frequency)).is_ok_and(|sample| sample.error < 1e-3)
+    }
+}
+
+/// Which gain is looked for; the least one of single channels only.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Extreme {
+    Largest,
+    Least,
+}
+
+impl Extreme {
+    fn is_beyond(self, one: f64, other: f64) -> bool {
+        match self {
+            Self::Largest => one > other,
+            Self::Least => one < other,
+        }
+    }
+
+    /// A level farther than a gain, by a part of it.
+    fn beyond(self, gain: f64, part: f64) -> f64 {
+        match self {
+            Self::Largest => gain * (1.0 + part),
+            Self::Least => gain * (1.0 - part),
+        }
     }
 }

@@ -72,6 +72,12 @@ impl Polynomial {
         self.coefficients.iter().fold(C::new(0.0, 0.0), |sum, c| sum * s + c)
     }
 
+    /// Bound of the rounding error of a value at a number of this magnitude, which may be a rounded root.
+    pub(crate) fn rounding_at(&self, magnitude: f64) -> f64 {
+        let sum = self.coefficients.iter().fold(0.0, |sum, c| sum * magnitude + c.abs());
+        64.0 * f64::EPSILON * self.coefficients.len() as f64 * sum
+    }
+
     /// Times a number.
     pub fn scaled(&self, factor: f64) -> Self {
         Self::new(self.coefficients.iter().map(|c| c * factor))

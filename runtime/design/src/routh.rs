@@ -146,10 +146,14 @@ impl Polynomial {
     pub fn stable_gains(&self, other: &Self) -> Result<Vec<GainRange>, Error> {
         let mut critical = self.critical_gains(other)?;
         critical.sort_by(f64::total_cmp);
-        critical.dedup_by(|a, b| (*a - *b).abs() <= 1e-10 * (1.0 + b.abs()));
+        critical.dedup_by(|a, b| (*a - *b).abs() <= 1e-12 * b.abs());
         let mut ends = vec![f64::NEG_INFINITY];
         ends.extend(critical);
         ends.push(f64::INFINITY);
+        let is_stable = |k: f64| -> Result<bool, Error> {
+            let polynomial = self + &other.scaled(k);
+            Ok(!polynomial.is_zero() && polynomial.routh()?.is_stable())
+        };
         let mut ranges: Vec<GainRange> = Vec::new();
         for pair in ends.windows(2) {
             let (low, high) = (pair[0], pair[1]);
@@ -159,44 +163,42 @@ impl Polynomial {
                 (false, true) => high - 1.0 - high.abs(),
                 (false, false) => 0.0,
             };
-            let polynomial = self + &other.scaled(inside);
-            if !polynomial.is_zero() && polynomial.routh()?.is_stable() {
-                ranges.push(GainRange { low, high });
+            if !is_stable(inside)? {
+                continue;
+            }
+            // A candidate that is not critical after all does not end a range.
+            match ranges.last_mut() {
+                Some(last) if last.high == low && is_stable(low)? => last.high = high,
+                _ => ranges.push(GainRange { low, high }),
             }
         }
         Ok(ranges)
     }
 
-    /// Gains at which a root is on the imaginary axis, or a leading coefficient vanishes: with `p(iω) q(−iω)` real.
+    /// Gains that include all at which a root is on the imaginary axis or at infinity. The others are
+    /// harmless.
     fn critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
-        let mut found = Vec::new();
         let mirrored = |p: &Self| {
             let n = p.degree();
-            Self::new(
-                p.coefficients()
-                    .iter()
-                    .enumerate()
-                    .map(|(k, c)| if (n - k).is_multiple_of(2) { *c } else { -c }),
-            )
+            let signs = p.coefficients().iter().enumerate();
+            Self::new(signs.map(|(k, c)| if (n - k).is_multiple_of(2) { *c } else { -c }))
         };
-        // Odd part of p(s) q(−s): zero on the axis where the quotient is real.
-        let (one, two) = (self * &mirrored(other), &mirrored(self) * other);
-        let odd = &one - &two;
-        let mut at = vec![C::new(0.0, 0.0)];
-        if !odd.is_zero() {
-            let size = odd.roots()?.iter().map(|r| r.norm()).fold(0.0, f64::max);
-            at.extend(odd.roots()?.into_iter().filter(|r| r.re.abs() <= 1e-6 * size && r.im > 0.0));
-        }
-        for s in at {
-            let s = C::new(0.0, s.im);
-            let k = -self.at(s) / other.at(s);
-            if k.re.is_finite() {
-                found.push(k.re);
+        // A root at s = iω makes p(s) / q(s) real: a root of the odd part of p(s) q(−s).
+        let odd = &(self * &mirrored(other)) - &(&mirrored(self) * other);
+        let mut points = vec![0.0];
+        points.extend(odd.roots()?.into_iter().map(|r| r.im).filter(|w| *w > 0.0));
+        let mut found = Vec::new();
+        for w in points {
+            let s = C::new(0.0, w);
+            // Where q vanishes the gain is infinite.
+            if other.at(s).norm() > other.rounding_at(w) {
+                found.push((-self.at(s) / other.at(s)).re);
             }
         }
-        if other.degree() >= self.degree() {
+        if other.degree() >= self.degree() && !other.is_zero() {
             found.push(-self.coefficient(other.degree()) / other.leading());
         }
+        found.retain(|k| k.is_finite());
         Ok(found)
     }
 }

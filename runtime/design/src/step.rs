@@ -1,42 +1,40 @@
-//! Figures of a step response.
+//! Characteristic values of a step response.
 
-use crate::margins::root_between;
-use crate::matrices::exponential;
+use crate::frequency::boundary;
+use crate::matrices::solve;
+use crate::modal_sum::{FIRST_SAMPLES, ModalSum};
 use crate::{Error, StateSpace, TransferFunction};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-/// Samples of the response that are looked at.
-const SAMPLES: usize = 4000;
-
-/// Figures of the step response of a stable system, relative to its final value.
+/// Characteristic values of the step response of a stable system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepFigures {
-    /// Where it ends.
+    /// Final value.
     pub final_value: f64,
-    /// From when it first has the lower part of the final value to when it first has the upper one, s.
+    /// Time from the first crossing of the lower level to that of the upper one, s.
     pub rise_time: f64,
-    /// When it stays within the band around the final value for good, s.
+    /// Time after which the response stays within the band around the final value, s.
     pub settling_time: f64,
-    /// By how much it goes beyond the final value, %.
+    /// Largest excess over the final value, % of it.
     pub overshoot: f64,
-    /// By how much it goes the wrong way, %.
+    /// Largest value of the opposite sign, % of the final value.
     pub undershoot: f64,
-    /// The largest magnitude.
+    /// Largest magnitude.
     pub peak: f64,
-    /// When, s; infinite where it is only approached.
+    /// Time of the largest magnitude, s; infinite if the response only approaches it.
     pub peak_time: f64,
-    /// The least value after the rise.
+    /// Least value after the rise.
     pub least_after_rise: f64,
-    /// The largest value after the rise.
+    /// Largest value after the rise.
     pub largest_after_rise: f64,
 }
 
-/// What the figures are measured against.
+/// Levels that settling and rise times are measured against.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepLimits {
-    /// Band around the final value; 0.02 of it.
+    /// Half width of the band around the final value, relative to it; 0.02 by default.
     pub settling: f64,
-    /// Parts of the final value between which it rises; from 0.1 to 0.9.
+    /// Levels between which the response rises, relative to the final value; 0.1 and 0.9 by default.
     pub rise: (f64, f64),
 }
 
@@ -46,49 +44,56 @@ impl Default for StepLimits {
     }
 }
 
-/// The response at any instant: from the sample before by the exponential.
-struct Exact<'a> {
-    system: &'a StateSpace,
-    step: f64,
-    /// States at the samples, a column each, with the input appended.
-    states: DMatrix<f64>,
-    generator: DMatrix<f64>,
+/// The distance of a step response from its final value, relative to it, over time; of a discrete system over
+/// samples.
+struct Distance {
+    /// The first samples of a discrete system.
+    first: Vec<f64>,
+    modes: ModalSum,
 }
 
-impl Exact<'_> {
-    /// State and input at an instant.
-    fn state(&self, t: f64) -> DVector<f64> {
-        let last = self.states.ncols().saturating_sub(1);
-        let k = ((t / self.step).floor().max(0.0) as usize).min(last);
-        let before = self.states.column(k).into_owned();
-        match exponential(&(&self.generator * (t - self.step * k as f64))) {
-            Ok(e) => e * before,
-            Err(_) => before,
+impl Distance {
+    /// The first instant at which the modes alone describe the distance.
+    fn start(&self) -> f64 {
+        self.first.len() as f64
+    }
+
+    /// The first instant at which the distance reaches a negative level from below.
+    fn first_above(&self, level: f64) -> Result<f64, Error> {
+        match self.first.iter().position(|e| *e >= level) {
+            Some(k) => Ok(k as f64),
+            None => self.modes.first_above(level, self.start()),
         }
     }
 
-    fn at(&self, t: f64) -> f64 {
-        self.read(&self.state(t)) + self.system.d[(0, 0)]
+    /// The last instant at which the distance is larger than a band.
+    fn last_outside(&self, band: f64) -> Result<Option<f64>, Error> {
+        let early = self.first.iter().rposition(|e| e.abs() > band).map(|k| k as f64);
+        Ok(self.modes.last_outside(band, self.start())?.or(early))
     }
 
-    fn slope(&self, t: f64) -> f64 {
-        self.read(&(&self.generator * self.state(t)))
-    }
-
-    fn read(&self, x: &DVector<f64>) -> f64 {
-        (&self.system.c * x.rows(0, self.system.order()))[(0, 0)]
-    }
-
-    fn samples(&self) -> Vec<f64> {
-        let n = self.system.order();
-        let y = &self.system.c * self.states.rows(0, n);
-        y.iter().map(|y| y + self.system.d[(0, 0)]).collect()
+    /// The largest distance from an instant on for a `sign` of one, or the least for −1. If the distance only
+    /// approaches zero it is zero at an infinite time.
+    fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
+        let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
+        let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
+        let late = self.modes.extreme(sign, from.max(self.start()))?;
+        let best = early.filter(|early| sign * early.1 >= sign * late.1).unwrap_or(late);
+        let initial = self.first.get(from as usize).copied().unwrap_or_else(|| self.modes.at(from));
+        Ok(if sign * best.1 > self.modes.noise {
+            best
+        } else if sign * initial >= -self.modes.noise {
+            (from, 0.0)
+        } else {
+            (f64::INFINITY, 0.0)
+        })
     }
 }
 
 impl StateSpace {
-    /// Figures of the step response of a stable system with one input and one output, not from samples: crossings and peaks are
-    /// found by the exact response between them.
+    /// Computes the characteristic values of the step response of a stable system with one input and one
+    /// output. Crossings and peaks are those of the sum of its modes, which is bounded over intervals of time
+    /// instead of sampled.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;
@@ -107,7 +112,7 @@ impl StateSpace {
         self.step_figures_within(StepLimits::default())
     }
 
-    /// [`step_figures`](Self::step_figures) with other limits.
+    /// Computes [`step_figures`](Self::step_figures) with other limits.
     ///
     /// # Errors
     ///
@@ -123,126 +128,65 @@ impl StateSpace {
                 return Err(Error::Range { what, value });
             }
         }
-        let final_value = self.gain_at_rest()?[(0, 0)];
-        if final_value.abs() < 1e-300 {
-            return Err(Error::Range { what: "a final value", value: final_value });
+        let at_rest = self.frequency_map()?.sample(boundary(self.period, 0.0))?;
+        let final_value = at_rest.value.re;
+        if final_value.abs() <= at_rest.error {
+            return Err(Error::Range { what: "a final value", value: 0.0 });
         }
-        match self.period {
-            Some(h) => self.discrete_figures(limits, final_value, h),
-            None => self.continuous_figures(limits, final_value),
-        }
+        let distance = self.distance(final_value)?;
+        let period = self.period.unwrap_or(1.0);
+        let (from, to) = (distance.first_above(low - 1.0)?, distance.first_above(high - 1.0)?);
+        let settling_time = match (distance.last_outside(limits.settling)?, self.period) {
+            (None, _) => 0.0,
+            (Some(last), None) => last,
+            (Some(last), Some(_)) => last + 1.0,
+        };
+        let (top, bottom) = (distance.extreme(1.0, 0.0)?, distance.extreme(-1.0, 0.0)?);
+        let relative = |extreme: (f64, f64)| 1.0 + extreme.1;
+        let peak = if relative(top).abs() >= relative(bottom).abs() { top } else { bottom };
+        let after_rise = [distance.extreme(1.0, to)?, distance.extreme(-1.0, to)?];
+        let after_rise = after_rise.map(|extreme| final_value * relative(extreme));
+        Ok(StepFigures {
+            final_value,
+            rise_time: (to - from) * period,
+            settling_time: settling_time * period,
+            overshoot: 100.0 * top.1.max(0.0),
+            undershoot: if -relative(bottom) > distance.modes.noise {
+                -100.0 * relative(bottom)
+            } else {
+                0.0
+            },
+            peak: (final_value * relative(peak)).abs(),
+            peak_time: peak.0 * period,
+            least_after_rise: after_rise[0].min(after_rise[1]),
+            largest_after_rise: after_rise[0].max(after_rise[1]),
+        })
     }
 
-    /// Samples until all has settled far within the band.
-    fn exact(&self, end: f64) -> Result<Exact<'_>, Error> {
+    /// The distance of the step response from its final value.
+    fn distance(&self, final_value: f64) -> Result<Distance, Error> {
         let n = self.order();
-        let mut generator = DMatrix::zeros(n + 1, n + 1);
-        generator.view_mut((0, 0), (n, n)).copy_from(&self.a);
-        generator.view_mut((0, n), (n, 1)).copy_from(&self.b);
-        let step = end / SAMPLES as f64;
-        let e = exponential(&(&generator * step))?;
-        let mut states = DMatrix::zeros(n + 1, SAMPLES + 1);
-        states[(n, 0)] = 1.0;
-        for k in 0..SAMPLES {
-            let next = &e * states.column(k);
-            states.set_column(k + 1, &next);
+        // x − x∞ is −x∞ at first.
+        let (left, what) = match self.period {
+            Some(_) => (DMatrix::identity(n, n) - &self.a, "I − A"),
+            None => (-&self.a, "A"),
+        };
+        let mut x = -solve(what, &left, &self.b)?;
+        let c = &self.c / final_value;
+        let modes = ModalSum::new(&c, &self.a, &x, self.period.is_some())?;
+        let mut first = Vec::new();
+        if self.period.is_some() {
+            for _ in 0..FIRST_SAMPLES {
+                first.push((&c * &x)[(0, 0)]);
+                x = &self.a * x;
+            }
         }
-        Ok(Exact { system: self, step, states, generator })
-    }
-
-    fn continuous_figures(&self, limits: StepLimits, final_value: f64) -> Result<StepFigures, Error> {
-        let slowest = self.poles()?.iter().map(|p| -p.re).fold(f64::INFINITY, f64::min);
-        let mut end = if slowest.is_finite() { 8.0 / slowest } else { 1.0 };
-        let (exact, y) = loop {
-            let exact = self.exact(end)?;
-            let y: Vec<f64> = exact.samples().iter().map(|y| y / final_value).collect();
-            let settled = y[SAMPLES / 2..].iter().all(|y| (y - 1.0).abs() < 0.5 * limits.settling);
-            if settled || end * slowest > 200.0 {
-                break (exact, y);
-            }
-            end *= 2.0;
-        };
-        let t = |k: usize| exact.step * k as f64;
-        let of = |t: f64| exact.at(t) / final_value;
-        let reach = |part: f64| match y.iter().position(|y| *y >= part) {
-            Some(k) if k > 0 => root_between(|t| of(t) - part, t(k - 1), t(k)),
-            Some(_) => 0.0,
-            None => f64::INFINITY,
-        };
-        let (from, to) = (reach(limits.rise.0), reach(limits.rise.1));
-        let outside = y.iter().rposition(|y| (y - 1.0).abs() > limits.settling);
-        let settling_time = match outside {
-            Some(k) if k + 1 < y.len() => {
-                root_between(|t| (of(t) - 1.0).abs() - limits.settling, t(k), t(k + 1))
-            }
-            Some(_) => f64::INFINITY,
-            None => 0.0,
-        };
-        let extreme = |sign: f64, after: usize| {
-            let found = (after..y.len()).max_by(|a, b| (sign * y[*a]).total_cmp(&(sign * y[*b])));
-            let k = found.unwrap_or(0);
-            if k == 0 || k + 1 >= y.len() {
-                return (t(k), y[k]);
-            }
-            let middle = y[k];
-            let near = root_between(|t| exact.slope(t), t(k - 1), t(k + 1));
-            let at = of(near);
-            if sign * at >= sign * middle { (near, at) } else { (t(k), middle) }
-        };
-        let risen = y.iter().position(|y| *y >= limits.rise.1).unwrap_or(0);
-        let (top, bottom) = (extreme(1.0, 0), extreme(-1.0, 0));
-        let (mut peak_time, peak) = if top.1.abs() >= bottom.1.abs() { top } else { bottom };
-        // A response that only approaches its end has its peak there.
-        let approached = peak < 1.0 + 1e-9 && peak_time > 0.5 * end;
-        let peak = if approached { 1.0 } else { peak.abs() };
-        if approached {
-            peak_time = f64::INFINITY;
-        }
-        Ok(StepFigures {
-            final_value,
-            rise_time: to - from,
-            settling_time,
-            overshoot: 100.0 * (top.1 - 1.0).max(0.0),
-            undershoot: 100.0 * (-bottom.1).max(0.0),
-            peak: peak * final_value.abs(),
-            peak_time,
-            least_after_rise: final_value * extreme(-1.0, risen).1,
-            largest_after_rise: final_value * extreme(1.0, risen).1,
-        })
-    }
-
-    fn discrete_figures(&self, limits: StepLimits, final_value: f64, h: f64) -> Result<StepFigures, Error> {
-        let slowest = self.poles()?.iter().map(|p| p.norm()).fold(0.0, f64::max);
-        let count = if slowest > 0.0 { (-40.0 / slowest.ln()).ceil() } else { 0.0 };
-        let count = (count as usize).clamp(20, 200_000) + self.order();
-        let times: Vec<f64> = (0..count).map(|k| h * k as f64).collect();
-        let y = self.step_response(0, &times)?.outputs / final_value;
-        let y: Vec<f64> = y.iter().copied().collect();
-        let reach = |part: f64| y.iter().position(|y| *y >= part).unwrap_or(y.len()) as f64 * h;
-        let outside = y.iter().rposition(|y| (y - 1.0).abs() > limits.settling);
-        let risen = y.iter().position(|y| *y >= limits.rise.1).unwrap_or(0);
-        let fold = |from: usize, f: fn(f64, f64) -> f64| y[from..].iter().copied().fold(y[from], f);
-        let (peak, at) = y
-            .iter()
-            .enumerate()
-            .fold((0.0_f64, 0), |best, (k, y)| if y.abs() > best.0 { (y.abs(), k) } else { best });
-        Ok(StepFigures {
-            final_value,
-            rise_time: reach(limits.rise.1) - reach(limits.rise.0),
-            settling_time: outside.map_or(0.0, |k| (k + 1) as f64 * h),
-            overshoot: 100.0 * (fold(0, f64::max) - 1.0).max(0.0),
-            undershoot: 100.0 * (-fold(0, f64::min)).max(0.0),
-            peak: peak * final_value.abs(),
-            peak_time: at as f64 * h,
-            least_after_rise: final_value * fold(risen, if final_value > 0.0 { f64::min } else { f64::max }),
-            largest_after_rise: final_value
-                * fold(risen, if final_value > 0.0 { f64::max } else { f64::min }),
-        })
+        Ok(Distance { first, modes })
     }
 }
 
 impl TransferFunction {
-    /// Figures of the step response.
+    /// Computes the characteristic values of the step response.
     ///
     /// # Errors
     ///

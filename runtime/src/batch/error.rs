@@ -4,7 +4,7 @@ use crate::integrate;
 use core::fmt;
 
 /// Why a batch was not evaluated, or not to its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
     /// A slice that does not hold so many numbers for every state. Nothing was written.
@@ -32,6 +32,13 @@ pub enum Error {
         /// How many states are done.
         done: usize,
     },
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for Error {

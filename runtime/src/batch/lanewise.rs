@@ -159,9 +159,10 @@ where
             return Err(*error);
         }
         let nothing = M::Scalar::zero() / M::Scalar::zero();
-        let lost = Touched { q: SVector::repeat(nothing), v: SVector::repeat(nothing) };
+        let lost = Touched::free(SVector::repeat(nothing), SVector::repeat(nothing));
         let of = |k: usize| results[k].unwrap_or(lost);
-        Ok(Touched { q: lane_by_lane(|k| of(k).q), v: lane_by_lane(|k| of(k).v) })
+        let [v, held] = [lane_by_lane(|k| of(k).v), lane_by_lane(|k| of(k).held)];
+        Ok(Touched { q: lane_by_lane(|k| of(k).q), v, held })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

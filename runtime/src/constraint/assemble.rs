@@ -1,31 +1,42 @@
-//! Assembly: from a guess to a configuration that fulfils the constraints.
+//! Assembly: from a guess to a configuration that fulfils the constraints, and which assembly mode it belongs to.
 
 use super::{ConstraintError, complete, largest, near, off};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
-/// Most steps tried.
+/// Maximum number of steps of one descent.
 const MOST_STEPS: usize = 200;
 
-/// How often it is tried again from around the guess, ever farther away: the first and the last distance, m or rad.
+/// Longest step of an angle, rad: from a guess near an assembly mode the steps lead into this one.
+const LONGEST: f64 = 0.3;
+
+/// Number of other starts around the guess, ever farther away; the first and the last distance, m or rad.
 const AGAIN: usize = 24;
 const NEAR: f64 = 0.05;
 const FAR: f64 = 3.0;
+/// Times the starts around the guess are gone through for an assembly mode that is asked for.
+const ROUNDS: usize = 8;
 
-/// What constraints say of configurations, whether there is inertia or not.
-pub struct Loops<R, J, I, const NC: usize> {
+/// Constraints of configurations, of a mechanism with inertia or without.
+pub struct Loops<R, J, I, const NV: usize, const NC: usize> {
     /// Name of every constraint.
     pub names: [&'static str; NC],
-    /// What is left of those on configurations.
+    /// Entries of `q` that are angles.
+    pub angles: &'static [usize],
+    /// Velocities that rotate something.
+    pub turns: [bool; NV],
+    /// Residuals of the constraints on configurations.
     pub residuals: R,
-    /// Derivatives of all of them.
+    /// Derivatives of the rates of all constraints by the velocities.
     pub jacobian: J,
     /// The configuration after a displacement.
     pub integrate: I,
 }
 
-/// By steps from the guess; where these end in a gap that no small step closes, from around it.
+/// Finds a configuration that fulfils the constraints: by steps from the guess; where these end in a gap that no small
+/// step closes, or lead more than half a turn away, by steps from around it. A `mode` that is asked for must be that of
+/// [`assembly_mode`].
 pub fn assemble<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -36,14 +47,29 @@ pub fn assemble<
     const NH: usize,
     const NC: usize,
 >(
-    loops: &Loops<R, J, I, NC>,
+    loops: &Loops<R, J, I, NV, NC>,
     q: &SVector<T, NQ>,
     held: &[usize],
+    mode: Option<i8>,
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     complete::check::<NV>(held)?;
-    let first = descend(loops, q, held);
-    if !matches!(first, Err(ConstraintError::Configuration { .. })) {
-        return first;
+    let is_wanted = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
+    // Where coordinates are bound to turn farther than half a turn, by gears, the first configuration that was found.
+    let mut far = None;
+    let mut attempt = |from: &SVector<T, NQ>| -> Result<Option<SVector<T, NQ>>, ConstraintError> {
+        let found = unwind(loops, q, descend(loops, from, held)?);
+        let turned = loops.angles.iter().map(|k| turns(q, &found, *k).abs()).fold(T::zero(), |a, b| a.max(b));
+        if turned <= constant(0.5) && is_wanted(&found) {
+            return Ok(Some(found));
+        }
+        far = far.or_else(|| is_wanted(&found).then_some(found));
+        Ok(None)
+    };
+    let first = attempt(q);
+    match first {
+        Ok(Some(found)) => return Ok(found),
+        Ok(None) | Err(ConstraintError::Configuration { .. }) => {}
+        Err(error) => return Err(error),
     }
     // Steele and Vigna, Computationally easy, spectrally good multipliers for congruential generators, 2022.
     let mut state = 1_u64;
@@ -51,22 +77,67 @@ pub fn assemble<
         state = state.wrapping_mul(0xD134_2543_DE82_EF95).wrapping_add(1);
         (state >> 32) as f64 / f64::from(1_u32 << 31) - 1.0
     };
-    let mut distance = NEAR;
-    for _ in 0..AGAIN {
+    for start in 0..AGAIN * if mode.is_some() { ROUNDS } else { 1 } {
+        let distance = NEAR + (FAR - NEAR) / AGAIN as f64 * (start % AGAIN) as f64;
         let step = SVector::<T, NV>::from_fn(|k, _| {
             let part = next();
             if held.contains(&k) { nalgebra::zero() } else { constant(distance * part) }
         });
-        let found = descend(loops, &(loops.integrate)(q, &step), held);
-        if found.is_ok() {
-            return found;
+        if let Ok(Some(found)) = attempt(&(loops.integrate)(q, &step)) {
+            return Ok(found);
         }
-        distance += (FAR - NEAR) / AGAIN as f64;
     }
-    first
+    match (far, first, mode) {
+        (Some(far), ..) => Ok(far),
+        (None, Err(error), _) => Err(error),
+        (None, Ok(_), mode) => Err(ConstraintError::Mode { mode: mode.unwrap_or(0) }),
+    }
 }
 
-/// Levenberg–Marquardt on `½ |φ|²` over the coordinates that are not held.
+/// Number of turns by which an angle differs from that of the guess.
+fn turns<T: Real, const NQ: usize>(guess: &SVector<T, NQ>, q: &SVector<T, NQ>, k: usize) -> T {
+    let entry = |q: &SVector<T, NQ>| q.get(k).copied().unwrap_or(T::zero());
+    (entry(q) - entry(guess)) / T::two_pi()
+}
+
+/// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints hold without these
+/// turns as well: all together, or else each by itself.
+fn unwind<
+    T: Real,
+    R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
+    J,
+    I,
+    const NQ: usize,
+    const NV: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    loops: &Loops<R, J, I, NV, NC>,
+    guess: &SVector<T, NQ>,
+    q: SVector<T, NQ>,
+) -> SVector<T, NQ> {
+    let without = |mut q: SVector<T, NQ>, angles: &[usize]| {
+        for k in angles {
+            let whole = turns(guess, &q, *k).round();
+            if let Some(angle) = q.get_mut(*k) {
+                *angle -= whole * T::two_pi();
+            }
+        }
+        q
+    };
+    let holds =
+        |q: &SVector<T, NQ>| largest(&(loops.residuals)(q)).is_ok_and(|(_, residual)| near(residual, q));
+    let all = without(q, loops.angles);
+    if all == q || holds(&all) {
+        return all;
+    }
+    loops.angles.chunks(1).fold(q, |q, angle| {
+        let next = without(q, angle);
+        if holds(&next) { next } else { q }
+    })
+}
+
+/// Levenberg–Marquardt on `½ |φ|²` over the coordinates that are not held, in steps of bounded length.
 fn descend<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -77,7 +148,7 @@ fn descend<
     const NH: usize,
     const NC: usize,
 >(
-    loops: &Loops<R, J, I, NC>,
+    loops: &Loops<R, J, I, NV, NC>,
     q: &SVector<T, NQ>,
     held: &[usize],
 ) -> Result<SVector<T, NQ>, ConstraintError> {
@@ -90,11 +161,7 @@ fn descend<
         if size <= constant::<T>(4.0) * epsilon() {
             break;
         }
-        let jacobian = (loops.jacobian)(&q);
-        let rows = SMatrix::<T, NH, NV>::from_fn(|i, j| {
-            let fixed = held.contains(&j);
-            jacobian.get((i, j)).copied().filter(|_| !fixed).unwrap_or(nalgebra::zero())
-        });
+        let rows = open_rows::<T, NV, NH, NC>(&(loops.jacobian)(&q), held);
         let mut normal = rows * rows.transpose();
         // Relative to each row, so that units do not matter; rows without influence are left alone.
         for k in 0..NH {
@@ -103,7 +170,7 @@ fn descend<
             normal[(k, k)] = if influences { own + own * damping } else { nalgebra::one() };
         }
         let step = normal.cholesky().map(|c| -(rows.transpose() * c.solve(&residuals)));
-        let next = step.map(|step| (loops.integrate)(&q, &step));
+        let next = step.map(|step| (loops.integrate)(&q, &bounded(step, &loops.turns)));
         let trial = next.map(|next| (next, (loops.residuals)(&next)));
         match trial.filter(|(_, r)| r.norm() < residuals.norm()) {
             Some((next, r)) => {
@@ -120,4 +187,83 @@ fn descend<
     }
     let (worst, size) = largest(&residuals)?;
     near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
+}
+
+/// The step, shortened so that no angle changes by more than [`LONGEST`].
+fn bounded<T: Real, const NV: usize>(step: SVector<T, NV>, turns: &[bool; NV]) -> SVector<T, NV> {
+    let angles = step.iter().zip(turns).filter(|(_, turns)| **turns);
+    let longest = angles.fold(T::zero(), |longest, (angle, _)| longest.max(angle.abs()));
+    if longest > constant(LONGEST) { step * (constant::<T>(LONGEST) / longest) } else { step }
+}
+
+/// Rows of the constraints on configurations, with zeros for velocities that are held.
+fn open_rows<T: Real, const NV: usize, const NH: usize, const NC: usize>(
+    jacobian: &SMatrix<T, NC, NV>,
+    held: &[usize],
+) -> SMatrix<T, NH, NV> {
+    SMatrix::from_fn(|i, j| {
+        let is_held = held.contains(&j);
+        jacobian.get((i, j)).copied().filter(|_| !is_held).unwrap_or(nalgebra::zero())
+    })
+}
+
+/// The assembly mode of a configuration: the sign of the determinant of the derivatives of the constraints on configurations
+/// by the coordinates that are not held. `None` in a singular position, and where there are more or fewer coordinates than
+/// such constraints.
+pub fn assembly_mode<
+    T: Real,
+    R,
+    J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,
+    I,
+    const NQ: usize,
+    const NV: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    loops: &Loops<R, J, I, NV, NC>,
+    q: &SVector<T, NQ>,
+    held: &[usize],
+) -> Option<i8>
+where
+    R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
+{
+    let is_held = |k: usize| held.contains(&k);
+    if NH + (0..NV).filter(|k| is_held(*k)).count() != NV {
+        return None;
+    }
+    // A row for each constraint, then one for each velocity that is held.
+    let open = open_rows::<T, NV, NH, NC>(&(loops.jacobian)(q), held);
+    let mut rows = [[T::zero(); NV]; NV];
+    let mut fixed = (0..NV).filter(|k| is_held(*k));
+    for (i, row) in rows.iter_mut().enumerate() {
+        if i < NH {
+            *row = core::array::from_fn(|j| open[(i, j)]);
+        } else if let Some(own) = fixed.next().and_then(|k| row.get_mut(k)) {
+            *own = T::one();
+        }
+        let length = row.iter().fold(T::zero(), |sum, x| sum + *x * *x).sqrt();
+        row.iter_mut().for_each(|x| *x /= length);
+    }
+    let mut sign = 1;
+    for k in 0..NV {
+        let pivot = (k..NV).fold(k, |best, i| if rows[i][k].abs() > rows[best][k].abs() { i } else { best });
+        // A pivot that is not a number is none.
+        let is_regular = rows[pivot][k].abs() > epsilon::<T>().sqrt();
+        if !is_regular {
+            return None;
+        }
+        if pivot != k {
+            rows.swap(pivot, k);
+            sign = -sign;
+        }
+        if rows[k][k] < T::zero() {
+            sign = -sign;
+        }
+        let own = rows[k];
+        for row in rows.iter_mut().skip(k + 1) {
+            let factor = row[k] / own[k];
+            row.iter_mut().zip(&own).for_each(|(x, own)| *x -= factor * *own);
+        }
+    }
+    Some(sign)
 }

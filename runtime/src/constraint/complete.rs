@@ -1,6 +1,7 @@
-//! Completion of velocities: some entries are given, the others follow from the constraints.
+//! Completion of velocities and accelerations, of which some entries are given and the others follow from the constraints,
+//! and the forces that such a motion takes.
 
-use super::{Constrained, ConstraintError, largest, near, rounding};
+use super::{Constrained, ConstraintError, farthest, largest, near, reach, rounding};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
@@ -51,6 +52,115 @@ where
     Err(ConstraintError::Velocity { constraint, rate: to_f64(size) })
 }
 
+/// The acceleration with the entries `held` of `a` that keeps the constraints.
+pub(super) fn complete_acceleration<
+    M,
+    T: Real,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    a: &SVector<T, NV>,
+    held: &[usize],
+) -> Result<SVector<T, NV>, ConstraintError>
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    check::<NV>(held)?;
+    let mut a = *a;
+    let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
+    let bias = mechanism.constraint_bias(t, q, v);
+    // Digits that the product with the Jacobian can keep.
+    let scale = |a: &SVector<T, NV>| reach(&bias).max(reach(a) * farthest(&jacobian));
+    for _ in 0..MOST_STEPS {
+        let gap = jacobian * a + bias;
+        if largest(&gap)?.1 <= epsilon::<T>() * scale(&a) {
+            return Ok(a);
+        }
+        a += correction(&mass, &jacobian, held, &gap);
+        largest(&a)?;
+    }
+    let (worst, size) = largest(&(jacobian * a + bias))?;
+    if size <= epsilon::<T>().sqrt() * scale(&a) {
+        return Ok(a);
+    }
+    let constraint = M::CONSTRAINTS.get(worst).copied().unwrap_or_default();
+    Err(ConstraintError::Acceleration { constraint, acceleration: to_f64(size) })
+}
+
+/// The generalized forces at the velocities `driven` and the multipliers `λ` with `M a + h = τ + Jᵀ λ`: the other velocities
+/// determine the multipliers.
+pub(super) fn drive<
+    M,
+    T: Real,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
+    mechanism: &M,
+    t: T,
+    (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+    a: &SVector<T, NV>,
+    driven: &[usize],
+) -> Result<(SVector<T, NV>, SVector<T, NC>), ConstraintError>
+where
+    M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
+{
+    check::<NV>(driven)?;
+    let (worst, rate) = largest(&mechanism.constraint_rates(t, q, v))?;
+    let named = |worst: usize| M::CONSTRAINTS.get(worst).copied().unwrap_or_default();
+    if !near(rate, v) {
+        return Err(ConstraintError::Velocity { constraint: named(worst), rate: to_f64(rate) });
+    }
+    let (jacobian, bias) = (mechanism.constraint_jacobian(t, q), mechanism.constraint_bias(t, q, v));
+    let (worst, left) = largest(&(jacobian * a + bias))?;
+    if left > epsilon::<T>().sqrt() * reach(&bias).max(reach(a) * farthest(&jacobian)) {
+        return Err(ConstraintError::Acceleration { constraint: named(worst), acceleration: to_f64(left) });
+    }
+    let forces = mechanism.inverse_dynamics(t, q, v, a);
+    let is_driven = |i: usize| driven.contains(&i);
+    let rows: [Row<T, NC>; NV] = jacobian.data.0;
+    let size = rows.map(|row| dot(&row, &row));
+    let open = core::array::from_fn(|i| if is_driven(i) { [nalgebra::zero(); NC] } else { rows[i] });
+    let mut lambda = [nalgebra::zero(); NC];
+    let mut left = forces;
+    // Once more for what rounding has left.
+    for _ in 0..2 {
+        let (change, _) = least(&open, &size, &left.data.0[0]);
+        add(&mut lambda, nalgebra::one(), &change);
+        left = forces - jacobian.transpose() * SVector::from(lambda);
+    }
+    let (mut tau, mut worst) = (SVector::zeros(), None);
+    let scale = forces.iter().zip(&rows).fold(T::one(), |scale, (force, row)| {
+        let parts = row.iter().zip(&lambda).fold(force.abs(), |scale, (j, l)| scale.max((*j * *l).abs()));
+        scale.max(parts)
+    });
+    for (i, force) in left.iter().enumerate() {
+        if !force.is_finite() {
+            return Err(ConstraintError::NotFinite);
+        }
+        if is_driven(i) {
+            tau[i] = *force;
+        } else if force.abs() > epsilon::<T>().sqrt() * scale {
+            worst = worst.filter(|(_, most)| *most >= force.abs()).or(Some((i, force.abs())));
+        }
+    }
+    match worst {
+        Some((i, force)) => Err(ConstraintError::Undriven {
+            velocity: M::VELOCITIES.get(i).copied().unwrap_or_default(),
+            force: to_f64(force),
+        }),
+        None => Ok((tau, SVector::from(lambda))),
+    }
+}
+
 type Row<T, const N: usize> = [T; N];
 
 fn dot<T: Real, const N: usize>(a: &Row<T, N>, b: &Row<T, N>) -> T {
@@ -87,9 +197,8 @@ fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) 
 
 /// `x` with `J x = −gap` and zeros where velocities are held, of the least `xᵀ M x`.
 ///
-/// By Gram–Schmidt over the rows of `J`, that one first which is most independent of those before it, and over what is
-/// left of the axes: a solution, and a basis of all motions in which the least is found. Rows that depend on others are left
-/// out; what they say follows, or cannot be. Coordinates are scaled by their inertia.
+/// A solution by [`least`], then the least energy over what is left of the axes: a basis of all motions. Coordinates are
+/// scaled by their inertia.
 fn correction<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
@@ -109,24 +218,41 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
     let mut axes: [Row<T, NV>; NV] = core::array::from_fn(|i| {
         core::array::from_fn(|j| if i == j && !held.contains(&i) { T::one() } else { T::zero() })
     });
-    let (mut rest, mut taken, mut y) = (rows, [false; NC], [T::zero(); NV]);
-    // What a velocity would be multiplied by beyond this is no answer.
-    let least = epsilon::<T>().powf(constant(4.0 / 3.0));
-    for _ in 0..NC {
-        let part =
-            |k: usize| if reach[k] > T::zero() { dot(&rest[k], &rest[k]) / reach[k] } else { T::zero() };
-        let Some((k, _)) = largest_row(&taken, part).filter(|(_, part)| *part > least) else { break };
-        taken[k] = true;
-        let size = dot(&rest[k], &rest[k]).sqrt();
-        let direction = rest[k].map(|x| x / size);
-        let missing = (-gap.data.0[0][k] - dot(&rows[k], &y)) / size;
-        add(&mut y, missing, &direction);
-        remove(&mut rest, &direction);
-        remove(&mut axes, &direction);
+    let (mut y, directions) = least(&rows, &reach, &core::array::from_fn(|k| -gap.data.0[0][k]));
+    for direction in directions.iter().flatten() {
+        remove(&mut axes, direction);
     }
     let scaled = |i: usize| -> Row<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
     least_energy(&core::array::from_fn(scaled), axes, &mut y);
     SVector::from_fn(|i, _| y[i] * scale[i])
+}
+
+/// The least `y` with `rows · y = targets`, and the directions of unit length that it is made of.
+///
+/// By Gram–Schmidt over the rows, that one first which is most independent of those before it, next to its own size. Rows
+/// that depend on others are left out; their targets follow, or cannot be.
+fn least<T: Real, const N: usize, const K: usize>(
+    rows: &[Row<T, N>; K],
+    sizes: &[T; K],
+    targets: &[T; K],
+) -> (Row<T, N>, [Option<Row<T, N>>; K]) {
+    let (mut rest, mut taken, mut y) = (*rows, [false; K], [T::zero(); N]);
+    let mut directions = [None; K];
+    // What a velocity would be multiplied by beyond this is no answer.
+    let least = epsilon::<T>().powf(constant(4.0 / 3.0));
+    for slot in &mut directions {
+        let part =
+            |k: usize| if sizes[k] > T::zero() { dot(&rest[k], &rest[k]) / sizes[k] } else { T::zero() };
+        let Some((k, _)) = largest_row(&taken, part).filter(|(_, part)| *part > least) else { break };
+        taken[k] = true;
+        let size = dot(&rest[k], &rest[k]).sqrt();
+        let direction = rest[k].map(|x| x / size);
+        let missing = (targets[k] - dot(&rows[k], &y)) / size;
+        add(&mut y, missing, &direction);
+        remove(&mut rest, &direction);
+        *slot = Some(direction);
+    }
+    (y, directions)
 }
 
 /// Moves `y` along what the `axes` span to where `yᵀ M y` is least.

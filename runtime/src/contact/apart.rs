@@ -1,7 +1,7 @@
 //! A mechanism whose contacts are left out.
 
 use crate::Rheonomic;
-use crate::forward::each_function;
+use crate::forward::{each_function, inherent_functions};
 use nalgebra::{SMatrix, SVector};
 
 /// A mechanism whose contacts do nothing; made by [`apart`].
@@ -14,6 +14,8 @@ pub struct Apart<'m, M> {
 pub fn apart<M>(mechanism: &M) -> Apart<'_, M> {
     Apart { mechanism }
 }
+
+inherent_functions!(impl<'m, M> Apart<'m, M>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Rheonomic<NQ, NV, NU> for Apart<'_, M>

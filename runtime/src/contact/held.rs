@@ -2,8 +2,9 @@
 
 use super::lawful::lawful;
 use super::layout::Layout;
+use super::light::sticking_change;
 use super::problem::{Problem, entry, put};
-use super::{Contacts, Responses, Touch};
+use super::{Contacts, Responses, Touch, failed};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use nalgebra::SVector;
@@ -128,11 +129,15 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let responses = mechanism.contact_responses(t, q, &closed);
-    let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
+    let laws = lawful(mechanism)?;
+    let mut problem = Problem::new(layout, &laws, &closed, &free);
     problem.weigh(&responses.rates);
-    let forces = problem.hold(touches, along).map_err(|k| ConstraintError::Contact {
-        constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
-    })?;
-    let forces = problem.spread(&forces);
+    let mut loses_digits = false;
+    let found = problem.hold(touches, along, &mut loses_digits);
+    if loses_digits && let Some((change, forces)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
+    {
+        return Ok((Held { a: a + change, forces }, Some(responses)));
+    }
+    let forces = problem.spread(&found.map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?);
     Ok((Held { a: a + responses.velocities * forces, forces }, Some(responses)))
 }

@@ -5,7 +5,7 @@ use super::held::{Held, held};
 use super::{Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
 use crate::derivatives::{ByMotion, RheonomicDerivatives, unknown};
-use crate::forward::each_function;
+use crate::forward::{each_function, inherent_functions};
 use crate::private::constant;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -155,6 +155,8 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     }
 }
 
+inherent_functions!(impl<'m, M, S; const NK, NR> Holding<'m, M, S, NK, NR>);
+
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
     Rheonomic<NQ, NV, NU> for Holding<'_, M, T, NK, NR>
@@ -263,7 +265,7 @@ where
         given: &SVector<T, NV>,
         _h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
-        Ok(Touched { q: *q, v: free + given })
+        Ok(Touched::free(*q, free + given))
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

@@ -3,8 +3,9 @@
 use super::derivatives::ContactDerivatives;
 use super::lawful::lawful;
 use super::layout::Layout;
+use super::light::sticking_change;
 use super::problem::Problem;
-use super::{Contacts, Solved, Touch};
+use super::{Contacts, Solved, Touch, failed};
 use crate::Real;
 use crate::blocks::{add_product, product};
 use crate::constraint::ConstraintError;
@@ -79,13 +80,18 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
-    let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
+    let laws = lawful(mechanism)?;
+    let mut problem = Problem::new(layout, &laws, &closed, &free);
     let responses = mechanism.contact_responses(t, q, &closed);
     problem.weigh(&responses.rates);
-    let impulses = problem.hold(touches, &SVector::zeros()).map_err(|k| ConstraintError::Contact {
-        constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
-    })?;
-    let impulses = problem.spread(&impulses);
+    let mut loses_digits = false;
+    let found = problem.hold(touches, &SVector::zeros(), &mut loses_digits);
+    if loses_digits
+        && let Some((change, impulses)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
+    {
+        return Ok((Solved { v: v + change, impulses }, problem, responses.velocities));
+    }
+    let impulses = problem.spread(&found.map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?);
     let v = v + responses.velocities * impulses;
     Ok((Solved { v, impulses }, problem, responses.velocities))
 }

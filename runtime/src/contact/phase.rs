@@ -59,8 +59,41 @@ fn still<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
     most * epsilon::<T>() * constant(512.0)
 }
 
+/// Adds the slip of contacts, divided by a time so short that friction does not stop it, to their
+/// accelerations `free`.
+pub(super) fn sustain_slip<T: Real, const NK: usize, const NR: usize>(
+    free: &mut SVector<T, NR>,
+    rates: &SVector<T, NR>,
+    layout: Layout<NK>,
+) {
+    let still = still(rates) * constant(2.0);
+    let most = free.iter().fold(T::zero(), |most, a| most.max(a.abs()));
+    for tangents in (0..NK).map(|k| layout.tangents(k)) {
+        let slip = length(rates, tangents.clone());
+        if slip > still {
+            let size = (slip / epsilon::<T>().powf(constant(0.75))).min(most * constant(1e6));
+            for i in tangents {
+                put(free, i, entry(free, i) + entry(rates, i) / slip * size);
+            }
+        }
+    }
+}
+
+/// Returns the first contact that sticks by friction although its surfaces slip with these rates.
+pub(super) fn stopped_contact<T: Real, const NK: usize, const NR: usize>(
+    rates: &SVector<T, NR>,
+    touches: &[Touch; NK],
+    laws: &[Law<T>; NK],
+    layout: Layout<NK>,
+) -> Option<usize> {
+    let slips = |k: usize| length(rates, layout.tangents(k)) > near();
+    let mut sticks =
+        touches.iter().zip(laws).map(|(touch, law)| *touch == Touch::Sticks && law.friction > T::zero());
+    (0..NK).find(|k| sticks.next() == Some(true) && slips(*k))
+}
+
 /// The length of a part of a vector.
-fn length<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
+pub(super) fn length<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
     part.fold(T::zero(), |sum, i| sum + entry(vector, i) * entry(vector, i)).sqrt()
 }
 
@@ -138,7 +171,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
         };
         let mut phase = open;
         if closed.contains(&true) {
-            Self::aim(&mut free, &rates, still * constant(2.0), layout);
+            sustain_slip(&mut free, &rates, layout);
             if free.iter().any(|rate| !rate.is_finite()) {
                 return Err(ConstraintError::NotFinite);
             }
@@ -149,10 +182,7 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
                 constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
             })?;
             let (touches, along) = problem.touches(&forces);
-            let states = touches.iter().zip(mechanism.contact_laws()).enumerate();
-            let mut stuck =
-                states.filter(|(_, (touch, law))| **touch == Touch::Sticks && law.friction > T::zero());
-            if let Some((k, _)) = stuck.find(|(k, _)| length(&rates, layout.tangents(*k)) > near()) {
+            if let Some(k) = stopped_contact(&rates, &touches, &mechanism.contact_laws(), layout) {
                 // No forces let it slip on (Painlevé's paradox): it stops at once.
                 return Err(ConstraintError::Contact {
                     constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
@@ -179,20 +209,6 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
             }
         }
         Ok((phase, a))
-    }
-
-    /// Makes accelerations of what the rates become after so short a time that slip does not stop, divided by it.
-    fn aim(free: &mut SVector<T, NR>, rates: &SVector<T, NR>, still: T, layout: Layout<NK>) {
-        let most = free.iter().fold(T::zero(), |most, a| most.max(a.abs()));
-        for tangents in (0..NK).map(|k| layout.tangents(k)) {
-            let slip = length(rates, tangents.clone());
-            if slip > still {
-                let size = (slip / epsilon::<T>().powf(constant(0.75))).min(most * constant(1e6));
-                for i in tangents {
-                    put(free, i, entry(free, i) + entry(rates, i) / slip * size);
-                }
-            }
-        }
     }
 
     /// The rates along which slip is braked: those that there are, or where a contact is only about to slip or has slipped too far

@@ -12,8 +12,10 @@ mod linear;
 mod newton;
 mod restitution;
 mod search;
+mod transport;
 mod trial;
 
+pub(super) use linear::Equations;
 use trial::{Mode, Trial};
 
 /// A number for each rate.
@@ -40,6 +42,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// turning alone.
     pressed_by: Total<usize, NK>,
     size: usize,
+    /// Index of each rate among those of the mechanism.
+    places: List<usize, NR>,
     /// The rates without any impulses.
     given: List<T, NR>,
     /// The impulses of compression, if restitution is a ratio of these, and whether there are any.
@@ -72,6 +76,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             rows: Total::repeat(none),
             pressed_by: Total::repeat(0),
             size: 0,
+            places: Total::repeat(0),
             given: Total::repeat(T::zero()),
             compression: Total::repeat(T::zero()),
             is_compressed: false,
@@ -121,6 +126,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             problem.pressed_by[c] = by;
             problem.friction[c] = law.friction;
             for i in 0..of.count {
+                problem.places[first + i] = of.first + i;
                 problem.free[first + i] = entry(free, of.first + i);
                 problem.given[first + i] = problem.free[first + i];
             }
@@ -146,23 +152,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         first..first + count
     }
 
-    /// Of each rate its number among those of the mechanism; the first `size` are used.
-    fn places(&self) -> List<usize, NR> {
-        let mut places = List::repeat(0);
-        for ((_, of), rows) in self.contacts.iter().zip(*self.rows).take(self.count) {
-            for i in 0..rows.count {
-                places[rows.first + i] = of.first + i;
-            }
-        }
-        places
+    /// Impulses at the rates of the mechanism, with those that act anyway.
+    pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
+        let mut all = *impulses;
+        all.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse += *base);
+        self.scatter(&all)
     }
 
-    /// Impulses by their rates in the mechanism, with those that act anyway.
-    pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
+    /// Values for the rates of closed contacts at the rates of the mechanism; zeros elsewhere.
+    fn scatter(&self, values: &List<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
-        let impulses = impulses.iter().zip(self.base.iter());
-        for (place, (impulse, base)) in self.places().iter().zip(impulses).take(self.size) {
-            put(&mut all, *place, *impulse + *base);
+        for (place, value) in self.places.iter().zip(values.iter()).take(self.size) {
+            put(&mut all, *place, *value);
         }
         all
     }
@@ -181,7 +182,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Takes `W = G M⁻¹ Gᵀ` of all contacts.
     pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
-        let places = self.places();
+        let places = self.places;
         let none = T::zero();
         for (j, place) in places.iter().enumerate().take(self.size) {
             let Some(column) = weights.data.0.get(*place) else { continue };
@@ -199,9 +200,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
+    /// Changes of the rates by impulses.
+    fn changes(&self, impulses: &List<T, NR>) -> List<T, NR> {
+        self.added(List::repeat(T::zero()), impulses)
+    }
+
     /// The rates with impulses.
     fn rates(&self, impulses: &List<T, NR>) -> List<T, NR> {
-        let mut rates = self.free;
+        self.added(self.free, impulses)
+    }
+
+    /// Rates, and their changes by impulses.
+    fn added(&self, mut rates: List<T, NR>, impulses: &List<T, NR>) -> List<T, NR> {
         for (rate, row) in rates.iter_mut().zip(self.weights.iter()).take(self.size) {
             for (weight, impulse) in row.iter().zip(impulses.iter()).take(self.size) {
                 *rate += *weight * *impulse;
@@ -292,6 +302,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     (overlap, distance) = (overlap.max(-gap), distance.max(gap));
                 }
                 kept.contacts[c] = (contact, Rows { first, count: 1 });
+                kept.places[c] = first;
                 kept.rows[c] = Rows { first: n, count: 1 };
                 kept.pressed_by[c] = c;
                 kept.free[c] = gap;

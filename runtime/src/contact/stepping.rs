@@ -1,7 +1,7 @@
 //! What contacts make of a step: impulses, and displacements that take overlaps away.
 
 use super::layout::Layout;
-use super::problem::{Problem, entry};
+use super::problem::{Problem, entry, put};
 use super::total::Total;
 use super::{Acted, Contacts, Rows, Touched, act, near};
 use crate::Real;
@@ -148,35 +148,56 @@ where
     let half = h * constant(0.5);
     let came = Came::from((start, v), h, given * half);
     // What impulses do to the velocity they do in the mean of the step.
-    let led = |after: &SVector<T, NV>| {
+    let led = |after: &SVector<T, NV>, by_contacts: &SVector<T, NV>| {
         let moved = (after - free - given) * half;
-        Touched { q: mechanism.integrate(q, &moved), v: mechanism.carry(t, q, &moved, after) }
+        // Smooth forces move it by so little that their axes stay the same.
+        Touched {
+            q: mechanism.integrate(q, &moved),
+            v: mechanism.carry(t, q, &moved, after),
+            held: *by_contacts,
+        }
     };
+    let still = SVector::<T, NV>::zeros();
     let Some(closed) = closed(mechanism, t, q, free, Some(&came))? else {
-        let is_led = h != T::zero() && *given != SVector::<T, NV>::zeros();
-        return Ok(if is_led { led(free) } else { Touched { q: *q, v: *free } });
+        let is_led = h != T::zero() && *given != still;
+        return Ok(if is_led { led(free, &still) } else { Touched::free(*q, *free) });
     };
     let mut acted = Acted::nothing();
     let before = || came.rates(mechanism, t, q);
-    let after = act(mechanism, t, (q, free), &closed, (before, Some(given)), &mut acted)?.v;
+    // Contact forces on bodies at rest do not rotate.
+    let moves = |far: T| v.iter().any(|v| v.abs() * h > far);
+    let is_moving = moves(near::<T>() * constant(10.0));
+    let after = act(mechanism, t, (q, free), &closed, (before, is_moving.then_some(given)), &mut acted)?.v;
     if h == T::zero() {
-        return Ok(Touched { q: *q, v: after });
+        return Ok(Touched { q: *q, v: after, held: after - free });
     }
-    let mut touched = led(&after);
-    let Acted { problem, impulses, responses: Some(responses) } = &mut acted else { return Ok(touched) };
+    let Acted { problem, impulses, free: corrected, responses: Some(responses) } = &mut acted else {
+        return Ok(led(&after, &still));
+    };
+    let corrected = *corrected;
+    let mut touched = led(&after, &(after - corrected));
     let responses = &responses.velocities;
     // The energy without what contacts have done: they have worked along the mean of the velocities.
     let most = || {
         let carried = mechanism.carry(t, start, &mechanism.difference(start, q), v);
         let mean = (carried + free + given) * constant::<T>(0.5);
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
-        energy(mechanism, t, &Touched { q: *q, v: free + given }) - work
+        energy(mechanism, t, &Touched::free(*q, free + given)) - work
     };
     if problem.rebounds() {
-        let led = |impulses: &SVector<T, NR>| led(&(free + responses * impulses));
+        let led = |impulses: &SVector<T, NR>| {
+            let by_contacts = responses * impulses;
+            led(&(corrected + by_contacts), &by_contacts)
+        };
         let before = came.rates(mechanism, t, q);
         if let Some(less) = tempered(mechanism, t, problem, &before, &led, (&touched, most())) {
             (touched, *impulses) = less;
+        }
+    }
+    if !is_moving && !moves(near::<T>() * constant(1e-3)) {
+        let creep = creep_reversal(mechanism, t, ((start, v), q, &touched, &after), h, problem);
+        if let Some(creep) = creep {
+            touched.q = mechanism.integrate(&touched.q, &(responses * creep));
         }
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
@@ -189,6 +210,45 @@ where
         Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most)),
         None => Ok(touched),
     }
+}
+
+/// Impulses that, as displacements, take the bodies of a mechanism at rest back by what contacts that stick
+/// have crept in a step; `None` if they have not. The forces of a step are constant, and loads that change in
+/// it move what they hold.
+#[allow(clippy::type_complexity, reason = "states at both ends of the step")]
+fn creep_reversal<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    mechanism: &M,
+    t: T,
+    ((start, v), q, touched, after): (
+        (&SVector<T, NQ>, &SVector<T, NV>),
+        &SVector<T, NQ>,
+        &Touched<T, NQ, NV>,
+        &SVector<T, NV>,
+    ),
+    h: T,
+    problem: &Problem<T, NK, NR>,
+) -> Option<SVector<T, NR>>
+where
+    T: Real,
+    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+{
+    let mean = (v + after) * (h * constant(0.5));
+    let excess = mechanism.difference(start, &touched.q) - mean;
+    let largest = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+    if largest(&excess) <= largest(&touched.held) * h * epsilon::<T>().sqrt() {
+        return None;
+    }
+    let driven = mechanism.contact_rates(t, q, &SVector::zeros());
+    let (crept, slip) =
+        (mechanism.contact_rates(t, q, &excess) - driven, mechanism.contact_rates(t, q, after));
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
+    let mut back = SVector::<T, NR>::zeros();
+    for tangents in (0..NK).map(|k| layout.tangents(k)) {
+        if tangents.clone().all(|i| entry(&slip, i).abs() <= near::<T>() * near()) {
+            tangents.for_each(|i| put(&mut back, i, -entry(&crept, i)));
+        }
+    }
+    Some(problem.displacements(&back))
 }
 
 /// A state with the largest part of all restitutions after which the energy is no more than `most`, and the impulses that lead there;
@@ -235,7 +295,7 @@ fn rounding<T: Real>(energy: T) -> T {
 fn energy<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
-    Touched { q, v }: &Touched<T, NQ, NV>,
+    Touched { q, v, .. }: &Touched<T, NQ, NV>,
 ) -> T
 where
     T: Real,
@@ -266,6 +326,7 @@ where
         let to = Touched {
             q: mechanism.integrate(&from.q, &push),
             v: mechanism.carry(t, &from.q, &push, &from.v),
+            held: from.held,
         };
         // Without overlaps there is little to be pushed.
         if deepest < -near::<T>()

@@ -3,7 +3,7 @@
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, apart, with_diagonal};
 use crate::derivatives::{ByMotion, unknown};
-use crate::{Real, Rheonomic, RheonomicDerivatives};
+use crate::{Real, RheonomicDerivatives};
 use nalgebra::{SMatrix, SVector};
 
 /// A matrix of velocities with something for the states below and beside it.

@@ -4,6 +4,7 @@ use super::FirstOrder;
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::derivatives::ByMotion;
+use crate::forward::inherent_functions;
 use crate::private::put_block;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
@@ -80,6 +81,8 @@ impl<'m, M, const NV: usize, const NX: usize, const NE: usize> Extended<'m, M, N
         (self.mechanism.with_states(&x), v)
     }
 }
+
+inherent_functions!(impl<'m, M; const NV, NX, NE> Extended<'m, M, NV, NX, NE>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NE: usize>
@@ -309,7 +312,8 @@ where
         let ((m, v), (free, x)) = (self.at(v), apart::<_, NV, NX, NE>(free));
         let (given, added) = apart::<_, NV, NX, NE>(given);
         let touched = m.contact_step(t, (q, &v), (end, &free), &given, h)?;
-        Ok(Touched { q: touched.q, v: together(&touched.v, &(x + added)) })
+        let held = together(&touched.held, &SVector::<_, NX>::zeros());
+        Ok(Touched { q: touched.q, v: together(&touched.v, &(x + added)), held })
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>

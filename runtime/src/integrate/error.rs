@@ -4,7 +4,7 @@ use crate::ConstraintError;
 use core::fmt;
 
 /// Why a simulation stopped before its end. Times in seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
     /// A step, duration or tolerance that is not finite and positive. Raised before the first step.
@@ -78,6 +78,13 @@ pub enum Error {
         /// Iterations made; none where the matrix of the step is singular.
         iterations: usize,
     },
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for Error {

@@ -21,6 +21,8 @@ use nalgebra::SVector;
 /// leaves nothing of them: a ball comes to rest after finitely many bounces, and stays. Where forces cannot tell what comes next
 /// (Painlevé's paradox, slip that ends and starts in the same instant) a short step of [`TimeStepping`] does.
 ///
+/// Where each step is a sample, an impact has two of the same time: before it and after it.
+///
 /// For few contacts and tight tolerances: each event costs some ten steps. Steps are searched at their quarters, so a contact that
 /// opens and closes within a quarter may be missed where nothing else keeps steps short: see [`max_step`](Self::max_step). For
 /// mechanisms with dozens of contacts, for lanes, and for states of first order there is [`TimeStepping`]. Mechanisms without
@@ -72,6 +74,8 @@ pub struct EventMemory<T, const NV: usize> {
     stretch: u32,
     /// For how many more steps contacts are taken to slip whose forces the motion does not tell apart.
     shared: u32,
+    /// The last step was an impact.
+    has_struck: bool,
 }
 
 /// Steps of hardly any length after which time stepping takes turns with them: more than the last bounces of a ball, fewer than slip
@@ -123,7 +127,13 @@ impl<T: Real> Method<T> for EventDriven<T> {
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
-        EventMemory { adaptive: AdaptiveMemory::new(self.settings.first), short: 0, stretch: 0, shared: 0 }
+        EventMemory {
+            adaptive: AdaptiveMemory::new(self.settings.first),
+            short: 0,
+            stretch: 0,
+            shared: 0,
+            has_struck: false,
+        }
     }
 
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, _jump: Jump) {
@@ -190,6 +200,11 @@ where
         let reported = |reason| Error::Constraint { t: to_f64(start.t), reason };
         let v = separated(mechanism, now, &start.q, &start.v).map_err(reported)?;
         let begin = State { v, ..*start };
+        memory.has_struck = v != start.v && !memory.has_struck;
+        if memory.has_struck {
+            // An impact is a step of no duration, so that there are samples before and after it.
+            return Ok(Step::linear(*start, begin, SVector::zeros()));
+        }
         let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.at(now, &begin.q, &v));
         let (mut located, mut shared) = (None, false);
         if memory.is_stuck() {
@@ -201,9 +216,9 @@ where
             located = within.step(&settings, &mut memory.adaptive, until);
         }
         let resolution = epsilon::<T>().sqrt();
-        let step = if let Some(Ok(step)) = located {
+        if let Some(Ok(step)) = located {
             memory.count((step.end.t - start.t) / resolution, shared);
-            step
+            Ok(step)
         } else {
             let h = resolution * constant(f64::from(1_u32 << memory.stretch));
             memory.stretch = (memory.stretch + 1).min(LONGEST);
@@ -217,10 +232,8 @@ where
                 &begin,
                 Some(until),
                 true,
-            )?
-        };
-        let v = separated(mechanism, origin + step.end.t, &step.end.q, &step.end.v).map_err(reported)?;
-        Ok(Step { end: State { v, ..step.end }, ..step })
+            )
+        }
     }
 }
 

@@ -42,28 +42,31 @@ fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     (system.displacement_rate(&start.q, &displacement, &v), system.acceleration(start.t + h, &q, &v))
 }
 
-/// What leads through a step of `h` seconds, and the change of the velocity, with the acceleration `before` at its start and a
-/// one that is added everywhere, if any, and keeps its direction as seen from outside.
+/// Displacement and change of the velocity through a step of `h` seconds, with the acceleration `before` at
+/// its start, and an acceleration `added` throughout, if any, that keeps its direction in space. The latter
+/// is returned in the axes of the end.
 pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     h: T,
     before: SVector<T, NV>,
     added: Option<&SVector<T, NV>>,
-) -> Rates<T, NV> {
+) -> (Rates<T, NV>, Option<SVector<T, NV>>) {
     let half = h * constant(0.5);
-    let mut stage = |h: T, mean: &Rates<T, NV>| {
-        let (displacement, acceleration) = rates(system, start, h, mean);
-        let added = added.map(|added| system.carry(start.t, &start.q, &(mean.0 * h), added));
+    let carry = |system: &D, displacement: &SVector<T, NV>| {
+        added.map(|added| system.carry(start.t, &start.q, displacement, added))
+    };
+    let sum = |(displacement, acceleration): Rates<T, NV>, added: &Option<SVector<T, NV>>| {
         (displacement, added.map_or(acceleration, |added| acceleration + added))
     };
-    let k1 = (start.v, added.map_or(before, |added| before + added));
-    let k2 = stage(half, &k1);
-    let k3 = stage(half, &k2);
-    let k4 = stage(h, &k3);
-    let two = constant::<T>(2.0);
-    let sixth = h / constant(6.0);
-    ((k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth, (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth)
+    let k1 = sum((start.v, before), &added.copied());
+    let k2 = sum(rates(system, start, half, &k1), &carry(system, &(k1.0 * half)));
+    let k3 = sum(rates(system, start, half, &k2), &carry(system, &(k2.0 * half)));
+    let at_end = carry(system, &(k3.0 * h));
+    let k4 = sum(rates(system, start, h, &k3), &at_end);
+    let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
+    let mean = ((k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth, (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth);
+    (mean, at_end)
 }
 
 impl<T: Real> Method<T> for Rk4<T> {
@@ -95,7 +98,7 @@ impl<T: Real> Method<T> for Rk4<T> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let known = memory.take();
         let before = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
-        let (displacement, change) = through(system, start, h, before, None);
+        let ((displacement, change), _) = through(system, start, h, before, None);
         let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
         let end = settled(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);

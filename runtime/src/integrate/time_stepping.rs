@@ -12,28 +12,41 @@ use nalgebra::SVector;
 /// number of them costs nothing.
 ///
 /// A step of [`Rk4`](super::Rk4) leads to the configuration `q_f` and the velocity `v_f`, under the impulses `Λ₀` that hold those
-/// surfaces together which touch at its start. Then the impulses `Λ` of the whole step take their place:
+/// surfaces together which touch at its start. Then the impulses `Λ` of the whole step replace them:
 ///
 /// ```text
-/// v₁ = v_f + M⁻¹ Gᵀ (Λ − Λ₀),   q₁ = q_f ⊕ (h/2) (v₁ − v_f)
+/// v₁ = v_f + M⁻¹ Gᵀ Λ − w₀ + c,   q₁ = q_f ⊕ (h/2) (v₁ − v_f)
 /// ```
 ///
-/// Between impacts the order is 4, under lasting contact 2 and through impacts 1. The impulses fulfil Coulomb's and Newton's
-/// laws to rounding ([`contact::solve`](crate::contact::solve)), so what sticks does not creep, and no impulse gives energy.
-/// Surfaces overlap by what they approach in a step when they meet, at most. Where they stay together the overlap is taken away by
-/// displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing time-stepping schemes*,
-/// Comput. Methods Appl. Mech. Eng. 256, 2013), as far as the energy allows that impacts and friction take in the step: contacts
-/// do not lift what rests in each other. Restitution is lowered where a step would end with more energy than without contacts. What
-/// the energy still gains is the error of the order above: in drops of boxes of some kilograms that turn about their edges `25 h²` J
-/// in a step of `h` seconds at most, and `35 h²` J without friction.
+/// `w₀` is the change of velocity by `Λ₀`, and `c` makes the sum a trapezoidal rule for contact forces that
+/// rotate: half of the part of `w₀` that no impulses at the end of the step can give, and half of the part of
+/// `Λ₀` that is not opposite to the slip there. Without it the directions of the end would hold for the whole
+/// step, which is of order 1 and brakes what rolls.
 ///
-/// `Λ₀` are those of the step before where they have hardly changed, and found anew where they have.
+/// Between impacts the order is 4, under lasting contact 2 and through impacts 1. The impulses satisfy
+/// Coulomb's and Newton's laws to rounding ([`contact::solve`](crate::contact::solve)): at the end of a step
+/// surfaces that stick have no slip, and bodies at rest do not creep under any load that friction holds. No
+/// impulse of an impact gives energy. Under lasting contact the energy is exact to order 2: a bob of 1 kg in
+/// a smooth bowl of 1 m is off by `3e-6` of its energy after 2 s in steps of 1 ms. The order is 1 where slip
+/// turns at contacts that share forces in more than one way, such as the corners of a box.
 ///
-/// A step takes four evaluations of the dynamics, or [two](Self::midpoint), and with contacts that are closed one of gaps, rates,
-/// Jacobian and mass matrix, or two where the contacts have changed.
-/// Its matrices are on the stack, up to six of `R × R` numbers for the `R` rates of all contacts, open ones too, and several times
-/// that in unoptimised builds: 5 KiB for two feet, 2.5 MiB for the 240 rates of ten boxes on each other, where a thread needs
-/// [more stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than it has by default.
+/// Surfaces overlap by what
+/// they approach in a step when they meet, at most. Where they stay together the overlap is taken away by
+/// displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing
+/// time-stepping schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013), as far as the energy allows that
+/// impacts and friction take in the step: contacts do not lift what rests in each other. Restitution is
+/// lowered where a step would end with more energy than without contacts. What the energy still gains is the
+/// error of the order above: in drops of boxes of some kilograms that turn about their edges `25 h²` J in a
+/// step of `h` seconds at most, and `35 h²` J without friction.
+///
+/// `Λ₀` are those of the step before if they have hardly changed, and are computed again otherwise.
+///
+/// A step takes four evaluations of the dynamics, or [two](Self::midpoint), and with contacts that are closed
+/// one of gaps, Jacobian and mass matrix and two of rates, or twice as many if the contacts have changed. Its
+/// matrices are on the stack, up to six of `R × R` numbers for the `R` rates of all contacts, open ones too,
+/// and several times that in unoptimised builds: 5 KiB for two feet, 2.5 MiB for the 240 rates of ten boxes
+/// on each other, where a thread needs [more
+/// stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than it has by default.
 ///
 /// Constraints hold at the end of each step. Source: Jean, *The non-smooth contact dynamics method*, Comput. Methods Appl. Mech.
 /// Eng. 177 (1999).
@@ -59,7 +72,7 @@ impl<T: Real> TimeStepping<T> {
     ///
     /// to which `Λ₀` adds as to the velocities of any step of [`TimeStepping`]; what follows, `v₁` and `q₁`, is the same. Between impacts
     /// the order is 2, with declared speeds 1; where forces and inertia do not depend on velocities, the method is the leapfrog, whose
-    /// energy does not drift. Robots on their feet, whose impacts leave order 1 in any case, move hardly less exactly. Source: Moreau,
+    /// energy does not drift. `Λ₀` acts in its direction at the midpoint. Source: Moreau,
     /// *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999), with `v_m` in place of `v` in the
     /// accelerations.
     ///
@@ -155,10 +168,9 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         };
         let free = settled(system, free, start.t)?;
         let v = free.v - given;
-        let Touched { q, v: end } =
+        let Touched { q, v, held } =
             system.contact_step(t, (&start.q, &start.v), (&free.q, &v), &given, h).map_err(reported)?;
-        memory.note((end - v) / h);
-        let v = end;
+        memory.note(held / h);
         let end = State { q, v, ..free };
         let end = if end == free { end } else { settled(system, end, start.t)? };
         Ok(Step::linear(*start, end, (start.v + v) * (h * constant(0.5))))
@@ -191,9 +203,9 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
 ) -> (State<T, NQ, NV>, SVector<T, NV>) {
     let still = SVector::zeros();
     let added = (*rate != still).then_some(rate);
-    let (displacement, change) = through(system, start, h, *before, added);
+    let ((displacement, change), at_end) = through(system, start, h, *before, added);
     let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
-    (end, added.map_or(still, |rate| system.carry(start.t, &start.q, &displacement, &(*rate * h))))
+    (end, at_end.map_or(still, |rate| rate * h))
 }
 
 /// Where a step through the [midpoint](TimeStepping::midpoint) leads from the accelerations `before`, under impulses that add `rate` to
@@ -209,10 +221,12 @@ fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
     let middle = system.integrate(&start.q, &(start.v * half));
     let at_middle = system.acceleration(start.t + half, &middle, &(start.v + (before + rate) * half));
     let still = SVector::zeros();
-    let given = match *rate == still {
-        true => still,
-        false => system.carry(start.t, &start.q, &(start.v * h), &(*rate * h)),
-    };
-    let v = start.v + at_middle * h + given;
-    (State { t, q: system.integrate(&middle, &(v * half)), v }, given)
+    if *rate == still {
+        let v = start.v + at_middle * h;
+        return (State { t, q: system.integrate(&middle, &(v * half)), v }, still);
+    }
+    // Impulses keep their directions in space, like forces that act in the middle.
+    let carry = |h: T| system.carry(start.t, &start.q, &(start.v * h), rate);
+    let v = start.v + (at_middle + carry(half)) * h;
+    (State { t, q: system.integrate(&middle, &(v * half)), v }, carry(h) * h)
 }

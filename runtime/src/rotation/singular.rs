@@ -3,7 +3,7 @@
 use core::fmt;
 
 /// Why parameters or their rates do not exist.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Singular {
     /// The first and the third axis of a sequence of Euler angles are parallel ("gimbal lock"): the middle angle is an
@@ -14,6 +14,13 @@ pub enum Singular {
     /// A turn by 2π, or another multiple but zero, to rounding: the rotation vector has no rate for most angular
     /// velocities, and the modified Rodrigues vector is infinite.
     FullTurn,
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for Singular {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for Singular {

@@ -56,6 +56,8 @@ struct Firing<T, const NQ: usize, const NV: usize> {
     elapsed: f64,
     /// How far on the step events belong to the instant.
     limit: T,
+    /// The event whose sample after the jump of the velocity is still to be emitted.
+    jump: Option<usize>,
     /// The index from which on events have still to act.
     next: usize,
     /// What they have done together.
@@ -324,8 +326,8 @@ where
             Some((hit, elapsed)) => {
                 let state = self.on_constraints(self.state(run.node.t, step, hit.theta))?;
                 let limit = hit.theta + together();
-                let (next, jumped, stopped) = (0, false, false);
-                run.firing = Some(Firing { state, elapsed, limit, next, jumped, stopped });
+                let (jump, next, jumped, stopped) = (None, 0, false, false);
+                run.firing = Some(Firing { state, elapsed, limit, jump, next, jumped, stopped });
             }
             None => self.go_ahead(run, step),
         }
@@ -378,6 +380,11 @@ where
     ) -> Due<T, NQ, NV, NU> {
         let Some(mut firing) = run.firing.take() else { return Ok(None) };
         run.hit = None;
+        if let Some(index) = firing.jump.take() {
+            let sample = self.sample(firing.state, Some(index));
+            run.firing = Some(firing);
+            return Ok(Some(sample));
+        }
         let Some(index) = self.events.due(firing.next, firing.limit) else {
             if firing.jumped {
                 self.events.rebound(firing.limit);
@@ -395,6 +402,7 @@ where
             let q = mechanism.integrate(&state.q, &(state.v * moment));
             State { t: state.t + moment, q, ..*state }
         };
+        let before = firing.state;
         match self.events.act(index, &mut firing.state, &later) {
             Flow::Go => {}
             Flow::Stop => firing.stopped = true,
@@ -409,7 +417,13 @@ where
                 firing.state = self.on_constraints(firing.state)?;
             }
         }
-        let sample = self.sample(firing.state, Some(index));
+        let sample = match firing.state.v == before.v {
+            true => self.sample(firing.state, Some(index)),
+            false => {
+                firing.jump = Some(index);
+                self.sample(before, None)
+            }
+        };
         firing.next = index + 1;
         run.firing = Some(firing);
         Ok(Some(sample))

@@ -4,7 +4,6 @@ use std::fmt;
 use std::path::PathBuf;
 
 /// Why there is no page, log or live view. Every variant names what is to blame.
-#[derive(Debug)]
 #[non_exhaustive]
 pub enum Error {
     /// A motion without a sample.
@@ -72,6 +71,13 @@ pub enum Error {
         /// What is wrong.
         what: String,
     },
+}
+
+/// The text of `Display`, which `main` prints of an error that it returns.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
 }
 
 impl fmt::Display for Error {

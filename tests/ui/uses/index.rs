@@ -1,3 +1,5 @@
+//! Names in lists are checked wherever they stand.
+
 use linkwork::index;
 use linkwork::prelude::*;
 
@@ -11,6 +13,10 @@ struct Pendulum {
 
 const HINGE: usize = index!(Pendulum::CONFIGURATION, "hinges");
 
+fn hinge() -> usize {
+    index!(Pendulum::VELOCITIES, "hing")
+}
+
 fn main() {
-    let _ = Pendulum.neutral()[HINGE];
+    let _ = (Pendulum.neutral()[HINGE], hinge());
 }

@@ -350,3 +350,40 @@ fn in_single_precision() {
     let found = printed(compiler, &folder, "single", &program(&case, "float"), &flags);
     compare(&case, &found, 2e-3);
 }
+
+/// Names of mechanisms that are those of helpers, of headers, of arguments or of types: what is written compiles with every one of them.
+#[test]
+fn any_name_of_a_mechanism_compiles() {
+    let Some(compiler) = compilers().into_iter().next() else {
+        println!("skipped: there is no C compiler");
+        return;
+    };
+    let folder = folder("names");
+    // The helper's name stood for the mechanism's function, too.
+    for (k, name) in [
+        "Ball", "Free", "SinCos", "MulAdd", "Lw", "LwBall", "Which", "Given", "Product", "Arg", "Q", "W",
+        "Self_", "Index", "Isnan", "FloatT", "Sinf", "Memcpy", "By", "Ffsll",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let joint = ["Ball", "Free"][k % 2];
+        let source = folder.join("names.rs");
+        let text = format!(
+            "#[mechanism(gravity = -9.81 * z, derivatives)]\npub struct {name} {{\n    pub mass: f64,\n    #[body(mass = mass, com = 0.1 * x, inertia = diagonal(0.1, 0.2, 0.25))]\n    stone: Body,\n    #[joint(ground -> stone)]\n    flight: {joint},\n}}\n"
+        );
+        std::fs::write(&source, text).expect("a file of the tests'");
+        export(&folder, &[source.to_str().expect("a path"), "--casadi"]);
+        let files =
+            std::fs::read_dir(&folder).expect("the folder").map(|entry| entry.expect("an entry").path());
+        for file in files.filter(|path| path.extension().is_some_and(|end| end == "c")) {
+            let compiled = std::process::Command::new(compiler)
+                .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only"])
+                .arg(&file)
+                .output()
+                .expect("the compiler starts");
+            assert!(compiled.status.success(), "{name}: {}", String::from_utf8_lossy(&compiled.stderr));
+            std::fs::remove_file(&file).expect("the file is there");
+        }
+    }
+}

@@ -28,6 +28,10 @@ pub struct Constraints {
     pub overdetermined: bool,
     /// Accelerations are those of independent speeds, by pivots that are chosen in advance.
     pub independent: bool,
+    /// Entries of `q` that are angles.
+    pub angles: Vec<usize>,
+    /// Velocities that rotate something.
+    pub turns: Vec<bool>,
 }
 
 impl Constraints {
@@ -43,6 +47,8 @@ impl Constraints {
             determining: Vec::new(),
             overdetermined: false,
             independent: false,
+            angles: Vec::new(),
+            turns: Vec::new(),
         }
     }
 
@@ -62,6 +68,8 @@ impl Constraints {
             determining: those(|c| c.determines),
             overdetermined: model.is_overdetermined(),
             independent: model.dependent.is_some(),
+            angles: (0..model.nq()).filter(|k| model.units.configuration[*k] == "rad").collect(),
+            turns: model.units.velocities.iter().map(|unit| unit == "rad/s").collect(),
         }
     }
 }
@@ -120,28 +128,56 @@ pub fn write_constants(out: &mut String, c: &Constraints) {
     );
 }
 
-/// What a mechanism without inertia has of [`write_methods`]: its loops can be closed.
+/// Writes the functions of assembly of a mechanism without inertia, which has no trait of constraints.
 pub fn write_assembly(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     if c.names.is_empty() {
         return;
     }
-    let Words { q, v, t, pass, .. } = Words::new(c, s);
+    let Words { q, v, pass, .. } = Words::new(c, s);
+    let loops = format!(
+        "let loops = ::linkwork::__private::Loops {{
+            names: Self::CONSTRAINTS,
+            angles: &{:?},
+            turns: {:?},
+            residuals: |q: &{q}| self.constraint_residuals({pass}q),
+            jacobian: |q: &{q}| self.constraint_jacobian({pass}q),
+            integrate: |q: &{q}, dv: &{v}| self.integrate(q, dv),
+        }};",
+        c.angles,
+        (0..s.nv).map(|k| c.turns.get(k) == Some(&true)).collect::<Vec<_>>(),
+    );
+    let call = |function: &str, more: &str| {
+        format!("{loops} ::linkwork::__private::{function}(&loops, q, held{more})")
+    };
+    let bodies = [
+        call("assemble", ", ::core::option::Option::None"),
+        call("assemble", ", ::core::option::Option::Some(mode)"),
+        call("assembly_mode", ""),
+    ];
+    write_assembly_functions(out, c, s, &bodies);
+}
+
+/// Writes `assemble`, `assemble_in_mode` and `assembly_mode`, of the given bodies.
+fn write_assembly_functions(out: &mut String, c: &Constraints, s: &Signature<'_>, bodies: &[String; 3]) {
+    let Words { q, t, .. } = Words::new(c, s);
+    let [any, one, mode] = bodies;
     let _ = writeln!(
         out,
-        "/// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
+        "/// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. Angles are found within half a turn of `q`. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
         ///
         /// # Errors
         ///
         /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
-        pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
-            let loops = ::linkwork::__private::Loops {{
-                names: Self::CONSTRAINTS,
-                residuals: |q: &{q}| self.constraint_residuals({pass}q),
-                jacobian: |q: &{q}| self.constraint_jacobian({pass}q),
-                integrate: |q: &{q}, dv: &{v}| self.integrate(q, dv),
-            }};
-            ::linkwork::__private::assemble(&loops, q, held)
-        }}"
+        pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {any} }}
+        /// A configuration around `q` in which the constraints hold, of the assembly mode `mode`, 1 or −1. See [`assemble_in_mode`](::linkwork::Constrained::assemble_in_mode) of the trait.
+        ///
+        /// # Errors
+        ///
+        /// Those of [`assemble`](Self::assemble), and [`Mode`](::linkwork::ConstraintError::Mode) where only other modes are found.
+        pub fn assemble_in_mode(&self, {t}q: &{q}, held: &[usize], mode: i8) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{ {one} }}
+        /// The assembly mode of the configuration `q`, 1 or −1, by the coordinates whose velocities are not `held`; `None` where these do not determine one. See [`assembly_mode`](::linkwork::Constrained::assembly_mode) of the trait.
+        #[must_use]
+        pub fn assembly_mode(&self, {t}q: &{q}, held: &[usize]) -> ::core::option::Option<i8> {{ {mode} }}"
     );
 }
 
@@ -153,6 +189,14 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let (nv, nc) = (s.nv, c.names.len());
     let scalar = s.scalar.name();
+    let call = |function: &str, more: &str| {
+        format!("::linkwork::Constrained::{function}(self, {any}, q, held{more})")
+    };
+    let bodies = [call("assemble", ""), call("assemble_in_mode", ", mode"), call("assembly_mode", "")];
+    write_assembly_functions(out, c, s, &bodies);
+    if c.slipping.is_empty() {
+        write_inverse_dynamics(out, c, s);
+    }
     let _ = writeln!(
         out,
         "/// Acceleration under the forces `tau` and the constraints: `M v̇ + h = τ + Jᵀ λ`, `J v̇ + b = 0`.
@@ -175,14 +219,6 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         }}
         #[doc(hidden)]
         pub const __STRUCTURE: ::linkwork::__private::Structure<{nc}> = ::linkwork::__private::Structure {{ groups: {groups:?}, determining: &{determining:?}, rank: {rank} }};
-        /// A configuration near `q` in which the constraints hold; the coordinates whose velocities have the indices `held` stay as they are. See [`assemble`](::linkwork::Constrained::assemble) of the trait.
-        ///
-        /// # Errors
-        ///
-        /// [`Configuration`](::linkwork::ConstraintError::Configuration) where none is found, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
-        pub fn assemble(&self, {t}q: &{q}, held: &[usize]) -> ::core::result::Result<{q}, ::linkwork::ConstraintError> {{
-            ::linkwork::Constrained::assemble(self, {any}, q, held)
-        }}
         /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the constraints; what these leave open is nearest to `v` in the metric of the kinetic energy. See [`complete_velocity`](::linkwork::Constrained::complete_velocity) of the trait.
         ///
         /// # Errors
@@ -190,6 +226,14 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         /// [`Velocity`](::linkwork::ConstraintError::Velocity) where the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
         pub fn complete_velocity(&self, {t}q: &{q}, v: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::complete_velocity(self, {any}, q, v, held)
+        }}
+        /// The acceleration whose entries `held` (indices) are those of `a`, while the others follow from the constraints; what these leave open is nearest to `a` in the metric of the kinetic energy. See [`complete_acceleration`](::linkwork::Constrained::complete_acceleration) of the trait.
+        ///
+        /// # Errors
+        ///
+        /// [`Acceleration`](::linkwork::ConstraintError::Acceleration) where the held entries contradict the constraints, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        pub fn complete_acceleration(&self, {t}q: &{q}, v: &{v}, a: &{v}, held: &[usize]) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::complete_acceleration(self, {any}, q, v, a, held)
         }}
         /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy.
         ///
@@ -216,6 +260,22 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     if functions.iter().any(|f| f.id == Id::MotionDerivatives) {
         write_derivatives(out, c, s);
     }
+}
+
+/// Writes the forces of a motion under the constraints.
+fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) {
+    let Words { q, v, multipliers, t, any, .. } = Words::new(c, s);
+    let _ = writeln!(
+        out,
+        "/// Inverse dynamics under the constraints: the generalized forces `τ` at the velocities `driven` (indices) and the multipliers `λ` that give a motion, `M a + h = τ + Jᵀ λ`. As many velocities are driven as there are degrees of freedom (`NS`). See [`constrained_inverse_dynamics`](::linkwork::Constrained::constrained_inverse_dynamics) of the trait.
+        ///
+        /// # Errors
+        ///
+        /// [`Velocity`](::linkwork::ConstraintError::Velocity) and [`Acceleration`](::linkwork::ConstraintError::Acceleration) for a motion that does not fulfil the constraints, [`Undriven`](::linkwork::ConstraintError::Undriven) where forces at other velocities would be needed, [`Held`](::linkwork::ConstraintError::Held) for an index that is none.
+        pub fn constrained_inverse_dynamics(&self, {t}q: &{q}, v: &{v}, a: &{v}, driven: &[usize]) -> ::core::result::Result<({v}, {multipliers}), ::linkwork::ConstraintError> {{
+            ::linkwork::Constrained::constrained_inverse_dynamics(self, {any}, q, v, a, driven)
+        }}"
+    );
 }
 
 /// Accelerations and multipliers from what was `found` by an elimination, or the `careful` way where that loses digits.
@@ -395,13 +455,15 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let _ = writeln!(
         out,
         "const CONSTRAINTS: [&'static str; {nc}] = Self::CONSTRAINTS;
+        const ANGLES: &'static [usize] = &{angles:?};
         #[inline]\nfn constraint_residuals(&self, {t}: {scalar}, q: &{q}) -> {residuals} {{ Self::constraint_residuals(self, {pass}q) }}
         #[inline]\nfn constraint_rates(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ Self::constraint_rates(self, {pass}q, v) }}
         #[inline]\nfn constraint_jacobian(&self, {t}: {scalar}, q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, {nc}, {nv}> {{ Self::constraint_jacobian(self, {pass}q) }}
         #[inline]\nfn constraint_bias(&self, {t}: {scalar}, q: &{q}, v: &{v}) -> {multipliers} {{ Self::constraint_bias(self, {pass}q, v) }}
         #[inline]\nfn constrained_dynamics(&self, {t}: {scalar}, q: &{q}, v: &{v}, tau: &{v}) -> ({v}, {multipliers}) {{ Self::constrained_dynamics(self, {pass}q, v, tau) }}
         #[inline]\nfn constraint_correction(&self, {t}: {scalar}, q: &{q}, gap: &{multipliers}) -> {v} {{ Self::constraint_correction(self, {pass}q, gap) }}
-        #[inline]\nfn constraint_response(&self, {t}: {scalar}, q: &{q}, p: &{v}, gap: &{multipliers}) -> {v} {{ Self::__constraint_solution(self, {pass}q, &p.data.0[0], &gap.data.0[0]) }}"
+        #[inline]\nfn constraint_response(&self, {t}: {scalar}, q: &{q}, p: &{v}, gap: &{multipliers}) -> {v} {{ Self::__constraint_solution(self, {pass}q, &p.data.0[0], &gap.data.0[0]) }}",
+        angles = c.angles,
     );
 }
 

@@ -1,6 +1,8 @@
 //! Access to named frames: for each frame, calls of the steps along its path, without computing anything else.
 
-use super::function::write_function;
+use super::body::write_body;
+use super::instruction::Build;
+use super::interface::{ALLOW, Head};
 use super::signature::Signature;
 use crate::catalogue::Argument;
 use crate::derive::{FrameSteps, Function, LinkSteps};
@@ -9,10 +11,74 @@ use std::fmt::Write;
 
 const PARENT: Argument = Argument::Given("p", 0, 12);
 
-/// Writes the private steps and the implementations of `NamedFrame`.
-pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
+/// Writes the steps along the links and what calls them: the placements of all frames and the implementations of
+/// `NamedFrame`, for a type of this name. The steps are methods of a trait that is known in this block alone, so that neither
+/// documentation nor editors list them.
+pub fn write_frames(
+    out: &mut String,
+    name: &str,
+    head: &Head,
+    (links, frames): (&[LinkSteps], &[FrameSteps]),
+    speeds: bool,
+    s: &Signature<'_>,
+) {
+    let Head { generics, arguments, bounds } = head;
+    let steps = write_steps(links, frames, s);
+    let _ = writeln!(
+        out,
+        "const _: () = {{
+        {ALLOW}trait __Steps{generics} {bounds} {{\n{}}}
+        {ALLOW}impl{generics} __Steps{arguments} for {name}{arguments} {bounds} {{\n{}}}
+        {ALLOW}impl{generics} {name}{arguments} {bounds} {{
+        /// Placements of all frames in the ground, in the order of `FRAMES`.
+        #[inline]\n#[must_use]
+        pub fn frame_placements({}) -> [::linkwork::nalgebra::IsometryMatrix3<{}>; {}] {{",
+        steps.declarations,
+        steps.methods,
+        s.parameters(&s.timed(&[Argument::Q])),
+        s.scalar.name(),
+        frames.len()
+    );
+    write_all_placements(out, links, frames, s);
+    out.push_str("}\n}\n");
+    for (k, frame) in frames.iter().enumerate() {
+        let _ = writeln!(
+            out,
+            "{ALLOW}#[doc(hidden)]\nimpl{generics} ::linkwork::NamedFrame<{k}, {}, {}> for {name}{arguments} {bounds} {{\ntype Scalar = {};",
+            s.nq,
+            s.nv,
+            s.scalar.name()
+        );
+        write_frame_impl(out, k, frame, links, speeds, s);
+        out.push_str("}\n");
+    }
+    out.push_str("};\n");
+}
+
+/// Declarations of a trait's methods, and the methods with their bodies.
+#[derive(Default)]
+struct Steps {
+    declarations: String,
+    methods: String,
+}
+
+impl Steps {
+    /// Adds a method with a body.
+    fn add(&mut self, attribute: &str, signature: &str, body: &str) {
+        let _ = writeln!(self.declarations, "{signature};");
+        let _ = writeln!(self.methods, "#[inline{attribute}]\n{signature} {{\n{body}}}");
+    }
+}
+
+/// Writes the private steps of all links and frames.
+fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) -> Steps {
+    let mut steps = Steps::default();
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
-        write_function(out, &Function::part(name, arguments, n, program.clone()), s, false);
+        let f = Function::part(name, arguments, n, program.clone());
+        let mut body = String::new();
+        write_body(&mut body, &f, s, false, Build::Optimised);
+        let signature = format!("fn {}({}) -> {}", f.name, s.parameters(&f.arguments), s.result(&f));
+        steps.add("", &signature, &body);
     };
     for (k, link) in links.iter().enumerate() {
         let from_parent = |arguments: &[Argument], given: Argument| {
@@ -38,9 +104,10 @@ pub fn write_steps(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps],
         step(format!("__frame{k}_acceleration"), given(24), 6, &frame.acceleration);
     }
     for (k, link) in links.iter().enumerate() {
-        write_path(out, k, link, s);
-        write_path_columns(out, k, links, s);
+        write_path(&mut steps, k, link, s);
+        write_path_columns(&mut steps, k, links, s);
     }
+    steps
 }
 
 /// Time as the first argument of a call, where functions take it.
@@ -75,7 +142,7 @@ fn frame_placement(k: usize, frame: &FrameSteps) -> String {
 }
 
 /// Body of `frame_placements`: all frames at once, each link once.
-pub fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
+fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) {
     for (k, link) in links.iter().enumerate() {
         write_link_placement(out, k, link, s);
     }
@@ -88,7 +155,7 @@ pub fn write_all_placements(out: &mut String, links: &[LinkSteps], frames: &[Fra
 }
 
 /// The methods of `NamedFrame` for one frame.
-pub fn write_frame_impl(
+fn write_frame_impl(
     out: &mut String,
     k: usize,
     frame: &FrameSteps,
@@ -138,15 +205,12 @@ fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>
 }
 
 /// Writes what is known of a link from the ground on: its placement, its twist, and its twist and acceleration.
-fn write_path(out: &mut String, k: usize, link: &LinkSteps, s: &Signature<'_>) {
+fn write_path(steps: &mut Steps, k: usize, link: &LinkSteps, s: &Signature<'_>) {
     use Argument::{A, Q, V};
     let (scalar, t) = (s.scalar.name(), time(s));
     let mut method = |name: &str, arguments: &[Argument], n: usize, body: &str| {
         let parameters = s.parameters(&s.timed(arguments));
-        let _ = writeln!(
-            out,
-            "#[inline(always)]\nfn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}] {{\n{body}\n}}"
-        );
+        steps.add("(always)", &format!("fn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}]"), body);
     };
     let of_parent = |name: &str, state: &str| {
         link.parent.map_or(String::new(), |p| format!(", &self.__link{p}_path_{name}({t}{state})"))
@@ -204,30 +268,32 @@ fn write_jacobian(
 
 /// Writes what the Jacobians of frames need of a link: the placements of the links from the ground to it, and their columns
 /// for a point at `o`. Each calls that of the link's parent, so that their length does not grow with the square of a chain's.
-fn write_path_columns(out: &mut String, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
+fn write_path_columns(steps: &mut Steps, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
     let (scalar, t, link, count) = (s.scalar.name(), time(s), &links[k], links.len());
     let state = s.parameters(&s.timed(&[Argument::Q]));
     let (before, parent) = match link.parent {
         Some(p) => (format!("self.__link{p}_path_placements({t}q, x);\n"), format!(", &x[{p}]")),
         None => Default::default(),
     };
-    let _ = writeln!(
-        out,
-        "#[inline(always)]\nfn __link{k}_path_placements({state}, x: &mut [[{scalar}; 12]; {count}]) {{
-        {before}x[{k}] = self.__link{k}_placement({t}q{parent});\n}}
-        #[inline(always)]
-        fn __link{k}_path_columns({state}, x: &[[{scalar}; 12]; {count}], o: &[{scalar}; 3], columns: &mut [[{scalar}; 6]; {}]) {{",
-        s.nv
+    steps.add(
+        "(always)",
+        &format!("fn __link{k}_path_placements({state}, x: &mut [[{scalar}; 12]; {count}])"),
+        &format!("{before}x[{k}] = self.__link{k}_placement({t}q{parent});\n"),
     );
+    let mut body = String::new();
     if let Some(p) = link.parent {
-        let _ = writeln!(out, "self.__link{p}_path_columns({t}q, x, o, columns);");
+        let _ = writeln!(body, "self.__link{p}_path_columns({t}q, x, o, columns);");
     }
     let mut written = vec![false; s.nv];
     for &before in path(links, link.parent).iter().flat_map(|l| &links[*l].velocities) {
         written[before] = true;
     }
-    write_columns(out, k, link, &mut written, s);
-    out.push_str("}\n");
+    write_columns(&mut body, k, link, &mut written, s);
+    let signature = format!(
+        "fn __link{k}_path_columns({state}, x: &[[{scalar}; 12]; {count}], o: &[{scalar}; 3], columns: &mut [[{scalar}; 6]; {}])",
+        s.nv
+    );
+    steps.add("(always)", &signature, &body);
 }
 
 /// The columns of a link. Several coordinates that follow one another share a column.

@@ -5,9 +5,7 @@ use super::constants::{write_constants, write_frame_index};
 use super::differentiable;
 use super::dispatch::Bodies;
 use super::docs::{Part, struct_docs};
-use super::frames::{
-    write_all_placements, write_frame_impl, write_steps, write_trait as write_frames_by_number,
-};
+use super::frames::{write_frames, write_trait as write_frames_by_number};
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
@@ -17,7 +15,6 @@ use super::scalar::ScalarSpelling;
 use super::signature::Signature;
 use super::{constraints, contacts};
 use super::{file, lanes, measurements, reactions, sensitivities, states, validate};
-use crate::catalogue::Argument;
 use crate::derive::{Constant, Function, Output};
 use crate::equations::Written;
 use crate::syntax::Shell;
@@ -83,23 +80,15 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     validate::write_method(&mut methods, interface, false);
     file::write_methods(&mut methods, interface, &spelling);
     write_frame_access(&mut methods, &s);
-    let placements =
-        format!("[::linkwork::nalgebra::IsometryMatrix3<{}>; {}]", spelling.name(), output.frames.len());
-    let _ = writeln!(
-        methods,
-        "/// Placements of all frames in the ground, in the order of `FRAMES`.\n#[inline]\n#[must_use]\npub fn frame_placements({}) -> {placements} {{",
-        s.parameters(&s.timed(&[Argument::Q]))
+    let mut emitted = assemble(interface, &s, &methods, output.frames.len(), &struct_docs(interface, output));
+    write_frames(
+        &mut emitted.text,
+        &interface.shell.ident.to_string(),
+        &Head::new(interface, &s),
+        (&output.links, &output.frames),
+        interface.facts.speeds,
+        &s,
     );
-    write_all_placements(&mut methods, &output.links, &output.frames, &s);
-    methods.push_str("}\n");
-    write_steps(&mut methods, &output.links, &output.frames, &s);
-    let mut frames = Vec::new();
-    for (k, frame) in output.frames.iter().enumerate() {
-        let mut text = String::new();
-        write_frame_impl(&mut text, k, frame, &output.links, interface.facts.speeds, &s);
-        frames.push(text);
-    }
-    let mut emitted = assemble(interface, &s, &methods, &frames, &struct_docs(interface, output));
     bodies.write(&mut emitted.text, &interface.shell.ident.to_string(), &Head::new(interface, &s));
     write_absent(&mut emitted.text, interface, &s);
     measurements::write_impls(
@@ -159,7 +148,7 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
         pub fn frame_jacobian<F>(&self, frame: F, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{ loop {{}} }}",
         interface.frames.len()
     );
-    let mut emitted = assemble(interface, &s, &methods, &[], &[]);
+    let mut emitted = assemble(interface, &s, &methods, 0, &[]);
     write_absent(&mut emitted.text, interface, &s);
     measurements::write_impls(
         &mut emitted.text,
@@ -194,7 +183,7 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
 /// Access to one frame: `frame!(Robot, "tool")` names it, and the compiler checks the name.
 fn write_frame_access(out: &mut String, s: &Signature<'_>) {
     let scalar = s.scalar.name();
-    let bound = format!("where Self: ::linkwork::NamedFrame<I, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
+    let frame = format!("impl ::linkwork::FrameName<Self, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
     let (q, v) = (s.vector(s.nq), s.vector(s.nv));
     // What is not driven in time has no use for it.
@@ -206,25 +195,24 @@ fn write_frame_access(out: &mut String, s: &Signature<'_>) {
         out,
         "/// Placement of a frame in the ground: its axes and its origin.
         #[inline]\n#[must_use]
-        pub fn frame_placement<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {bound} {{
-            ::linkwork::__private::placement(&::linkwork::NamedFrame::<I, {nq}, {nv}>::placement(self, {at}, q))
+        pub fn frame_placement(&self, frame: {frame}, {t}q: &{q}) -> ::linkwork::nalgebra::IsometryMatrix3<{scalar}> {{
+            ::linkwork::FrameName::placement(frame, self, {at}, q)
         }}
         /// Velocity of a frame: of its origin, then angular; relative to the ground, resolved in ground axes.
         #[inline]\n#[must_use]
-        pub fn frame_velocity<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}, v: &{v}) -> {six} {bound} {{
-            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::twist(self, {at}, q, v))
+        pub fn frame_velocity(&self, frame: {frame}, {t}q: &{q}, v: &{v}) -> {six} {{
+            ::linkwork::FrameName::velocity(frame, self, {at}, q, v)
         }}
         /// Acceleration of a frame: of its origin, then angular; relative to the ground, resolved in ground axes; without gravity.
         #[inline]\n#[must_use]
-        pub fn frame_acceleration<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}, v: &{v}, a: &{v}) -> {six} {bound} {{
-            ::linkwork::__private::six(::linkwork::NamedFrame::<I, {nq}, {nv}>::acceleration(self, {at}, q, v, a))
+        pub fn frame_acceleration(&self, frame: {frame}, {t}q: &{q}, v: &{v}, a: &{v}) -> {six} {{
+            ::linkwork::FrameName::acceleration(frame, self, {at}, q, v, a)
         }}
         /// Jacobian of a frame: `frame_velocity` is this times `v`.
         #[inline]\n#[must_use]
-        pub fn frame_jacobian<const I: usize>(&self, frame: ::linkwork::FrameIndex<I>, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {bound} {{
-            ::linkwork::NamedFrame::<I, {nq}, {nv}>::jacobian(self, {at}, q)
+        pub fn frame_jacobian(&self, frame: {frame}, {t}q: &{q}) -> ::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}> {{
+            ::linkwork::FrameName::jacobian(frame, self, {at}, q)
         }}",
-        nq = s.nq,
         nv = s.nv,
     );
 }
@@ -251,13 +239,7 @@ fn with_runtime(text: String, shell: &Shell) -> String {
 }
 
 /// Puts struct and implementations together.
-fn assemble(
-    i: &Interface<'_>,
-    s: &Signature<'_>,
-    methods: &str,
-    frames: &[String],
-    docs: &[Part],
-) -> Emitted {
+fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, docs: &[Part]) -> Emitted {
     let Shell { attributes, visibility, ident, parameters, tables, elements, runtime: path, .. } = i.shell;
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
@@ -283,7 +265,7 @@ fn assemble(
         quote!(#[doc(hidden)] #[allow(unused_imports, non_snake_case, reason = "generated code")] use #path as #alias;)
     });
     let runtime = runtime(i.shell);
-    let known = if frames.is_empty() {
+    let known = if frames == 0 {
         quote!()
     } else {
         quote!(const _: () = { #(const _: ::core::option::Option<#runtime::elements::#words> = ::core::option::Option::None;)* };)
@@ -310,7 +292,7 @@ fn assemble(
         "{ALLOW}impl{} ::linkwork::Frames<{}, {}> for {}{} {} {{",
         head.generics, s.nq, s.nv, i.shell.ident, head.arguments, head.bounds
     );
-    write_frames_by_number(&mut text, frames.len(), s);
+    write_frames_by_number(&mut text, frames, s);
     text.push_str("}\n");
     if i.facts.requests.drawing {
         let scalar = s.scalar.name();
@@ -331,19 +313,6 @@ fn assemble(
             i.shell.ident,
             head.arguments,
             head.bounds
-        );
-    }
-    for (k, body) in frames.iter().enumerate() {
-        let _ = writeln!(
-            text,
-            "{ALLOW}#[doc(hidden)]\nimpl{} ::linkwork::NamedFrame<{k}, {}, {}> for {}{} {} {{\ntype Scalar = {};\n{body}}}",
-            head.generics,
-            s.nq,
-            s.nv,
-            i.shell.ident,
-            head.arguments,
-            head.bounds,
-            s.scalar.name()
         );
     }
     Emitted { tokens, text }

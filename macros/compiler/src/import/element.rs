@@ -9,6 +9,9 @@ use crate::syntax::Name;
 /// An element of the file.
 pub(super) type Node<'a> = roxmltree::Node<'a, 'a>;
 
+/// An attribute of an element.
+pub(super) type Attribute<'a> = roxmltree::Attribute<'a, 'a>;
+
 /// The place of an element.
 pub(super) fn place(node: Node<'_>, cx: &Cx<'_>) -> Place {
     cx.place(node.range().start)
@@ -80,6 +83,53 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
         let message = format!("{} without {}", tag(node), quote_all(missing.into_iter()));
         let help = expected(node.tag_name().name(), required);
         cx.error(&place(node, cx), message, |d| d.help(help));
+    }
+}
+
+/// Reports everything that an element of the file's own vocabulary holds besides attributes with these names: other attributes, text,
+/// elements. It would be lost without a word. Attributes in `foreign` are for other tools.
+pub(super) fn check_only(
+    node: Node<'_>,
+    required: &[&str],
+    optional: &[&str],
+    foreign: &[&str],
+    cx: &mut Cx<'_>,
+) {
+    let all = [required, optional].concat();
+    let known = |name: &str| all.contains(&name) || foreign.contains(&name);
+    let help = expected(node.tag_name().name(), if required.is_empty() { optional } else { required });
+    let unknown = node.attributes().find(|a| a.namespace().is_none() && !known(a.name()));
+    let content = node.children().find(|child| match child.is_text() {
+        true => child.text().is_some_and(|text| !text.trim().is_empty()),
+        false => child.is_element() && child.tag_name().namespace() == node.tag_name().namespace(),
+    });
+    if let Some(child) = content {
+        let text = child.text().unwrap_or_default();
+        let start = child.range().start;
+        let (found, start) = match child.is_text() {
+            true => (format!("text {}", quote(text.trim())), start + text.len() - text.trim_start().len()),
+            false => (tag(child), start),
+        };
+        let message = format!("unexpected {found} in {}", tag(node));
+        cx.error(&cx.place(start), message, |d| d.help(help));
+    } else if let Some(attribute) = unknown.filter(|a| nearest(a.name(), &all).is_none()) {
+        let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
+        let place = cx.place(attribute.range().start);
+        cx.error(&place, message, |d| d.help(help));
+    } else {
+        check_attributes(node, required, optional, cx);
+    }
+}
+
+/// Reports attributes other than those in `known` of an element whose values are its text or its elements.
+pub(super) fn check_plain(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
+    check_attributes(node, &[], known, cx);
+    let unknown = node.attributes().filter(|a| a.namespace().is_none() && !known.contains(&a.name()));
+    for attribute in unknown.filter(|a| nearest(a.name(), known).is_none()) {
+        let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
+        let name = attribute.name();
+        let help = format!("values are elements or text, as in `<{name}>{}</{name}>`", attribute.value());
+        cx.error(&cx.place(attribute.range().start), message, |d| d.help(help));
     }
 }
 

@@ -3,6 +3,7 @@
 use super::context::quote;
 use crate::diag::{Diagnostics, nearest};
 use crate::syntax::{FileFormat, FileOptions, Name};
+use std::borrow::Cow;
 use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -12,6 +13,20 @@ pub const LARGEST_FILE: usize = 16 << 20;
 
 /// Neighbours of a missing file that are looked at.
 const NEIGHBOURS: usize = 1000;
+
+/// Characters without width that Unicode does not count as blanks: a zero-width space, a word joiner, a byte order mark.
+const INVISIBLE: [char; 3] = ['\u{200b}', '\u{2060}', '\u{feff}'];
+
+/// Returns a text without a byte order mark at its start, and with spaces in the place of invisible characters that parsers of XML and
+/// of numbers do not know, such as no-break spaces.
+pub fn with_plain_blanks(text: &str) -> Cow<'_, str> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let is_strange = |c: char| !c.is_ascii() && (c.is_whitespace() || INVISIBLE.contains(&c));
+    match text.contains(is_strange) {
+        true => Cow::Owned(text.replace(is_strange, " ")),
+        false => Cow::Borrowed(text),
+    }
+}
 
 /// Reads the file at `path`; `options` say what the user wrote, and where.
 pub fn read_file(path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<String> {

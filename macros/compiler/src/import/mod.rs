@@ -25,7 +25,7 @@ mod xml;
 #[cfg(test)]
 mod tests;
 
-pub use file::{LARGEST_FILE, read_file};
+pub use file::{LARGEST_FILE, read_file, with_plain_blanks};
 pub use imported::Imported;
 
 /// Reads the text of a file; other files that it names are looked up beside it, at `options.path` in `folder`.
@@ -33,12 +33,11 @@ pub use imported::Imported;
 /// Every mistake is reported to `cx`, at the option's literal and with the file's own line and column;
 /// `None` if there was any.
 pub fn import(text: &str, folder: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text).trim_end_matches('\0');
     if text.len() > LARGEST_FILE {
         file::report(&file::too_large(text.len() as u64), &options.path, cx);
         return None;
     }
-    let text = &*xml::without_late_declaration(text);
+    let text = &*xml::cleaned(text);
     match options.format {
         FileFormat::Urdf => import_urdf(text, options, cx),
         FileFormat::Mjcf => mjcf::import(text, &folder.join(&options.path.text), options, cx),

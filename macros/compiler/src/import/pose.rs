@@ -15,7 +15,7 @@ pub(in crate::import) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]
 const ROUNDING: f64 = 1e-15;
 
 /// A frame in another one.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::import) struct Pose {
     /// Its origin.
     pub(in crate::import) at: Vector,

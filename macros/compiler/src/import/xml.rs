@@ -2,6 +2,7 @@
 //! errors in our words. Knows of the formats only that files are sometimes made by xacro.
 
 use super::context::{Cx, quote};
+use super::file::with_plain_blanks;
 use crate::diag::Place;
 use crate::syntax::FileFormat;
 use roxmltree::{Document, Error, Node, ParsingOptions};
@@ -30,9 +31,16 @@ fn max_depth(format: FileFormat) -> usize {
     }
 }
 
-/// Blanks an XML declaration that stands after empty lines. It has no business there, but other readers of URDF take it; all
-/// else keeps its place.
-pub(super) fn without_late_declaration(text: &str) -> Cow<'_, str> {
+/// Returns the text of a file with spaces in the place of blanks that XML does not know, and of an XML declaration that follows empty
+/// lines: other readers of URDF take both. Lines and columns are preserved.
+pub(super) fn cleaned(text: &str) -> Cow<'_, str> {
+    match with_plain_blanks(text.trim_end_matches('\0')) {
+        Cow::Borrowed(plain) => without_late_declaration(plain),
+        Cow::Owned(plain) => Cow::Owned(without_late_declaration(&plain).into_owned()),
+    }
+}
+
+fn without_late_declaration(text: &str) -> Cow<'_, str> {
     let start = text.len() - text.trim_start().len();
     let declaration = &text[start..];
     if start == 0 || !declaration.starts_with("<?xml ") {

@@ -64,8 +64,9 @@ fn is_numeric(model: &Model<'_>) -> bool {
         .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
 }
 
-/// Counts the degrees of freedom, of configurations and of velocities, on the branch that the first sample belongs to:
-/// linkages can have others, where links fold onto each other, with more. Reports a mechanism that cannot move.
+/// Counts the degrees of freedom, of configurations and of velocities, in the assembly mode that the first sample belongs
+/// to: linkages can have others, where links fold onto each other, with more. Reports a mechanism that cannot move; one
+/// that is driven in time moves also without a degree of freedom.
 pub fn degrees_of_freedom(
     model: &Model<'_>,
     rows: &Rows<'_>,
@@ -82,13 +83,21 @@ pub fn degrees_of_freedom(
     let sample = samples.iter().find(|w| free(w, nc) > 0).or(samples.first());
     let count = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free(w, rank));
     let freedom = Freedom { coordinates: count(model.holonomic()), velocities: count(nc) };
-    if freedom.velocities == 0 && !samples.is_empty() {
+    let stands = || samples.iter().all(|sample| !is_driven(model, rows, sample));
+    if freedom.velocities == 0 && !samples.is_empty() && stands() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
         cx.error(place.clone(), "this mechanism cannot move").help(format!(
             "its {nv} coordinates are held by {nc} constraints: remove a joint or a constraint"
         ));
     }
     freedom
+}
+
+/// Whether the mechanism moves where all velocities are zero: frames are placed by time, or the rate of a constraint has a
+/// term without velocities.
+fn is_driven(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample) -> bool {
+    let placements: Vec<Expr<'_>> = model.links.iter().flat_map(|link| link.placement.entries()).collect();
+    rows.has_drift(q, *seed) || symbols_in(&placements).into_iter().any(|s| Quantity::of(s) == Quantity::Time)
 }
 
 /// A pivot for each constraint among the velocities that need not be independent, in the order of

@@ -63,23 +63,23 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
 }
 
 /// Drops rows that follow from the others wherever the mechanism is, constant ones among them; true if there are such rows.
+///
+/// Where the others leave no degree of freedom, every further row depends on them, whether they agree or not: rows are dropped
+/// there only if a configuration is known that fulfils all of them.
 pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], samples: &[Sample]) -> bool {
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
     let all = random.chain(samples.iter().cloned());
-    let samples: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| rows.jacobian(&q, seed)).collect();
-    let mut bases: Vec<Basis> = samples.iter().map(|_| Basis::default()).collect();
+    let jacobians: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| rows.jacobian(&q, seed)).collect();
+    let mut bases: Vec<Basis> = jacobians.iter().map(|_| Basis::default()).collect();
     let mut kept: Vec<usize> = Vec::new();
     for row in (0..model.constraints.len()).filter(|row| !constant[*row]) {
-        // Where no configuration is known that fulfils the constraints, only rows without any influence go.
-        let none = Basis::default();
-        let depends = samples.iter().zip(&bases).all(|(j, basis)| {
-            let others = if samples.is_empty() { &none } else { basis };
-            others.explains(&j[row], TOLERANCE)
-        });
-        if !depends {
+        if !jacobians.iter().zip(&bases).all(|(j, basis)| basis.explains(&j[row], TOLERANCE)) {
             kept.push(row);
-            bases.iter_mut().zip(&samples).for_each(|(basis, j)| basis.add(&j[row], TOLERANCE));
+            bases.iter_mut().zip(&jacobians).for_each(|(basis, j)| basis.add(&j[row], TOLERANCE));
         }
+    }
+    if samples.is_empty() && bases.iter().all(|basis| basis.rank() == model.nv()) {
+        kept = (0..model.constraints.len()).filter(|row| !constant[*row]).collect();
     }
     let all = std::mem::take(&mut model.constraints);
     for (row, constraint) in all.into_iter().enumerate() {

@@ -12,6 +12,7 @@ pub struct Rows<'g> {
     /// Entries of the Jacobian that are not zero: row, column.
     at: Vec<(usize, usize)>,
     entries: Tape<'g>,
+    rates: Tape<'g>,
     /// Constraints, velocities.
     size: (usize, usize),
 }
@@ -31,6 +32,7 @@ impl<'g> Rows<'g> {
             residuals: Tape::of(&residuals),
             at,
             entries: Tape::of(&entries),
+            rates: Tape::of(&rates),
             size: (model.constraints.len(), model.nv()),
         }
     }
@@ -61,6 +63,12 @@ impl<'g> Rows<'g> {
             rows[*row][*column] = value;
         }
         rows
+    }
+
+    /// Whether some constraint does not hold in a configuration at rest, beyond rounding: its rate has a term without
+    /// velocities.
+    pub fn has_drift(&self, q: &[f64], seed: u64) -> bool {
+        self.rates.rounded(&|s| value_of(s, q, seed)).iter().any(|rate| !rate.may_be_zero())
     }
 
     /// By row, whether all of its coefficients in a configuration may be what rounding has left of zero.

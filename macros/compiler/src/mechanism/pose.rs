@@ -1,6 +1,6 @@
 //! Placements of frames.
 
-use crate::expr::{Graph, Rotation, Vec3};
+use crate::expr::{Expr, Graph, Rotation, Vec3};
 
 /// The placement of a child frame in a parent frame.
 #[derive(Clone, Debug)]
@@ -34,5 +34,10 @@ impl<'g> Pose<'g> {
     /// A point of the child frame, from the parent's origin in parent axes.
     pub fn point(&self, p: Vec3<'g>) -> Vec3<'g> {
         self.translation + self.rotation.to_parent(p)
+    }
+
+    /// Returns all expressions that the placement consists of.
+    pub fn entries(&self) -> Vec<Expr<'g>> {
+        self.rotation.matrix().0.iter().flatten().chain(&self.translation.0).copied().collect()
     }
 }

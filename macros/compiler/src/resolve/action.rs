@@ -1,12 +1,12 @@
 //! Force elements and inputs: what they act on, and with which parameters.
 
 use super::builder::Builder;
-use super::motion::{Moving, needs_motion};
+use super::motion::Moving;
 use super::power::{Counts, is_asked};
 use super::target::Target;
 use crate::diag::Diagnostics;
 use crate::mechanism::{Coordinate, Dashpot, Input, Rule, Spring};
-use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Target as On};
+use crate::syntax::{Action, ActionKind, Expr, ExprKind, Law, Name, Target as On};
 
 impl<'g> Builder<'_, 'g> {
     /// Resolves force elements on coordinates, which need no places.
@@ -35,12 +35,20 @@ impl<'g> Builder<'_, 'g> {
         for action in &self.description.actions {
             let before = Counts::of(&self.model);
             self.add_action(action, cx);
+            if cx.is_empty() && Counts::of(&self.model) == before && !self.is_input(&action.name.text) {
+                report_lost(&action.name, cx);
+            }
             self.know_applied(&before, &action.name.text);
             if is_asked(self.description, &action.name) {
                 let power = self.power_since(&before, &action.name.text);
                 self.scope.kinematics.borrow_mut().powers.insert(action.name.text.clone(), power);
             }
         }
+    }
+
+    /// Whether an entry of `u` acts where an element of this name says.
+    fn is_input(&self, name: &str) -> bool {
+        self.model.inputs.iter().any(|(known, input)| known == name && !matches!(input, Input::Named))
     }
 
     /// Adds one force element or input to the model.
@@ -252,6 +260,28 @@ impl<'g> Builder<'_, 'g> {
             .help("name one; of a point without mass, such as `ground`, `mu` says what it attracts with");
         None
     }
+}
+
+/// Reports an element that is declared and has come to nothing without an error.
+pub fn report_lost(name: &Name, cx: &mut Diagnostics) {
+    cx.error(
+        name.place.clone(),
+        format!("internal error: nothing came of the force element `{}`", name.text),
+    )
+    .help("please report this with the mechanism");
+}
+
+/// True for force elements that are not on a coordinate or a body as a whole, or have a law or a value.
+fn needs_motion(action: &Action) -> bool {
+    let own = match &action.kind {
+        ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.is_some(),
+        ActionKind::Gravity { .. } | ActionKind::Attraction { .. } => true,
+        ActionKind::Dashpot { law } => !matches!(law, Law::Linear(_)),
+        _ => false,
+    };
+    // A point that a vector says may move on its body.
+    own || matches!(&action.on, On::Between(..))
+        || matches!(&action.on, On::On(e) if matches!(e.kind, ExprKind::Method(..)))
 }
 
 /// The word of an element with its article.

@@ -254,6 +254,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             applied: Vec::new(),
             touching: BTreeMap::new(),
             moved_by_place: Vec::new(),
+            frame_links: Vec::new(),
             partials: Partials::default(),
             group: 0,
             mobility: Diagnostics::new(),

@@ -67,6 +67,8 @@ pub struct Builder<'a, 'g> {
     pub applied: Vec<(String, Vec<expr::Expr<'g>>)>,
     /// Bodies and particles that move by what `at` and `frame` say: number among what can be released, and what carries them.
     pub moved_by_place: Vec<(usize, Option<LinkId>)>,
+    /// Links of frames that move with respect to what they start from.
+    pub frame_links: Vec<LinkId>,
     /// By constraint of surfaces that touch at a point: where, from the ground's origin.
     pub touching: BTreeMap<String, Terms<'g>>,
     /// Derivatives of the places of the links so far.
@@ -137,9 +139,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// A placement that moves becomes a link without mass; one that is fixed stays as it is.
     pub fn link_if_moving(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
-        let matrix = pose.rotation.matrix();
-        let entries: Vec<_> = matrix.0.iter().flatten().chain(&pose.translation.0).copied().collect();
-        let moves = symbols_in(&entries)
+        let moves = symbols_in(&pose.entries())
             .into_iter()
             .any(|s| matches!(Quantity::of(s), Quantity::Configuration(_) | Quantity::Time));
         if !moves {

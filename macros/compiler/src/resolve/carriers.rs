@@ -1,6 +1,6 @@
 //! Which particles carry something, so that their axes matter: those from which a place, a direction or a joint starts.
 
-use crate::syntax::{ActionKind, Description, Expr, ExprKind, Law, Target};
+use crate::syntax::{Description, Expr, ExprKind, Target};
 
 /// True if the axes of a particle are used anywhere: by a joint on it, as `name.at(…)` or `name.x`, by what acts on it.
 pub fn carries(d: &Description, name: &str) -> bool {
@@ -38,17 +38,7 @@ pub fn expressions(d: &Description) -> Vec<&Expr> {
             Target::On(e) => all.push(e),
             Target::Between(a, b) => all.extend([a, b]),
         }
-        match &action.kind {
-            ActionKind::Spring { law, .. } | ActionKind::Dashpot { law } => {
-                let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = law;
-                all.push(e);
-            }
-            ActionKind::Force { along: direction, value }
-            | ActionKind::Torque { about: direction, value } => {
-                all.extend(direction.iter().chain(value));
-            }
-            _ => {}
-        }
+        all.extend(action.kind.expressions().into_iter().map(|(_, e)| e));
     }
     all
 }

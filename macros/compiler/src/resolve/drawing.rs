@@ -285,7 +285,12 @@ impl<'g> Builder<'_, 'g> {
                 ActionKind::Force { .. } if matches!(action.on, Target::Between(..)) => {
                     self.draw_element(action, PieceKind::Bar, PieceKind::Bar, pieces)
                 }
-                _ => {}
+                // Inputs are arrows, which follow.
+                ActionKind::Force { .. } | ActionKind::Torque { .. } => {}
+                ActionKind::Inerter { .. }
+                | ActionKind::Friction { .. }
+                | ActionKind::Gravity { .. }
+                | ActionKind::Attraction { .. } => {}
             }
         }
         for (k, (name, input)) in self.model.inputs.iter().enumerate() {

@@ -1,5 +1,6 @@
 //! Force elements and inputs of a file: on a weighted sum of coordinates, on a length, at a point of a body.
 
+use super::action::report_lost;
 use super::builder::Builder;
 use super::motion::Moving;
 use super::terms::Stretch;
@@ -9,13 +10,14 @@ use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, CoulombFriction, Dashpot, Input, Spring};
 use crate::syntax::{Description, Drive, DriveLaw, DriveOn, Expr, Law, Wrench};
 
-/// Those that are inputs, in their order in `u`: after the driven joints, before all others.
+/// Inputs among the force elements of a file, in their order in `u`: after the driven joints, before all
+/// others.
 pub fn inputs(d: &Description) -> impl Iterator<Item = &Drive> {
     d.drives.iter().filter(|drive| matches!(drive.law, DriveLaw::Input(_)))
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Adds them all.
+    /// Adds all force elements and inputs of a file.
     pub fn add_drives(&mut self, _: Moving, cx: &mut Diagnostics) {
         for drive in &self.description.drives {
             self.add_drive(drive, cx);
@@ -23,9 +25,13 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn add_drive(&mut self, drive: &Drive, cx: &mut Diagnostics) {
-        let terms = drive.on.terms().iter();
-        let terms: Vec<Coordinate> =
-            terms.filter_map(|(joint, weight)| self.weighted(&joint.text, *weight)).collect();
+        let mut terms: Vec<Coordinate> = Vec::new();
+        for (joint, weight) in drive.on.terms() {
+            match self.weighted(&joint.text, *weight) {
+                Some(coordinate) => terms.push(coordinate),
+                None => report_lost(&drive.name, cx),
+            }
+        }
         if let DriveLaw::Input(unit) = drive.law {
             self.model.inputs.push((drive.name.text.clone(), Input::Sum(terms, unit)));
             if let Some(stretch) = self.spatial_stretch(&drive.on, cx) {
@@ -88,11 +94,11 @@ impl<'g> Builder<'_, 'g> {
             .map(|vector| axes.pose.rotation.to_parent(Vec3::numbers(g, vector)));
         let kinematics = self.scope.kinematics.borrow();
         let rate = match &against {
-            None => {
-                let twist = kinematics.twists.get(on.link?.0)?;
+            None => on.link.map_or(g.zero(), |link| {
+                let twist = &kinematics.twists[link.0];
                 let at = twist.linear + twist.angular.cross(on.pose.translation);
                 at.dot(force) + twist.angular.dot(torque)
-            }
+            }),
             Some(against) => {
                 let zero = Vec3::zero(g);
                 let between = kinematics.between(&on, against);

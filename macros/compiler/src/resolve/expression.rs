@@ -1,7 +1,7 @@
 //! Expressions as written → expressions of the graph: names are looked up, scalars and vectors told apart.
 
 use super::flight::{ANGLES, OF_HEIGHT};
-use super::functions::FUNCTIONS;
+use super::functions;
 use super::scope::{Axes, Scope, Value};
 use super::slips::{DOMAIN, VECTOR, check_angle, degrees, wrong_count};
 use crate::diag::Diagnostics;
@@ -345,11 +345,11 @@ impl<'a, 'g> Scope<'a, 'g> {
     fn report_function(&self, function: &Name, cx: &mut Diagnostics) {
         let text = function.text.as_str();
         let own = self.tables.iter().map(|table| table.name.text.as_str());
-        let known = Function::ALL.iter().map(|(name, _)| *name).chain(FUNCTIONS).chain(own);
+        let known = Function::ALL.iter().map(|(name, _)| *name).chain(functions::names()).chain(own);
         let known: Vec<&str> = known.collect();
         let error = cx.error(function.place.clone(), format!("unknown function `{text}`"));
         let greek = words::spelt_otherwise(text, &known);
-        match (greek, super::inertia::SOLIDS.iter().any(|(solid, _)| *solid == text)) {
+        match (greek, super::inertia::SOLIDS.iter().any(|(solid, ..)| *solid == text)) {
             (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
             (_, true) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
             _ => words::point(error, words::FUNCTIONS, text, &known),

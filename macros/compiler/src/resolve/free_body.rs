@@ -290,7 +290,14 @@ impl<'g> Builder<'_, 'g> {
                 ExprKind::Name(_) | ExprKind::Method(..) => here(e),
                 _ => None,
             },
-            _ => None,
+            (
+                Target::On(_),
+                ActionKind::Spring { .. }
+                | ActionKind::Dashpot { .. }
+                | ActionKind::Inerter { .. }
+                | ActionKind::Friction { .. }
+                | ActionKind::Attraction { .. },
+            ) => None,
         }
     }
 

@@ -3,8 +3,8 @@
 use super::builder::Builder;
 use super::scope::{Placed, PlacedKind};
 use super::tree;
-use crate::mechanism::{LinkId, Pose};
-use crate::syntax::{self, Description};
+use crate::mechanism::{Inertia, Link, LinkId, Motion, Pose};
+use crate::syntax::{self, Description, GROUND, Rank};
 
 /// The number of a body's place among what can be released: joints come first, then bodies, then particles.
 pub fn of_body(d: &Description, body: usize) -> usize {
@@ -24,22 +24,48 @@ pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The link of a body or a particle that is placed, if it moves by that; where its place is released, with six motions more.
+    /// Returns the link of a body or a particle that is placed, if it moves by that; if its place is released, the last of
+    /// six more.
     pub fn link_of_place(
         &mut self,
         number: usize,
         carrier: Option<LinkId>,
         pose: Pose<'g>,
     ) -> (Option<LinkId>, Pose<'g>) {
-        let (link, pose) = self.link_if_moving(carrier, pose);
+        let (mut link, mut pose) = self.link_if_moving(carrier, pose);
+        let mut holder = carrier;
         if link == carrier {
-            return (link, pose);
+            let frame = carrier.filter(|link| self.frame_links.contains(link) && self.is_on_frame(number));
+            let Some(frame) = frame else { return (link, pose) };
+            // What carries the frame holds the body by it, apart from other bodies on the frame.
+            holder = self.model.links.get(frame.0).and_then(|frame| frame.parent);
+            let (motion, inertia) = (Motion::Placed, Inertia::zero(self.scope.graph));
+            link = Some(self.add_link(Link { parent: Some(frame), placement: pose, motion, inertia }));
+            pose = Pose::identity(self.scope.graph);
         }
-        self.moved_by_place.push((number, carrier));
+        self.moved_by_place.push((number, holder));
         let Some((released, _)) = self.releasing else { return (link, pose) };
         let Some(at) = released.iter().position(|open| *open == number) else { return (link, pose) };
         self.joint_frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
         self.release(at, released.len(), link, pose)
+    }
+
+    /// Whether a body or a particle is fixed in a frame, not on a body or at a point, in a mechanism with free-body diagrams.
+    fn is_on_frame(&self, number: usize) -> bool {
+        let d = self.description;
+        let is_placed = |e: &syntax::Expr| {
+            let base = tree::base_name(e);
+            base.is_some_and(|base| base != GROUND && d.frames.iter().all(|frame| frame.name.text != base))
+        };
+        let body = number.checked_sub(d.joints.len()).and_then(|k| d.bodies.get(k));
+        let particle = number.checked_sub(d.joints.len() + d.bodies.len()).and_then(|k| d.particles.get(k));
+        let places = [
+            body.and_then(|body| body.frame.as_ref()),
+            body.and_then(|body| body.at.as_ref()),
+            particle.and_then(|particle| particle.at.as_ref()),
+        ];
+        d.outputs.iter().any(|output| output.rank == Rank::FreeBody)
+            && !places.into_iter().flatten().any(is_placed)
     }
 
     /// The body that carries a point, or a particle that does not move on it; a body itself.

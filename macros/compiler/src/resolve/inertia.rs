@@ -6,22 +6,53 @@ use crate::expr::{Expr, Mat3, Sym3, Vec3};
 use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
 
-/// The solids with the names of their arguments.
-pub const SOLIDS: [(&str, &[&str]); 14] = [
-    ("rod", &["mass", "length", "axis"]),
-    ("ring", &["mass", "radius", "axis"]),
-    ("disk", &["mass", "radius", "axis"]),
-    ("cylinder", &["mass", "radius", "height", "axis"]),
-    ("tube", &["mass", "inner radius", "outer radius", "height", "axis"]),
-    ("cone", &["mass", "radius", "height", "axis"]),
-    ("capsule", &["mass", "radius", "height", "axis"]),
-    ("sphere", &["mass", "radius"]),
-    ("shell", &["mass", "radius"]),
-    ("cuboid", &["mass", "x length", "y length", "z length"]),
-    ("box", &["mass", "x length", "y length", "z length"]),
-    ("plate", &["mass", "x length", "y length"]),
-    ("ellipsoid", &["mass", "x radius", "y radius", "z radius"]),
-    ("diagonal", &["xx", "yy", "zz"]),
+/// A kind of homogeneous solid, or moments given one by one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solid {
+    /// A thin rod.
+    Rod,
+    /// A thin ring.
+    Ring,
+    /// A thin disk.
+    Disk,
+    /// A cylinder.
+    Cylinder,
+    /// A cylinder with a hole.
+    Tube,
+    /// A cone.
+    Cone,
+    /// A cylinder between two half balls.
+    Capsule,
+    /// A ball.
+    Sphere,
+    /// A thin hollow ball.
+    Shell,
+    /// A cuboid.
+    Cuboid,
+    /// A thin rectangle.
+    Plate,
+    /// An ellipsoid.
+    Ellipsoid,
+    /// Three principal moments.
+    Diagonal,
+}
+
+/// The solids by name, with the names of their arguments.
+pub const SOLIDS: [(&str, Solid, &[&str]); 14] = [
+    ("rod", Solid::Rod, &["mass", "length", "axis"]),
+    ("ring", Solid::Ring, &["mass", "radius", "axis"]),
+    ("disk", Solid::Disk, &["mass", "radius", "axis"]),
+    ("cylinder", Solid::Cylinder, &["mass", "radius", "height", "axis"]),
+    ("tube", Solid::Tube, &["mass", "inner radius", "outer radius", "height", "axis"]),
+    ("cone", Solid::Cone, &["mass", "radius", "height", "axis"]),
+    ("capsule", Solid::Capsule, &["mass", "radius", "height", "axis"]),
+    ("sphere", Solid::Sphere, &["mass", "radius"]),
+    ("shell", Solid::Shell, &["mass", "radius"]),
+    ("cuboid", Solid::Cuboid, &["mass", "x length", "y length", "z length"]),
+    ("box", Solid::Cuboid, &["mass", "x length", "y length", "z length"]),
+    ("plate", Solid::Plate, &["mass", "x length", "y length"]),
+    ("ellipsoid", Solid::Ellipsoid, &["mass", "x radius", "y radius", "z radius"]),
+    ("diagonal", Solid::Diagonal, &["xx", "yy", "zz"]),
 ];
 
 /// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
@@ -134,13 +165,13 @@ impl<'g> Scope<'_, 'g> {
 
     fn solid(&self, solid: &Name, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Sym3<'g>> {
         let text = solid.text.as_str();
-        let Some((_, names)) = SOLIDS.iter().find(|(name, _)| *name == text) else {
-            let known = SOLIDS.iter().map(|(name, _)| *name);
+        let Some((_, kind, names)) = SOLIDS.iter().find(|(name, ..)| *name == text) else {
+            let known = SOLIDS.iter().map(|(name, ..)| *name);
             let known: Vec<&str> = known.collect();
             let error = cx.error(solid.place.clone(), format!("unknown solid `{text}`"));
             words::point(error, words::SOLIDS, text, &known);
             let meant = words::meant(words::SOLIDS, text, &known);
-            if let Some((solid, names)) = SOLIDS.iter().find(|(name, _)| Some(*name) == meant) {
+            if let Some((solid, _, names)) = SOLIDS.iter().find(|(name, ..)| Some(*name) == meant) {
                 error.help(format!("it is written `{solid}({})`", names.join(", ")));
             }
             if error.is_bare() {
@@ -173,7 +204,7 @@ impl<'g> Scope<'_, 'g> {
             Some(axis) if has_axis => Some(self.unit_vector(axis, false, cx)?),
             _ => None,
         };
-        complete.then(|| self.solid_inertia(text, &numbers, axis))
+        complete.then(|| self.solid_inertia(*kind, &numbers, axis))
     }
 
     /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely the
@@ -214,7 +245,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Moments of inertia of homogeneous solids about their centres of mass (any table of mechanics).
-    fn solid_inertia(&self, solid: &str, n: &[Expr<'g>], axis: Option<Vec3<'g>>) -> Sym3<'g> {
+    fn solid_inertia(&self, solid: Solid, n: &[Expr<'g>], axis: Option<Vec3<'g>>) -> Sym3<'g> {
         let g = self.graph;
         let square = |k: usize| n[k].square();
         let about = |axial: Expr<'g>, transverse: Expr<'g>| match axis {
@@ -223,20 +254,22 @@ impl<'g> Scope<'_, 'g> {
         };
         let diagonal = |d: [Expr<'g>; 3]| Sym3 { diagonal: d, off: [g.zero(); 3] };
         match solid {
-            "rod" => about(g.zero(), n[0] * square(1) * (1.0 / 12.0)),
-            "ring" => about(n[0] * square(1), n[0] * square(1) * 0.5),
-            "disk" => about(n[0] * square(1) * 0.5, n[0] * square(1) * 0.25),
-            "cylinder" => about(n[0] * square(1) * 0.5, n[0] * (square(1) * 0.25 + square(2) * (1.0 / 12.0))),
-            "tube" => {
+            Solid::Rod => about(g.zero(), n[0] * square(1) * (1.0 / 12.0)),
+            Solid::Ring => about(n[0] * square(1), n[0] * square(1) * 0.5),
+            Solid::Disk => about(n[0] * square(1) * 0.5, n[0] * square(1) * 0.25),
+            Solid::Cylinder => {
+                about(n[0] * square(1) * 0.5, n[0] * (square(1) * 0.25 + square(2) * (1.0 / 12.0)))
+            }
+            Solid::Tube => {
                 let radii = square(1) + square(2);
                 about(n[0] * radii * 0.5, n[0] * (radii * 0.25 + square(3) * (1.0 / 12.0)))
             }
-            "cone" => about(n[0] * square(1) * 0.3, n[0] * (square(1) * 0.15 + square(2) * 0.0375)),
-            "capsule" => self.capsule(n, axis),
-            "sphere" => Sym3::scalar(n[0] * square(1) * 0.4),
-            "shell" => Sym3::scalar(n[0] * square(1) * (2.0 / 3.0)),
-            "cuboid" | "box" | "ellipsoid" => {
-                let factor = if solid == "ellipsoid" { 0.2 } else { 1.0 / 12.0 };
+            Solid::Cone => about(n[0] * square(1) * 0.3, n[0] * (square(1) * 0.15 + square(2) * 0.0375)),
+            Solid::Capsule => self.capsule(n, axis),
+            Solid::Sphere => Sym3::scalar(n[0] * square(1) * 0.4),
+            Solid::Shell => Sym3::scalar(n[0] * square(1) * (2.0 / 3.0)),
+            Solid::Cuboid | Solid::Ellipsoid => {
+                let factor = if solid == Solid::Ellipsoid { 0.2 } else { 1.0 / 12.0 };
                 let m = n[0] * factor;
                 diagonal([
                     m * (square(2) + square(3)),
@@ -244,12 +277,11 @@ impl<'g> Scope<'_, 'g> {
                     m * (square(1) + square(2)),
                 ])
             }
-            "plate" => {
+            Solid::Plate => {
                 let m = n[0] * (1.0 / 12.0);
                 diagonal([m * square(2), m * square(1), m * (square(1) + square(2))])
             }
-            "diagonal" => diagonal([n[0], n[1], n[2]]),
-            _ => Sym3::zero(g),
+            Solid::Diagonal => diagonal([n[0], n[1], n[2]]),
         }
     }
 
@@ -268,7 +300,7 @@ impl<'g> Scope<'_, 'g> {
 
 /// True for a solid with its arguments.
 fn is_solid(e: &syntax::Expr) -> bool {
-    matches!(&e.kind, ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, _)| *solid == word.text))
+    matches!(&e.kind, ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, ..)| *solid == word.text))
 }
 
 /// `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, `t` about all normals.
@@ -307,6 +339,10 @@ pub fn check_inertia(
     } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
         cx.error(place.clone(), format!("no real body has the inertia of `{body}`"))
             .help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
+            .help(hint);
+    } else if mass == Some(0.0) && place.file.is_some() {
+        cx.error(place.clone(), format!("`{body}` has an inertia and no mass"))
+            .help("no real body has that: give it a mass, or an inertia of zero")
             .help(hint);
     }
 }

@@ -140,7 +140,7 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let kinematics = self.scope.kinematics.borrow();
-        let Some(twist) = kinematics.twists.get(link.0) else { return };
+        let twist = &kinematics.twists[link.0];
         let along = kinematics.resolve(&along, Some(link), Vec3::zero(self.scope.graph));
         let rate = (twist.linear + twist.angular.cross(point)).dot(along);
         drop(kinematics);

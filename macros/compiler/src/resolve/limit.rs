@@ -9,6 +9,7 @@ use crate::syntax::{self, Expr};
 impl<'g> Builder<'_, 'g> {
     /// Adds all limits to the model.
     pub fn add_limits(&mut self, cx: &mut Diagnostics) {
+        let mut known = Vec::new();
         for limit in &self.description.limits {
             if self.scope.is_moving(&limit.on) {
                 self.check_stop(limit, cx);
@@ -18,7 +19,9 @@ impl<'g> Builder<'_, 'g> {
             let bounds =
                 self.bounds(limit, angle == Some(true), cx).filter(|bounds| check(limit, bounds, cx));
             if let Some(bounds) = bounds {
-                self.bound(limit, &coordinate, bounds, cx);
+                let found = self.limit_of(&coordinate, bounds);
+                self.bound(limit, found, &known, cx);
+                known.push((limit, found));
             }
         }
     }
@@ -68,50 +71,66 @@ impl<'g> Builder<'_, 'g> {
         good.then_some(bounds)
     }
 
-    /// Adds bounds of `ratio × q + offset`.
-    fn bound(
-        &mut self,
-        limit: &syntax::Limit,
-        c: &Coordinate,
-        [from, to, speed, effort]: [Option<Value<'g>>; 4],
-        cx: &mut Diagnostics,
-    ) {
+    /// The bounds of a coordinate that bounds of `ratio × q + offset` are.
+    fn limit_of(&self, c: &Coordinate, [from, to, speed, effort]: [Option<Value<'g>>; 4]) -> Limit<'g> {
         let num = |x: f64| self.scope.graph.num(x);
         let own = |bound: Value<'g>| (bound - num(c.offset)) / num(c.ratio);
         let (from, to) = (from.map(own), to.map(own));
         let (lower, upper) = if c.ratio < 0.0 { (to, from) } else { (from, to) };
         let speed = speed.map(|speed| speed / num(c.ratio.abs()));
         let effort = effort.map(|effort| effort * num(c.ratio.abs()));
-        let found = Limit { q: c.q, v: c.v, lower, upper, speed, effort };
-        let Some(known) = self.model.limits.iter_mut().find(|known| known.v == c.v) else {
+        Limit { q: c.q, v: c.v, lower, upper, speed, effort }
+    }
+
+    /// Adds bounds of a coordinate, and reports those that leave no room beside one of `earlier` limits.
+    fn bound(
+        &mut self,
+        limit: &syntax::Limit,
+        found: Limit<'g>,
+        earlier: &[(&syntax::Limit, Limit<'g>)],
+        cx: &mut Diagnostics,
+    ) {
+        let Some(known) = self.model.limits.iter_mut().find(|known| known.v == found.v) else {
             self.model.limits.push(found);
             return;
         };
-        let tighter = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
-            (Some(a), Some(b)) => Some(a.extreme(which, b)),
-            (a, b) => a.or(b),
-        };
-        let both = Limit {
-            lower: tighter(Extreme::Max, known.lower, found.lower),
-            upper: tighter(Extreme::Min, known.upper, found.upper),
-            speed: tighter(Extreme::Min, known.speed, found.speed),
-            effort: tighter(Extreme::Min, known.effort, found.effort),
-            ..found
-        };
+        let both = tighter(known, &found);
         let leaves_room = |limit: &Limit<'_>| room(limit).is_none_or(|room| room > 0.0);
         if leaves_room(known) && leaves_room(&found) && !leaves_room(&both) {
-            let name = self.model.velocities.get(c.v.0).map_or("", |(name, _)| name.as_str());
-            let place = if limit.on.place.file.is_some() { &limit.name.place } else { &limit.on.place };
+            let name = self.model.velocities.get(found.v.0).map_or("", |(name, _)| name.as_str());
+            let contradicts = |(_, other): &&(&syntax::Limit, Limit<'g>)| {
+                other.v == found.v && !leaves_room(&tighter(other, &found))
+            };
+            let other = earlier.iter().find(contradicts).map(|(other, _)| *other);
+            // Of two limits of a file the one that is not the coordinate's own is in the way.
+            let own = limit.name.text == name;
+            let follower = if own { other.unwrap_or(limit) } else { limit };
+            let place = if limit.on.place.file.is_some() { &follower.name.place } else { &limit.on.place };
             let error = cx.error(place.clone(), format!("the limits of `{name}` leave it no room"));
-            match limit.name.text == name || limit.on.place.file.is_none() {
+            match follower.name.text == name || limit.on.place.file.is_none() {
                 true => error.help("all limits of a coordinate hold together, those of a file too"),
                 false => error.help(format!(
                     "`{}` follows it and has limits of its own; to leave limits out, write `#[mechanism(…, limits = ignore)]`",
-                    limit.name.text
+                    follower.name.text
                 )),
             };
         }
         *known = both;
+    }
+}
+
+/// The tighter ones of two bounds of one coordinate.
+fn tighter<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
+    let tighter = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
+        (Some(a), Some(b)) => Some(a.extreme(which, b)),
+        (a, b) => a.or(b),
+    };
+    Limit {
+        lower: tighter(Extreme::Max, known.lower, found.lower),
+        upper: tighter(Extreme::Min, known.upper, found.upper),
+        speed: tighter(Extreme::Min, known.speed, found.speed),
+        effort: tighter(Extreme::Min, known.effort, found.effort),
+        ..*found
     }
 }
 

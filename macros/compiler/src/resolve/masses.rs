@@ -96,7 +96,7 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Sym3<'g>> {
         let solid = body.inertia.as_ref().and_then(|e| {
             e.parts().into_iter().find_map(|part| match &part.kind {
-                ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, _)| *solid == word.text) => Some(word),
+                ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, ..)| *solid == word.text) => Some(word),
                 _ => None,
             })
         });

@@ -53,7 +53,7 @@ impl<'g> Scope<'_, 'g> {
         let (mut energy, mut sum) = (self.graph.zero(), Vec::new());
         for (placed, (mass, com, central)) in bodies {
             let link = placed.link;
-            let twist = link.and_then(|link| kinematics.twists.get(link.0));
+            let twist = link.map(|link| &kinematics.twists[link.0]);
             let (linear, w) = twist.map_or((zero, zero), |twist| (twist.linear, twist.angular));
             let center = placed.pose.point(com);
             let v = linear + w.cross(center);

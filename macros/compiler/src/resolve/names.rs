@@ -36,6 +36,12 @@ impl<'g> Scope<'_, 'g> {
 
     /// The value of a name.
     pub fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        // Expressions of a file name its joints, whatever the language calls so.
+        if e.place.file.is_some()
+            && let Some(value) = self.coordinate(name, e, cx)
+        {
+            return value;
+        }
         // A parameter cannot have the name of an axis, which was told: which of them is meant is not known.
         let taken = ["x", "y", "z"].contains(&name) && self.parameters.iter().any(|p| p.text == name);
         if taken {
@@ -107,7 +113,7 @@ impl<'g> Scope<'_, 'g> {
             diagnostic.help(format!("a component of a vector is `dot(vector, {axis})`"));
             return None;
         };
-        if body == "self" {
+        if body == "self" && inner.place.file.is_none() {
             cx.error(inner.place.clone(), "parameters are named without `self`")
                 .help(format!("write `{}`", member.text));
             return None;
@@ -194,12 +200,8 @@ impl<'g> Scope<'_, 'g> {
             let here = self.check_allowed(Allowed::Placement, "time", &e.place, cx);
             return Some(here.then(|| Value::Scalar(Quantity::Time.expr(self.graph))));
         }
-        let coordinate =
-            self.kinematics.borrow().coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
-        if let Some(c) = coordinate {
-            let here =
-                self.check_allowed(Allowed::Placement, &format!("the coordinate `{name}`"), &e.place, cx);
-            return Some(here.then(|| Value::Scalar(position_in(self.graph, &c))));
+        if let Some(value) = self.coordinate(name, e, cx) {
+            return Some(value);
         }
         if let Some(k) = self.inputs.iter().position(|i| i.text == name) {
             let here = self.check_allowed(Allowed::Motion, &format!("the input `{name}`"), &e.place, cx);
@@ -207,6 +209,14 @@ impl<'g> Scope<'_, 'g> {
         }
         let definition = self.definitions.iter().find(|d| d.name.text == name)?;
         Some(self.definition(definition, e, cx))
+    }
+
+    /// Returns the value of a coordinate; nothing if no coordinate has the name.
+    fn coordinate(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<Value<'g>>> {
+        let found = self.kinematics.borrow().coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
+        let c = found?;
+        let here = self.check_allowed(Allowed::Placement, &format!("the coordinate `{name}`"), &e.place, cx);
+        Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
     }
 
     fn definition(

@@ -2,6 +2,7 @@
 //! that one mistake is not reported again wherever the mechanism is used. Reads what the user wrote and checks nothing.
 
 use super::carriers::expressions;
+use super::functions::{self, Dependence};
 use super::joint::{coordinate_names, full_name};
 use crate::diag::Diagnostics;
 use crate::mechanism::{Diagram, Uses};
@@ -154,26 +155,28 @@ fn laws(action: &Action) -> impl Iterator<Item = &Expr> {
     law.into_iter()
 }
 
-/// What an expression depends on, as its words tell.
+/// Returns the quantities that an expression depends on, as the list of functions tells it.
 fn uses(d: &Description, e: &Expr) -> Uses {
+    let inputs = || !entries(d).2.is_empty();
     let mut uses = Uses::default();
     for part in with_definitions(d, e) {
         match &part.kind {
-            ExprKind::Call(function, arguments) => match function.text.as_str() {
-                "rate" if arguments.iter().any(|argument| names_motion(d, argument)) => {
-                    (uses.velocities, uses.accelerations) = (true, true)
+            ExprKind::Call(function, arguments) => match functions::dependence(&function.text) {
+                Dependence::Arguments => {}
+                Dependence::Motion => uses.velocities = true,
+                Dependence::Acceleration => uses.accelerations = true,
+                Dependence::Rate => {
+                    uses.velocities = true;
+                    uses.accelerations |= arguments.iter().any(|argument| names_motion(d, argument));
                 }
-                "power" if arguments.iter().any(|argument| names_contact(d, argument)) => {
-                    (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty())
+                Dependence::Power => {
+                    uses.velocities = true;
+                    uses.inputs |= arguments.iter().any(|argument| names_contact(d, argument)) && inputs();
                 }
-                "v" | "omega" | "rate" | "momentum" | "angular_momentum" | "kinetic_energy" | "power" => {
-                    uses.velocities = true
+                Dependence::Reaction => {
+                    uses.velocities = true;
+                    uses.inputs |= inputs();
                 }
-                "a" | "alpha" => uses.accelerations = true,
-                "reaction_force" | "reaction_torque" | "contact_force" | "contact_moment" => {
-                    (uses.velocities, uses.inputs) = (true, !d.inputs.is_empty())
-                }
-                _ => {}
             },
             ExprKind::Name(name) => uses.inputs |= d.inputs.iter().any(|input| input.text == *name),
             _ => {}
@@ -187,9 +190,14 @@ fn names_contact(d: &Description, e: &Expr) -> bool {
     d.contacts.iter().any(|contact| contact.soft.is_none() && e.name() == Some(contact.name.text.as_str()))
 }
 
-/// Whether an expression names a velocity.
+/// Whether an expression contains a function of the velocities.
 fn names_motion(d: &Description, e: &Expr) -> bool {
-    let is_motion = |part: &&Expr| matches!(&part.kind, ExprKind::Call(f, _) if matches!(f.text.as_str(), "v" | "omega" | "rate"));
+    let is_motion = |part: &&Expr| match &part.kind {
+        ExprKind::Call(function, _) => {
+            matches!(functions::dependence(&function.text), Dependence::Motion | Dependence::Rate)
+        }
+        _ => false,
+    };
     with_definitions(d, e).iter().any(is_motion)
 }
 

@@ -197,7 +197,8 @@ impl<'a, 'g> Builder<'a, 'g> {
             }
             Item::Frame(k) => {
                 let (link, pose) = self.frame_place(k, cx).unwrap_or_else(|| (None, self.somewhere(true)));
-                let (link, pose) = self.link_if_moving(link, pose);
+                let (start, (link, pose)) = (link, self.link_if_moving(link, pose));
+                self.frame_links.extend(link.filter(|_| link != start));
                 self.register(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
             }
             Item::Point(k) => {

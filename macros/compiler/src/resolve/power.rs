@@ -9,7 +9,7 @@ use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
 use crate::syntax::{self, Description, Name};
 
 /// How many forces of each kind there are.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct Counts {
     pub(super) springs: usize,
     pub(super) dashpots: usize,
@@ -123,9 +123,9 @@ impl<'g> Builder<'_, 'g> {
 
     /// Velocity of a link's origin, and its angular velocity, in its axes.
     fn twist(&self, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
-        let zero = Vec3::zero(self.model.graph);
         let kinematics = self.scope.kinematics.borrow();
-        kinematics.twists.get(link.0).map_or((zero, zero), |twist| (twist.linear, twist.angular))
+        let twist = &kinematics.twists[link.0];
+        (twist.linear, twist.angular)
     }
 
     fn in_axes_of(&self, link: LinkId, direction: &Direction<'g>) -> Vec3<'g> {

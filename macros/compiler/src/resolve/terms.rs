@@ -358,10 +358,7 @@ impl<'g> Builder<'_, 'g> {
         all.extend(m.constraints.iter().flat_map(|c| c.residual.into_iter().chain([c.rate])));
         all.extend(m.constraints.iter().flat_map(|c| c.friction.iter().map(|d| d.share)));
         all.extend(m.outputs.iter().flat_map(|o| o.values.iter().copied()));
-        for link in &m.links {
-            all.extend(link.placement.rotation.matrix().0.iter().flatten());
-            all.extend(link.placement.translation.0);
-        }
+        all.extend(m.links.iter().flat_map(|link| link.placement.entries()));
         let time = symbols_in(&all).into_iter().any(|s| Quantity::of(s) == Quantity::Time);
         let by_velocity = m.loads.iter().any(|load| {
             let symbols: Vec<Quantity> = symbols_in(&[load.force]).into_iter().map(Quantity::of).collect();

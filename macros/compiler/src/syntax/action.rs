@@ -1,44 +1,35 @@
 //! Force elements: what they act on, and by which law.
 
 use super::arguments::Arguments;
-use super::{Action, ActionKind, Expr, ExprKind, Law, Name, Target};
+use super::{Action, ActionKind, Expr, ExprKind, ForceKind, Law, Name, Target};
 use crate::diag::Diagnostics;
 
-/// Reads a force element.
+/// Reads a force element of the type `word`.
 pub fn read_action(
     name: &Name,
-    kind: &str,
+    (word, kind): (&str, ForceKind),
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Action> {
-    let keys: &[&str] = match kind {
-        "Spring" => &["on", "between", "stiffness", "force", "energy", "free_length", "free_angle"],
-        "Dashpot" => &["on", "between", "damping", "force"],
-        "Inerter" => &["on", "between", "inertance"],
-        "Friction" => &["on", "coulomb", "stiction", "stribeck_speed", "viscous", "speed"],
-        "Gravity" => &["on", "between", "constant", "mu"],
-        "Attraction" => &["between", "strength"],
-        "Force" => &["on", "between", "along", "value"],
-        _ => &["on", "about", "value"],
-    };
+    let keys = kind.arguments();
     let refused = arguments.place_of("between").is_some() && !keys.contains(&"between");
-    let on = read_target(kind, arguments, keys, cx);
+    let on = read_target(word, arguments, keys, cx);
     if refused {
         return None;
     }
     let action = match kind {
-        "Spring" => read_spring(arguments, keys, cx),
-        "Dashpot" => {
+        ForceKind::Spring => read_spring(arguments, keys, cx),
+        ForceKind::Dashpot => {
             one_law(arguments, &["force", "damping"], cx);
             let force = arguments.take_expr("force", cx).map(Law::Force);
             let law =
                 force.or_else(|| arguments.need_expr("damping", "c", "acts", keys, cx).map(Law::Linear));
             law.map(|law| ActionKind::Dashpot { law })
         }
-        "Inerter" => arguments
+        ForceKind::Inerter => arguments
             .need_expr("inertance", "b", "acts", keys, cx)
             .map(|inertance| ActionKind::Inerter { inertance }),
-        "Friction" => {
+        ForceKind::Friction => {
             arguments.need_expr("coulomb", "f", "acts", keys, cx).map(|coulomb| ActionKind::Friction {
                 coulomb,
                 stiction: arguments.take_expr("stiction", cx),
@@ -47,23 +38,23 @@ pub fn read_action(
                 speed: arguments.take_expr("speed", cx),
             })
         }
-        "Gravity" => Some(ActionKind::Gravity {
+        ForceKind::Gravity => Some(ActionKind::Gravity {
             constant: arguments.take_expr("constant", cx),
             mu: arguments.take_expr("mu", cx),
         }),
-        "Attraction" => arguments
+        ForceKind::Attraction => arguments
             .need_expr("strength", "k", "acts", keys, cx)
             .map(|strength| ActionKind::Attraction { strength }),
-        "Force" => Some(ActionKind::Force {
+        ForceKind::Force => Some(ActionKind::Force {
             along: arguments.take_expr("along", cx),
             value: arguments.take_expr("value", cx),
         }),
-        _ => Some(ActionKind::Torque {
+        ForceKind::Torque => Some(ActionKind::Torque {
             about: arguments.take_expr("about", cx),
             value: arguments.take_expr("value", cx),
         }),
     };
-    arguments.finish(&format!("{} {kind}", article(kind)), keys, cx);
+    arguments.finish(&format!("{} {word}", article(word)), keys, cx);
     Some(Action { name: name.clone(), kind: action?, on: on? })
 }
 

@@ -4,9 +4,9 @@ use super::action::{article, read_action};
 use super::arguments::Arguments;
 use super::constraint::read_constraint;
 use super::contact::read_contact;
+use super::element_kind::{self, ElementKind, OtherKind};
 use super::expression::parse_expr;
 use super::joint::read_joint;
-use super::joint_kind;
 use super::limit::read_limit;
 use super::{
     ActionKind, Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate,
@@ -37,33 +37,6 @@ pub const ATTRIBUTES: [&str; 17] = [
     "output",
     "state",
     "unit",
-];
-
-/// Elements that act, by their type's name.
-const ACTIONS: [&str; 8] =
-    ["Spring", "Dashpot", "Inerter", "Friction", "Gravity", "Attraction", "Force", "Torque"];
-
-/// Other elements with the attributes that belong to them.
-const OTHERS: [(&str, &[&str]); 19] = [
-    ("Coordinate", &[]),
-    ("Input", &[]),
-    ("Frame", &["frame"]),
-    ("Point", &["point"]),
-    ("Limit", &["limit"]),
-    ("Potential", &["energy"]),
-    ("Rayleigh", &["dissipation"]),
-    ("Holonomic", &["constraint"]),
-    ("Nonholonomic", &["constraint"]),
-    ("Rolling", &["constraint"]),
-    ("Slipping", &["constraint"]),
-    ("Contact", &["contact"]),
-    ("State", &["state"]),
-    ("Equilibrium", &["equilibrium"]),
-    ("Speed", &["speed"]),
-    ("Scalar", &["define", "output"]),
-    ("Vector", &["define", "output"]),
-    ("Matrix", &["define", "output"]),
-    ("FreeBody", &["output"]),
 ];
 
 /// Types of Rust that are no parameter.
@@ -100,16 +73,12 @@ pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut 
 
 /// True for an element type of the language.
 pub fn is_element(kind: &str) -> bool {
-    element_types().contains(&kind)
+    kind == "f64" || ElementKind::of_name(kind).is_some()
 }
 
-/// Every element type of the language.
+/// Every element type of the language, and that of parameters.
 fn element_types() -> Vec<&'static str> {
-    let mut all = vec!["Body", "Particle", "f64"];
-    all.extend(joint_kind::names());
-    all.extend(ACTIONS);
-    all.extend(OTHERS.iter().map(|(name, _)| *name));
-    all
+    ["f64"].into_iter().chain(element_kind::names()).collect()
 }
 
 /// Reads the element `name: kind` with its attributes into the description.
@@ -121,43 +90,28 @@ pub fn read_element(
     cx: &mut Diagnostics,
 ) {
     let kind_name = kind.to_string();
-    if let Some((_, expected)) = OTHERS.iter().find(|(other, _)| *other == kind_name) {
-        let given = attributes.iter().find(|a| is_one_of(a, expected));
-        let word = given.map(spelt).or(expected.first().map(ToString::to_string));
-        let arguments = match &word {
-            Some(word) => own_arguments(name, &kind_name, word, attributes, cx),
-            None => no_arguments(name, &kind_name, attributes, cx),
-        };
-        let arguments = arguments.map(|arguments| arguments.owned_by(name));
-        if let Some(mut arguments) = arguments {
-            read_other(name, &kind_name, word.as_deref(), &mut arguments, description, cx);
-        }
-        return;
-    }
-    let joint = joint_kind::of_name(&kind_name);
-    let expected = match kind_name.as_str() {
-        "Body" => "body",
-        "Particle" => "particle",
-        _ if joint.is_some() => "joint",
-        k if ACTIONS.contains(&k) => "acts",
-        _ => {
-            unknown_type(name, &kind_name, kind.span(), cx);
-            return;
-        }
-    };
-    let Some(arguments) = own_arguments(name, &kind_name, expected, attributes, cx) else {
+    let Some(element) = ElementKind::of_name(&kind_name) else {
+        unknown_type(name, &kind_name, kind.span(), cx);
         return;
     };
+    let expected = element.attributes();
+    let given = attributes.iter().find(|a| is_one_of(a, expected));
+    let word = given.map(spelt).or(expected.first().map(ToString::to_string));
+    let arguments = match &word {
+        Some(word) => own_arguments(name, (&kind_name, element), word, attributes, cx),
+        None => no_arguments(name, &kind_name, attributes, cx),
+    };
+    let Some(arguments) = arguments else { return };
     let mut arguments = arguments.owned_by(name);
-    match (expected, joint) {
-        ("body", _) => {
+    match element {
+        ElementKind::Body => {
             let body = read_body(name, &mut arguments, cx);
             description.bodies.push(body);
         }
-        ("particle", _) => description.particles.extend(read_particle(name, &mut arguments, cx)),
-        (_, Some(joint)) => description.joints.extend(read_joint(name, joint, &mut arguments, cx)),
-        _ => {
-            let action = read_action(name, &kind_name, &mut arguments, cx);
+        ElementKind::Particle => description.particles.extend(read_particle(name, &mut arguments, cx)),
+        ElementKind::Joint(joint) => description.joints.extend(read_joint(name, joint, &mut arguments, cx)),
+        ElementKind::Force(force) => {
+            let action = read_action(name, (&kind_name, force), &mut arguments, cx);
             if let Some(action) = &action
                 && matches!(
                     &action.kind,
@@ -168,12 +122,16 @@ pub fn read_element(
             }
             description.actions.extend(action);
         }
+        ElementKind::Other(other) => {
+            read_other(name, (&kind_name, other), word.as_deref(), &mut arguments, description, cx);
+        }
     }
 }
 
 /// The rate of a state.
 pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut Diagnostics) -> Option<Expr> {
-    let arguments = own_arguments(name, &kind.to_string(), "state", attributes, cx)?;
+    let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
+    let arguments = own_arguments(name, kind, "state", attributes, cx)?;
     let mut arguments = arguments.owned_by(name);
     let rate = arguments.need_expr("rate", "(command - level) / lag", "state", &["rate"], cx);
     arguments.finish("a State", &["rate"], cx);
@@ -238,7 +196,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
 /// The arguments of the one attribute that an element of this kind has.
 fn own_arguments(
     name: &Name,
-    kind: &str,
+    (kind, element): (&str, ElementKind),
     expected: &str,
     attributes: &[Attribute],
     cx: &mut Diagnostics,
@@ -260,20 +218,20 @@ fn own_arguments(
             cx.error(span, format!("a `{kind}` has no `#[{word}]`"))
                 .help(format!("expected `#[{expected}(…)]`"));
             return None;
-        } else if !check_foreign(&word, span, kind, cx) {
+        } else if !check_foreign(&word, span, (kind, element.attributes()), cx) {
             return None;
         }
     }
     if found.is_none() {
         cx.error(name.place.clone(), format!("`{}` does not say how it is placed", name.text))
-            .help(format!("add {}", example(expected)));
+            .help(format!("add `{}`", words::example(kind)));
     }
     found.flatten()
 }
 
 /// Reports an attribute that is none of the language's, unless it is one of Rust's own that may stand. False after an
 /// unknown one: most likely it is the one that the element needs.
-fn check_foreign(word: &str, span: Span, kind: &str, cx: &mut Diagnostics) -> bool {
+fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut Diagnostics) -> bool {
     match word {
         "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,
         "cfg" | "cfg_attr" => {
@@ -282,7 +240,6 @@ fn check_foreign(word: &str, span: Span, kind: &str, cx: &mut Diagnostics) -> bo
         }
         _ => {}
     }
-    let own = attributes_of(kind);
     let diagnostic = cx.error(span, format!("unknown attribute `#[{word}]` on an element"));
     if own.is_empty() {
         diagnostic.help(format!("{} `{kind}` has no attribute", article(kind)));
@@ -296,30 +253,6 @@ fn check_foreign(word: &str, span: Span, kind: &str, cx: &mut Diagnostics) -> bo
     diagnostic
         .help("an element does not stay in the struct; only parameters can have attributes of other crates");
     false
-}
-
-/// The attributes of the language that belong to an element.
-fn attributes_of(kind: &str) -> &'static [&'static str] {
-    match kind {
-        "Body" => &["body"],
-        "Particle" => &["particle"],
-        _ if joint_kind::of_name(kind).is_some() => &["joint"],
-        _ => OTHERS.iter().find(|(other, _)| *other == kind).map_or(&["acts"], |(_, own)| *own),
-    }
-}
-
-fn example(attribute: &str) -> &'static str {
-    match attribute {
-        "body" => "`#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]`",
-        "particle" => "`#[particle(mass = m, at = body.at(l * x))]`",
-        "joint" => "`#[joint(parent -> child, about = z)]`",
-        "equilibrium" => "`#[equilibrium(joint = angle)]`",
-        "state" => "`#[state(rate = (command - level) / lag)]`",
-        "speed" => "`#[speed(rate(psi) * sin(theta))]`",
-        "limit" => "`#[limit(on = joint, from = a, to = b)]`",
-        "contact" => "`#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]`",
-        _ => "`#[acts(on = joint, …)]`",
-    }
 }
 
 fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Body {
@@ -382,7 +315,7 @@ fn no_arguments(
     }
     for attribute in attributes {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        if !check_foreign(&spelt(attribute), span, kind, cx) {
+        if !check_foreign(&spelt(attribute), span, (kind, &[]), cx) {
             return None;
         }
     }
@@ -392,7 +325,7 @@ fn no_arguments(
 /// Frames, points, coordinates, inputs, definitions, energies.
 fn read_other(
     name: &Name,
-    kind: &str,
+    (word, kind): (&str, OtherKind),
     attribute: Option<&str>,
     arguments: &mut Arguments,
     description: &mut Description,
@@ -400,12 +333,12 @@ fn read_other(
 ) {
     let name = name.clone();
     match kind {
-        "Coordinate" => {
+        OtherKind::Coordinate => {
             let joints_before = description.joints.len();
             description.coordinates.push(FreeCoordinate { name, joints_before });
         }
-        "Input" => description.inputs.push(name),
-        "Frame" => {
+        OtherKind::Input => description.inputs.push(name),
+        OtherKind::Frame => {
             let mut plain = arguments.take_plain().into_iter();
             match plain.next() {
                 Some(start) => {
@@ -419,7 +352,7 @@ fn read_other(
             }
             arguments.finish("a Frame", &[], cx);
         }
-        "Point" => {
+        OtherKind::Point => {
             let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
             if let [body, place] = arguments.plain() {
                 let help = format!("write `#[point(on = {}, at = {})]`", body.spelt(), place.spelt());
@@ -433,18 +366,28 @@ fn read_other(
             arguments.finish("a Point", &["on", "at"], cx);
             description.points.push(Point { name, on, at });
         }
-        "Limit" => read_limit(name, arguments, description, cx),
-        "Equilibrium" => {
+        OtherKind::Limit => read_limit(name, arguments, description, cx),
+        OtherKind::Equilibrium => {
             let values = arguments.take_values();
             arguments.finish("an Equilibrium", &[], cx);
             description.equilibria.push(Equilibrium { name, values });
         }
-        "Holonomic" => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
-        "Nonholonomic" => read_constraint(name, ConstraintKind::Nonholonomic, arguments, description, cx),
-        "Rolling" => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),
-        "Contact" => read_contact(name, arguments, description, cx),
-        "Slipping" => read_constraint(name, ConstraintKind::Slipping, arguments, description, cx),
-        _ => read_expression(name, kind, attribute, arguments, description, cx),
+        OtherKind::Holonomic => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
+        OtherKind::Nonholonomic => {
+            read_constraint(name, ConstraintKind::Nonholonomic, arguments, description, cx)
+        }
+        OtherKind::Rolling => read_constraint(name, ConstraintKind::Rolling, arguments, description, cx),
+        OtherKind::Contact => read_contact(name, arguments, description, cx),
+        OtherKind::Slipping => read_constraint(name, ConstraintKind::Slipping, arguments, description, cx),
+        // `read_state` reads these fields: they are parameters, too.
+        OtherKind::State => {}
+        OtherKind::Potential
+        | OtherKind::Rayleigh
+        | OtherKind::Speed
+        | OtherKind::Scalar
+        | OtherKind::Vector
+        | OtherKind::Matrix
+        | OtherKind::FreeBody => read_expression(name, word, attribute, arguments, description, cx),
     }
 }
 

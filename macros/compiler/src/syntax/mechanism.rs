@@ -105,6 +105,14 @@ impl FileFormat {
         }
     }
 
+    /// The format's word for a body.
+    pub fn body(self) -> &'static str {
+        match self {
+            FileFormat::Urdf | FileFormat::Sdf => "link",
+            FileFormat::Mjcf => "body",
+        }
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

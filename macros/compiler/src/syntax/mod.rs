@@ -10,6 +10,7 @@ pub mod crate_path;
 pub mod declaration;
 pub mod description;
 pub mod element;
+pub mod element_kind;
 pub mod expression;
 mod field;
 pub mod figures;
@@ -27,6 +28,7 @@ pub mod skipped;
 pub mod sound;
 mod state;
 mod table;
+mod twice;
 pub mod words;
 
 pub use attribute::parse_mechanism;
@@ -36,6 +38,7 @@ pub use description::{
     FreeCoordinate, Inertias, Joint, Law, Limit, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
     ScalarType, Shape, SlipFriction, Softness, Table, Target, Visual, Wrench,
 };
+pub use element_kind::{ElementKind, ForceKind, OtherKind};
 pub use expression::IF;
 pub use joint_kind::JointKind;
 pub use mechanism::{
@@ -43,6 +46,7 @@ pub use mechanism::{
 };
 pub use request::{Printed, Requests, Skipped, Word};
 pub use separate::separate;
+pub use twice::second_definition;
 
 /// What stands after a state's name in that of the function for its rate.
 pub const RATE_OF_STATE: &str = "_rate";

@@ -1,72 +1,112 @@
 //! Words of other tools and of textbooks, and what they mean here: what is said → what is meant. Nothing else reads these
 //! tables but the help of messages.
 
-use super::joint_kind;
-use super::{BinaryOp, Expr, ExprKind};
+use super::{BinaryOp, ElementKind, Expr, ExprKind, ForceKind, JointKind, OtherKind};
 use crate::diag::{Diagnostic, nearest};
 
 mod tables;
 
 pub use tables::*;
 
-/// The words for the arguments of an element.
+/// The words for the arguments of an element; `kind` is the name of its type.
 fn arguments(kind: &str) -> Words {
-    match kind {
-        "Body" => BODY,
-        "Particle" => PARTICLE,
-        "Spring" => SPRING,
-        "Dashpot" => DASHPOT,
-        "Inerter" => INERTER,
-        "Friction" => FRICTION,
-        "Gravity" | "Attraction" => GRAVITY,
-        "Force" => FORCE,
-        "Torque" => TORQUE,
-        "Limit" => LIMIT,
-        "Contact" => CONTACT,
-        "Point" => POINT,
-        "Vector" | "Matrix" | "FreeBody" => VECTOR,
-        "`#[mechanism]`" => OPTIONS,
-        joint if joint_kind::of_name(joint).is_some() => JOINT,
-        _ => NO_WORDS,
+    let Some(element) = ElementKind::of_name(kind) else {
+        return if kind == ATTRIBUTE { OPTIONS } else { NO_WORDS };
+    };
+    match element {
+        ElementKind::Body => BODY,
+        ElementKind::Particle => PARTICLE,
+        ElementKind::Joint(_) => JOINT,
+        ElementKind::Force(force) => match force {
+            ForceKind::Spring => SPRING,
+            ForceKind::Dashpot => DASHPOT,
+            ForceKind::Inerter => INERTER,
+            ForceKind::Friction => FRICTION,
+            ForceKind::Gravity | ForceKind::Attraction => GRAVITY,
+            ForceKind::Force => FORCE,
+            ForceKind::Torque => TORQUE,
+        },
+        ElementKind::Other(other) => match other {
+            OtherKind::Limit => LIMIT,
+            OtherKind::Contact => CONTACT,
+            OtherKind::Point => POINT,
+            OtherKind::Vector | OtherKind::Matrix | OtherKind::FreeBody => VECTOR,
+            OtherKind::Coordinate
+            | OtherKind::Input
+            | OtherKind::Frame
+            | OtherKind::Potential
+            | OtherKind::Rayleigh
+            | OtherKind::Holonomic
+            | OtherKind::Nonholonomic
+            | OtherKind::Rolling
+            | OtherKind::Slipping
+            | OtherKind::State
+            | OtherKind::Equilibrium
+            | OtherKind::Speed
+            | OtherKind::Scalar => NO_WORDS,
+        },
     }
 }
+
+/// The attribute itself, where an element could be.
+const ATTRIBUTE: &str = "`#[mechanism]`";
 
 /// The last word of what an element is called, such as `Pin` of `a Pin`.
 fn kind_of(whose: &str) -> &str {
     whose.strip_suffix(" constraint").unwrap_or(whose).rsplit(' ').next().unwrap_or(whose)
 }
 
-/// How an element is written; `whose` is the element with its article.
+/// How an element is written; `whose` is its type, with or without an article.
 pub fn example(whose: &str) -> &'static str {
-    match kind_of(whose) {
-        "Body" => "#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]",
-        "Particle" => "#[particle(mass = m, at = body.at(l * x))]",
-        "Spring" => "#[acts(on = joint, stiffness = k)]",
-        "Dashpot" => "#[acts(on = joint, damping = c)]",
-        "Inerter" => "#[acts(on = joint, inertance = b)]",
-        "Friction" => "#[acts(on = joint, coulomb = f)]",
-        "Gravity" => "#[acts(between = (sun, planet), constant = g)]",
-        "Attraction" => "#[acts(between = (first, second), strength = k)]",
-        "Force" => "#[acts(on = body, along = x)]",
-        "Torque" => "#[acts(on = joint)]",
-        "Frame" => "#[frame(ground, z(angle))]",
-        "Limit" => "#[limit(on = joint, from = a, to = b)]",
-        "Equilibrium" => "#[equilibrium(joint = angle)]",
-        "State" => "#[state(rate = (command - level) / lag)]",
-        "Point" => "#[point(on = body, at = length * x)]",
-        "Potential" => "#[energy(expression)]",
-        "Rayleigh" => "#[dissipation(expression)]",
-        "Scalar" | "Vector" | "Matrix" => "#[output(expression)]",
-        "FreeBody" => "#[output(body)]",
-        "Holonomic" => "#[constraint(norm(r(tip / base)) = length)]",
-        "Nonholonomic" => "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]",
-        "Rolling" => "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]",
-        "Slipping" => "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]",
-        "Contact" => "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]",
-        "Sleeve" | "Stage" => "#[joint(parent -> child, along = x)]",
-        "Ball" | "Free" | "Weld" => "#[joint(parent -> child)]",
-        "`#[mechanism]`" => "#[mechanism(gravity = -9.81 * y)]",
-        _ => "#[joint(parent -> child, about = z)]",
+    let Some(element) = ElementKind::of_name(kind_of(whose)) else {
+        return "#[mechanism(gravity = -9.81 * y)]";
+    };
+    match element {
+        ElementKind::Body => "#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]",
+        ElementKind::Particle => "#[particle(mass = m, at = body.at(l * x))]",
+        ElementKind::Joint(joint) => match joint {
+            JointKind::Sleeve | JointKind::Stage => "#[joint(parent -> child, along = x)]",
+            JointKind::Ball | JointKind::Free | JointKind::Weld => "#[joint(parent -> child)]",
+            JointKind::Pin
+            | JointKind::Screw
+            | JointKind::Collar
+            | JointKind::Slot
+            | JointKind::Universal
+            | JointKind::Planar => "#[joint(parent -> child, about = z)]",
+        },
+        ElementKind::Force(force) => match force {
+            ForceKind::Spring => "#[acts(on = joint, stiffness = k)]",
+            ForceKind::Dashpot => "#[acts(on = joint, damping = c)]",
+            ForceKind::Inerter => "#[acts(on = joint, inertance = b)]",
+            ForceKind::Friction => "#[acts(on = joint, coulomb = f)]",
+            ForceKind::Gravity => "#[acts(between = (sun, planet), constant = g)]",
+            ForceKind::Attraction => "#[acts(between = (first, second), strength = k)]",
+            ForceKind::Force => "#[acts(on = body, along = x)]",
+            ForceKind::Torque => "#[acts(on = joint)]",
+        },
+        ElementKind::Other(other) => match other {
+            OtherKind::Coordinate => "name: Coordinate",
+            OtherKind::Input => "name: Input",
+            OtherKind::Frame => "#[frame(ground, z(angle))]",
+            OtherKind::Point => "#[point(on = body, at = length * x)]",
+            OtherKind::Limit => "#[limit(on = joint, from = a, to = b)]",
+            OtherKind::Potential => "#[energy(expression)]",
+            OtherKind::Rayleigh => "#[dissipation(expression)]",
+            OtherKind::Holonomic => "#[constraint(norm(r(tip / base)) = length)]",
+            OtherKind::Nonholonomic => "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]",
+            OtherKind::Rolling => "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]",
+            OtherKind::Slipping => {
+                "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]"
+            }
+            OtherKind::Contact => {
+                "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]"
+            }
+            OtherKind::State => "#[state(rate = (command - level) / lag)]",
+            OtherKind::Equilibrium => "#[equilibrium(joint = angle)]",
+            OtherKind::Speed => "#[speed(rate(psi) * sin(theta))]",
+            OtherKind::Scalar | OtherKind::Vector | OtherKind::Matrix => "#[output(expression)]",
+            OtherKind::FreeBody => "#[output(body)]",
+        },
     }
 }
 

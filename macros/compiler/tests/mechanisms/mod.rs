@@ -63,7 +63,7 @@ pub const MECHANISMS: [(&str, &str, &str); 11] = [
         #[body(mass = m, com = x, inertia = rod(m, 2, x))] arm: Body,
         #[acts(on = hinge)] motor: Torque,
         #[speed(rate(rail) * cos(hinge))] along: Speed,
-        #[speed(rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,
+        #[speed(rate(hinge) - 1 * rate(rail) * sin(hinge))] turn: Speed,
         #[output(along)] speed: Scalar,",
     ),
     (

@@ -17,10 +17,10 @@ const ROWS: &[Row] = &[
         "`rest` is no equilibrium: the force `-9.81 m l` on `hinge` is left",
         "hold an input at a value that balances it",
     ),
-    ("motor = m", "`rest` is no equilibrium: the force `m` on `hinge` is left", "choose coordinates"),
+    ("motor = 2", "`rest` is no equilibrium: the force `2` on `hinge` is left", "choose coordinates"),
     (
-        "hinge = pi / 2, motor = 9.8 * m * l",
-        "`rest` is no equilibrium: the force `-0.01 m l` on `hinge` is left",
+        "hinge = pi / 2, motor = 9.81 * m * l / 2",
+        "`rest` is no equilibrium: the force `-4.905 m l` on `hinge` is left",
         "hold an input",
     ),
     ("hinges = 0", "`hinges` has no value at rest of its own", "did you mean `hinge`?"),

@@ -16,12 +16,12 @@ fn setting(said: &str) -> (String, String) {
 fn mechanisms_without_a_form_say_which_they_have() {
     const ROWS: &[Row] = &[
         (
-            "equations = hamilton|#[constraint(rail * rail + hinge * hinge = 1)] wire: Holonomic,",
+            "equations = hamilton|#[constraint(rail * rail + 1 * hinge * hinge = 1)] wire: Holonomic,",
             "Hamilton's equations are printed for mechanisms without constraints",
             "`equations = lagrange`",
         ),
         (
-            "routh|#[constraint(rail * rail + hinge * hinge = 1)] wire: Holonomic,",
+            "routh|#[constraint(rail * rail + 1 * hinge * hinge = 1)] wire: Holonomic,",
             "Routh's equations are those of mechanisms without constraints",
             "`conserved`",
         ),

@@ -84,7 +84,7 @@ const SLIPS: &[(&str, &str)] = &[
     ("", "#[constraint(hinge > 0)] c: Holonomic"),
     ("", "#[constraint(hinge == 0, 1)] c: Holonomic"),
     ("", "#[constraint(omega(arm / ground) = 0)] c: Nonholonomic"),
-    ("", "#[constraint(rate(hinge) = 2)] c: Nonholonomic"),
+    ("", "#[constraint(rate(hinge) = 0)] c: Nonholonomic"),
     ("", "#[energy(rate(hinge) * rate(hinge))] e: Rayleigh"),
     ("gravity = 9.81 * down", ""),
     ("gravity = [0, -9.81]", ""),

@@ -340,6 +340,26 @@ fn followers_share_their_masters_coordinate() {
     );
 }
 
+#[test]
+fn a_link_with_inertia_has_mass() {
+    let robot = |kind: &str| {
+        format!(
+            "<link name='a'><inertial><mass value='0'/>
+             <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>
+             <link name='b'/><joint name='j' type='{kind}'><parent link='b'/><child link='a'/></joint>"
+        )
+    };
+    check_urdf(
+        &robot("revolute"),
+        "r.urdf:2:14: `a` has an inertia and no mass
+         = help: no real body has that: give it a mass, or an inertia of zero
+         = help: mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is",
+    );
+    // What is fixed to the ground enters no equation.
+    let fixed = format!("<robot>{}</robot>", robot("fixed"));
+    assert!(!facts("", Some(&fixed)).contains("no mass"));
+}
+
 /// Exporters leave such figures where there are none; a body with mass is not as small as they say.
 #[test]
 fn noise_is_no_inertia() {

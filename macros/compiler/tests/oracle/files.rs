@@ -1,8 +1,9 @@
-//! Random URDF files with joints of every type: places and rotations as the format defines them, and Kane's equations.
+//! Random URDF and SDF files with joints of every type: places and rotations as the format defines them, and Kane's equations.
 
 use crate::kane::State;
 use crate::random::Random;
 use crate::robot::Robot;
+use crate::sdf;
 use crate::seeds;
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
@@ -15,16 +16,16 @@ use std::path::Path;
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
-/// The functions of the file.
-fn functions(robot: &Robot) -> (Vec<String>, Output) {
+/// Returns the names of the coordinates of a file, and its functions.
+fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Output) {
     let mut cx = Diagnostics::new();
     let (arguments, item) = ("".parse().unwrap(), "struct Robot;".parse().unwrap());
     let mut source = read(arguments, item, Path::new(""), &mut cx).expect("a struct");
     let place = source.mechanism.description.name.place.clone();
     let name = |text: &str| Name { text: text.to_string(), place: place.clone() };
     let options = FileOptions {
-        format: FileFormat::Urdf,
-        path: name("r.urdf"),
+        format,
+        path: name("file"),
         base: if robot.free { Base::Free } else { Base::Fixed },
         honour_passive: true,
         follow_mimic: true,
@@ -38,15 +39,15 @@ fn functions(robot: &Robot) -> (Vec<String>, Output) {
         collisions: false,
         visuals: false,
     };
-    let imported = import::import(&robot.text(), Path::new(""), &options, &mut cx);
-    let imported = imported.unwrap_or_else(|| panic!("{:?}\n{}", cx.messages(), robot.text()));
+    let imported = import::import(text, Path::new(""), &options, &mut cx);
+    let imported = imported.unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
     let description = &mut source.mechanism.description;
     (description.bodies, description.joints) = (imported.bodies, imported.joints);
     description.gravity = Some(syntax::Expr::vector(GRAVITY, &place));
     let graph = Graph::new();
     let model = build_model(description, &graph, &mut cx);
     let output = model.as_ref().and_then(|model| derive(model, &mut cx));
-    let output = output.unwrap_or_else(|| panic!("{:?}\n{}", cx.messages(), robot.text()));
+    let output = output.unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
     (model.map(|model| model.configuration).unwrap_or_default(), output)
 }
 
@@ -62,14 +63,10 @@ fn values(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>>
     [Some(&f.program), f.program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&symbol)).collect()
 }
 
-fn assert_near(what: &str, seed: u64, found: &[f64], expected: &[f64], robot: &Robot) {
+fn assert_near(what: &str, seed: u64, found: &[f64], expected: &[f64], text: &str) {
     let size = expected.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
     let off = found.iter().zip(expected).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
-    assert!(
-        found.len() == expected.len() && off <= 1e-10 * size,
-        "{what} of {seed}: {off}\n{}",
-        robot.text()
-    );
+    assert!(found.len() == expected.len() && off <= 1e-10 * size, "{what} of {seed}: {off}\n{text}");
 }
 
 /// What the oracle says of a motion: forces, energies, centre of mass.
@@ -105,31 +102,47 @@ fn random_files_move_as_the_format_says() {
     let mut kinds = [0; 7];
     for seed in seeds(20) {
         let mut random = Random::new(4_000_000 + seed);
-        let robot = Robot::random(&mut random);
-        let (names, output) = functions(&robot);
-        assert_eq!(names, robot.coordinates(), "{}", robot.text());
+        let robot = Robot::random(&[0, 1, 2, 3, 4, 5, 6], &mut random);
         robot.count(&mut kinds);
-        let of = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
-        for _ in 0..2 {
-            let state = robot.state(&mut random);
-            let expected = truth(&robot, &state);
-            let check = |name: &str, expected: &[f64]| {
-                for found in values(of(name), &state, &[]) {
-                    assert_near(name, seed, &found, expected, &robot);
-                }
-            };
-            check("inverse_dynamics", &expected.forces);
-            check("kinetic_energy", &[expected.kinetic]);
-            if robot.links.iter().enumerate().any(|(k, _)| robot.moves(k)) {
-                check("potential_energy", &[expected.potential]);
-                check("center_of_mass", &expected.center);
-            }
-            for found in values(of("forward_dynamics"), &state, &expected.forces) {
-                let size = state[2].iter().fold(1.0_f64, |size, a| size.max(a.abs()));
-                let off = found.iter().zip(&state[2]).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
-                assert!(off <= 1e-6 * size, "forward dynamics of {seed}: {off}\n{}", robot.text());
-            }
-        }
+        check_file(&robot, FileFormat::Urdf, &robot.text(), seed, &mut random);
     }
     assert!(seeds(20).end < 20 || kinds.iter().all(|count| *count >= 3), "{kinds:?}");
+}
+
+/// The same in all versions of SDF, which place links and give axes in different frames.
+#[test]
+fn random_sdf_files_move_as_their_version_says() {
+    for seed in seeds(40) {
+        let mut random = Random::new(4_500_000 + seed);
+        let robot = Robot::random(&sdf::OF_SDF, &mut random);
+        let text = sdf::text(&robot, &mut random);
+        check_file(&robot, FileFormat::Sdf, &text, seed, &mut random);
+    }
+}
+
+/// Compares the functions of a robot's file with Kane's equations at two states.
+fn check_file(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: &mut Random) {
+    let (names, output) = functions(robot, format, text);
+    assert_eq!(names, robot.coordinates(), "{text}");
+    let of = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
+    for _ in 0..2 {
+        let state = robot.state(random);
+        let expected = truth(robot, &state);
+        let check = |name: &str, expected: &[f64]| {
+            for found in values(of(name), &state, &[]) {
+                assert_near(name, seed, &found, expected, text);
+            }
+        };
+        check("inverse_dynamics", &expected.forces);
+        check("kinetic_energy", &[expected.kinetic]);
+        if robot.links.iter().enumerate().any(|(k, _)| robot.moves(k)) {
+            check("potential_energy", &[expected.potential]);
+            check("center_of_mass", &expected.center);
+        }
+        for found in values(of("forward_dynamics"), &state, &expected.forces) {
+            let size = state[2].iter().fold(1.0_f64, |size, a| size.max(a.abs()));
+            let off = found.iter().zip(&state[2]).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
+            assert!(off <= 1e-6 * size, "forward dynamics of {seed}: {off}\n{}", text);
+        }
+    }
 }

@@ -188,6 +188,26 @@ fn cable(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option
     if n.is_none() { level } else { (level * level + rise * rise).sqrt() }
 }
 
+/// A scalar that a drive prescribes.
+#[derive(Clone, Debug)]
+pub enum Measure {
+    /// Coordinates by body and number, each times a factor.
+    Coordinates(Vec<(f64, usize, usize)>),
+    /// The way between two points along an axis of the ground.
+    Way(End, End, usize),
+}
+
+/// What a measure is in a state, with its first and second rates.
+pub fn measured(spec: &Spec, state: &State, measure: &Measure) -> Jet {
+    let world = world(spec, state);
+    match measure {
+        Measure::Coordinates(list) => list.iter().fold(Jet::constant(0.0), |sum, (factor, body, k)| {
+            sum + Jet::constant(*factor) * world.coordinates[*body][*k]
+        }),
+        Measure::Way(a, b, axis) => difference(point(&world, a), point(&world, b))[*axis],
+    }
+}
+
 /// Whether all cables have their ends outside of what they run around.
 pub fn cables_are_outside(spec: &Spec, q: &[f64]) -> bool {
     let (_, nv) = sizes(spec);

@@ -2,10 +2,12 @@
 //! time and imaginary steps, against what the generated programs compute. Trees of every joint, with every base, with
 //! springs, dashpots, inerters, attraction and dry friction between bodies and the ground, on coordinates, along ropes and
 //! cables; alike limbs; masses over many powers of ten; angles that miss those of a plain machine by rounding. Random URDF files
-//! with joints of every type, by the same motions. Random mechanisms of everything that the language has, which compile.
+//! with joints of every type, by the same motions. Random mechanisms without a degree of
+//! freedom, with as many drives as velocities. Random mechanisms of everything that the language has, which compile.
 
 mod combinations;
 mod combined;
+mod driven;
 mod emitted;
 mod features;
 mod files;
@@ -15,6 +17,8 @@ mod motion;
 mod programs;
 mod random;
 mod robot;
+mod sdf;
+mod sites;
 mod spec;
 mod words;
 
@@ -62,6 +66,13 @@ fn limbs_of_all_masses_and_angles_with_noise_obey_kanes_equations() {
         let style = Style { limbs, decades: 5.5, noise, ..PLAIN };
         programs::check(&spec(4_000_000 + seed, style), seed);
     }
+}
+
+#[test]
+fn driven_mechanisms_obey_kanes_equations() {
+    let all = seeds(40);
+    let checked = all.clone().filter(|seed| driven::check(*seed)).count();
+    assert!(checked > 0 || all.count() < 40);
 }
 
 #[test]

@@ -7,7 +7,8 @@ use crate::random::Random;
 use std::array::from_fn;
 use std::fmt::Write;
 
-const KINDS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
+pub const KINDS: [&str; 7] =
+    ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
 pub struct Link {
     name: String,
@@ -18,19 +19,19 @@ pub struct Link {
     pub inertia: [[f64; 3]; 3],
     inertial: String,
     /// None for the root.
-    joint: Option<Joint>,
+    pub joint: Option<Joint>,
 }
 
-struct Joint {
-    name: String,
-    kind: usize,
-    parent: usize,
-    xyz: [f64; 3],
-    rpy: [f64; 3],
-    axis: [f64; 3],
+pub struct Joint {
+    pub name: String,
+    pub kind: usize,
+    pub parent: usize,
+    pub xyz: [f64; 3],
+    pub rpy: [f64; 3],
+    pub axis: [f64; 3],
     locked: bool,
     /// The link whose joint leads, factor, offset.
-    mimic: Option<(usize, f64, f64)>,
+    pub mimic: Option<(usize, f64, f64)>,
 }
 
 pub struct Robot {
@@ -41,7 +42,7 @@ pub struct Robot {
 }
 
 /// `R_z(yaw) R_y(pitch) R_x(roll)`.
-fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
+pub fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
     let about = |k: usize, angle| rotation(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle));
     product(&product(&about(2, yaw), &about(1, pitch)), &about(0, roll))
 }
@@ -76,13 +77,14 @@ impl Link {
     }
 }
 
-fn spaced(numbers: [f64; 3]) -> String {
+/// Numbers with spaces between them.
+pub fn spaced(numbers: [f64; 3]) -> String {
     numbers.map(|x| format!("{x:?}")).join(" ")
 }
 
 impl Joint {
-    fn random(child: usize, links: &[Link], random: &mut Random) -> Joint {
-        let kind = random.below(KINDS.len());
+    fn random(child: usize, links: &[Link], kinds: &[usize], random: &mut Random) -> Joint {
+        let kind = kinds[random.below(kinds.len())];
         let axis = match (KINDS[kind], random.below(3)) {
             // Where x and y point is a convention: about a coordinate axis the other two in cyclic order.
             ("planar", k) => from_fn(|i| if i == k { 2.0 } else { 0.0 }),
@@ -123,12 +125,13 @@ impl Link {
 }
 
 impl Robot {
-    pub fn random(random: &mut Random) -> Robot {
+    /// A robot whose joints are of these types.
+    pub fn random(kinds: &[usize], random: &mut Random) -> Robot {
         let n = 2 + random.below(6);
         let mut links = vec![Link::random(0, random)];
         for k in 1..n {
             let mut link = Link::random(k, random);
-            link.joint = Some(Joint::random(k, &links, random));
+            link.joint = Some(Joint::random(k, &links, kinds, random));
             links.push(link);
         }
         let mut shuffle: Vec<usize> = (0..2 * n - 1).collect();
@@ -148,6 +151,81 @@ impl Robot {
             }
         }
         text + "</robot>"
+    }
+
+    /// A robot whose joints are those of MJCF: balls in the place of joints in space and in a plane.
+    pub fn random_mjcf(random: &mut Random) -> Robot {
+        let mut robot = Robot::random(random);
+        for joint in robot.links.iter_mut().filter_map(|link| link.joint.as_mut()) {
+            if joint.kind == 4 || joint.kind == 5 {
+                joint.kind = 6;
+            }
+            // A body without a joint has none that can be locked.
+            joint.locked &= joint.kind != 3;
+        }
+        robot
+    }
+
+    /// The robot as an MJCF file, with what `inside` writes into the body of each link and `behind` the
+    /// bodies.
+    pub fn mjcf(&self, inside: &dyn Fn(usize) -> String, behind: &str) -> String {
+        let follows = |link: &Link| {
+            let joint = link.joint.as_ref()?;
+            let (leader, factor, offset) = joint.mimic.filter(|_| !joint.locked)?;
+            let leader = &self.links[leader].joint.as_ref()?.name;
+            Some(format!(
+                "<joint joint1=\"{}\" joint2=\"{leader}\" polycoef=\"{offset:?} {factor:?}\"/>",
+                joint.name
+            ))
+        };
+        let couplings: String = self.links.iter().filter_map(follows).collect();
+        format!(
+            "<mujoco><compiler angle=\"radian\" eulerseq=\"XYZ\"/>\n<worldbody>{}</worldbody>\n<equality>{couplings}</equality>\n{behind}</mujoco>",
+            self.mjcf_body(0, inside)
+        )
+    }
+
+    fn mjcf_body(&self, k: usize, inside: &dyn Fn(usize) -> String) -> String {
+        let Link { name, mass, com, inertia, joint, .. } = &self.links[k];
+        let (place, own) = match joint {
+            None if self.free => (String::new(), "<freejoint name=\"root_joint\"/>".to_string()),
+            None => (String::new(), String::new()),
+            Some(joint) => {
+                let Joint { name, xyz, rpy, axis, .. } = joint;
+                let own = match KINDS[joint.kind] {
+                    "fixed" => String::new(),
+                    "prismatic" => {
+                        format!("<joint name=\"{name}\" type=\"slide\" axis=\"{}\"/>", spaced(*axis))
+                    }
+                    "spherical" => format!("<joint name=\"{name}\" type=\"ball\"/>"),
+                    _ => format!("<joint name=\"{name}\" axis=\"{}\"/>", spaced(*axis)),
+                };
+                (format!(" pos=\"{}\" euler=\"{}\"", spaced(*xyz), spaced(*rpy)), own)
+            }
+        };
+        let joint = |k: usize| self.links[k].joint.as_ref();
+        let mut children: Vec<usize> = (1..self.links.len())
+            .filter(|child| joint(*child).is_some_and(|joint| joint.parent == k))
+            .collect();
+        children.sort_by_key(|k| joint(*k).map(|joint| joint.name.clone()));
+        let children: String = children.into_iter().map(|child| self.mjcf_body(child, inside)).collect();
+        let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (inertia[0], inertia[1], inertia[2]);
+        format!(
+            "<body name=\"{name}\"{place}>{own}<inertial mass=\"{mass:?}\" pos=\"{}\" fullinertia=\"{xx:?} {yy:?} {zz:?} {xy:?} {xz:?} {yz:?}\"/>{}{children}</body>\n",
+            spaced(*com),
+            inside(k)
+        )
+    }
+
+    /// Whether a link carries another one, or is it.
+    pub fn carries(&self, carrier: usize, carried: usize) -> bool {
+        carrier == carried
+            || self.links[carried].joint.as_ref().is_some_and(|joint| self.carries(carrier, joint.parent))
+    }
+
+    /// The pose of a frame in a link, `R_z R_y R_x` of its angles.
+    pub fn frame(&self, link: usize, xyz: [f64; 3], rpy: [f64; 3], state: &State) -> Pose {
+        compose(&self.places(state)[link], &Pose { r: fixed_axes(rpy), p: still(xyz) })
     }
 
     fn write_joint(&self, text: &mut String, child: usize) {

@@ -88,7 +88,7 @@ fn axes(body: &Body) -> String {
     }
 }
 
-fn point(end: &End) -> String {
+pub fn point(end: &End) -> String {
     format!("{}.at({:?})", name(end.body), end.at)
 }
 

@@ -117,13 +117,16 @@ impl Schur {
         let mut top = 0;
         for k in 0..n {
             if selected(self.t[(k, k)]) {
-                for j in (top..k).rev() {
-                    self.swap(j);
-                }
+                self.raise(k, top);
                 top += 1;
             }
         }
         top
+    }
+
+    /// Moves the eigenvalue at the index `from` up to the index `to`.
+    pub fn raise(&mut self, from: usize, to: usize) {
+        (to..from).rev().for_each(|j| self.swap(j));
     }
 
     fn swap(&mut self, k: usize) {

@@ -14,80 +14,120 @@ const ALIKE: f64 = 256.0;
 /// How often what is left of equations that were told apart by a little is made up for.
 const PASSES: usize = 3;
 
+/// Room for the equations of impulses, which keeps the factors of the whole of `W`.
+#[derive(Clone, Copy)]
+pub(in super::super) struct Equations<T, const NR: usize> {
+    matrix: Square<T, NR>,
+    content: Content,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Content {
+    /// All of `W`.
+    Weights,
+    /// Its factors.
+    Factors,
+    /// Its factors with rows told apart by a little.
+    Lifted,
+    Other,
+}
+
+impl<T: Real, const NR: usize> Equations<T, NR> {
+    /// The equations of a problem.
+    pub(in super::super) fn of<const NK: usize>(problem: &Problem<T, NK, NR>) -> Self {
+        Self { matrix: problem.weights, content: Content::Weights }
+    }
+}
+
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
     pub(in super::super) fn together(&self, kept: &Total<bool, NK>) -> List<T, NR> {
-        self.together_with(kept, &mut { self.weights }).0
+        self.together_with(kept, &mut Equations::of(self))
     }
 
-    /// [`together`](Self::together), and whether `system`, which is `W` before, has its factors after it.
+    /// [`together`](Self::together) with given equations.
     pub(super) fn together_with(
         &self,
         kept: &Total<bool, NK>,
-        system: &mut Square<T, NR>,
+        equations: &mut Equations<T, NR>,
+    ) -> List<T, NR> {
+        let (held, size) = self.held_rows(kept);
+        let mut wanted = List::repeat(T::zero());
+        for k in (0..self.count).filter(|k| kept[*k] && self.is_gap(*k)) {
+            wanted[self.of(k).0] = self.least[k];
+        }
+        self.reach((&held, size), (&self.free, &wanted), equations, PASSES).0
+    }
+
+    /// Impulses that change the rates of all contacts by `changes`, and whether the motion tells them apart;
+    /// otherwise they are those of least norm, and less exact.
+    pub(in super::super) fn impulses_for(
+        &self,
+        changes: &SVector<T, NR>,
+        equations: &mut Equations<T, NR>,
     ) -> (List<T, NR>, bool) {
-        // Which rates are held, and at what.
-        let (mut held, mut wanted, mut size) =
-            (List::<_, NR>::repeat(0), List::<_, NR>::repeat(T::zero()), 0);
+        let (held, size) = self.held_rows(&Total::repeat(true));
+        let mut wanted = List::repeat(T::zero());
+        for (wanted, place) in wanted.iter_mut().zip(self.places.iter()).take(self.size) {
+            *wanted = entry(changes, *place);
+        }
+        self.reach((&held, size), (&List::repeat(T::zero()), &wanted), equations, 2)
+    }
+
+    /// Rows in which some contacts may have impulses, and their number: those of friction only where there is
+    /// friction.
+    fn held_rows(&self, kept: &Total<bool, NK>) -> (List<usize, NR>, usize) {
+        let (mut held, mut size) = (List::repeat(0), 0);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero() && kept[*k]) {
             let (n, _) = self.of(k);
             let holds = self.friction[k] > T::zero();
             for i in self.all_of(k).filter(|i| *i == n || holds) {
                 held[size] = i;
-                wanted[size] = if i == n { self.least[k] } else { T::zero() };
                 size += 1;
             }
         }
-        let is_whole = size == self.size;
-        if !is_whole {
-            self.among(&held, size, system);
-        }
-        let mut impulses = List::repeat(T::zero());
-        if factorise(system, size, false) {
-            let mut right = List::repeat(T::zero());
-            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
-                *r = wanted - self.free[*i];
-            }
-            substitute(system, size, &mut right);
-            held.iter().zip(*right).take(size).for_each(|(i, impulse)| impulses[*i] = impulse);
-            return (impulses, is_whole);
-        }
-        self.among(&held, size, system);
-        if !factorise(system, size, true) {
-            return (impulses, false);
-        }
-        // Impulses that move nothing stay small, and what they leave is made up for.
-        for _ in 0..3 {
-            let rates = self.rates(&impulses);
-            let mut right = List::repeat(T::zero());
-            for (r, (i, wanted)) in right.iter_mut().zip(held.iter().zip(*wanted)).take(size) {
-                *r = wanted - rates[*i];
-            }
-            substitute(system, size, &mut right);
-            held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
-        }
-        (impulses, false)
+        (held, size)
     }
 
-    /// The impulses that add these rates, if the motion tells all of them apart; `factors` are those of `W`, if they are known.
-    pub(super) fn answering(
+    /// Impulses in the first `size` rows `held` that change their rates from `free` to `wanted`, and whether
+    /// the motion tells them apart. Impulses that are shared are improved in as many `passes`.
+    fn reach(
         &self,
-        rates: &SVector<T, NR>,
-        factors: Option<&Square<T, NR>>,
-    ) -> Option<List<T, NR>> {
-        let mut own = self.weights;
-        let system = match factors {
-            Some(factors) => factors,
-            None if factorise(&mut own, self.size, false) => &own,
-            None => return None,
-        };
-        let mut impulses = List::repeat(T::zero());
-        for (impulse, place) in impulses.iter_mut().zip(self.places().iter()).take(self.size) {
-            *impulse = entry(rates, *place);
+        (held, size): (&List<usize, NR>, usize),
+        (free, wanted): (&List<T, NR>, &List<T, NR>),
+        equations: &mut Equations<T, NR>,
+        passes: usize,
+    ) -> (List<T, NR>, bool) {
+        let Equations { matrix, content } = equations;
+        let is_whole = size == self.size;
+        let mut known = if is_whole { *content } else { Content::Other };
+        if known == Content::Other {
+            self.among(held, size, matrix);
+            known = Content::Weights;
         }
-        substitute(system, self.size, &mut impulses);
-        impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
-        Some(impulses)
+        if known == Content::Weights {
+            known = Content::Factors;
+            if !factorise(matrix, size, false) {
+                self.among(held, size, matrix);
+                known = if factorise(matrix, size, true) { Content::Lifted } else { Content::Other };
+            }
+        }
+        *content = if is_whole { known } else { Content::Other };
+        let mut impulses = List::repeat(T::zero());
+        // Impulses that move nothing stay small, and what they leave is made up for.
+        let passes = match known {
+            Content::Factors => 1,
+            Content::Lifted => passes,
+            _ => 0,
+        };
+        for pass in 0..passes {
+            let rates = if pass == 0 { *free } else { self.added(*free, &impulses) };
+            let mut right = List::repeat(T::zero());
+            right.iter_mut().zip(held.iter()).take(size).for_each(|(r, i)| *r = wanted[*i] - rates[*i]);
+            substitute(matrix, size, &mut right);
+            held.iter().zip(*right).take(size).for_each(|(i, change)| impulses[*i] += change);
+        }
+        (impulses, known == Content::Factors)
     }
 
     /// Whether the motion cannot tell the impulses of these contacts apart; of those that slip it matters for the normal ones.
@@ -124,8 +164,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
-    /// The forces that hold contacts as they are said to be, where impulses are forces and rates accelerations; `rates` are those
-    /// of all contacts, along which slip is braked.
+    /// The forces that hold contacts as they are said to be, where impulses are forces and rates
+    /// accelerations; `rates` are those of all contacts, along which slip is braked. Sets `loses_digits`
+    /// where nothing slips and `W` does not determine them well.
     ///
     /// # Errors
     ///
@@ -134,11 +175,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         &self,
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
+        loses_digits: &mut bool,
     ) -> Result<List<T, NR>, usize> {
         let slips = self.slipping(touches);
         let mut forces = List::repeat(T::zero());
         if !slips.contains(&true) {
-            forces = self.together(&Total::repeat(true));
+            let mut equations = Equations::of(self);
+            forces = self.together_with(&Total::repeat(true), &mut equations);
+            *loses_digits = self.loses_digits(&equations, &forces);
             let (accelerations, most) = (self.rates(&forces), self.rounding(&forces));
             if accelerations.iter().take(self.size).all(|left| left.abs() <= most) {
                 return Ok(forces);
@@ -192,6 +236,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
+    /// Whether factors of `W` have pivots that are little of what they were, or are no factors of `W` itself.
+    fn loses_digits(&self, equations: &Equations<T, NR>, forces: &List<T, NR>) -> bool {
+        let Equations { matrix, content } = equations;
+        let least = epsilon::<T>().sqrt().sqrt();
+        let is_small = |i: usize| matrix[i][i] * self.weights[i][i] * least > T::one();
+        // Forces that move light bodies far cancel each other.
+        let cancels = self.rounding(forces) * least > self.speed() * epsilon() * constant(ROUNDINGS);
+        *content != Content::Factors || cancels || (0..self.size).any(is_small)
+    }
+
     /// Which contacts slip, or have no friction that would hold them.
     fn slipping(&self, touches: &[Touch; NK]) -> Total<bool, NK> {
         let touches = Total::new(*touches, Touch::Open);
@@ -204,7 +258,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// The matrix of the equations that hold contacts: rates of those that are held, and friction against the slip `rates`.
     fn held_system(&self, slips: &Total<bool, NK>, rates: &SVector<T, NR>) -> Square<T, NR> {
-        let places = self.places();
+        let places = self.places;
         let mut system = square();
         identify(&mut system);
         for k in 0..self.count {
@@ -241,7 +295,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         touches: &[Touch; NK],
         rates: &SVector<T, NR>,
     ) -> SMatrix<T, NR, NR> {
-        let (slips, places) = (self.slipping(touches), self.places());
+        let (slips, places) = (self.slipping(touches), self.places);
         if let Some(found) = self.answers_of_independent(&slips) {
             return found;
         }
@@ -289,7 +343,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if !(0..self.count).all(is_plain) || !factorise(&mut system, self.size, false) {
             return None;
         }
-        let places = self.places();
+        let places = self.places;
         let mut all = SMatrix::<T, NR, NR>::zeros();
         // Rows of all columns at once, which are columns as well.
         let mut changes = [[T::zero(); NR]; NR];

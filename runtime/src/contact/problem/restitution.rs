@@ -26,7 +26,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if !(0..self.count).any(|k| self.is_gap(k) && bounces(k)) {
             return Ok(());
         }
-        let places = self.places();
+        let places = self.places;
         for i in 0..self.size {
             self.free[i] = entry(before, places[i]);
         }

@@ -1,12 +1,13 @@
 //! How impulses are found that fulfil the laws of all contacts.
 
 use super::super::total::Total;
+use super::linear::Equations;
+use super::transport::Start;
 use super::trial::Trial;
 use super::{List, Problem};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
-use nalgebra::SVector;
 
 /// Rounds of sweeps, each followed by Newton's method.
 const ROUNDS: usize = 12;
@@ -42,15 +43,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// The contact of the mechanism whose law is fulfilled least, where more is left than half of the digits.
     pub(in super::super) fn solve(&mut self) -> Result<List<T, NR>, usize> {
-        self.solve_from(&|| None)
+        self.solve_from(None, &mut Equations::of(self))
     }
 
-    /// [`solve`](Self::solve), where the impulses are about those that give the rates `given`, which are asked for if not all stick.
+    /// [`solve`](Self::solve) with given equations, where the impulses are about those of `start`.
     pub(in super::super) fn solve_from(
         &mut self,
-        given: &dyn Fn() -> Option<SVector<T, NR>>,
+        start: Option<&Start<T, NR>>,
+        equations: &mut Equations<T, NR>,
     ) -> Result<List<T, NR>, usize> {
-        let mut impulses = self.search(given).map_err(|k| self.contacts[k].0)?;
+        let mut impulses = self.search(start, equations).map_err(|k| self.contacts[k].0)?;
         // Rounding may have left them beside their cones.
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
@@ -64,18 +66,25 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Ok(impulses)
     }
 
-    fn search(&mut self, given: &dyn Fn() -> Option<SVector<T, NR>>) -> Result<List<T, NR>, usize> {
+    fn search(
+        &mut self,
+        start: Option<&Start<T, NR>>,
+        equations: &mut Equations<T, NR>,
+    ) -> Result<List<T, NR>, usize> {
         // Where all stick that approach, there is nothing to search for.
-        let mut factors = self.weights;
         let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
-        let (mut impulses, is_factorised) = self.together_with(&approach, &mut factors);
+        let mut impulses = self.together_with(&approach, equations);
         let stuck = self.tried(impulses);
         if self.solves(&stuck) {
             return Ok(impulses);
         }
         // Mostly few slip or part, or do what they did before.
-        let start = given().and_then(|rates| self.answering(&rates, is_factorised.then_some(&factors)));
-        let found = self.newton(start.map_or(stuck, |start| self.tried(start)), self.lift());
+        let start = start.filter(|start| start.is_regular).map(|start| {
+            let mut impulses = start.impulses;
+            impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
+            self.tried(impulses)
+        });
+        let found = self.newton(start.unwrap_or(stuck), self.lift());
         if self.solves(&found) {
             // Beside fast slip little is left of what presses slowly.
             return Ok(self.refined(&found, self.lift()));

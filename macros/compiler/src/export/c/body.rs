@@ -209,7 +209,7 @@ impl Writer<'_> {
         let orders: Vec<String> = lookup.orders().iter().map(ToString::to_string).collect();
         let table = self.scope.tables.get(lookup.table()).map_or("missing", String::as_str);
         let text = format!(
-            "tabulated(&self->{table}, {count}, (const double[]){{{}}}, (const int[]){{{}}})",
+            "lw_tabulated(&self->{table}, {count}, (const double[]){{{}}}, (const int[]){{{}}})",
             x.join(", "),
             orders.join(", ")
         );

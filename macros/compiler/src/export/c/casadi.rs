@@ -116,7 +116,7 @@ impl Shapes<'_> {
         }
         let _ = writeln!(
             text,
-            "/* The parameters: some are fixed, the others given. */\nstatic {p} own(const casadi_real *given) {{\n    {p} self;\n    (void)(given);"
+            "/* The parameters: some are fixed, the others given. */\nstatic struct {p} lw_own(const casadi_real *given) {{\n    struct {p} self;\n    (void)(given);"
         );
         let mut next = 0;
         for (member, value) in self.o.parameters.iter().zip(self.fixed) {
@@ -267,7 +267,7 @@ impl Shapes<'_> {
             for (k, ((from, first), columns)) in starts.into_iter().zip(columns).enumerate() {
                 let _ = writeln!(
                     body,
-                    "    block({n}, {columns}, {}, {from} + {}, {n}, r{});",
+                    "    lw_block({n}, {columns}, {}, {from} + {}, {n}, r{});",
                     2 * n,
                     first + row,
                     results + k
@@ -299,7 +299,7 @@ impl Shapes<'_> {
             let name = format!("casadi_position_{}", letters(frame).to_ascii_lowercase());
             let inputs: Vec<Entry> = time.iter().cloned().chain([dense("q", self.o.nq, 1)]).collect();
             let body = format!(
-                "    casadi_real placement[12];\n    {p}_frame_placement({own}{upper}_FRAME_{frame}, {t}q, placement);\n    block(3, 1, 3, placement + 9, 3, r0);\n"
+                "    casadi_real placement[12];\n    {p}_frame_placement({own}{upper}_FRAME_{frame}, {t}q, placement);\n    lw_block(3, 1, 3, placement + 9, 3, r0);\n"
             );
             all.push(self.external(name.clone(), inputs, vec![dense("position", 3, 1)], body));
             if !self.is_exact() {
@@ -307,7 +307,7 @@ impl Shapes<'_> {
             }
             let inputs = vec![dense("q", n, 1), ("out_position".to_string(), 3, 1, false)];
             let body = format!(
-                "    {p}_frame_jacobian({own}{upper}_FRAME_{frame}, q, extra);\n    block(3, {n}, 6, extra, 3, r0);\n"
+                "    {p}_frame_jacobian({own}{upper}_FRAME_{frame}, q, extra);\n    lw_block(3, {n}, 6, extra, 3, r0);\n"
             );
             let mut jacobian =
                 self.external(format!("jac_{name}"), inputs, vec![dense("jac_position_q", 3, n)], body);
@@ -342,12 +342,12 @@ impl Shapes<'_> {
             x * x
         );
         let rates = format!(
-            "    casadi_real force[{}];\n    {};\n    block({n}, 1, {n}, x + {n}, {n}, r0);\n    {p}_forward_dynamics({own}x, x + {n}, force, r0 + {n});\n",
+            "    casadi_real force[{}];\n    {};\n    lw_block({n}, 1, {n}, x + {n}, {n}, r0);\n    {p}_forward_dynamics({own}x, x + {n}, force, r0 + {n});\n",
             n.max(1),
             self.forces(),
         );
         let forward = format!(
-            "{rates}{system}    product({x}, {x}, {x}, by_state, sx, r1);\n    product({x}, {x}, {m}, by_state, su, r2);\n    for (int k = 0; k < {}; ++k) {{\n        r2[k] += by_input[k];\n    }}\n",
+            "{rates}{system}    lw_product({x}, {x}, {x}, by_state, sx, r1);\n    lw_product({x}, {x}, {m}, by_state, su, r2);\n    for (int k = 0; k < {}; ++k) {{\n        r2[k] += by_input[k];\n    }}\n",
             x * m
         );
         let adjoint = format!(
@@ -441,7 +441,7 @@ impl Shapes<'_> {
             let _ = writeln!(rest, "    casadi_real *extra = w + {after};");
         }
         if self.o.has_own() {
-            let _ = writeln!(rest, "    const {} self = own({});", self.o.prefix, f.parameters);
+            let _ = writeln!(rest, "    const struct {} self = lw_own({});", self.o.prefix, f.parameters);
         }
         let list = |entries: &[Entry]| -> [String; 2] {
             let names: Vec<String> = entries.iter().map(|(name, ..)| format!("\"{name}\"")).collect();

@@ -116,12 +116,12 @@ impl<'a> Parts<'a> {
                 support.completed |= width > 0;
                 match width {
                     0 => Ok(()),
-                    _ => writeln!(body, "    complete({n}, {width}, {inverse}, trunk, beside);"),
+                    _ => writeln!(body, "    lw_complete({n}, {width}, {inverse}, trunk, beside);"),
                 }
             }
             InverseForm::BlockArrow { .. } => {
                 support.inverted = true;
-                writeln!(body, "    invert({n}, {width}, {inverse}, trunk, limb, beside);")
+                writeln!(body, "    lw_invert({n}, {width}, {inverse}, trunk, limb, beside);")
             }
         };
     }
@@ -135,7 +135,7 @@ fn accelerated(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, sup
     parts.finish(body, "inverse", support);
     if let InverseForm::BlockArrow { trunk, .. } = &f.structure.inverse {
         support.solved = true;
-        let _ = writeln!(body, "    solve({n}, {}, inverse, trunk, limb, beside, result);", trunk.len());
+        let _ = writeln!(body, "    lw_solve({n}, {}, inverse, trunk, limb, beside, result);", trunk.len());
     }
 }
 
@@ -143,7 +143,7 @@ fn accelerated(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, sup
 fn products(body: &mut String, n: usize, inverse: &str, factors: &[(&str, usize)], support: &mut Support) {
     for (factor, columns) in factors.iter().filter(|(_, columns)| *columns > 0) {
         support.products = true;
-        let _ = writeln!(body, "    minus_products({n}, {columns}, {inverse}, {factor});");
+        let _ = writeln!(body, "    lw_minus_products({n}, {columns}, {inverse}, {factor});");
     }
 }
 
@@ -218,7 +218,7 @@ fn assemble(body: &mut String, n: usize, m: usize, support: &mut Support) {
             of_inputs[j * {n} + i] = by_input[j * {twice} + {n} + i];
         }}
     }}
-    minus_products({n}, {m}, inverse, of_inputs);
+    lw_minus_products({n}, {m}, inverse, of_inputs);
     for (int j = 0; j < {m}; ++j) {{
         for (int i = 0; i < {n}; ++i) {{
             by_input[j * {twice} + i] = 0.0;

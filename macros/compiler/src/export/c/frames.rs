@@ -103,14 +103,15 @@ fn write_tables(text: &mut String, links: &[LinkSteps], frames: &[FrameSteps]) {
     let number = |link: Option<usize>| link.map_or("-1".to_string(), |k| k.to_string());
     let parents: Vec<String> = links.iter().map(|link| number(link.parent)).collect();
     let carriers: Vec<String> = frames.iter().map(|frame| number(frame.link)).collect();
-    let _ = writeln!(text, "static const int parent_of[{}] = {{{}}};", parents.len(), parents.join(", "));
-    let _ = writeln!(text, "static const int link_of[{}] = {{{}}};\n", carriers.len(), carriers.join(", "));
+    let _ = writeln!(text, "static const int lw_parent_of[{}] = {{{}}};", parents.len(), parents.join(", "));
+    let _ =
+        writeln!(text, "static const int lw_link_of[{}] = {{{}}};\n", carriers.len(), carriers.join(", "));
     let _ = writeln!(
         text,
         "/* The links from the ground to a frame, the last one first. */
-static int path_to(int frame, int *path) {{
+static int lw_path_to(int frame, int *path) {{
     int count = 0;
-    for (int link = link_of[frame]; link >= 0; link = parent_of[link]) {{
+    for (int link = lw_link_of[frame]; link >= 0; link = lw_parent_of[link]) {{
         path[count++] = link;
     }}
     return count;
@@ -140,8 +141,17 @@ fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut
     }
     let unused = o.unused(&body, &step.arguments, &["result"]);
     let spelled = o.spelled("static void", step.name, &step.arguments, &["result"]);
-    let spelled =
-        spelled.replacen(&format!("{}_{}(", o.prefix, step.name), &format!("{}(int which, ", step.name), 1);
+    // An argument may be named as the type.
+    let spelled = spelled.replacen(
+        &format!("(const {} *self", o.prefix),
+        &format!("(const struct {} *self", o.prefix),
+        1,
+    );
+    let spelled = spelled.replacen(
+        &format!("{}_{}(", o.prefix, step.name),
+        &format!("lw_{}(int which, ", step.name),
+        1,
+    );
     let _ = writeln!(
         text,
         "{spelled} {{\n{unused}    switch (which) {{\n{body}    default:\n        break;\n    }}\n}}\n"
@@ -188,8 +198,9 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
         true => vec!["0".to_string()],
         false => columns.iter().map(ToString::to_string).collect(),
     };
-    let _ = writeln!(text, "static const int first_column[{}] = {{{}}};", firsts.len(), firsts.join(", "));
-    let _ = writeln!(text, "static const int column_of[{}] = {{{}}};\n", columns.len(), columns.join(", "));
+    let _ = writeln!(text, "static const int lw_first_column[{}] = {{{}}};", firsts.len(), firsts.join(", "));
+    let _ =
+        writeln!(text, "static const int lw_column_of[{}] = {{{}}};\n", columns.len(), columns.join(", "));
 }
 
 fn write_frame_steps(text: &mut String, frames: &[FrameSteps], o: &Outline<'_>, support: &mut Support) {
@@ -235,10 +246,10 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
         let _ = write!(
             body,
             "    int path[{links}];
-    const int count = path_to(frame, path);
+    const int count = lw_path_to(frame, path);
     for (int k = count - 1; k >= 0; --k) {{
         double next[12];
-        link_placement(path[k], {own}{time}q, p, next);
+        lw_link_placement(path[k], {own}{time}q, p, next);
         memcpy(p, next, sizeof next);
 "
         );
@@ -248,13 +259,13 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
         if acceleration {
             let _ = write!(
                 body,
-                "        link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, sizeof next);\n"
+                "        lw_link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, sizeof next);\n"
             );
         }
         if twist {
             let _ = write!(
                 body,
-                "        link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, 6 * sizeof next[0]);\n"
+                "        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n        memcpy(p + 12, next, 6 * sizeof next[0]);\n"
             );
         }
         body.push_str("    }\n");
@@ -267,14 +278,14 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
             "frame_placement" => writeln!(
                 body,
                 "    double placed[12];
-    placement_on_link(frame, {own}p, placed);
+    lw_placement_on_link(frame, {own}p, placed);
     for (int k = 0; k < 9; ++k) {{
         result[k] = placed[3 * (k % 3) + k / 3];
     }}
     memcpy(result + 9, placed + 9, 3 * sizeof placed[0]);"
             ),
-            "frame_velocity" => writeln!(body, "    twist_on_link(frame, {own}p, result);"),
-            _ => writeln!(body, "    acceleration_on_link(frame, {own}p, result);"),
+            "frame_velocity" => writeln!(body, "    lw_twist_on_link(frame, {own}p, result);"),
+            _ => writeln!(body, "    lw_acceleration_on_link(frame, {own}p, result);"),
         };
     }
     body.push_str("    return 0;\n");
@@ -288,7 +299,7 @@ fn write_jacobian(body: &mut String, o: &Outline<'_>, most: Option<usize>) {
     let _ = write!(
         body,
         "    double placement[12];
-    placement_on_link(frame, {own}p, placement);
+    lw_placement_on_link(frame, {own}p, placement);
     for (int k = 0; k < 6 * {}; ++k) {{
         result[k] = 0.0;
     }}
@@ -300,10 +311,10 @@ fn write_jacobian(body: &mut String, o: &Outline<'_>, most: Option<usize>) {
             body,
             "    for (int k = 0; k < count; ++k) {{
         double columns[{}] = {{0.0}};
-        link_columns(path[k], {own}{time}q, placements + 12 * k, placement + 9, columns);
-        for (int c = first_column[path[k]]; c < first_column[path[k] + 1]; ++c) {{
+        lw_link_columns(path[k], {own}{time}q, placements + 12 * k, placement + 9, columns);
+        for (int c = lw_first_column[path[k]]; c < lw_first_column[path[k] + 1]; ++c) {{
             for (int i = 0; i < 6; ++i) {{
-                result[6 * column_of[c] + i] += columns[6 * (c - first_column[path[k]]) + i];
+                result[6 * lw_column_of[c] + i] += columns[6 * (c - lw_first_column[path[k]]) + i];
             }}
         }}
     }}

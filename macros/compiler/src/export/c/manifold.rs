@@ -55,7 +55,7 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
                 "difference" => [v, q, q],
                 _ => [v, v, v],
             };
-            let _ = writeln!(body, "    {kind}_{name}({a} + {x}, {b} + {y}, result + {r});");
+            let _ = writeln!(body, "    lw_{kind}_{name}({a} + {x}, {b} + {y}, result + {r});");
         }
         let unused = o.unused(&body, &[], &[a, b, "result"]);
         let _ = match o.speeds {
@@ -130,7 +130,7 @@ fn define_derivatives(
         let given: Vec<String> = of.arguments.iter().map(|name| format!("{name} + {at}")).collect();
         let _ = writeln!(
             body,
-            "    {{\n        double a[{0}], b[{0}];\n        {kind}_{1}_derivatives({2}, a, b);\n        for (int k = 0; k < {0}; ++k) {{\n            const int at = ({at} + k / {n}) * {3} + {at} + k % {n};\n            {first}[at] = a[k];\n            {second}[at] = b[k];\n        }}\n    }}",
+            "    {{\n        double a[{0}], b[{0}];\n        lw_{kind}_{1}_derivatives({2}, a, b);\n        for (int k = 0; k < {0}; ++k) {{\n            const int at = ({at} + k / {n}) * {3} + {at} + k % {n};\n            {first}[at] = a[k];\n            {second}[at] = b[k];\n        }}\n    }}",
             n * n,
             of.name,
             given.join(", "),

@@ -22,8 +22,8 @@ const METHODS: [(&str, &str); 2] = [
     ("rk4", "the classical method of Runge and Kutta"),
 ];
 
-const PUT_H: &str = "        by_h[k] = motion[BY_H + k];\n        by_h[@N@ + k] = v[BY_H + k];\n";
-const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            by_input[j * 2 * @N@ + k] = motion[BY_U + j * @N@ + k];\n            by_input[j * 2 * @N@ + @N@ + k] = v[BY_U + j * @N@ + k];\n        }\n";
+const PUT_H: &str = "        by_h[k] = motion[LW_BY_H + k];\n        by_h[@N@ + k] = v[LW_BY_H + k];\n";
+const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            by_input[j * 2 * @N@ + k] = motion[LW_BY_U + j * @N@ + k];\n            by_input[j * 2 * @N@ + @N@ + k] = v[LW_BY_U + j * @N@ + k];\n        }\n";
 
 const STATE: [Argument; 3] = [Argument::Q, Argument::V, Argument::U];
 const NEXT: [&str; 2] = ["next_q", "next_v"];
@@ -198,11 +198,11 @@ impl<'a> Steps<'a> {
             (o.nv * o.nu).max(1)
         );
         for (name, _) in ["q", "v"].iter().zip(self.changing).filter(|(_, changing)| *changing) {
-            let _ = writeln!(text, "    add_products({}, by_tau, force_by_{name}, by_{name});", o.nv);
+            let _ = writeln!(text, "    lw_add_products({}, by_tau, force_by_{name}, by_{name});", o.nv);
         }
         let _ = writeln!(
             text,
-            "    for (int k = 0; k < {}; ++k) {{\n        by_u[k] = 0.0;\n    }}\n    add_products({}, by_tau, force_by_u, by_u);",
+            "    for (int k = 0; k < {}; ++k) {{\n        by_u[k] = 0.0;\n    }}\n    lw_add_products({}, by_tau, force_by_u, by_u);",
             o.nv * o.nu,
             o.nu
         );
@@ -226,13 +226,13 @@ impl<'a> Steps<'a> {
             let _ = match function {
                 "integrate" => writeln!(
                     text,
-                    "    {{\n        double by_q[{0}], by_dv[{0}];\n        {kind}_integrate_derivatives(displacement + {at}, by_q, by_dv);\n        moved_block({n}, {at}, by_dv, displacement, motion);\n        for (int k = 0; k < {0}; ++k) {{\n            motion[(1 + {at} + k / {n}) * {1} + {at} + k % {n}] += by_q[k];\n        }}\n    }}",
+                    "    {{\n        double by_q[{0}], by_dv[{0}];\n        lw_{kind}_integrate_derivatives(displacement + {at}, by_q, by_dv);\n        lw_moved_block({n}, {at}, by_dv, displacement, motion);\n        for (int k = 0; k < {0}; ++k) {{\n            motion[(1 + {at} + k / {n}) * {1} + {at} + k % {n}] += by_q[k];\n        }}\n    }}",
                     n * n,
                     o.nv
                 ),
                 _ => writeln!(
                     text,
-                    "    {{\n        double by_dv[{0}], by_v[{0}], of_v[{1}];\n        {kind}_tangent_rate_derivatives(displacement + {at}, v + {at}, by_dv, by_v);\n        {kind}_tangent_rate(displacement + {at}, v + {at}, rate + {at});\n        moved_block({n}, {at}, by_dv, displacement, rate);\n        moved_block({n}, {at}, by_v, v, of_v);\n        for (int j = 1; j <= @COLUMNS@; ++j) {{\n            for (int k = {at}; k < {at} + {n}; ++k) {{\n                rate[j * {2} + k] += of_v[j * {2} + k];\n            }}\n        }}\n    }}",
+                    "    {{\n        double by_dv[{0}], by_v[{0}], of_v[{1}];\n        lw_{kind}_tangent_rate_derivatives(displacement + {at}, v + {at}, by_dv, by_v);\n        lw_{kind}_tangent_rate(displacement + {at}, v + {at}, rate + {at});\n        lw_moved_block({n}, {at}, by_dv, displacement, rate);\n        lw_moved_block({n}, {at}, by_v, v, of_v);\n        for (int j = 1; j <= @COLUMNS@; ++j) {{\n            for (int k = {at}; k < {at} + {n}; ++k) {{\n                rate[j * {2} + k] += of_v[j * {2} + k];\n            }}\n        }}\n    }}",
                     n * n,
                     (1 + 2 * o.nv + o.nu + 1) * o.nv,
                     o.nv

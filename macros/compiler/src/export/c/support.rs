@@ -1,4 +1,5 @@
-//! Functions that bodies call beside those of the mathematical library, each written where something calls it.
+//! Helpers: functions that bodies call in addition to those of the mathematical library, each written where something calls it.
+//! Their names begin with `lw_`, which no name of a mechanism does (`names::prefix_identifier`).
 
 /// What a file needs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -31,11 +32,11 @@ pub struct Support {
 
 impl Support {
     /// `a * b + c`
-    pub const MUL_ADD: &'static str = "mul_add";
+    pub const MUL_ADD: &'static str = "lw_mul_add";
     /// `a * b - c`
-    pub const MUL_SUB: &'static str = "mul_sub";
+    pub const MUL_SUB: &'static str = "lw_mul_sub";
     /// `c - a * b`
-    pub const NEG_MUL_ADD: &'static str = "neg_mul_add";
+    pub const NEG_MUL_ADD: &'static str = "lw_neg_mul_add";
 
     /// Nothing yet.
     pub fn new(single: bool) -> Support {
@@ -46,13 +47,13 @@ impl Support {
     pub fn angles(&mut self, count: usize) -> &'static str {
         self.one_angle = true;
         self.four_angles |= count > 1;
-        if count > 1 { "sin_cos_4" } else { "sin_cos" }
+        if count > 1 { "lw_sin_cos_4" } else { "lw_sin_cos" }
     }
 
     /// The one for signs.
     pub fn signum(&mut self) -> String {
         self.signum = true;
-        "signum".to_string()
+        "lw_signum".to_string()
     }
 
     /// The one for a quantity of the standard atmosphere.
@@ -60,7 +61,7 @@ impl Support {
         if let Some(at) = QUANTITIES.iter().position(|(known, _)| *known == name) {
             self.atmosphere[at] = true;
         }
-        name.to_string()
+        format!("lw_{name}")
     }
 
     /// Headers beside `math.h`.
@@ -107,7 +108,7 @@ impl Support {
         let asked = QUANTITIES.iter().zip(self.atmosphere).filter(|(_, asked)| *asked);
         texts.extend(asked.map(|((name, variable), _)| {
             format!(
-                "static double {name}(double h) {{\n    double temperature, pressure, rate;\n    atmosphere(h, &temperature, &pressure, &rate);\n    return {variable};\n}}\n"
+                "static double lw_{name}(double h) {{\n    double temperature, pressure, rate;\n    lw_atmosphere(h, &temperature, &pressure, &rate);\n    return {variable};\n}}\n"
             )
         }));
         texts.join("\n").replace("@NV@", &nv.max(1).to_string()).replace("@PREFIX@", prefix)

@@ -8,22 +8,24 @@ use super::law::{Force, OTHER_INPUTS, read_force};
 use super::reader::Reader;
 use super::tendon::Tendon;
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, elements, name, place};
+use crate::import::element::{Node, elements, name, place};
 use crate::import::imported::Placed;
 use crate::import::robot::unused;
-use crate::syntax::{Drive, DriveLaw, DriveOn, InputOption, JointKind, Name};
-use std::collections::BTreeSet;
+use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, InputOption, JointKind, LimitOption, Name};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The shortcuts that are understood, and `general`.
 const KNOWN: [&str; 4] = ["motor", "position", "velocity", "general"];
 
 /// All of MuJoCo's.
-const ALL: [&str; 11] = [
+pub(super) const ALL: [&str; 13] = [
     "general",
     "motor",
     "position",
     "velocity",
     "intvelocity",
+    "orientation",
+    "pid",
     "damper",
     "cylinder",
     "muscle",
@@ -32,97 +34,63 @@ const ALL: [&str; 11] = [
     "dcmotor",
 ];
 
-const ATTRIBUTES: [&str; 48] = [
-    "name",
-    "class",
-    "group",
-    "nsample",
-    "interp",
-    "delay",
-    "ctrllimited",
-    "forcelimited",
-    "actlimited",
-    "ctrlrange",
-    "forcerange",
-    "actrange",
-    "lengthrange",
-    "gear",
-    "cranklength",
-    "damping",
-    "armature",
-    "joint",
-    "jointinparent",
-    "tendon",
-    "slidersite",
-    "cranksite",
-    "site",
-    "refsite",
-    "body",
-    "actdim",
-    "dyntype",
-    "gaintype",
-    "biastype",
-    "dynprm",
-    "gainprm",
-    "biasprm",
-    "actearly",
-    "kp",
-    "kv",
-    "dampratio",
-    "timeconst",
-    "inheritrange",
-    "user",
-    "kd",
-    "ki",
-    "area",
-    "diameter",
-    "bias",
-    "gain",
-    "force",
-    "scale",
-    "plugin",
-];
+/// The attributes that say what an actuator acts on.
+const TARGETS: [&str; 7] = ["joint", "jointinparent", "tendon", "site", "slidersite", "cranksite", "body"];
+
+/// The sum of what actuators may exert on each joint; nothing where one of them has no limit.
+type Efforts = BTreeMap<String, Option<Placed<f64>>>;
 
 impl<'a> Reader<'a> {
     /// Reads all actuators.
     pub(super) fn actuators(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = elements(root).filter(|node| node.tag_name().name() == "actuator");
         let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
-        if self.options.inputs != InputOption::Actuators || !self.settings.actuation {
-            if !nodes.is_empty() {
-                self.left_out.push(format!("{} actuators", nodes.len()));
-            }
-            return;
+        let off = self.options.inputs != InputOption::Actuators || !self.settings.actuation;
+        if off && !nodes.is_empty() {
+            self.left_out.push(format!("{} actuators", nodes.len()));
         }
         let mut names: BTreeSet<String> =
             nodes.iter().filter_map(|node| node.attribute("name")).map(str::to_string).collect();
+        let mut efforts = Efforts::new();
         for node in nodes {
-            self.actuator(node, tendons, &mut names, cx);
+            // What all actuators have may be said in the defaults of any.
+            let any = self.defaults.element(node, &ALL, 0, cx);
+            self.add_losses(&any, tendons, cx);
+            let group = any.number("group", cx).map_or(0.0, |group| group.value);
+            let disabled = self.settings.disabled_groups.contains(&group);
+            if disabled && !off {
+                self.count("actuators of groups that are switched off", 1);
+            }
+            if !off && !disabled {
+                self.actuator(&any, tendons, (&mut names, &mut efforts), cx);
+            }
         }
+        self.bound_efforts(efforts);
     }
 
     fn actuator(
         &mut self,
-        node: Node<'a>,
+        any: &Element<'a>,
         tendons: &[Tendon],
-        names: &mut BTreeSet<String>,
+        (names, efforts): (&mut BTreeSet<String>, &mut Efforts),
         cx: &mut Cx<'_>,
     ) {
+        let node = any.node;
         let kind = node.tag_name().name();
         if !KNOWN.contains(&kind) {
-            cx.error(&place(node, cx), format!("actuator `<{kind}>` is not supported"), |d| {
-                match ALL.contains(&kind) {
-                    true => d.help(OTHER_INPUTS),
-                    false => d.suggest(kind, ALL),
-                }
-            });
+            // Elements that MJCF does not have are reported elsewhere.
+            if ALL.contains(&kind) {
+                let message = format!("actuator `<{kind}>` is not supported");
+                cx.error(&place(node, cx), message, |d| d.help(OTHER_INPUTS));
+            }
             return;
         }
-        check_attributes(node, &[], &ATTRIBUTES, cx);
-        // What all actuators have may be said in the defaults of any.
-        let any = self.defaults.element(node, &ALL, 0, cx);
-        let Some(force) = read_force(&any, cx) else { return };
-        let Some((on, turns)) = self.transmission(&any, tendons, force.bias[1] != 0.0, cx) else { return };
+        let classes = self.defaults.by_class(node, &ALL, 0, cx);
+        let Some(force) = read_force(any, &classes, cx) else { return };
+        let Some((on, turns)) = self.transmission(any, tendons, force.bias[1] != 0.0, cx) else { return };
+        if let Some(found) = any.nonzero("delay", cx) {
+            cx.error(&found.place, "`delay` of an actuator is not supported", |d| d.help(OTHER_INPUTS));
+        }
         let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| {
             let joint = on.terms().first().map(|(joint, _)| joint.text.as_str());
@@ -133,8 +101,7 @@ impl<'a> Reader<'a> {
             }
         });
         names.insert(named.text.clone());
-        self.bound(&any, on.terms(), &force, cx);
-        self.refuse_losses(&any, cx);
+        self.add_effort(any, &on, &force, efforts, cx);
         let unit = unit(kind, turns, &force);
         let mut drive = |on: DriveOn, law: DriveLaw| {
             self.robot.drives.push(Drive { name: named.clone(), on, law });
@@ -161,6 +128,24 @@ impl<'a> Reader<'a> {
         servo: bool,
         cx: &mut Cx<'_>,
     ) -> Option<(DriveOn, bool)> {
+        let said: Vec<&str> =
+            TARGETS.into_iter().filter(|target| element.node.has_attribute(*target)).collect();
+        match said.as_slice() {
+            [_] | ["slidersite", "cranksite"] => {}
+            [] => {
+                let message = "an actuator that acts on nothing";
+                cx.error(&place(element.node, cx), message, |d| {
+                    d.help("expected `joint`, `tendon` or `site`").help(OTHER_INPUTS)
+                });
+                return None;
+            }
+            several => {
+                let message =
+                    format!("an actuator acts on one thing, but here are `{}`", several.join("` and `"));
+                cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));
+                return None;
+            }
+        }
         if let Some(site) = element.name("site", cx) {
             return self.site_transmission(&site, element, servo, cx);
         }
@@ -183,49 +168,116 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Newer versions give actuators losses and rotors of their own.
-    fn refuse_losses(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
-        for (which, help) in [
-            ("damping", "write it into the joint, times the gear ratio squared"),
-            ("armature", "write it into the joint, times the gear ratio squared"),
-            ("delay", OTHER_INPUTS),
-        ] {
-            if let Some(found) = element.nonzero(which, cx) {
-                let message = format!("`{which}` of an actuator is not supported");
-                cx.error(&found.place, message, |d| d.help(help));
-            }
+    /// Adds the rotor and the viscous losses of an actuator, which the joint or the tendon has even while
+    /// nothing drives it.
+    fn add_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
+        let damping = element.linear("damping", OTHER_INPUTS, cx).filter(|_| self.dampers);
+        let rotor = element.nonzero("armature", cx);
+        let laws = [
+            damping.map(|found| (DriveLaw::Damper(found.value), found.place)),
+            rotor.as_ref().map(|found| (DriveLaw::Inerter(found.value), found.place.clone())),
+        ];
+        let laws: Vec<_> = laws.into_iter().flatten().collect();
+        let Some((_, at)) = laws.first() else { return };
+        if element.node.has_attribute("site") {
+            let message = "`damping` and `armature` of an actuator on a site are not supported";
+            cx.error(at, message, |d| d.help("MuJoCo has them on joints and tendons alone"));
+            return;
+        }
+        if let Some(rotor) = rotor.filter(|rotor| rotor.value < 0.0) {
+            cx.error(&rotor.place, format!("negative armature `{}`", rotor.value), |d| d);
+        }
+        let Some((on, _)) = self.transmission(element, tendons, false, cx) else { return };
+        let target = ["joint", "jointinparent", "tendon"].into_iter().find_map(|target| element.text(target));
+        let text = target.unwrap_or("motor");
+        for (law, place) in laws {
+            let name = Name { text: text.to_string(), place };
+            self.robot.drives.push(Drive { name, on: on.clone(), law });
         }
     }
 
-    /// The largest effort of a joint that an actuator drives alone, in effect.
-    fn bound(&mut self, element: &Element<'a>, terms: &[(Name, f64)], force: &Force, cx: &mut Cx<'_>) {
-        let gear = terms.first().map_or(1.0, |(_, gear)| gear.abs());
-        let of = |ends: [Placed<f64>; 2]| {
+    /// Adds the largest force of an actuator to those of the joints that it acts on.
+    fn add_effort(
+        &mut self,
+        element: &Element<'a>,
+        on: &DriveOn,
+        force: &Force,
+        efforts: &mut Efforts,
+        cx: &mut Cx<'_>,
+    ) {
+        let largest = |ends: [Placed<f64>; 2]| {
             let [low, high] = ends;
-            Placed { value: low.value.abs().max(high.value.abs()) * gear, place: low.place }
+            Placed { value: low.value.abs().max(high.value.abs()), place: low.place }
         };
-        let by_force = self.range(element, "forcelimited", "forcerange", cx).map(of);
-        let by_input = self.range(element, "ctrllimited", "ctrlrange", cx).map(of);
-        let servos = usize::from(by_input.is_some() && force.bias != [0.0; 3]);
+        let by_force = self.range(element, "forcelimited", "forcerange", cx).map(largest);
+        let by_input = self.range(element, "ctrllimited", "ctrlrange", cx).map(largest);
+        let by_input = by_input.filter(|_| self.settings.clamped);
+        let inherits = element.nonzero("inheritrange", cx).is_some();
+        let is_servo = force.bias != [0.0; 3];
+        let servos = usize::from((by_input.is_some() || inherits) && is_servo);
         self.count("ranges of what servos are told", servos);
         let by_input = by_input
-            .filter(|_| force.bias == [0.0; 3])
+            .filter(|_| !is_servo)
             .map(|found| Placed { value: found.value * force.gain.abs(), ..found });
-        let [(joint, _)] = terms else {
-            self.count(
-                "limits of actuators on tendons and sites",
-                usize::from(by_force.is_some() || by_input.is_some()),
-            );
-            return;
+        let limit = match (by_force, by_input) {
+            (Some(a), Some(b)) => Some(if a.value <= b.value { a } else { b }),
+            (a, b) => a.or(b),
         };
-        let Some(joint) = self.robot.joints.iter_mut().find(|known| known.name.text == joint.text) else {
+        let add =
+            |joint: String, more: Option<Placed<f64>>, efforts: &mut Efforts| match efforts.get_mut(&joint) {
+                Some(known) => {
+                    *known = known
+                        .take()
+                        .zip(more)
+                        .map(|(known, more)| Placed { value: known.value + more.value, place: known.place });
+                }
+                None => {
+                    efforts.insert(joint, more);
+                }
+            };
+        if let DriveOn::Sum(terms) = on {
+            for (joint, weight) in terms {
+                let more = limit.clone().map(|limit| Placed { value: limit.value * weight.abs(), ..limit });
+                add(joint.text.clone(), more, efforts);
+            }
             return;
+        }
+        self.count("limits of actuators on cables and sites", usize::from(limit.is_some()));
+        for joint in self.joints_below(on) {
+            add(joint, None, efforts);
+        }
+    }
+
+    /// Names of the joints that carry what a length or a wrench is between.
+    fn joints_below(&self, on: &DriveOn) -> Vec<String> {
+        let ends = match on {
+            DriveOn::Sum(_) => Vec::new(),
+            DriveOn::Length(e) => e.parts(),
+            DriveOn::Wrench(wrench) => {
+                std::iter::once(&wrench.on).chain(&wrench.against).flat_map(Expr::parts).collect()
+            }
         };
-        for found in [by_force, by_input].into_iter().flatten() {
+        let mut found = Vec::new();
+        for mut body in ends.into_iter().filter_map(Expr::name) {
+            while let Some(joint) = self.robot.joints.iter().find(|joint| joint.child.text == body) {
+                found.push(joint.name.text.clone());
+                body = &joint.parent.text;
+            }
+        }
+        found.sort();
+        found.dedup();
+        found
+    }
+
+    /// Bounds what acts on joints by what their actuators exert together.
+    fn bound_efforts(&mut self, mut efforts: Efforts) {
+        if self.options.limits == LimitOption::Ignore {
+            return;
+        }
+        for joint in &mut self.robot.joints {
+            let Some(found) = efforts.remove(&joint.name.text).flatten() else { continue };
             let effort = &mut joint.limits.effort;
-            if effort.as_ref().is_none_or(|known| found.value < known.value)
-                && self.options.limits != crate::syntax::LimitOption::Ignore
-            {
+            if effort.as_ref().is_none_or(|known| found.value < known.value) {
                 *effort = Some(found);
             }
         }

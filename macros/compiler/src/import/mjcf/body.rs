@@ -1,15 +1,13 @@
 //! `<worldbody>` → links and joints, in the order of the file.
 
 use super::defaults::{Element, choice};
-use super::frame::{ORIENTATIONS, read_pose};
+use super::frame::read_pose;
 use super::geometry;
 use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint};
 use super::reader::{Reader, give, origin};
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
-use crate::import::element::{
-    Node, check_attributes, check_element_name, elements, name, number, place, tag,
-};
+use crate::import::element::{Node, elements, name, number, place, tag};
 use crate::import::imported::Placed;
 use crate::import::pose::{Pose, about, add, apply, product, scale};
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused};
@@ -18,25 +16,7 @@ use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind,
 /// MuJoCo's name of what does not move.
 pub(super) const WORLD: &str = "world";
 
-/// The elements of a body.
-const BODY: [&str; 16] = [
-    "body",
-    "frame",
-    "joint",
-    "freejoint",
-    "inertial",
-    "geom",
-    "site",
-    "camera",
-    "light",
-    "composite",
-    "flexcomp",
-    "replicate",
-    "attach",
-    "plugin",
-    "include",
-    "skin",
-];
+const WRITTEN_OUT: &str = "MuJoCo writes what it makes of a file: `mj_saveLastXML`, or its program `compile`";
 
 /// A body that is still to be read.
 struct Open<'a> {
@@ -59,8 +39,9 @@ struct Inside<'a> {
     bodies: Vec<(Node<'a>, Pose, usize)>,
     shapes: Vec<Shaped<'a>>,
     sites: Vec<Shaped<'a>>,
-    inertial: Option<Node<'a>>,
-    jointed: Vec<(Node<'a>, usize)>,
+    inertial: Option<(Node<'a>, Pose)>,
+    /// Joints, with the poses of the frames in the body that they stand in, and their classes.
+    jointed: Vec<(Node<'a>, Pose, usize)>,
 }
 
 impl<'a> Reader<'a> {
@@ -73,7 +54,11 @@ impl<'a> Reader<'a> {
             let nodes = root.descendants().filter(move |node| node.is_element() && kind(*node));
             nodes.filter_map(|node| node.attribute("name")).map(str::to_string)
         };
-        self.joint_names = named(is_joint).collect();
+        let of_body = |node: Node<'_>| {
+            let parent = node.parent_element().map_or("", |parent| parent.tag_name().name());
+            is_joint(node) && ["body", "frame"].contains(&parent)
+        };
+        self.joint_names = named(of_body).collect();
         self.link_names = named(|node| node.tag_name().name() == "body").collect();
         self.link_names.extend([GROUND.to_string(), WORLD.to_string()]);
         let worlds: Vec<Node<'a>> =
@@ -137,9 +122,6 @@ impl<'a> Reader<'a> {
         let node = open.node;
         self.bodies += 1;
         let mocap = choice(node, "mocap", cx) == Some(true);
-        let mut known = vec!["name", "childclass", "pos", "mocap", "gravcomp", "user", "sleep"];
-        known.extend(ORIENTATIONS);
-        check_attributes(node, &[], &known, cx);
         let class = self.defaults.class(node, "childclass", open.class, cx);
         let said = node.attribute("name").and_then(|_| name(node, "name", cx));
         let body = self.body_name(said, node, cx);
@@ -148,9 +130,14 @@ impl<'a> Reader<'a> {
         let world = open.world.then(&pose);
         let inside = self.inside(node, class, cx);
         let mut joints = Vec::new();
-        for (child, class) in &inside.jointed {
-            joints.extend(self.read_joint(*child, &body, *class, cx));
+        for (child, outer, class) in &inside.jointed {
+            joints.extend(self.read_joint((*child, outer, *class), &body, cx));
         }
+        if mocap && (open.parent.text != GROUND || !joints.is_empty()) {
+            let message = format!("mocap body {} does not stand still in the world", quote(&body.text));
+            cx.error(&body.place, message, |d| d.help("it stands in `<worldbody>` and has no joint"));
+        }
+        self.refuse_alignment(&inside, cx);
         if self.options.base == Base::Free && open.parent.text == GROUND && joints.is_empty() {
             joints.extend(self.bare_free(&body));
         }
@@ -158,7 +145,7 @@ impl<'a> Reader<'a> {
         let mass = match self.options.inertias {
             Inertias::None => None,
             _ => geometry::of_body(
-                inside.inertial,
+                &inside.inertial,
                 &inside.shapes,
                 &self.defaults,
                 &mut self.meshes,
@@ -219,6 +206,12 @@ impl<'a> Reader<'a> {
         for child in elements(node) {
             match child.tag_name().name() {
                 "frame" => {
+                    for which in ["scale", "scaling", "massscale"] {
+                        if let Some(found) = child.attribute_node(which) {
+                            let message = format!("`{which}` of a `<frame>` is not supported");
+                            cx.error(&cx.place(found.range_value().start), message, |d| d.help(WRITTEN_OUT));
+                        }
+                    }
                     let class = self.defaults.class(child, "childclass", class, cx);
                     let element = self.defaults.element(child, &[], 0, cx);
                     let pose = outer.then(&read_pose(&element, &self.settings, cx));
@@ -231,23 +224,31 @@ impl<'a> Reader<'a> {
                 "inertial" if found.inertial.is_some() => {
                     cx.error(&place(child, cx), "second `<inertial>` of one body", |d| d);
                 }
-                "inertial" => found.inertial = Some(child),
-                "joint" | "freejoint" if outer.at == [0.0; 3] && outer.axes == Pose::ZERO.axes => {
-                    found.jointed.push((child, class));
-                }
-                "joint" | "freejoint" => {
-                    let help = "write it into the body itself";
-                    cx.error(&place(child, cx), "a joint in a `<frame>` is not supported", |d| d.help(help));
-                }
+                "inertial" => found.inertial = Some((child, *outer)),
+                "joint" | "freejoint" => found.jointed.push((child, *outer, class)),
                 "camera" => self.count("cameras", 1),
                 "light" => self.count("lights", 1),
                 "composite" | "flexcomp" | "replicate" | "attach" | "plugin" => {
                     let message = format!("{} is not supported", tag(child));
-                    let help =
-                        "MuJoCo writes what it makes of a file: `mj_saveLastXML`, or its program `compile`";
-                    cx.error(&place(child, cx), message, |d| d.help(help));
+                    cx.error(&place(child, cx), message, |d| d.help(WRITTEN_OUT));
                 }
-                _ => check_element_name(child, &BODY, cx),
+                // Elements that MJCF does not have are reported elsewhere.
+                _ => {}
+            }
+        }
+    }
+
+    /// Reports a free joint that moves the axes of its body into the principal ones, where coordinates would
+    /// be others.
+    fn refuse_alignment(&self, inside: &Inside<'a>, cx: &mut Cx<'_>) {
+        for (joint, ..) in &inside.jointed {
+            let aligned = joint.tag_name().name() == "freejoint"
+                && choice(*joint, "align", cx).unwrap_or(self.settings.align_free);
+            if aligned && inside.bodies.is_empty() {
+                let message = "a free body in principal axes is not supported";
+                cx.error(&place(*joint, cx), message, |d| {
+                    d.help("write `align=\"false\"` into the joint: the motion is the same in any axes")
+                });
             }
         }
     }
@@ -348,13 +349,10 @@ impl<'a> Reader<'a> {
     fn add_sites(&mut self, inside: &Inside<'a>, body: &str, cx: &mut Cx<'_>) {
         for (site, outer) in &inside.sites {
             let named = site.node.has_attribute("name").then(|| name(site.node, "name", cx)).flatten();
-            let pose = match site.numbers::<6>("fromto", cx) {
-                Some(ends) => {
-                    let [a, b, c, d, e, f] = ends.value;
-                    Pose { at: scale(add([a, b, c], [d, e, f]), 0.5), ..read_pose(site, &self.settings, cx) }
-                }
-                None => read_pose(site, &self.settings, cx),
-            };
+            if let Some(mesh) = site.name("mesh", cx) {
+                cx.error(&mesh.place, "a site that is fitted to a mesh is not supported", |d| d);
+            }
+            let Some((pose, _)) = geometry::extent(site, &self.settings, cx) else { continue };
             if let Some(named) = named {
                 self.poses_of_sites.insert(named.text.clone(), (body.to_string(), outer.then(&pose)));
                 self.sites.push((named, body.to_string(), outer.then(&pose)));
@@ -385,7 +383,7 @@ impl<'a> Reader<'a> {
 
 /// Where the mass properties of a body are said.
 fn mass_place(inside: &Inside<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
-    place(inside.inertial.unwrap_or(node), cx)
+    place(inside.inertial.map_or(node, |(node, _)| node), cx)
 }
 
 /// A joint that holds.

@@ -51,8 +51,12 @@ impl<'a> Reader<'a> {
     /// The planes of the world that bodies may touch; other shapes there are counted.
     pub(super) fn add_planes(&mut self, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         for (shape, outer) in shapes {
+            if !self.options.contacts || shape.text("type") != Some("plane") {
+                self.count("geometry of the ground", 1);
+                continue;
+            }
             let law = Law::read(shape, cx);
-            if !self.options.contacts || shape.text("type") != Some("plane") || law.touches_nothing() {
+            if law.touches_nothing() {
                 self.count("geometry of the ground", 1);
                 continue;
             }
@@ -66,6 +70,10 @@ impl<'a> Reader<'a> {
     /// Declares the contacts of all shapes with all planes that their masks let them touch.
     pub(super) fn touch_planes(&mut self, cx: &mut Cx<'_>) {
         if !self.options.contacts {
+            return;
+        }
+        if !self.settings.contacts() {
+            self.left_out.push("contacts, which the file switches off".to_string());
             return;
         }
         if self.planes.is_empty() {

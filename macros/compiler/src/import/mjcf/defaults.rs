@@ -101,24 +101,33 @@ impl<'a> Defaults<'a> {
         inherited: usize,
         cx: &mut Cx<'_>,
     ) -> Element<'a> {
-        let class = self.class(node, "class", inherited, cx);
-        let mut layers = vec![node];
-        let mut at = self.classes.get(class);
+        let classes = self.by_class(node, tags, inherited, cx);
+        let defaults = classes.into_iter().rev().flat_map(|class| class.into_iter().rev());
+        Element { node, layers: std::iter::once(node).chain(defaults).collect() }
+    }
+
+    /// The defaults written for any of `tags` that apply to an element, of each class that its own is made
+    /// from, the outermost first.
+    pub(super) fn by_class(
+        &self,
+        node: Node<'_>,
+        tags: &[&str],
+        inherited: usize,
+        cx: &mut Cx<'_>,
+    ) -> Vec<Vec<Node<'a>>> {
+        let mut found = Vec::new();
+        let mut at = self.classes.get(self.class(node, "class", inherited, cx));
         while let Some(class) = at {
-            let of_tags = class.elements.iter().rev().filter(|node| tags.contains(&node.tag_name().name()));
-            layers.extend(of_tags);
+            let of_tags = class.elements.iter().filter(|node| tags.contains(&node.tag_name().name()));
+            found.push(of_tags.copied().collect());
             at = class.parent.and_then(|parent| self.classes.get(parent));
         }
-        Element { node, layers }
+        found.reverse();
+        found
     }
 }
 
 impl<'a> Element<'a> {
-    /// All that says something of the element, what counts most last.
-    pub(super) fn outermost_first(&self) -> impl Iterator<Item = Node<'a>> {
-        self.layers.iter().rev().copied()
-    }
-
     /// The node that says `attribute`: the element or a default.
     pub(super) fn with(&self, attribute: &str) -> Option<Node<'a>> {
         self.with_any(&[attribute])
@@ -149,6 +158,17 @@ impl<'a> Element<'a> {
         self.number(attribute, cx).filter(|found| found.value != 0.0)
     }
 
+    /// The linear coefficient of a force that newer versions of the format give as a polynomial: reports
+    /// others.
+    pub(super) fn linear(&self, attribute: &str, help: &'static str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+        let Placed { value: [linear, square, cube], place } = self.some(attribute, [0.0; 3], cx)?;
+        if square != 0.0 || cube != 0.0 {
+            let message = format!("`{attribute}` is a polynomial, as MuJoCo reads it since version 3.7");
+            cx.error(&place, message, |d| d.help("expected one number: a linear coefficient").help(help));
+        }
+        (linear != 0.0).then_some(Placed { value: linear, place })
+    }
+
     /// As many finite numbers.
     pub(super) fn numbers<const N: usize>(
         &self,
@@ -158,14 +178,21 @@ impl<'a> Element<'a> {
         numbers(self.with(attribute)?, attribute, cx)
     }
 
-    /// Up to `N` finite numbers; those that are not written are as given.
+    /// Up to `N` finite numbers: the first ones of the element, then further ones of its defaults, then
+    /// those that are given.
     pub(super) fn some<const N: usize>(
         &self,
         attribute: &str,
         rest: [f64; N],
         cx: &mut Cx<'_>,
     ) -> Option<Placed<[f64; N]>> {
-        some(self.with(attribute)?, attribute, rest, cx)
+        let said = self.layers.iter().rev().filter(|node| node.has_attribute(attribute));
+        let mut found: Option<Placed<[f64; N]>> = None;
+        for node in said {
+            let rest = found.map_or(rest, |found| found.value);
+            found = Some(some(*node, attribute, rest, cx)?);
+        }
+        found
     }
 
     /// `true`, `false` or `auto`; the last is `None`.

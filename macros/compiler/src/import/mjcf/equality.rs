@@ -18,7 +18,7 @@ impl<'a> Reader<'a> {
     pub(super) fn equalities(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = elements(root).filter(|node| node.tag_name().name() == "equality");
         let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
-        if !self.options.follow_mimic || !self.settings.equality {
+        if !self.options.follow_mimic || !self.settings.equality() {
             if !nodes.is_empty() {
                 self.left_out.push(format!("{} couplings (`<equality>`)", nodes.len()));
             }
@@ -220,14 +220,17 @@ impl<'a> Reader<'a> {
             return Some([(first, at), (second, Pose { at: between.then(&at).at, ..Pose::ZERO })]);
         }
         let said = element.numbers::<7>("relpose", cx).map(|said| said.value);
-        let pose = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {
+        // A pose in the first body is that of the anchor on the second; without one they are as in the pose
+        // of the file.
+        let (pose, own) = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {
             Some([x, y, z, quat @ ..]) => {
                 let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
-                Pose { at: [x, y, z], axes: of_quaternion(quat.map(|x| x / size)) }
+                let pose = Pose { at: [x, y, z], axes: of_quaternion(quat.map(|x| x / size)) };
+                (pose, Pose { at: anchor, ..Pose::ZERO })
             }
-            None => between.back(),
+            None => (between.back(), Pose::ZERO),
         };
-        Some([(first, pose), (second, Pose::ZERO)])
+        Some([(first, pose), (second, own)])
     }
 }
 

@@ -5,7 +5,7 @@ use super::frame::read_pose;
 use super::mesh::Meshes;
 use super::settings::{Settings, Source};
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, numbers, place};
+use crate::import::element::{Node, check_attributes, numbers, place, tag};
 use crate::import::pose::{IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, scale, turned};
 use std::f64::consts::PI;
 
@@ -65,16 +65,17 @@ pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
 
 /// Mass properties of a body, by `<inertial>` or by its geometry with the poses of that in the body.
 pub(super) fn of_body<'a>(
-    inertial: Option<Node<'a>>,
+    inertial: &Option<(Node<'a>, Pose)>,
     shapes: &[(Element<'a>, Pose)],
     defaults: &Defaults<'a>,
     meshes: &mut Meshes<'a>,
     (pose, settings): (&Pose, &Settings),
     cx: &mut Cx<'_>,
 ) -> Option<Mass> {
-    let said = inertial.filter(|_| settings.source != Source::Geometry || shapes.is_empty());
+    let said = inertial.as_ref().filter(|_| settings.source != Source::Geometry || shapes.is_empty());
     let found = match said {
-        Some(node) => read_inertial(node, defaults, settings, cx),
+        Some((node, outer)) => read_inertial(*node, defaults, settings, cx)
+            .map(|mass| if *outer == Pose::ZERO { mass } else { mass.placed(outer) }),
         None if settings.source == Source::Inertial => None,
         None => {
             let parts: Vec<Mass> = shapes
@@ -218,10 +219,24 @@ pub(super) fn dimensions(
 }
 
 /// Where a shape is, and its half length, if both are said by two points.
-fn extent(shape: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Option<(Pose, Option<f64>)> {
+pub(super) fn extent(
+    shape: &Element<'_>,
+    settings: &Settings,
+    cx: &mut Cx<'_>,
+) -> Option<(Pose, Option<f64>)> {
     let Some(ends) = shape.numbers::<6>("fromto", cx) else {
         return Some((read_pose(shape, settings, cx), None));
     };
+    if let Some(node) = shape.with("pos") {
+        let message = format!("`fromto` and `pos` of one {}", tag(shape.node));
+        let at = node.attribute_node("pos").map_or(node.range().start, |pos| pos.range_value().start);
+        cx.error(&cx.place(at), message, |d| d.help("remove one of the two"));
+    }
+    let kind = shape.text("type").unwrap_or("sphere");
+    if !["capsule", "cylinder", "ellipsoid", "box"].contains(&kind) {
+        let message = format!("`fromto` of a `{kind}`, which has no length");
+        cx.error(&ends.place, message, |d| d.help("expected `capsule`, `cylinder`, `ellipsoid` or `box`"));
+    }
     let [a, b, c, d, e, f] = ends.value;
     let along = [a - d, b - e, c - f];
     let size = length(along);

@@ -130,6 +130,6 @@ fn find(files: &[Read], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<Re
     };
     let name = Name { text: shown.clone(), place: at.place.clone() };
     let text = file::read_named(&path, &name, FileFormat::Mjcf, cx)?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\0').to_string();
+    let text = xml::cleaned(&text).into_owned();
     Some(Read { text, shown, path: plain(&path) })
 }

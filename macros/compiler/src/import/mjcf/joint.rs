@@ -3,11 +3,11 @@
 use super::defaults::Element;
 use super::reader::Reader;
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, name, place};
+use crate::import::element::{Node, name, place};
 use crate::import::imported::Placed;
-use crate::import::pose::{Vector, length, scale};
+use crate::import::pose::{Pose, Vector, add, apply, length, scale};
 use crate::import::robot::{FileLimits, unused};
-use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, JointKind, Name};
+use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, JointKind, LimitOption, Name};
 
 /// MJCF's words for the joints.
 const TYPES: [(&str, JointKind); 4] = [
@@ -15,39 +15,6 @@ const TYPES: [(&str, JointKind); 4] = [
     ("slide", JointKind::Sleeve),
     ("ball", JointKind::Ball),
     ("free", JointKind::Free),
-];
-
-const JOINT: [&str; 30] = [
-    "name",
-    "class",
-    "type",
-    "group",
-    "pos",
-    "axis",
-    "springdamper",
-    "limited",
-    "range",
-    "ref",
-    "springref",
-    "stiffness",
-    "damping",
-    "armature",
-    "frictionloss",
-    "actuatorfrclimited",
-    "actuatorfrcrange",
-    "solreflimit",
-    "solimplimit",
-    "solreffriction",
-    "solimpfriction",
-    "margin",
-    "user",
-    "actuatorgravcomp",
-    "align",
-    "stiffnesspoly",
-    "dampingpoly",
-    "solref",
-    "solimp",
-    "childclass",
 ];
 
 pub(super) const IGNORE_PASSIVE: &str =
@@ -72,33 +39,32 @@ pub(super) struct BodyJoint {
 }
 
 impl<'a> Reader<'a> {
-    /// Reads a joint of a body.
+    /// Reads a joint of a body, with the pose in the body of the frames around it.
     pub(super) fn read_joint(
         &mut self,
-        node: Node<'a>,
+        (node, outer, class): (Node<'a>, &Pose, usize),
         body: &Name,
-        class: usize,
         cx: &mut Cx<'_>,
     ) -> Option<BodyJoint> {
         let free = node.tag_name().name() == "freejoint";
         let tags: &[&str] = if free { &[] } else { &["joint"] };
         let element = self.defaults.element(node, tags, class, cx);
-        self.joint(&element, free, body, cx)
+        self.joint((&element, outer), free, body, cx)
     }
 
     fn joint(
         &mut self,
-        element: &Element<'a>,
+        (element, outer): (&Element<'a>, &Pose),
         free: bool,
         body: &Name,
         cx: &mut Cx<'_>,
     ) -> Option<BodyJoint> {
-        check_attributes(element.node, &[], &JOINT, cx);
         let (word, kind) = if free { ("free", JointKind::Free) } else { read_type(element, cx)? };
         let name = self.joint_name(element.node, word, body, cx);
         let alone = matches!(kind, JointKind::Pin | JointKind::Sleeve);
         let zero = |at: &str, cx: &Cx<'_>| Placed { value: [0.0; 3], place: element.place(at, cx) };
-        let anchor = element.numbers("pos", cx).unwrap_or(zero("pos", cx));
+        let mut anchor = element.numbers("pos", cx).unwrap_or(zero("pos", cx));
+        anchor.value = add(outer.at, apply(&outer.axes, anchor.value));
         let mut axis = element.numbers("axis", cx).unwrap_or(zero("axis", cx));
         if element.with("axis").is_none() {
             axis.value = [0.0, 0.0, 1.0];
@@ -108,7 +74,7 @@ impl<'a> Reader<'a> {
             cx.error(&axis.place, "axis of zero length has no direction", |d| d);
             return None;
         }
-        axis.value = scale(axis.value, if alone { 1.0 / size } else { 1.0 });
+        axis.value = apply(&outer.axes, scale(axis.value, if alone { 1.0 / size } else { 1.0 }));
         let turns = kind == JointKind::Pin;
         let angle = |reader: &Self, value: f64| if turns { reader.settings.angle(value) } else { value };
         let value = |reader: &Self, attribute: &str, cx: &mut Cx<'_>| {
@@ -132,10 +98,13 @@ impl<'a> Reader<'a> {
         };
         self.rests.insert(joint.name.text.clone(), rest);
         self.armature(element, &joint, cx);
-        if self.passive {
-            self.spring(element, &joint, rest, cx);
-            self.dissipation(element, &mut joint, cx);
+        if self.springs || self.dampers {
+            self.refuse_time_constants(element, cx);
         }
+        if self.springs {
+            self.spring(element, &joint, rest, cx);
+        }
+        self.dissipation(element, &mut joint, cx);
         Some(joint)
     }
 
@@ -152,10 +121,9 @@ impl<'a> Reader<'a> {
 
     fn joint_limits(&self, element: &Element<'a>, turns: bool, cx: &mut Cx<'_>) -> FileLimits {
         let mut limits = FileLimits::default();
-        if self.options.limits == crate::syntax::LimitOption::Ignore {
-            return limits;
-        }
-        if let Some([low, high]) = self.range(element, "limited", "range", cx) {
+        if let Some([low, high]) = self.range(element, "limited", "range", cx)
+            && self.settings.limits()
+        {
             let placed = |end: Placed<f64>| Placed {
                 value: if turns { self.settings.angle(end.value) } else { end.value },
                 place: end.place,
@@ -177,10 +145,28 @@ impl<'a> Reader<'a> {
         range: &str,
         cx: &mut Cx<'_>,
     ) -> Option<[Placed<f64>; 2]> {
+        if self.options.limits == LimitOption::Ignore {
+            return None;
+        }
         let said = element.with(limited).is_some().then(|| element.choice(limited, cx)).flatten();
         let found = element.numbers::<2>(range, cx);
-        if !said.unwrap_or(self.settings.autolimits && found.is_some()) {
+        if found.is_none() && element.with(range).is_some() {
             return None;
+        }
+        // Two zeros stand for no range.
+        let found = found.filter(|found| found.value != [0.0; 2]);
+        match (said, &found) {
+            (Some(false), _) | (None, None) => return None,
+            (None, Some(found)) if !self.settings.autolimits => {
+                let message = format!("`{range}` without `{limited}`, which nothing uses");
+                cx.error(&found.place, message, |d| {
+                    d.help(format!(
+                        "write `{limited}=\"true\"` or `\"false\"`, or remove `autolimits=\"false\"`"
+                    ))
+                });
+                return None;
+            }
+            _ => {}
         }
         let Some(Placed { value: [low, high], place }) = found else {
             let message = format!("`{limited}=\"true\"` without `{range}`");
@@ -223,21 +209,18 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
+    fn refuse_time_constants(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
         if let Some(pair) = element.numbers::<2>("springdamper", cx).filter(|pair| pair.value != [0.0; 2]) {
             let message = "`springdamper` is not supported";
             cx.error(&pair.place, message, |d| {
                 d.help("write `stiffness` and `damping`").help(IGNORE_PASSIVE)
             });
         }
-        for which in ["stiffnesspoly", "dampingpoly"] {
-            let found = element.some(which, [0.0; 2], cx).filter(|found| found.value != [0.0; 2]);
-            if let Some(found) = found {
-                let message = format!("`{which}` is not supported");
-                cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
-            }
-        }
-        let Some(stiffness) = element.nonzero("stiffness", cx) else { return };
+    }
+
+    fn spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
+        refuse_yield(element, cx);
+        let Some(stiffness) = element.linear("stiffness", IGNORE_PASSIVE, cx) else { return };
         match joint.kind {
             JointKind::Pin | JointKind::Sleeve => {
                 self.drive(joint, DriveLaw::Spring { stiffness: stiffness.value, free: rest });
@@ -250,11 +233,15 @@ impl<'a> Reader<'a> {
     }
 
     fn dissipation(&mut self, element: &Element<'a>, joint: &mut BodyJoint, cx: &mut Cx<'_>) {
-        for which in ["damping", "frictionloss"] {
-            if which == "frictionloss" && !self.settings.friction {
+        for (which, acts) in [("damping", self.dampers), ("frictionloss", self.friction)] {
+            if !acts {
                 continue;
             }
-            let Some(found) = element.nonzero(which, cx) else { continue };
+            let found = match which {
+                "damping" => element.linear(which, IGNORE_PASSIVE, cx),
+                _ => element.nonzero(which, cx),
+            };
+            let Some(found) = found else { continue };
             if found.value < 0.0 {
                 let message = format!("negative {which} `{}`", found.value);
                 cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
@@ -275,6 +262,14 @@ impl<'a> Reader<'a> {
     fn drive(&mut self, joint: &BodyJoint, law: DriveLaw) {
         let on = DriveOn::Sum(vec![(joint.name.clone(), 1.0)]);
         self.robot.drives.push(Drive { name: joint.name.clone(), on, law });
+    }
+}
+
+/// Reports a spring that yields.
+pub(super) fn refuse_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
+    if let Some(found) = element.nonzero("springyield", cx) {
+        let message = "`springyield` is not supported: a spring that yields has a state of its own";
+        cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
     }
 }
 

@@ -1,13 +1,14 @@
 //! The words of an actuator and of its defaults → gain and bias.
 //!
-//! A class of defaults has one record of an actuator's law. Every shortcut in it writes its part, in the order of the file, and an
-//! actuator begins with what they leave: a `<position>` keeps the constant force that a `<muscle>` among the defaults has written.
+//! A class of defaults has one record of an actuator's law, which its elements write in the order of the
+//! file (MuJoCo 4.0, *Modeling*, "Shortcuts"). A shortcut begins with its own usual values, or with those of
+//! the nearest class whose record it can read as its own: one that the same shortcut has written last, or
+//! `<general>` with a constant gain. `<general>` changes the record of its class.
 
 use super::defaults::{Element, some};
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, number};
 use crate::import::imported::Placed;
-use std::f64::consts::PI;
 
 /// What an actuator does: `gain · u + bias · (1, length, rate)`.
 pub(super) struct Force {
@@ -20,6 +21,7 @@ pub(super) const OTHER_INPUTS: &str =
 
 /// What an actuator that says nothing does.
 const PLAIN: Record<'static> = Record {
+    written: "general",
     dynamics: "none",
     gain_kind: "fixed",
     bias_kind: "none",
@@ -27,11 +29,11 @@ const PLAIN: Record<'static> = Record {
     bias: [0.0; 10],
 };
 
-/// `range`, `force`, `scale`, `lmin`, `lmax`, `vmax`, `fpmax`, `fvmax` of muscles.
-const MUSCLE: [f64; 9] = [0.75, 1.05, -1.0, 200.0, 0.5, 1.6, 1.5, 1.3, 1.2];
-
 /// The law of an actuator, as far as it is said.
+#[derive(Clone, Copy)]
 struct Record<'a> {
+    /// The element that has written it last.
+    written: &'a str,
     dynamics: &'a str,
     gain_kind: &'a str,
     bias_kind: &'a str,
@@ -39,12 +41,23 @@ struct Record<'a> {
     bias: [f64; 10],
 }
 
-/// Gain and bias of an actuator with its defaults; nothing if they are more than that.
-pub(super) fn read_force(actuator: &Element<'_>, cx: &mut Cx<'_>) -> Option<Force> {
-    let mut record = PLAIN;
-    for node in actuator.outermost_first() {
-        record.write(node, cx);
+/// Gain and bias of an actuator with its defaults, which `classes` has from the outermost class on; nothing
+/// if they are more than that.
+pub(super) fn read_force<'a>(
+    actuator: &Element<'a>,
+    classes: &[Vec<Node<'a>>],
+    cx: &mut Cx<'_>,
+) -> Option<Force> {
+    let mut records = vec![PLAIN];
+    for class in classes {
+        records.extend(records.last().copied());
+        for node in class {
+            write(&mut records, *node, cx);
+        }
     }
+    records.extend(records.last().copied());
+    write(&mut records, actuator.node, cx);
+    let record = records.last().copied().unwrap_or(PLAIN);
     let node = actuator.node;
     let mut refuse = |attribute: &str, message: String, help: &'static str| {
         cx.error(&actuator.place(attribute, cx), message, |d| d.help(help));
@@ -81,98 +94,67 @@ pub(super) fn read_force(actuator: &Element<'_>, cx: &mut Cx<'_>) -> Option<Forc
     good.then_some(Force { gain: g0, bias: if affine { [b0, b1, b2] } else { [0.0; 3] } })
 }
 
-impl<'a> Record<'a> {
-    /// Writes what an actuator or a default says.
-    fn write(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
-        let mut said = |attribute: &str| number(node, attribute, cx).map(|found| found.value);
-        match node.tag_name().name() {
-            "general" => self.write_general(node, cx),
-            "motor" => {
-                self.gain[0] = 1.0;
-                self.kinds("none", "fixed", "none");
-            }
-            kind @ ("position" | "intvelocity") => {
-                let stiffness = said("kp").unwrap_or(self.gain[0]);
-                (self.gain[0], self.bias[1]) = (stiffness, -stiffness);
-                if let Some(damping) = said("kv") {
-                    self.bias[2] = -damping;
-                }
-                if let Some(ratio) = said("dampratio") {
-                    self.bias[2] = ratio;
-                }
-                let lag = said("timeconst").map(|lag| if lag == 0.0 { "none" } else { "filterexact" });
-                let integrator = (kind == "intvelocity").then_some("integrator");
-                self.kinds(integrator.or(lag).unwrap_or(self.dynamics), "fixed", "affine");
-            }
-            "velocity" => {
-                let gain = said("kv").unwrap_or(self.gain[0]);
-                (self.gain[0], self.bias) = (gain, [0.0; 10]);
-                self.bias[2] = -gain;
-                self.kinds("none", "fixed", "affine");
-            }
-            "damper" => {
-                self.gain = [0.0; 10];
-                self.gain[2] = -said("kv").unwrap_or(0.0);
-                self.kinds("none", "affine", "none");
-            }
-            "cylinder" => {
-                let area = said("diameter").map(|diameter| PI / 4.0 * diameter * diameter);
-                self.gain[0] = area.or_else(|| said("area")).unwrap_or(self.gain[0]);
-                let bias = [self.bias[0], self.bias[1], self.bias[2]];
-                let [b0, b1, b2] = some(node, "bias", bias, cx).map_or(bias, |found| found.value);
-                (self.bias[0], self.bias[1], self.bias[2]) = (b0, b1, b2);
-                self.kinds("filter", "fixed", "affine");
-            }
-            "muscle" => self.write_muscle(node, cx),
-            "adhesion" => {
-                self.gain[0] = said("gain").unwrap_or(self.gain[0]);
-                self.kinds(self.dynamics, "fixed", "none");
-            }
-            _ => {}
+/// Writes what an actuator or a default says into the last record; those before it are the records of the
+/// classes around it.
+fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
+    let kind = node.tag_name().name();
+    let readable = |record: &&Record<'a>| {
+        record.written == kind || (record.written == "general" && record.gain_kind == "fixed")
+    };
+    let usual = records.iter().rev().find(readable).copied().unwrap_or(PLAIN);
+    let Some(record) = records.last_mut() else { return };
+    let mut said = |attribute: &str| number(node, attribute, cx).map(|found| found.value);
+    let law = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| Record {
+        written: kind,
+        dynamics,
+        gain_kind,
+        bias_kind,
+        gain: std::array::from_fn(|k| if k == 0 { gain } else { 0.0 }),
+        bias: std::array::from_fn(|k| bias.get(k).copied().unwrap_or(0.0)),
+    };
+    *record = match kind {
+        "general" => {
+            record.write_general(node, cx);
+            return;
         }
-    }
+        "motor" => law("none", "fixed", 1.0, "none", [0.0; 3]),
+        "position" | "intvelocity" => {
+            let stiffness = said("kp").unwrap_or(usual.gain[0]);
+            let damping = said("kv").map(|kv| -kv).or_else(|| said("dampratio")).unwrap_or(usual.bias[2]);
+            let filtered = said("timeconst").map_or(usual.dynamics == "filterexact", |lag| lag != 0.0);
+            let dynamics = match (kind, filtered) {
+                ("intvelocity", _) => "integrator",
+                (_, true) => "filterexact",
+                _ => "none",
+            };
+            law(dynamics, "fixed", stiffness, "affine", [0.0, -stiffness, damping])
+        }
+        "velocity" => {
+            let gain = said("kv").unwrap_or(usual.gain[0]);
+            law("none", "fixed", gain, "affine", [0.0, 0.0, -gain])
+        }
+        "damper" => {
+            let mut record = law("none", "affine", 0.0, "none", [0.0; 3]);
+            record.gain[2] = said("kv").map_or(usual.gain[2], |kv| -kv);
+            record
+        }
+        "cylinder" => law("filter", "fixed", 1.0, "affine", [0.0; 3]),
+        "muscle" => law("muscle", "muscle", 1.0, "muscle", [0.0; 3]),
+        "adhesion" => law("none", "fixed", said("gain").unwrap_or(usual.gain[0]), "none", [0.0; 3]),
+        "orientation" => law("none", "so3", 1.0, "affine", [0.0; 3]),
+        "dcmotor" => law("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3]),
+        _ => law("none", kind, 1.0, "affine", [0.0; 3]),
+    };
+}
 
-    fn kinds(&mut self, dynamics: &'a str, gain: &'a str, bias: &'a str) {
-        (self.dynamics, self.gain_kind, self.bias_kind) = (dynamics, gain, bias);
-    }
-
+impl<'a> Record<'a> {
     fn write_general(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
         let word = |attribute: &str, usual: &'a str| node.attribute(attribute).map_or(usual, str::trim);
-        let kinds = (
-            word("dyntype", self.dynamics),
-            word("gaintype", self.gain_kind),
-            word("biastype", self.bias_kind),
-        );
-        self.kinds(kinds.0, kinds.1, kinds.2);
+        (self.written, self.dynamics) = ("general", word("dyntype", self.dynamics));
+        (self.gain_kind, self.bias_kind) =
+            (word("gaintype", self.gain_kind), word("biastype", self.bias_kind));
         let value = |found: Option<Placed<[f64; 10]>>, usual| found.map_or(usual, |found| found.value);
         self.gain = value(some(node, "gainprm", self.gain, cx), self.gain);
         self.bias = value(some(node, "biasprm", self.bias, cx), self.bias);
-    }
-
-    /// A muscle's figures are those of the gain and those of the bias.
-    fn write_muscle(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
-        let untouched = PLAIN.gain;
-        for ((gain, plain), usual) in self.gain.iter_mut().zip(untouched).zip(MUSCLE) {
-            if *gain == plain {
-                *gain = usual;
-            }
-        }
-        let ends = [self.gain[0], self.gain[1]];
-        let range = some(node, "range", ends, cx).map_or(ends, |found| found.value);
-        // Less than zero stands for what was there.
-        for (gain, said) in self.gain.iter_mut().zip(range).filter(|(_, said)| *said >= 0.0) {
-            *gain = said;
-        }
-        for (k, attribute) in
-            ["force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"].into_iter().enumerate()
-        {
-            let said = number(node, attribute, cx).filter(|found| found.value >= 0.0);
-            if let (Some(gain), Some(found)) = (self.gain.get_mut(k + 2), said) {
-                *gain = found.value;
-            }
-        }
-        self.bias = self.gain;
-        self.bias[9] = 0.0;
-        self.kinds("muscle", "muscle", "muscle");
     }
 }

@@ -26,6 +26,8 @@ type Triangle = [Vector; 3];
 /// The meshes of a file: those whose mass is asked for are read.
 pub(super) struct Meshes<'a> {
     folder: PathBuf,
+    /// Whether folders in the names of files are left out.
+    strips: bool,
     known: BTreeMap<String, Element<'a>>,
     /// What was read: mass properties of density 1, by mesh.
     read: BTreeMap<String, Option<Mass>>,
@@ -56,7 +58,8 @@ impl<'a> Meshes<'a> {
                 known.insert(name, element);
             }
         }
-        Meshes { folder: folder.join(&settings.meshes), known, read: BTreeMap::new(), files: Vec::new() }
+        let (folder, strips) = (folder.join(&settings.meshes), settings.strip_paths);
+        Meshes { folder, strips, known, read: BTreeMap::new(), files: Vec::new() }
     }
 
     /// Mass properties of a shape that is a mesh, of density 1, in the axes of its file.
@@ -108,7 +111,8 @@ impl<'a> Meshes<'a> {
             return None;
         }
         let file = name(element.node, "file", cx)?;
-        let path = self.folder.join(&file.text);
+        let stripped = Path::new(&file.text).file_name().filter(|_| self.strips);
+        let path = self.folder.join(stripped.unwrap_or(file.text.as_ref()));
         let mut triangles = read(&path, &file, cx)?;
         self.files.push(path);
         self.transform(element, &mut triangles, cx);

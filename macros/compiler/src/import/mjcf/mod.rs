@@ -31,34 +31,13 @@ mod medium;
 mod mesh;
 mod reader;
 mod rest;
+pub(in crate::import) mod schema;
 mod settings;
 mod site;
 mod spatial;
 mod tendon;
 mod touch;
 mod visual;
-
-/// What a file may hold.
-const SECTIONS: [&str; 18] = [
-    "compiler",
-    "option",
-    "size",
-    "visual",
-    "statistic",
-    "default",
-    "custom",
-    "extension",
-    "asset",
-    "worldbody",
-    "contact",
-    "deformable",
-    "equality",
-    "tendon",
-    "actuator",
-    "sensor",
-    "keyframe",
-    "include",
-];
 
 /// Sections that the motion does not depend on, and what they hold.
 const ASIDE: [(&str, &str); 3] =
@@ -80,8 +59,13 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
     if !check_root(root, cx) {
         return None;
     }
-    for node in elements(root) {
-        check_section(node, cx);
+    schema::check(root, cx);
+    if let Some(node) = elements(root).find(|node| node.tag_name().name() == "deformable")
+        && elements(node).next().is_some()
+    {
+        cx.error(&place(node, cx), "deformable bodies are not supported", |d| {
+            d.help("remove `<deformable>`")
+        });
     }
     let settings = Settings::read(root, cx);
     let defaults = Defaults::read(root, cx);
@@ -90,7 +74,7 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
     reader.read_world(root, cx)?;
     reader.scale_masses();
     reader.drag(cx);
-    robot::check_names(&reader.robot, cx);
+    robot::check_names(&reader.robot, options.format, cx);
     reader.touch_planes(cx);
     let tendons = reader.tendons(root, cx);
     reader.equalities(root, &tendons, cx);
@@ -214,19 +198,6 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
         _ => d.suggest(name, ["mujoco"]),
     });
     false
-}
-
-fn check_section(node: Node<'_>, cx: &mut Cx<'_>) {
-    let name = node.tag_name().name();
-    if name == "deformable" && elements(node).next().is_some() {
-        cx.error(&place(node, cx), "deformable bodies are not supported", |d| {
-            d.help("remove `<deformable>`")
-        });
-    }
-    if !SECTIONS.contains(&name) {
-        let message = format!("unknown element {}", tag(node));
-        cx.error(&place(node, cx), message, |d| d.suggest(name, SECTIONS));
-    }
 }
 
 /// What the generated documentation lists.

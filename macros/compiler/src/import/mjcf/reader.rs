@@ -19,8 +19,14 @@ pub(super) struct Reader<'a> {
     pub(super) defaults: Defaults<'a>,
     /// Its meshes.
     pub(super) meshes: Meshes<'a>,
-    /// Springs, dampers and friction are taken over.
+    /// Whether forces of a medium are taken over.
     pub(super) passive: bool,
+    /// Whether springs of joints and tendons are taken over.
+    pub(super) springs: bool,
+    /// Whether dampers of joints, tendons and actuators are taken over.
+    pub(super) dampers: bool,
+    /// Whether dry friction is taken over.
+    pub(super) friction: bool,
     pub(super) robot: Robot,
     pub(super) joint_names: BTreeSet<String>,
     pub(super) link_names: BTreeSet<String>,
@@ -59,13 +65,18 @@ impl<'a> Reader<'a> {
         defaults: Defaults<'a>,
         meshes: Meshes<'a>,
     ) -> Reader<'a> {
-        let passive = options.honour_passive && settings.passive;
+        let honour = options.honour_passive;
+        let (passive, friction) = (honour && settings.passive(), honour && settings.friction());
+        let (springs, dampers) = (honour && settings.springs, honour && settings.dampers);
         Reader {
             options,
             settings,
             defaults,
             meshes,
             passive,
+            springs,
+            dampers,
+            friction,
             robot: Robot::default(),
             joint_names: BTreeSet::new(),
             link_names: BTreeSet::new(),

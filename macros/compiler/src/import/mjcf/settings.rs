@@ -2,7 +2,7 @@
 
 use super::defaults::{choice, some};
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, elements, number, numbers, place};
+use crate::import::element::{Node, elements, number, numbers, place};
 use crate::import::imported::Placed;
 
 /// Where mass properties come from.
@@ -40,40 +40,34 @@ pub(super) struct Settings {
     pub(super) meshes: String,
     /// Gravity.
     pub(super) gravity: Placed<[f64; 3]>,
+    gravitates: bool,
     /// What pushes bodies through a medium: its density, viscosity and wind.
     pub(super) medium: Vec<(&'static str, Placed<[f64; 3]>)>,
-    /// Springs, dampers and friction are on.
-    pub(super) passive: bool,
-    /// Friction is on.
-    pub(super) friction: bool,
-    /// Couplings and loops are on.
-    pub(super) equality: bool,
-    /// Actuators are on.
+    /// Whether springs of joints and tendons act.
+    pub(super) springs: bool,
+    /// Whether dampers of joints and tendons act.
+    pub(super) dampers: bool,
+    /// Whether constraints of all kinds act.
+    constraints: bool,
+    /// Whether dry friction acts.
+    friction: bool,
+    /// Whether couplings and loops act.
+    equality: bool,
+    /// Whether ranges of joints and tendons act.
+    limits: bool,
+    /// Whether bodies touch.
+    contacts: bool,
+    /// Whether actuators act.
     pub(super) actuation: bool,
+    /// Whether inputs are kept in their ranges.
+    pub(super) clamped: bool,
+    /// Groups of actuators that do not act.
+    pub(super) disabled_groups: Vec<f64>,
+    /// Whether free bodies are described in their principal axes unless they say otherwise.
+    pub(super) align_free: bool,
+    /// Whether folders in the names of files are left out.
+    pub(super) strip_paths: bool,
 }
-
-const COMPILER: [&str; 20] = [
-    "angle",
-    "eulerseq",
-    "autolimits",
-    "inertiafromgeom",
-    "inertiagrouprange",
-    "balanceinertia",
-    "boundmass",
-    "boundinertia",
-    "settotalmass",
-    "meshdir",
-    "assetdir",
-    "coordinate",
-    "fusestatic",
-    "discardvisual",
-    "texturedir",
-    "strippath",
-    "usethread",
-    "fitaabb",
-    "alignfree",
-    "exactmeshinertia",
-];
 
 impl Settings {
     /// Reads all `<compiler>` and `<option>` elements of the root.
@@ -90,11 +84,20 @@ impl Settings {
             total_mass: None,
             meshes: String::new(),
             gravity: Placed { value: [0.0, 0.0, -9.81], place: place(root, cx) },
+            gravitates: true,
             medium: Vec::new(),
-            passive: true,
+            springs: true,
+            dampers: true,
+            constraints: true,
             friction: true,
             equality: true,
+            limits: true,
+            contacts: true,
             actuation: true,
+            clamped: true,
+            disabled_groups: Vec::new(),
+            align_free: false,
+            strip_paths: false,
         };
         for node in elements(root) {
             match node.tag_name().name() {
@@ -103,11 +106,17 @@ impl Settings {
                 _ => {}
             }
         }
+        if !all.gravitates {
+            all.gravity.value = [0.0; 3];
+        }
+        // Wind does nothing without a medium.
+        if all.medium.iter().all(|(which, _)| *which == "wind") {
+            all.medium.clear();
+        }
         all
     }
 
     fn read_compiler(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
-        check_attributes(node, &[], &COMPILER, cx);
         let word = |attribute: &str| node.attribute(attribute).map(str::trim);
         let mut unknown = |attribute: &str, expected: &str| {
             let value = node.attribute_node(attribute);
@@ -149,10 +158,8 @@ impl Settings {
         }
         self.autolimits = choice(node, "autolimits", cx).unwrap_or(self.autolimits);
         self.balance = choice(node, "balanceinertia", cx).unwrap_or(self.balance);
-        if choice(node, "alignfree", cx) == Some(true) {
-            let message = "`alignfree` moves the axes of bodies, which is not supported";
-            cx.error(&place(node, cx), message, |d| d.help("remove it: the motion is the same in any axes"));
-        }
+        self.align_free = choice(node, "alignfree", cx).unwrap_or(self.align_free);
+        self.strip_paths = choice(node, "strippath", cx).unwrap_or(self.strip_paths);
         if let Some(groups) = numbers(node, "inertiagrouprange", cx) {
             self.groups = groups.value;
         }
@@ -186,22 +193,63 @@ impl Settings {
                 self.medium.push((which, found));
             }
         }
-        for flag in elements(node).filter(|child| child.tag_name().name() == "flag") {
-            let mut set = |attribute: &str, to: &mut bool| *to = choice(flag, attribute, cx).unwrap_or(*to);
-            set("passive", &mut self.passive);
-            set("frictionloss", &mut self.friction);
-            set("equality", &mut self.equality);
-            set("actuation", &mut self.actuation);
-            let mut gravity = true;
-            set("gravity", &mut gravity);
-            if !gravity {
-                self.gravity.value = [0.0; 3];
+        if let Some(found) = node.attribute_node("actuatorgroupdisable") {
+            let place = cx.place(found.range_value().start);
+            let groups = found.value().split_ascii_whitespace().map(|word| word.parse::<u8>().ok());
+            match groups.map(|group| group.filter(|group| *group <= 30).map(f64::from)).collect() {
+                Some(groups) => self.disabled_groups = groups,
+                None => {
+                    let message = format!("`actuatorgroupdisable` is {}", quote(found.value()));
+                    cx.error(&place, message, |d| d.help("expected numbers of groups from 0 to 30"));
+                }
             }
         }
-        // Wind does nothing without a medium.
-        if self.medium.iter().all(|(which, _)| *which == "wind") {
-            self.medium.clear();
+        for flag in elements(node).filter(|child| child.tag_name().name() == "flag") {
+            self.read_flag(flag, cx);
         }
+    }
+
+    fn read_flag(&mut self, flag: Node<'_>, cx: &mut Cx<'_>) {
+        let mut set = |attribute: &str, to: &mut bool| *to = choice(flag, attribute, cx).unwrap_or(*to);
+        // Older versions have one flag for both.
+        let mut passive = true;
+        set("passive", &mut passive);
+        (self.springs, self.dampers) = (self.springs && passive, self.dampers && passive);
+        set("spring", &mut self.springs);
+        set("damper", &mut self.dampers);
+        set("constraint", &mut self.constraints);
+        set("frictionloss", &mut self.friction);
+        set("equality", &mut self.equality);
+        set("limit", &mut self.limits);
+        set("contact", &mut self.contacts);
+        set("actuation", &mut self.actuation);
+        set("clampctrl", &mut self.clamped);
+        set("gravity", &mut self.gravitates);
+    }
+
+    /// Whether forces act that no constraint exerts: those of a medium, and with them gravity compensation.
+    pub(super) fn passive(&self) -> bool {
+        self.springs || self.dampers
+    }
+
+    /// Whether dry friction acts.
+    pub(super) fn friction(&self) -> bool {
+        self.constraints && self.friction
+    }
+
+    /// Whether couplings and loops act.
+    pub(super) fn equality(&self) -> bool {
+        self.constraints && self.equality
+    }
+
+    /// Whether ranges of joints and tendons act.
+    pub(super) fn limits(&self) -> bool {
+        self.constraints && self.limits
+    }
+
+    /// Whether bodies touch.
+    pub(super) fn contacts(&self) -> bool {
+        self.constraints && self.contacts
     }
 
     /// An angle of the file, rad.

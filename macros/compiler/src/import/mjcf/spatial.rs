@@ -1,7 +1,8 @@
 //! `<spatial>`: the path of a cable from site to site, around balls and cylinders → a length in the words of the language.
 //!
-//! The path is MuJoCo's (*Modeling*, "spatial"), which is that of a taut cable. A cable around a cylinder with a `sidesite` passes it
-//! on the side on which it passes in the pose of the file.
+//! The path is MuJoCo's (*Modeling*, "spatial"), which is that of a taut cable. A cable around a cylinder
+//! with a `sidesite` runs about its axis in the direction in which the path by way of that site does in the
+//! pose of the file, as in MuJoCo 4.0.
 
 use super::defaults::Element;
 use super::geometry::dimensions;
@@ -170,7 +171,8 @@ impl<'a> Reader<'a> {
         seen(&self.poses, frame, spot)
     }
 
-    /// Says in which direction a part passes a cylinder with a side: the one whose middle is closer to the side, as MuJoCo chooses it.
+    /// Says in which direction a part passes a cylinder with a side: the one in which the path by way of the
+    /// side runs about the axis.
     fn choose_side(&self, piece: &mut Piece, place: &Place) -> Option<Refusal> {
         let Some(Around { frame, radius, way: Way::Turning(side) }) = &mut piece.around else { return None };
         let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));
@@ -179,13 +181,10 @@ impl<'a> Reader<'a> {
             let message = "a tendon that begins inside of a cylinder in the pose of the file".to_string();
             return Some(Refusal { place: place.clone(), message });
         }
-        let middle = |sign: f64| {
-            let first = a[1].atan2(a[0]) + sign * (*radius / far_a).acos();
-            let second = b[1].atan2(b[0]) - sign * (*radius / far_b).acos();
-            let (x, y) = (first.cos() + second.cos(), first.sin() + second.sin());
-            (x * side.cos() + y * side.sin()) / x.hypot(y)
-        };
-        *side = if middle(1.0) >= middle(-1.0) { 1.0 } else { -1.0 };
+        let angle = |[x, y, _]: Vector| y.atan2(x);
+        let shortest = |angle: f64| angle.sin().atan2(angle.cos());
+        let winding = shortest(*side - angle(a)) + shortest(angle(b) - *side);
+        *side = if winding >= 0.0 { 1.0 } else { -1.0 };
         None
     }
 

@@ -1,13 +1,14 @@
 //! `<tendon>`: fixed ones are weighted sums of coordinates, those through space are lengths.
 
-use super::defaults::Element;
-use super::joint::IGNORE_PASSIVE;
+use super::defaults::{Element, some};
+use super::joint::{IGNORE_PASSIVE, refuse_yield};
 use super::reader::Reader;
 use super::spatial::Refusal;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, elements, name, number, place, tag};
 use crate::import::robot::has_coordinate;
 use crate::syntax::{Drive, DriveLaw, DriveOn, Name};
+use std::collections::BTreeSet;
 
 /// A tendon. What of one through space is not taken over matters where something acts on it.
 pub(super) struct Tendon {
@@ -82,12 +83,8 @@ impl<'a> Reader<'a> {
         let fixed = match node.tag_name().name() {
             "fixed" => true,
             "spatial" => false,
-            _ => {
-                cx.error(&place(node, cx), format!("unknown element {}", tag(node)), |d| {
-                    d.help("tendons are `<fixed>` or `<spatial>`")
-                });
-                return None;
-            }
+            // Elements that MJCF does not have are reported elsewhere.
+            _ => return None,
         };
         let element = self.defaults.element(node, &["tendon"], 0, cx);
         let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
@@ -111,20 +108,23 @@ impl<'a> Reader<'a> {
         }
         let mut laws = Vec::new();
         if let Some(found) = element.nonzero("armature", cx) {
+            if found.value < 0.0 {
+                cx.error(&found.place, format!("negative armature `{}`", found.value), |d| d);
+            }
             laws.push((DriveLaw::Inerter(found.value), "write `armature=\"0\"` into the tendon"));
         }
-        let passive = ["stiffness", "damping", "frictionloss"];
-        for which in passive.into_iter().filter(|_| self.passive) {
-            if which == "frictionloss" && !self.settings.friction {
-                continue;
-            }
-            let Some(found) = element.nonzero(which, cx) else { continue };
-            let law = match which {
-                "stiffness" => spring(found.value, &element, rest, cx),
-                "damping" => DriveLaw::Damper(found.value),
-                _ => DriveLaw::Friction(found.value),
-            };
-            laws.push((law, IGNORE_PASSIVE));
+        if self.springs {
+            refuse_yield(&element, cx);
+            let stiffness = element.linear("stiffness", IGNORE_PASSIVE, cx);
+            laws.extend(stiffness.map(|k| (spring(k.value, &element, rest, cx), IGNORE_PASSIVE)));
+        }
+        if self.dampers {
+            let damping = element.linear("damping", IGNORE_PASSIVE, cx);
+            laws.extend(damping.map(|found| (DriveLaw::Damper(found.value), IGNORE_PASSIVE)));
+        }
+        if self.friction {
+            let loss = element.nonzero("frictionloss", cx);
+            laws.extend(loss.map(|found| (DriveLaw::Friction(found.value), IGNORE_PASSIVE)));
         }
         if let Some((_, help)) = laws.first()
             && let Some(on) = taken_over(&path, help, cx)
@@ -136,10 +136,20 @@ impl<'a> Reader<'a> {
     }
 
     fn terms(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Vec<(Name, f64)> {
-        let mut terms = Vec::new();
+        let (mut terms, mut known) = (Vec::new(), BTreeSet::new());
+        if elements(node).next().is_none() {
+            let message = format!("{} without a joint", tag(node));
+            cx.error(&place(node, cx), message, |d| d.help("expected `<joint joint=\"…\" coef=\"…\"/>`"));
+        }
         for child in elements(node) {
             check_attributes(child, &["joint", "coef"], &[], cx);
             let joint = name(child, "joint", cx).filter(|joint| self.check_joint(joint, "pull on", cx));
+            if let Some(joint) = &joint
+                && !known.insert(joint.text.clone())
+            {
+                let message = format!("joint {} stands in one tendon twice", quote(&joint.text));
+                cx.error(&joint.place, message, |d| d.help("add its two coefficients"));
+            }
             let weight = number(child, "coef", cx).map(|weight| weight.value);
             terms.extend(joint.zip(weight).filter(|(_, weight)| *weight != 0.0));
         }
@@ -168,11 +178,23 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A spring of a tendon, which is free where the tendon says, or while all joints stand where their own springs are free.
+/// A spring of a tendon. It is free where the tendon says, or while all joints stand where their own springs
+/// are free: of any two lengths, and of any one but −1, which stands for none.
 fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
-    let [low, high] = element.some("springlength", [f64::NAN; 2], cx).map_or([-1.0; 2], |found| found.value);
-    match high > low && low >= 0.0 {
-        true => DriveLaw::Slack { stiffness, range: [low, high] },
-        false => DriveLaw::Spring { stiffness, free: if low < 0.0 { rest } else { low } },
+    const NONE: f64 = -1.0;
+    // One length of a tendon stands for two equal ones, whatever its defaults have.
+    let found = element.with("springlength").and_then(|node| some(node, "springlength", [f64::NAN; 2], cx));
+    let [low, high] = found.as_ref().map_or([NONE; 2], |found| found.value);
+    let high = if high.is_nan() { low } else { high };
+    if let Some(found) = found.filter(|_| high < low) {
+        let message = format!("`springlength` from {low} to {high}, which is below it");
+        cx.error(&found.place, message, |d| {
+            d.help("expected one length, or two from the smaller to the larger")
+        });
+    }
+    match [low, high] {
+        [NONE, NONE] => DriveLaw::Spring { stiffness, free: rest },
+        [low, high] if low < high => DriveLaw::Slack { stiffness, range: [low, high] },
+        [low, _] => DriveLaw::Spring { stiffness, free: low },
     }
 }

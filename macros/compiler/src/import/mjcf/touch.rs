@@ -36,8 +36,18 @@ pub(super) struct Touching {
 }
 
 impl Law {
-    /// What a shape says, with its defaults.
+    /// Reads what a shape says, with its defaults; reports forces of contacts that are not taken over.
     pub(super) fn read(shape: &Element<'_>, cx: &mut Cx<'_>) -> Law {
+        for which in ["adhesion", "surfacevel"] {
+            let found = shape.some(which, [0.0; 6], cx);
+            if let Some(found) = found.filter(|found| found.value != [0.0; 6]) {
+                cx.error(
+                    &found.place,
+                    format!("`{which}` of a shape that touches others is not supported"),
+                    |d| d.help("to leave the contacts of the file out, remove `contacts = file`"),
+                );
+            }
+        }
         let mut of =
             |attribute: &str, usual: f64| shape.number(attribute, cx).map_or(usual, |found| found.value);
         let (bits, priority) =

@@ -1,5 +1,6 @@
 //! The file's links and joints, their order and what moves them → bodies and joints of the language.
 
+use super::couplings;
 use super::drives;
 use super::joint::FileJoint;
 use super::motion::Motion;
@@ -35,6 +36,7 @@ pub(in crate::import) fn assemble(
     let mut bodies: Vec<Body> = links[order.root].take().into_iter().filter(|_| !is_ground).collect();
     let mut joints: Vec<Joint> = Some(root).into_iter().filter(|_| !is_ground).collect();
     let drives = drives::resolve(robot.drives, &given);
+    let constraints = couplings::resolve(robot.constraints, &given, cx);
     let (mut limits, stops) = (Vec::new(), options.limits == LimitOption::Stops);
     for (joint, child) in &order.joints {
         limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
@@ -50,7 +52,7 @@ pub(in crate::import) fn assemble(
         joints,
         drives,
         dissipations: robot.dissipations,
-        constraints: robot.constraints,
+        constraints,
         contacts: robot.contacts,
         gravity: robot.gravity,
         limits,

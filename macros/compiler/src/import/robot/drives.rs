@@ -1,20 +1,13 @@
 //! Force elements on coordinates, after locks: what stands still adds no force, but its share of a length.
 
 use super::joint::FileJoint;
-use super::motion::Motion;
+use super::motion::{Motion, frozen};
 use crate::syntax::{Drive, DriveLaw, DriveOn};
 use std::collections::BTreeMap;
 
 /// The elements on what still moves. An input on nothing stays: programs count on its entry.
 pub(super) fn resolve(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
-    let frozen: BTreeMap<&str, f64> = joints
-        .iter()
-        .flatten()
-        .filter_map(|(joint, motion)| match motion {
-            Motion::Frozen(at) => Some((joint.name.text.as_str(), *at)),
-            _ => None,
-        })
-        .collect();
+    let frozen = frozen(joints);
     drives.into_iter().filter_map(|drive| without(drive, &frozen)).collect()
 }
 

@@ -17,9 +17,9 @@ pub(in crate::import) fn make_fields(
     let Imported { bodies, joints, fields, .. } = imported;
     for figures in &options.parameters {
         if figures.word.text == INERTIAL {
-            inertials(bodies, standing, figures, fields, cx);
+            inertials(bodies, standing, figures, (fields, options.format.body()), cx);
         } else {
-            of_joints(joints, figures, fields, cx);
+            of_joints(joints, figures, (fields, options.format.body()), cx);
         }
     }
 }
@@ -28,12 +28,12 @@ fn inertials(
     bodies: &mut [Body],
     standing: &[String],
     figures: &FileFigures,
-    fields: &mut Vec<FileField>,
+    (fields, link): (&mut Vec<FileField>, &str),
     cx: &mut Cx<'_>,
 ) {
     let stands = |body: &Body| standing.contains(&body.name.text);
     let names: Vec<String> = bodies.iter().map(|body| body.name.text.clone()).collect();
-    let chosen = chosen(figures, &names, "link", cx);
+    let chosen = chosen(figures, &names, link, cx);
     let mut found = false;
     for body in bodies {
         let Some(name) = chosen.iter().find(|name| name.text == body.name.text) else { continue };
@@ -44,7 +44,7 @@ fn inertials(
         };
         if let Some(missing) = missing {
             if figures.of.is_some() {
-                let message = format!("link {} {missing}", quote(&name.text));
+                let message = format!("{link} {} {missing}", quote(&name.text));
                 cx.error(&name.place, message, |d| d.help("leave it out of `parameters`"));
             }
             continue;
@@ -52,7 +52,7 @@ fn inertials(
         found = true;
         let values = properties(body);
         let units = ["kg", "m", "m", "m", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²"].to_vec();
-        let about = format!("Mass properties of the link `{}`.", body.name.text);
+        let about = format!("Mass properties of the {link} `{}`.", body.name.text);
         let of = &body.name.text;
         let e = add(FileFieldKind::Inertial, of, "", about, (values, units), &name.place, fields);
         let [mass, x, y, z, xx, xy, xz, yy, yz, zz] = e.as_slice() else { continue };
@@ -65,12 +65,17 @@ fn inertials(
         body.inertia = Some(array([&array([xx, xy, xz]), &array([xy, yy, yz]), &array([xz, yz, zz])]));
     }
     if !found && figures.of.is_none() {
-        let message = "no link that moves has mass properties in the file";
+        let message = format!("no {link} that moves has mass properties in the file");
         cx.error(&figures.word.place, message, |d| d.help(format!("leave `{INERTIAL}` out of `parameters`")));
     }
 }
 
-fn of_joints(joints: &mut [Joint], figures: &FileFigures, fields: &mut Vec<FileField>, cx: &mut Cx<'_>) {
+fn of_joints(
+    joints: &mut [Joint],
+    figures: &FileFigures,
+    (fields, link): (&mut Vec<FileField>, &str),
+    cx: &mut Cx<'_>,
+) {
     let word = figures.word.text.as_str();
     // The joint that holds the root stands in no file.
     let of_file = |joint: &Joint| joint.parent.body.text != crate::syntax::GROUND || joint.child.at.is_some();
@@ -97,7 +102,7 @@ fn of_joints(joints: &mut [Joint], figures: &FileFigures, fields: &mut Vec<FileF
         if word == PLACEMENT {
             let values = placement(joint);
             let units = vec!["m", "m", "m", "rad", "rad", "rad"];
-            let about = about("Place, on the parent link,");
+            let about = about(&format!("Place, on the parent {link},"));
             let e = add(FileFieldKind::Placement, of, word, about, (values, units), &name.place, fields);
             let place = |e| Expr { kind: e, place: name.place.clone() };
             joint.parent.at = Some(place(ExprKind::Array(e[..3].to_vec())));

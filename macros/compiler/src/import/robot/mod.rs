@@ -5,6 +5,7 @@
 mod assemble;
 mod closing;
 mod collision;
+mod couplings;
 mod drives;
 mod figures;
 mod joint;
@@ -24,7 +25,9 @@ pub(super) use figures::make_fields;
 pub(super) use joint::{FileJoint, has_axis, has_coordinate};
 pub(super) use limit::{FileLimits, IGNORE_LIMITS};
 pub(super) use motion::resolve_motions;
-pub(super) use names::{check_ends, check_locks, check_names, declare_world, rename_ground, unused};
+pub(super) use names::{
+    check_ends, check_locks, check_names, check_unique, declare_world, rename_ground, unused,
+};
 pub(super) use origin::Origin;
 pub(super) use parts::{MAX_ELEMENTS, Robot, bare_link};
 pub(super) use snap::snap;

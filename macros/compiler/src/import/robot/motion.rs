@@ -15,6 +15,18 @@ pub(in crate::import) enum Motion {
     Frozen(f64),
 }
 
+/// The coordinates of the joints that stand still.
+pub(in crate::import) fn frozen(joints: &[Option<(FileJoint, Motion)>]) -> BTreeMap<&str, f64> {
+    joints
+        .iter()
+        .flatten()
+        .filter_map(|(joint, motion)| match motion {
+            Motion::Frozen(at) => Some((joint.name.text.as_str(), *at)),
+            _ => None,
+        })
+        .collect()
+}
+
 /// Finds out what moves each joint. Locks come first: what follows a locked joint stands still as well.
 pub(in crate::import) fn resolve_motions(
     joints: &[FileJoint],
@@ -69,7 +81,8 @@ fn find_leader(
     Some(leader)
 }
 
-const MOVE_ALONE: &str = "to leave `mimic` tags out, write `#[mechanism(…, mimic = independent)]`";
+const MOVE_ALONE: &str =
+    "to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
 
 /// Reports joints that follow one another, each circle once.
 fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'_>) {

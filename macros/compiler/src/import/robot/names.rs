@@ -3,12 +3,12 @@
 use super::joint::FileJoint;
 use super::parts::{Robot, bare_link};
 use crate::import::context::{Cx, position, quote};
-use crate::syntax::{Base, GROUND, Name};
+use crate::syntax::{Base, FileFormat, GROUND, Name};
 use std::collections::BTreeMap;
 
 /// Reports links and joints that share a name with another.
-pub(in crate::import) fn check_names(robot: &Robot, cx: &mut Cx<'_>) {
-    check_unique(robot.links.iter().map(|link| &link.name), "link", cx);
+pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
+    check_unique(robot.links.iter().map(|link| &link.name), format.body(), cx);
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
 }
 
@@ -50,7 +50,12 @@ pub(in crate::import) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> 
     text
 }
 
-fn check_unique<'a>(names: impl Iterator<Item = &'a Name>, what: &str, cx: &mut Cx<'_>) {
+/// Reports names that elements of one kind share.
+pub(in crate::import) fn check_unique<'a>(
+    names: impl Iterator<Item = &'a Name>,
+    what: &str,
+    cx: &mut Cx<'_>,
+) {
     let mut seen = BTreeMap::new();
     for name in names {
         if let Some(first) = seen.get(name.text.as_str()).copied() {

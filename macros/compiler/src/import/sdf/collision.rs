@@ -1,6 +1,7 @@
 //! `<collision>` → shapes of links that contacts name.
 
-use super::frames::{Frames, pose_in};
+use super::frames::{Frames, origin_in};
+use super::scope::Scope;
 use crate::import::context::Cx;
 use crate::import::element::{Node, check_attributes, children, content, elements, place, required, tag};
 use crate::import::robot::FileCollision;
@@ -12,7 +13,7 @@ pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "e
 /// Reads all collision geometry of a link.
 pub(super) fn read(
     node: Node<'_>,
-    link: (&Name, &str),
+    link: (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Vec<FileCollision> {
@@ -20,11 +21,16 @@ pub(super) fn read(
     parts.filter_map(|part| read_part(part, link, frames, cx)).collect()
 }
 
-fn read_part(node: Node<'_>, link: (&Name, &str), frames: &Frames, cx: &mut Cx<'_>) -> Option<FileCollision> {
+fn read_part(
+    node: Node<'_>,
+    link: (&Name, &Scope),
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Option<FileCollision> {
     let geometry = elements(node).find(|child| child.tag_name().name() == "geometry");
     let geometry = required(geometry, node, "geometry", &[], cx)?;
     let shape = elements(geometry).find(|child| child.tag_name().name() != "empty")?;
-    let origin = pose_in(node, link, frames, cx)?;
+    let origin = origin_in(node, link, frames, cx)?;
     Some(FileCollision { origin, shape: read_shape(shape, cx)?, place: place(node, cx) })
 }
 

@@ -1,8 +1,10 @@
 //! Frames that name one another → where each is in the model.
 
+use super::scope::{Scope, WORLD};
+use super::version::is_before;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, check_radians, content, elements, place};
+use crate::import::element::{Attribute, Node, check_plain, check_radians, content, elements, place};
 use crate::import::imported::Placed;
 use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product, roll_pitch_yaw};
 use crate::import::robot::Origin;
@@ -30,20 +32,21 @@ pub(super) struct Frames {
     pub(super) known: BTreeMap<String, Frame>,
 }
 
-/// The frame of the world, and of the outermost model: what all others are at last relative to.
-pub(super) const WORLD: &str = "world";
+/// The first version in which a pose says by `relative_to`, no longer by `frame`, what it is relative to.
+const RELATIVE_TO: (u32, u32) = (1, 7);
 
-/// `<pose relative_to="…">` of an element; relative to `base` if nothing is said.
-pub(super) fn read_frame(node: Node<'_>, prefix: &str, base: &str, cx: &mut Cx<'_>) -> Frame {
+/// Reads `<pose relative_to="…">` of an element, `<pose frame="…">` in files of old versions; the pose is relative to `base` if
+/// neither is written.
+pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> Frame {
     let own = |at: Place| Name { text: base.to_string(), place: at };
     let Some(found) = elements(node).find(|child| child.tag_name().name() == "pose") else {
         return Frame { base: own(place(node, cx)), pose: Pose::ZERO, attached: None };
     };
-    check_attributes(found, &[], &["relative_to", "rotation_format", "degrees", "frame"], cx);
-    let said = ["relative_to", "frame"].into_iter().find_map(|word| found.attribute_node(word));
-    let base = match said.filter(|said| !said.value().trim().is_empty()) {
+    check_plain(found, &["relative_to", "rotation_format", "degrees", "frame"], cx);
+    let base = match reference(found, cx) {
         Some(said) => {
-            let text = whole(prefix, said.value().trim());
+            let name = said.value().trim();
+            let text = own_frame(found, name, scope).unwrap_or_else(|| scope.whole_name(name));
             Name { text, place: cx.place(said.range_value().start) }
         }
         None => own(place(found, cx)),
@@ -53,30 +56,59 @@ pub(super) fn read_frame(node: Node<'_>, prefix: &str, base: &str, cx: &mut Cx<'
     Frame { base, pose, attached: None }
 }
 
-/// Where the pose of an element of a link puts it in the link's axes.
+/// Returns the attribute of a `<pose>` that names a frame.
+pub(super) fn reference<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute<'a>> {
+    let written = |word| pose.attribute_node(word).filter(|said| !said.value().trim().is_empty());
+    let old = written("frame");
+    if let Some(found) = old.filter(|_| !is_before(pose, RELATIVE_TO)) {
+        let at = cx.place(found.range().start);
+        cx.error(&at, "`frame` of a pose has another name since version 1.7 of SDF", |d| {
+            d.help(format!("write `relative_to=\"{}\"`", found.value().trim()))
+        });
+    }
+    old.or_else(|| written("relative_to"))
+}
+
+/// Returns the whole name of the frame `name` that the link or joint around a pose declares in itself, as versions 1.5 and 1.6 allow.
+fn own_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
+    let owner = pose.ancestors().find(|above| matches!(above.tag_name().name(), "link" | "joint"))?;
+    let is_declared = own_frames(owner).any(|frame| frame.attribute("name") == Some(name));
+    is_declared.then(|| name_in_owner(&scope.name_of_part(owner.attribute("name").unwrap_or_default()), name))
+}
+
+/// Returns the frames that a link or a joint declares in itself.
+pub(super) fn own_frames<'a>(owner: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+    let is_frame = |node: &Node<'a>| node.tag_name().name() == "frame";
+    let parts = owner.children().filter(|node| node.is_element());
+    let inside = parts.filter(|part| matches!(part.tag_name().name(), "inertial" | "collision" | "visual"));
+    let around = std::iter::once(owner).chain(inside);
+    around.flat_map(elements).filter(is_frame).filter(|frame| is_before(*frame, RELATIVE_TO))
+}
+
+/// Returns the whole name of a frame that a link or a joint declares in itself.
+pub(super) fn name_in_owner(owner: &str, name: &str) -> String {
+    format!("{owner}::{name}")
+}
+
+/// Returns the pose of an element of a link in the link's axes.
 pub(super) fn pose_in(
     node: Node<'_>,
-    (link, prefix): (&Name, &str),
+    (link, scope): (&Name, &Scope),
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Option<Pose> {
+    let frame = read_frame(node, scope, &link.text, cx);
+    Some(frames.resolve(link, cx)?.back().then(&frames.resolve(&frame.base, cx)?.then(&frame.pose)))
+}
+
+/// Returns the pose of an element of a link in the link's axes, in the words of all formats.
+pub(super) fn origin_in(
+    node: Node<'_>,
+    link: (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Option<Origin> {
-    let frame = read_frame(node, prefix, &link.text, cx);
-    let pose = frames.resolve(link, cx)?.back().then(&frames.resolve(&frame.base, cx)?.then(&frame.pose));
-    Some(origin(&pose, &place(node, cx)))
-}
-
-/// The whole name of what is called `name` in the model that `prefix` stands for.
-pub(super) fn whole(prefix: &str, name: &str) -> String {
-    match name {
-        WORLD => WORLD.to_string(),
-        "__model__" => model(prefix),
-        _ => format!("{prefix}{name}"),
-    }
-}
-
-/// The whole name of the frame of a model.
-pub(super) fn model(prefix: &str) -> String {
-    format!("{prefix}__model__")
+    Some(origin(&pose_in(node, link, frames, cx)?, &place(node, cx)))
 }
 
 const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, everywhere in the file";

@@ -3,6 +3,7 @@
 //!
 //! Each file is parsed on its own first, so that what is wrong with one is told at its own place.
 
+use super::version;
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_attributes, elements, place, word};
@@ -92,6 +93,7 @@ fn scan(
     let cx = &mut Cx::new(&read.text, &shown, cx);
     let declared = OnceCell::new();
     let document = xml::parse(&read.text, &declared, FileFormat::Sdf, cx)?;
+    version::check(document.root_element(), cx);
     // Prefixes that are not declared are declared for the whole text, where all bytes stand elsewhere.
     if declared.get().is_some() {
         return match include {
@@ -179,7 +181,14 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
         None => steps.extend(model.attribute_node("name").map(|name| Step::Copy(file, name.range_value()))),
     }
     steps.push(put("\""));
-    for attribute in model.attributes().filter(|attribute| attribute.name() != "name") {
+    // The version that the file is written in decides how its elements are read.
+    if let Some(version) = model.document().root_element().attribute_node("version") {
+        steps.push(put(&format!(" {}=\"", version::OF_INCLUDED)));
+        steps.push(Step::Copy(file, version.range_value()));
+        steps.push(put("\""));
+    }
+    let is_own = |name: &str| name != "name" && name != version::OF_INCLUDED;
+    for attribute in model.attributes().filter(|attribute| is_own(attribute.name())) {
         steps.push(put(&format!(" {}=\"", attribute.name())));
         steps.push(Step::Copy(file, attribute.range_value()));
         steps.push(put("\""));
@@ -304,10 +313,5 @@ fn find(files: &[Read], include: &Include, cx: &mut Diagnostics) -> Option<Read>
     let (path, shown) = there.or(all.first())?;
     let name = Name { text: shown.clone(), place: include.uri.place.clone() };
     let text = file::read_named(path, &name, FileFormat::Sdf, cx)?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\0').to_string();
-    Some(Read {
-        text: xml::without_late_declaration(&text).to_string(),
-        shown: shown.clone(),
-        path: plain(path),
-    })
+    Some(Read { text: xml::cleaned(&text).into_owned(), shown: shown.clone(), path: plain(path) })
 }

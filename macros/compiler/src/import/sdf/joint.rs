@@ -1,9 +1,11 @@
 //! `<joint>` → [`FileJoint`]: one, or two with a massless link between them for joints with two axes.
 
-use super::frames::{Frames, model, origin, whole};
+use super::frames::{Frames, origin};
+use super::scope::Scope;
+use super::version::is_before;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{
-    Node, check_attributes, children, content, elements, name, place, required, word,
+    Node, check_attributes, check_plain, children, content, elements, name, place, required, word,
 };
 use crate::import::imported::Placed;
 use crate::import::pose::{Pose, Vector, apply, length};
@@ -30,16 +32,22 @@ const ENDLESS: f64 = 1e15;
 const IGNORE_PASSIVE: &str =
     "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
 
-/// The link at one end of a joint, by its whole name.
-pub(super) fn end(node: Node<'_>, which: &str, prefix: &str, cx: &Cx<'_>) -> Option<Name> {
+/// The first version in which an axis is in the axes of its joint; before it is in those of the model.
+const IN_JOINT: (u32, u32) = (1, 5);
+
+/// The first version without `<use_parent_model_frame>`.
+const EXPRESSED_IN: (u32, u32) = (1, 7);
+
+/// Returns the whole name of the frame at one end of a joint.
+pub(super) fn end(node: Node<'_>, which: &str, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     let found = elements(node).find(|child| child.tag_name().name() == which)?;
     let said = word(found, cx)?;
-    Some(Name { text: whole(prefix, &said.text), ..said })
+    Some(Name { text: scope.whole_name(&said.text), ..said })
 }
 
 /// Reads a joint into the robot.
 pub(super) fn read_joint(
-    (node, joint, prefix): (Node<'_>, &Name, &str),
+    (node, joint, scope): (Node<'_>, &Name, &Scope),
     frames: &Frames,
     options: &FileOptions,
     robot: &mut Robot,
@@ -50,7 +58,8 @@ pub(super) fn read_joint(
     let [_, parent, child, axis, axis2, lead, old] = children(node, known, cx);
     required(parent, node, "parent", &[], cx)?;
     required(child, node, "child", &[], cx)?;
-    let (parent, child) = (end(node, "parent", prefix, cx)?, end(node, "child", prefix, cx)?);
+    [parent, child].into_iter().flatten().for_each(|end| check_plain(end, &[], cx));
+    let (parent, child) = (end(node, "parent", scope, cx)?, end(node, "child", scope, cx)?);
     let (word, kind, axes) = read_type(node, cx)?;
     let at = frames.resolve(joint, cx)?;
     // What a joint joins may be frames on links.
@@ -73,7 +82,7 @@ pub(super) fn read_joint(
         };
         let pose = if k == 0 { base } else { Pose { at: anchor, ..Pose::ZERO } };
         let said = Said { node, named: &named, axis, word, kind };
-        let mut found = said.read((&at, &inner), prefix, frames, options, robot, cx)?;
+        let mut found = said.read((&at, &inner), scope, frames, options, robot, cx)?;
         (found.parent, found.child) = (carrier, carried.clone());
         (found.origin, found.anchor) = (origin(&pose, &joint.place), anchor);
         if kind == JointKind::Screw {
@@ -107,17 +116,24 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     known.copied()
 }
 
-/// What a screw advances in a turn; the older word for it has another sign and unit.
+/// Reads how far a screw advances in a turn, m. The older word for it, in rad/m, is positive for left-handed threads.
 fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
-    let Some(lead) = lead else {
-        let at = place(old.unwrap_or(node), cx);
-        cx.error(&at, "screw without `<screw_thread_pitch>`", |d| {
+    let Some(written) = lead.or(old) else {
+        cx.error(&place(node, cx), "screw without `<screw_thread_pitch>`", |d| {
             d.help("it is what the joint advances in a turn, m")
         });
         return None;
     };
-    let found = content::<1>(lead, cx)?;
-    Some(Expr::number(found.value[0], &found.place))
+    let found = content::<1>(written, cx)?;
+    let [value] = found.value;
+    if lead.is_none() && value == 0.0 {
+        cx.error(&found.place, "a screw with `<thread_pitch>` zero advances infinitely far in a turn", |d| {
+            d.help("write `<screw_thread_pitch>`: what the joint advances in a turn, m")
+        });
+        return None;
+    }
+    let lead = if lead.is_some() { value } else { -std::f64::consts::TAU / value };
+    Some(Expr::number(lead, &found.place))
 }
 
 /// A joint that holds.
@@ -155,7 +171,7 @@ impl Said<'_> {
     fn read(
         &self,
         (at, inner): (&Pose, &Pose),
-        prefix: &str,
+        scope: &Scope,
         frames: &Frames,
         options: &FileOptions,
         robot: &mut Robot,
@@ -175,14 +191,10 @@ impl Said<'_> {
         };
         let parts = ["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"];
         let [xyz, limit, dynamics, mimic, old, _] = children(axis, parts, cx);
-        let old = old.is_some_and(|old| {
-            self::word(old, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1"))
-        });
-        if let Some(xyz) = xyz {
-            joint.axis = read_axis(xyz, (at, inner), old, prefix, frames, cx)?;
-        } else {
-            joint.axis.value = apply(&inner.back().then(at).axes, [0.0, 0.0, 1.0]);
-        }
+        [Some(axis), limit, dynamics].into_iter().flatten().for_each(|node| check_plain(node, &[], cx));
+        let of_model = Name { text: scope.frame(), place: place(axis, cx) };
+        let usual = if is_in_model(axis, old, cx) { frames.resolve(&of_model, cx)? } else { *at };
+        joint.axis = read_axis(xyz, axis, (&usual, inner), scope, frames, cx)?;
         if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
             read_dynamics(dynamics, &mut joint, robot, cx);
         }
@@ -190,35 +202,49 @@ impl Said<'_> {
             joint.limits = read_limits(limit, word == "continuous", cx);
         }
         if let Some(mimic) = mimic.filter(|_| options.follow_mimic) {
-            joint.mimic = read_mimic(mimic, prefix, cx);
+            joint.mimic = read_mimic(mimic, scope, cx);
         }
         Some(joint)
     }
 }
 
-/// The axis in the axes of the child.
+/// True if an axis is in the axes of the model: it is so in old files, or where they say so.
+fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
+    let Some(old) = old else { return is_before(axis, IN_JOINT) };
+    let is_said = word(old, cx).is_some_and(|word| matches!(&*word.text.to_ascii_lowercase(), "true" | "1"));
+    if is_said && !is_before(axis, EXPRESSED_IN) {
+        let message = "`<use_parent_model_frame>` has another name since version 1.7 of SDF";
+        cx.error(&place(old, cx), message, |d| d.help("write `<xyz expressed_in=\"__model__\">`"));
+    }
+    is_said
+}
+
+/// Reads an axis, z unless `<xyz>` says another, and returns it in the axes of the child. It is in the axes of `usual` unless it
+/// names a frame.
 fn read_axis(
-    node: Node<'_>,
-    (at, inner): (&Pose, &Pose),
-    old: bool,
-    prefix: &str,
+    xyz: Option<Node<'_>>,
+    axis: Node<'_>,
+    (usual, inner): (&Pose, &Pose),
+    scope: &Scope,
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Option<Placed<Vector>> {
-    check_attributes(node, &[], &["expressed_in"], cx);
-    let found = content::<3>(node, cx)?;
+    let found = match xyz {
+        Some(xyz) => content::<3>(xyz, cx)?,
+        None => Placed { value: [0.0, 0.0, 1.0], place: place(axis, cx) },
+    };
     if length(found.value) < 1e-14 {
         cx.error(&found.place, "axis of zero length has no direction", |d| d);
         return None;
     }
-    let said = node.attribute_node("expressed_in").filter(|said| !said.value().trim().is_empty());
-    let axes = match said {
+    xyz.into_iter().for_each(|xyz| check_attributes(xyz, &[], &["expressed_in"], cx));
+    let said = xyz.and_then(|xyz| xyz.attribute_node("expressed_in"));
+    let axes = match said.filter(|said| !said.value().trim().is_empty()) {
         Some(said) => {
-            let text = whole(prefix, said.value().trim());
+            let text = scope.whole_name(said.value().trim());
             frames.resolve(&Name { text, place: cx.place(said.range_value().start) }, cx)?
         }
-        None if old => frames.resolve(&Name { text: model(prefix), place: found.place.clone() }, cx)?,
-        None => *at,
+        None => *usual,
     };
     let value = apply(&inner.back().then(&axes).axes, found.value);
     Some(Placed { value: value.map(|x| if x.abs() < 1e-15 { 0.0 } else { x }), place: found.place })
@@ -281,12 +307,12 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
 }
 
 /// `q = multiplier (q_leader − reference) + offset`.
-fn read_mimic(node: Node<'_>, prefix: &str, cx: &mut Cx<'_>) -> Option<Mimic> {
+fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
     check_attributes(node, &["joint"], &["axis"], cx);
     let mut leader = name(node, "joint", cx)?;
     leader.text = match node.attribute("axis") {
-        Some("axis2") => format!("{}_2", whole(prefix, &leader.text)),
-        _ => whole(prefix, &leader.text),
+        Some("axis2") => format!("{}_2", scope.whole_name(&leader.text)),
+        _ => scope.whole_name(&leader.text),
     };
     let found = children(node, ["multiplier", "offset", "reference"], cx);
     let [multiplier, offset, reference] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));

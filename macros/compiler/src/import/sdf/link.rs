@@ -1,9 +1,11 @@
 //! `<link>` → [`Body`].
 
-use super::frames::{Frames, WORLD, read_frame};
+use super::frames::{Frames, pose_in, reference};
+use super::scope::Scope;
+use super::version::is_before;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, children, content, elements, place, word};
+use crate::import::element::{Node, check_attributes, check_plain, children, content, elements, place, word};
 use crate::import::pose::{Matrix, Pose, turned};
 use crate::import::robot::bare_link;
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
@@ -12,10 +14,13 @@ use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 const INERTIA: [(&str, f64); 6] =
     [("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0)];
 
+/// The first version in which the pose of an `<inertial>` names no frame.
+const IN_LINK: (u32, u32) = (1, 7);
+
 /// Reads a link. What it does not say of its mass is what the format says: 1 kg, and 1 kg·m² about every axis.
 pub(super) fn read_link(
     node: Node<'_>,
-    name: &Name,
+    (name, scope): (&Name, &Scope),
     frames: &Frames,
     options: &FileOptions,
     cx: &mut Cx<'_>,
@@ -32,6 +37,7 @@ pub(super) fn read_link(
     let [pose, mass, inertia, water] = match inertial {
         Some(inertial) => {
             check_computed(inertial, &at, cx);
+            check_plain(inertial, &["auto"], cx);
             children(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
         }
         None => [None; 4],
@@ -45,13 +51,13 @@ pub(super) fn read_link(
     };
     let pose = match (pose, inertial) {
         (Some(pose), Some(inertial)) => {
-            if let Some(said) = pose.attribute_node("relative_to").filter(|said| !said.value().is_empty()) {
+            if let Some(said) = reference(pose, cx).filter(|_| !is_before(pose, IN_LINK)) {
                 let at = cx.place(said.range_value().start);
                 cx.error(&at, "the pose of an `<inertial>` is relative to its link", |d| {
                     d.help("remove `relative_to`")
                 });
             }
-            read_frame(inertial, "", WORLD, cx).pose
+            pose_in(inertial, (name, scope), frames, cx)?
         }
         _ => Pose::ZERO,
     };
@@ -94,6 +100,7 @@ fn check_computed(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
 fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     let mut entries = INERTIA.map(|(_, usual)| usual);
     if let Some(inertia) = inertia {
+        check_plain(inertia, &[], cx);
         let found = children(inertia, INERTIA.map(|(entry, _)| entry), cx);
         for (to, from) in entries.iter_mut().zip(found) {
             if let Some(found) = from.and_then(|from| content::<1>(from, cx)) {

@@ -1,4 +1,4 @@
-//! `<sdf>` → bodies and joints in coordinate order (SDFormat specification, versions 1.5 to 1.12).
+//! `<sdf>` → bodies and joints in coordinate order (SDFormat specification, versions 1.2 to 1.12).
 //!
 //! A link, a joint, a model and a `<frame>` are frames, and a pose is relative to any of them. Nested models become one
 //! mechanism; their links and joints have names with `::`.
@@ -11,20 +11,51 @@ use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
 use crate::import::whole::imported;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
-use frames::{Frame, Frames, WORLD, model, origin, read_frame};
+use frames::{Frame, Frames, name_in_owner, origin, own_frames, read_frame};
+use scope::{Scope, WORLD, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::rc::Rc;
 
 mod collision;
 mod frames;
 mod include;
 mod joint;
 mod link;
+mod scope;
+mod version;
 mod visual;
 
 /// What a model holds.
 const MODEL: [&str; 10] =
     ["link", "joint", "frame", "model", "pose", "static", "include", "plugin", "self_collide", "gripper"];
+
+/// Elements of a world.
+const WORLD_PARTS: [&str; 20] = [
+    "model",
+    "joint",
+    "frame",
+    "include",
+    "gravity",
+    "physics",
+    "light",
+    "scene",
+    "state",
+    "plugin",
+    "actor",
+    "road",
+    "gui",
+    "atmosphere",
+    "wind",
+    "audio",
+    "magnetic_field",
+    "population",
+    "spherical_coordinates",
+    "name",
+];
+
+/// The first version in which gravity is an element of the world, not of its `<physics>`.
+const GRAVITY_OF_WORLD: (u32, u32) = (1, 6);
 
 /// What the motion without contact does not depend on.
 const ASIDE: [(&str, &str); 9] = [
@@ -43,10 +74,19 @@ const ASIDE: [(&str, &str); 9] = [
 #[derive(Default)]
 struct Reader<'a> {
     frames: Frames,
-    links: Vec<(Node<'a>, Name, String)>,
+    links: Vec<(Node<'a>, Name, Scope)>,
     /// Frames that are nothing else.
     marks: Vec<Name>,
-    joints: Vec<(Node<'a>, Name, String)>,
+    joints: Vec<(Node<'a>, Name, Scope)>,
+}
+
+/// The models that make the mechanism, each with the text that whole names of its parts begin with.
+struct Top<'a> {
+    moving: Vec<(Node<'a>, String)>,
+    /// Static models of the same world.
+    fixed: Vec<(Node<'a>, String)>,
+    /// The world around them, if there is one.
+    world: Option<Node<'a>>,
 }
 
 /// Reads the text of the file at `path`, with the models that it includes.
@@ -62,33 +102,35 @@ pub(super) fn import(
 
 /// Reads the root element.
 fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
-    let top = find_model(root_node, cx)?;
+    let top = find_models(root_node, cx)?;
     let mut reader = Reader::default();
-    reader.read_models(top, cx)?;
+    reader.read_top(&top, cx)?;
     let mut robot = Robot::default();
-    for (node, name, prefix) in &reader.links {
+    for (node, name, scope) in &reader.links {
         let number = robot.links.len();
-        robot.links.extend(link::read_link(*node, name, &reader.frames, options, cx));
+        robot.links.extend(link::read_link(*node, (name, scope), &reader.frames, options, cx));
         if options.visuals {
-            let parts = visual::read(*node, (name, prefix), &reader.frames, cx);
+            let parts = visual::read(*node, (name, scope), &reader.frames, cx);
             robot.visuals.extend(parts.into_iter().map(|part| (number, part)));
         }
         if options.collisions {
-            let parts = collision::read(*node, (name, prefix), &reader.frames, cx);
+            let parts = collision::read(*node, (name, scope), &reader.frames, cx);
             robot.collisions.extend(parts.into_iter().map(|part| (number, part)));
         }
     }
-    for (node, name, prefix) in &reader.joints {
-        joint::read_joint((*node, name, prefix), &reader.frames, options, &mut robot, cx);
+    for (node, name, scope) in &reader.joints {
+        joint::read_joint((*node, name, scope), &reader.frames, options, &mut robot, cx);
     }
     if robot.links.is_empty() && !cx.failed() {
-        cx.error(&place(top, cx), "model without a link", |d| d.help("expected `<link name=\"…\"/>`"));
+        cx.error(&place(top.moving[0].0, cx), "model without a link", |d| {
+            d.help("expected `<link name=\"…\"/>`")
+        });
     }
     if !cx.failed() {
         reader.mark(&mut robot, cx);
         robot::close_loops(&mut robot, cx);
     }
-    robot::check_names(&robot, cx);
+    robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
     robot::check_ends(&robot, cx);
@@ -133,13 +175,16 @@ fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
     found.map(|((_, what), count)| format!("{what}: {count}")).collect()
 }
 
-/// The one model of a file.
-fn find_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
+/// Finds the one model of a file that moves, or several that joints of their world connect.
+fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Top<'a>> {
     let kind = root.tag_name().name();
     if kind != "sdf" {
         let message = format!("expected `<sdf>`, found {}", tag(root));
         cx.error(&place(root, cx), message, |d| match kind {
             "robot" => d.help("this is a URDF file: write `urdf = \"…\"` instead of `sdf = \"…\"`"),
+            "gazebo" => d.help(
+                "files of versions 1.0 and 1.2 begin so: convert the file, `gz sdf -p robot.sdf > converted.sdf`, after writing `<sdf version=\"…\">`",
+            ),
             "mujoco" => d.help("this is an MJCF file: write `mjcf = \"…\"` instead of `sdf = \"…\"`"),
             _ => d.suggest(kind, ["sdf"]),
         });
@@ -150,46 +195,102 @@ fn find_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
     };
     let mut found = named(root, "model");
     found.extend(named(root, "world").into_iter().flat_map(|world| named(world, "model")));
-    // What stands in the world is not the mechanism, where there is one that moves.
+    // Static models of a world are not the mechanism, if another model moves.
+    let mut fixed = Vec::new();
     if found.len() > 1 {
-        found.retain(|model| !is_static(*model));
+        (fixed, found) = found.into_iter().partition(|model| is_static(*model));
     }
+    let world_of =
+        |model: &Node<'a>| model.parent_element().filter(|above| above.tag_name().name() == "world");
+    let world = found.first().and_then(world_of);
+    let has = |kind: &str| world.is_some_and(|world| !named(world, kind).is_empty());
+    let is_joined = has("joint") && found.iter().all(|model| world_of(model) == world);
+    let prefixed = |models: Vec<Node<'a>>, before: &str| -> Vec<(Node<'a>, String)> {
+        let prefix = |model: Node<'a>| format!("{before}{}::", model.attribute("name").unwrap_or_default());
+        models.into_iter().map(|model| (model, prefix(model))).collect()
+    };
     match found.as_slice() {
-        [one] => return Some(*one),
+        [one] => {
+            fixed.retain(|model| world_of(model) == world && (has("joint") || has("frame")));
+            let fixed = prefixed(fixed, &format!("{WORLD}::"));
+            return Some(Top { moving: vec![(*one, String::new())], fixed, world });
+        }
+        [_, _, ..] if is_joined => {
+            fixed.retain(|model| world_of(model) == world);
+            let fixed = prefixed(fixed, &format!("{WORLD}::"));
+            return Some(Top { moving: prefixed(found, ""), fixed, world });
+        }
         [] => cx.error(&place(root, cx), "SDF file without a model", |d| {
             d.help("expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
         }),
         [_, second, ..] => cx.error(&place(*second, cx), "SDF file with several models", |d| {
             d.help(
-                "a mechanism is one model: put the others into files of their own, or all into one `<model>`",
+                "a mechanism is one model, or several that joints of their world connect: put the others into files of their own",
             )
         }),
     }
     None
 }
 
+/// Returns the first child element of this kind.
+fn first<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
+    elements(node).find(|child| child.tag_name().name() == kind)
+}
+
 /// True for a model that nothing moves.
 fn is_static(model: Node<'_>) -> bool {
-    let said = elements(model).find(|child| child.tag_name().name() == "static");
-    said.and_then(|said| said.text()).is_some_and(|word| matches!(word.trim(), "true" | "1"))
+    first(model, "static")
+        .and_then(|said| said.text())
+        .is_some_and(|word| matches!(word.trim(), "true" | "1"))
 }
 
 /// Gravity of a world, which is 9.8 m/s² unless it says another; a model alone says nothing of it.
 fn gravity(root: Node<'_>, cx: &mut Cx<'_>) -> Option<Expr> {
-    let world = elements(root).find(|child| child.tag_name().name() == "world")?;
-    let said = elements(world).find(|child| child.tag_name().name() == "gravity");
+    let world = first(root, "world")?;
+    let said = first(world, "gravity").or_else(|| {
+        let of_physics = first(first(world, "physics")?, "gravity")?;
+        if !version::is_before(world, GRAVITY_OF_WORLD) {
+            let message = "`<gravity>` is an element of the world since version 1.6 of SDF";
+            cx.error(&place(of_physics, cx), message, |d| d.help("move it from `<physics>` into `<world>`"));
+        }
+        Some(of_physics)
+    });
     let at = place(said.unwrap_or(world), cx);
     let value = said.and_then(|said| content(said, cx)).map_or([0.0, 0.0, -9.8], |found| found.value);
     Some(Expr::vector(value, &at))
 }
 
 impl<'a> Reader<'a> {
-    /// Gathers the links, joints and frames of a model and of those in it.
-    fn read_models(&mut self, top: Node<'a>, cx: &mut Cx<'_>) -> Option<()> {
-        let mut open = vec![(top, String::new(), WORLD.to_string())];
-        while let Some((node, prefix, base)) = open.pop() {
-            let outer = prefix.trim_end_matches("::").rsplit_once("::").map_or("", |(outer, _)| outer);
-            let outer = if outer.is_empty() { String::new() } else { format!("{outer}::") };
+    /// Gathers the links, joints and frames of the models and of their world.
+    fn read_top(&mut self, top: &Top<'a>, cx: &mut Cx<'_>) -> Option<()> {
+        let all = [top.moving.as_slice(), &top.fixed].concat();
+        let world = Scope::World(Rc::new(World::new(top.world, &all)));
+        for (model, prefix) in &top.moving {
+            self.read_models((*model, prefix), &world, false, cx)?;
+        }
+        for (model, prefix) in &top.fixed {
+            self.read_models((*model, prefix), &world, true, cx)?;
+        }
+        for child in top.world.into_iter().flat_map(elements) {
+            match child.tag_name().name() {
+                kind @ ("joint" | "frame") => self.read_part(child, kind, &world, false, cx),
+                _ => check_element_name(child, &WORLD_PARTS, cx),
+            }
+        }
+        Some(())
+    }
+
+    /// Gathers the links, joints and frames of a model and of those in it. A model that is fixed in the world has frames alone.
+    fn read_models(
+        &mut self,
+        (top, prefix): (Node<'a>, &str),
+        world: &Scope,
+        is_fixed: bool,
+        cx: &mut Cx<'_>,
+    ) -> Option<()> {
+        let mut open = vec![(top, prefix.to_string(), world.clone())];
+        while let Some((node, prefix, outer)) = open.pop() {
+            let scope = Scope::Model(prefix.clone());
             check_attributes(node, &["name"], &["canonical_link", "placement_frame"], cx);
             if let Some(frame) =
                 node.attribute_node("placement_frame").filter(|frame| !frame.value().is_empty())
@@ -197,9 +298,12 @@ impl<'a> Reader<'a> {
                 let at = cx.place(frame.range_value().start);
                 cx.error(&at, "`placement_frame` is not supported", |d| d.help("give the model a `<pose>`"));
             }
-            let own = model(&prefix);
-            let mut frame = read_frame(node, &outer, &base, cx);
-            frame.attached = canonical_link(node, &prefix, cx);
+            let own = scope.frame();
+            let mut frame = read_frame(node, &outer, &outer.frame(), cx);
+            frame.attached = match is_fixed {
+                true => Some(Name { text: WORLD.to_string(), place: place(node, cx) }),
+                false => canonical_link(node, &scope, cx),
+            };
             if !prefix.is_empty() {
                 let short = prefix.trim_end_matches("::").to_string();
                 let base = Name { text: own.clone(), place: place(node, cx) };
@@ -209,14 +313,16 @@ impl<'a> Reader<'a> {
             self.frames.known.insert(own.clone(), frame);
             for child in elements(node) {
                 match child.tag_name().name() {
-                    kind @ ("link" | "joint" | "frame") => self.read_part(child, kind, &prefix, &own, cx),
+                    kind @ ("link" | "joint" | "frame") => self.read_part(child, kind, &scope, is_fixed, cx),
                     "model" => {
                         if let Some(inner) = name(child, "name", cx) {
-                            open.push((child, format!("{prefix}{}::", inner.text), own.clone()));
+                            open.push((child, format!("{prefix}{}::", inner.text), scope.clone()));
                         }
                     }
                     "static"
-                        if word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
+                        if !is_fixed
+                            && word(child, cx)
+                                .is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
                     {
                         cx.error(&place(child, cx), "the model is static: nothing of it moves", |d| {
                             d.help("remove `<static>`")
@@ -234,31 +340,43 @@ impl<'a> Reader<'a> {
     }
 
     /// A link, a joint or a frame: all of them are frames.
-    fn read_part(&mut self, node: Node<'a>, kind: &str, prefix: &str, own: &str, cx: &mut Cx<'_>) {
+    fn read_part(&mut self, node: Node<'a>, kind: &str, scope: &Scope, is_fixed: bool, cx: &mut Cx<'_>) {
         let Some(mut part) = name(node, "name", cx) else {
             check_attributes(node, &["name"], &[], cx);
             return;
         };
-        part.text = format!("{prefix}{}", part.text);
+        part.text = scope.name_of_part(&part.text);
         let base = match kind {
             // Joints stand on their children.
-            "joint" => joint::end(node, "child", prefix, cx).map_or(own.to_string(), |child| child.text),
+            "joint" => joint::end(node, "child", scope, cx).map_or(scope.frame(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
-                Some(to) => frames::whole(prefix, to),
-                None => own.to_string(),
+                Some(to) => scope.whole_name(to),
+                None => scope.frame(),
             },
-            _ => own.to_string(),
+            _ => scope.frame(),
         };
-        let mut frame = read_frame(node, prefix, &base, cx);
-        let at = || place(node, cx);
-        frame.attached = (kind != "link").then(|| Name { text: base, place: at() });
+        let mut frame = read_frame(node, scope, &base, cx);
+        let at = place(node, cx);
+        let named = |text: &str| Name { text: text.to_string(), place: at.clone() };
+        frame.attached = match kind {
+            "link" => is_fixed.then(|| named(WORLD)),
+            _ => Some(named(&base)),
+        };
+        for own in own_frames(node) {
+            let mut frame = read_frame(own, scope, &part.text, cx);
+            frame.attached = Some(named(&part.text));
+            self.frames
+                .known
+                .insert(name_in_owner(&part.text, own.attribute("name").unwrap_or_default()), frame);
+        }
         if self.frames.known.insert(part.text.clone(), frame).is_some() && kind != "link" {
             let message = format!("second link, joint or frame with the name {}", quote(&part.text));
             cx.error(&part.place, message, |d| d.help("all of them are frames: names of frames differ"));
         }
         match kind {
-            "link" => self.links.push((node, part, prefix.to_string())),
-            "joint" => self.joints.push((node, part, prefix.to_string())),
+            _ if is_fixed => {}
+            "link" => self.links.push((node, part, scope.clone())),
+            "joint" => self.joints.push((node, part, scope.clone())),
             _ => self.marks.push(part),
         }
     }
@@ -266,8 +384,13 @@ impl<'a> Reader<'a> {
     /// Frames that are nothing else become links without mass, welded to what they are attached to.
     fn mark(&self, robot: &mut Robot, cx: &mut Cx<'_>) -> Option<()> {
         let mut names: BTreeSet<String> = robot.joints.iter().map(|joint| joint.name.text.clone()).collect();
+        let hangs_from_world = robot.joints.iter().any(|joint| joint.parent.text == WORLD);
         for mark in &self.marks {
             let carrier = self.frames.carrier(mark, cx)?;
+            // Without joints that begin in the world it is no link, and nothing can be welded to it.
+            if carrier.text == WORLD && !hangs_from_world {
+                continue;
+            }
             let (at, base) = (self.frames.resolve(mark, cx)?, self.frames.resolve(&carrier, cx)?);
             let text = robot::unused(&format!("{}_weld", mark.text), |name| names.contains(name));
             names.insert(text.clone());
@@ -285,14 +408,14 @@ impl<'a> Reader<'a> {
 }
 
 /// The link that a model's own frame moves with: the one that it says, or its first.
-fn canonical_link(node: Node<'_>, prefix: &str, cx: &Cx<'_>) -> Option<Name> {
+fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     if let Some(said) = node.attribute_node("canonical_link").filter(|said| !said.value().is_empty()) {
-        let text = frames::whole(prefix, said.value());
+        let text = scope.whole_name(said.value());
         return Some(Name { text, place: cx.place(said.range_value().start) });
     }
     let named = |what: &str| {
-        let found = elements(node).find(|child| child.tag_name().name() == what)?;
-        Some(Name { text: frames::whole(prefix, found.attribute("name")?), place: place(found, cx) })
+        let found = first(node, what)?;
+        Some(Name { text: scope.whole_name(found.attribute("name")?), place: place(found, cx) })
     };
     named("link").or_else(|| named("model"))
 }

@@ -1,23 +1,29 @@
 //! `<visual>` → shapes to draw. Nothing that is drawn enters an equation: what has no form is left out.
 
 use super::collision::{SHAPES, read_shape};
-use super::frames::{Frames, pose_in};
+use super::frames::{Frames, origin_in};
+use super::scope::Scope;
 use crate::import::context::Cx;
 use crate::import::element::{Node, content, elements, word};
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Name, Shape};
 
 /// Reads all visual geometry of a link.
-pub(super) fn read(node: Node<'_>, link: (&Name, &str), frames: &Frames, cx: &mut Cx<'_>) -> Vec<FileVisual> {
+pub(super) fn read(
+    node: Node<'_>,
+    link: (&Name, &Scope),
+    frames: &Frames,
+    cx: &mut Cx<'_>,
+) -> Vec<FileVisual> {
     let parts = elements(node).filter(|node| node.tag_name().name() == "visual");
     parts.filter_map(|part| read_part(part, link, frames, cx)).collect()
 }
 
-fn read_part(node: Node<'_>, link: (&Name, &str), frames: &Frames, cx: &mut Cx<'_>) -> Option<FileVisual> {
+fn read_part(node: Node<'_>, link: (&Name, &Scope), frames: &Frames, cx: &mut Cx<'_>) -> Option<FileVisual> {
     let geometry = elements(node).find(|child| child.tag_name().name() == "geometry")?;
     let known = |child: &Node<'_>| SHAPES.contains(&child.tag_name().name());
     let form = elements(geometry).find(known)?;
-    let origin = pose_in(node, link, frames, cx)?;
+    let origin = origin_in(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = if shape == Shape::Mesh { Some(read_mesh(form, cx)?) } else { None };
     Some(FileVisual { origin, shape, mesh })

@@ -1,6 +1,7 @@
 //! MJCF: actuators, and what binds joints.
 
-use super::mjcf::check_model;
+use super::mjcf::{check_model, mjcf};
+use super::*;
 
 #[test]
 fn servos_are_inputs_with_springs() {
@@ -110,22 +111,69 @@ fn sums_and_polynomials_are_conditions() {
     }
 }
 
+/// Gains and biases by MuJoCo 4.0.0 (`actuator_gainprm`, `actuator_biasprm`): a shortcut reads the defaults
+/// of the same shortcut or of `<general>` with a constant gain in the nearest class that has them, and never
+/// the constant force of a bias.
 #[test]
 fn defaults_of_actuators_are_one_record() {
-    check_model(
-        "<default><muscle range='0.5 1'/><motor/><position kp='3'/></default>
-         <worldbody><body name='b'><joint name='j'/></body></worldbody>
-         <actuator><position name='p' joint='j' kp='4' ctrlrange='-1 1'/><velocity name='v' joint='j'/></actuator>",
-        "the root is the ground
-         body b
-         Pin j: ground -> b about [0, 0, 1]
-         p: input in rad on 4 j
-         p: spring 4 from 0.125 on 1 j
-         p: damper 1 on 1 j
-         v: input in rad/s on 3 j
-         v: damper 3 on 1 j
-         left out ranges of what servos are told: 1",
-    );
+    for (defaults, actuator, expected) in [
+        (
+            "<general gainprm='400' biasprm='1 -300 -20'/>",
+            "<position",
+            "input 400, spring 400 from 0, damper 20",
+        ),
+        (
+            "<general gainprm='400' biasprm='1 -300 -20'/>",
+            "<position kp='2'",
+            "input 2, spring 2 from 0, damper 20",
+        ),
+        ("<general gainprm='400' biasprm='1 -300 -20'/>", "<velocity", "input 400, damper 400"),
+        ("<general gainprm='400' biasprm='1 -300 -20' biastype='affine'/>", "<motor", "input 1"),
+        ("<general gainprm='400' gaintype='affine'/>", "<position", "input 1, spring 1 from 0"),
+        ("<position kp='7' kv='3'/>", "<motor", "input 1"),
+        ("<position kp='7' kv='3'/>", "<velocity", "input 1, damper 1"),
+        ("<position kp='7' kv='3'/>", "<general", "input 7, spring 7 from 0, damper 3"),
+        ("<position kp='7' kv='3'/>", "<general gainprm='2'", "input 2, spring 7 from 0, damper 3"),
+        (
+            "<position kp='7' kv='2'/><general biasprm='1'/>",
+            "<general",
+            "input 7, spring 7 from 0.14285714285714285, damper 2",
+        ),
+        (
+            "<position kp='7' kv='2'/><general biasprm='1'/>",
+            "<position",
+            "input 7, spring 7 from 0, damper 2",
+        ),
+        ("<position kp='7' kv='2'/><motor gear='2'/>", "<position", "input 2, spring 1 from 0"),
+        ("<muscle/>", "<position", "input 1, spring 1 from 0"),
+        (
+            "<position kp='7' kv='3'/><default class='a'><velocity kv='9'/></default>",
+            "<position class='a'",
+            "input 7, spring 7 from 0, damper 3",
+        ),
+        (
+            "<position kp='7' kv='3'/><default class='a'><position kv='9'/></default>",
+            "<position class='a'",
+            "input 7, spring 7 from 0, damper 9",
+        ),
+        ("<position kp='7' kv='3'/><default class='a'><motor/></default>", "<general class='a'", "input 1"),
+        ("<position kp='7' dampratio='1'/>", "<position kv='2'", "input 7, spring 7 from 0, damper 2"),
+        ("<motor gear='3 4'/>", "<motor gear='5'", "input 5"),
+    ] {
+        let text = format!(
+            "<mujoco><default>{defaults}</default><worldbody><body><joint name='j'/></body></worldbody>\
+             <actuator>{actuator} joint='j'/></actuator></mujoco>"
+        );
+        let mut cx = Diagnostics::new();
+        let imported = import_text(&text, &mjcf(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
+        let laws = imported.drives.iter().map(|drive| match (&drive.on, drive.law) {
+            (DriveOn::Sum(terms), DriveLaw::Input(_)) => format!("input {}", terms[0].1),
+            (_, DriveLaw::Spring { stiffness, free }) => format!("spring {stiffness} from {free}"),
+            (_, DriveLaw::Damper(damping)) => format!("damper {damping}"),
+            other => panic!("{other:?}"),
+        });
+        assert_eq!(laws.collect::<Vec<_>>().join(", "), expected, "{defaults} {actuator}");
+    }
 }
 
 #[test]
@@ -140,9 +188,22 @@ fn what_newer_versions_have_is_refused() {
         "= help: to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
     let inputs =
         "= help: to leave the actuators of the file out, write `#[mechanism(…, inputs = joints)]`, or `none`";
+    let poly = |which: &str| {
+        format!(
+            "`{which}` is a polynomial, as MuJoCo reads it since version 3.7\n= help: expected one number: a linear coefficient"
+        )
+    };
     for (joint, motor, expected) in [
-        ("dampingpoly='1 2'", "", format!("r.xml:2:56: `dampingpoly` is not supported\n{passive}")),
-        ("stiffnesspoly='1'", "", format!("r.xml:2:58: `stiffnesspoly` is not supported\n{passive}")),
+        ("damping='5 2 1'", "", format!("r.xml:2:52: {}\n{passive}", poly("damping"))),
+        ("stiffness='5 2'", "", format!("r.xml:2:54: {}\n{passive}", poly("stiffness"))),
+        ("", "damping='5 0 1'", format!("r.xml:2:109: {}\n{inputs}", poly("damping"))),
+        (
+            "stiffness='5' springyield='1'",
+            "",
+            format!(
+                "r.xml:2:70: `springyield` is not supported: a spring that yields has a state of its own\n{passive}"
+            ),
+        ),
         ("", "delay='0.1'", format!("r.xml:2:107: `delay` of an actuator is not supported\n{inputs}")),
     ] {
         check_model(&model(joint, motor), &expected);
@@ -189,5 +250,171 @@ fn loops_are_closed() {
         &model("<weld body1='e'/>"),
         "r.xml:2:181: unknown body `e`
          = help: expected `b`, `c` or `d`",
+    );
+}
+
+/// Rotors and viscous losses of actuators count with the square of the gear ratio, even where actuators are
+/// left out.
+#[test]
+fn rotors_of_actuators() {
+    let model = "<worldbody><body name='b'><joint name='j'/></body></worldbody>
+         <actuator><motor name='m' joint='j' gear='3' armature='0.5' damping='0.2'/></actuator>";
+    check_model(
+        model,
+        "the root is the ground
+         body b
+         Pin j: ground -> b about [0, 0, 1]
+         j: damper 0.2 on 3 j
+         j: inerter 0.5 on 3 j
+         m: input in N·m on 3 j",
+    );
+    check_with(
+        &FileOptions { inputs: InputOption::Joints, ..mjcf() },
+        &format!("<mujoco>\n{model}\n</mujoco>"),
+        "the root is the ground
+         body b
+         Pin j: ground -> b about [0, 0, 1] driven
+         j: damper 0.2 on 3 j
+         j: inerter 0.5 on 3 j
+         left out 1 actuators",
+    );
+}
+
+/// The largest effort of a joint: the sum of those of its actuators, nothing if one of them has no limit,
+/// and at most the largest one of the joint itself.
+#[test]
+fn efforts_of_several_actuators() {
+    let site = "<motor site='s' gear='0 0 1' ctrlrange='-1 1'/>";
+    for (joint, actuators, expected) in [
+        (
+            "",
+            "<motor joint='j' ctrlrange='-10 10'/><motor joint='j' gear='2' forcerange='-15 15'/>",
+            Some(40.0),
+        ),
+        ("", "<motor joint='j' ctrlrange='-10 10'/><motor joint='j'/>", None),
+        ("", "<motor joint='j'/><motor joint='j' ctrlrange='-10 10'/>", None),
+        (
+            "",
+            "<motor joint='j' ctrlrange='-10 10' forcerange='-4 8'/><position joint='j' forcerange='-3 3'/>",
+            Some(11.0),
+        ),
+        ("", "<motor joint='j' ctrlrange='-10 10'/><motor tendon='t' ctrlrange='-1 1'/>", Some(12.0)),
+        ("", "<motor joint='j' ctrlrange='-10 10'/><position joint='j' ctrlrange='-1 1'/>", None),
+        ("", &format!("<motor joint='j' ctrlrange='-10 10'/>{site}"), None),
+        (
+            "actuatorfrcrange='-25 25'",
+            "<motor joint='j' ctrlrange='-10 10'/><motor joint='j' gear='2' forcerange='-15 15'/>",
+            Some(25.0),
+        ),
+        ("actuatorfrcrange='-25 25'", "<motor joint='j'/>", Some(25.0)),
+        ("actuatorfrcrange='0 0'", "<motor joint='j' ctrlrange='-3 1'/>", Some(3.0)),
+    ] {
+        let text = format!(
+            "<mujoco><worldbody><body><joint name='j' {joint}/><site name='s'/></body></worldbody>\
+             <tendon><fixed name='t'><joint joint='j' coef='-2'/></fixed></tendon><actuator>{actuators}</actuator></mujoco>"
+        );
+        let mut cx = Diagnostics::new();
+        let imported = import_text(&text, &mjcf(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
+        let effort = imported.limits.iter().find_map(|limit| limit.max_effort.as_ref()?.literal());
+        assert_eq!(effort, expected, "{joint} {actuators}");
+    }
+}
+
+#[test]
+fn actuators_that_do_not_act() {
+    let model = |option: &str| {
+        format!(
+            "<option {option}/><worldbody><body name='b'><joint name='j'/></body></worldbody>
+             <actuator><motor name='m' joint='j' group='3' armature='0.5'/><motor name='n' joint='j'/></actuator>"
+        )
+    };
+    check_model(
+        &model("actuatorgroupdisable='1 3'"),
+        "the root is the ground
+         body b
+         Pin j: ground -> b about [0, 0, 1]
+         j: inerter 0.5 on 1 j
+         n: input in N·m on 1 j
+         left out actuators of groups that are switched off: 1",
+    );
+    check_model(
+        &model("actuatorgroupdisable='1 31'"),
+        "r.xml:2:31: `actuatorgroupdisable` is `1 31`
+         = help: expected numbers of groups from 0 to 30",
+    );
+}
+
+/// The spring of a fixed tendon: lengths by MuJoCo 4.0.0 (`tendon_lengthspring`), with the joint's own
+/// spring free at 17°.
+#[test]
+fn springs_of_tendons_are_free_where_they_say() {
+    let rest = 2.0 * 17.0_f64.to_radians();
+    for (length, expected) in [
+        ("-0.3", "spring 10 from -0.3".to_string()),
+        ("-1", format!("spring 10 from {rest}")),
+        ("-1 -1", format!("spring 10 from {rest}")),
+        ("-1 2", "spring 10 outside of -1 to 2".to_string()),
+        ("-0.3 0.3", "spring 10 outside of -0.3 to 0.3".to_string()),
+        ("-0.5 -0.2", "spring 10 outside of -0.5 to -0.2".to_string()),
+        ("0", "spring 10 from 0".to_string()),
+        ("-1.5", "spring 10 from -1.5".to_string()),
+    ] {
+        check_model(
+            &format!(
+                "<default><tendon springlength='0.1 0.5'/></default>
+                 <worldbody><body name='b'><joint name='j' springref='17'/></body></worldbody>\
+                 <tendon><fixed name='t' stiffness='10' springlength='{length}'><joint joint='j' coef='2'/></fixed></tendon>"
+            ),
+            &format!("the root is the ground\nbody b\nPin j: ground -> b about [0, 0, 1]\nt: {expected} on 2 j"),
+        );
+    }
+}
+
+/// The anchor of the second body stands where the pose says in the first one.
+#[test]
+fn a_weld_with_anchor_and_pose() {
+    let model = |said: &str| {
+        format!(
+            "<worldbody><body name='a'><joint name='j' type='slide'/></body><body name='b' pos='1 0 0'><joint name='k' type='slide'/>\
+             </body></worldbody><equality><weld body1='a' body2='b' {said}/></equality>"
+        )
+    };
+    for (said, ends) in [
+        ("anchor='0.2 0 0' relpose='0.5 0 0 1 0 0 0'", "a.at([0.5, 0, 0]) -> b.at([0.2, 0, 0])"),
+        ("relpose='0.5 0 0 0 1 0 0'", "a.at([0.5, 0, 0]).rotated(x(3.141592653589793)) -> b"),
+        ("anchor='0.2 0 0'", "a.at([1, 0, 0]) -> b"),
+        ("anchor='0.2 0 0' relpose='0.5 0 0 0 0 0 0'", "a.at([1, 0, 0]) -> b"),
+    ] {
+        check_model(
+            &model(said),
+            &format!(
+                "the root is the ground\nbody a\nbody b\nSleeve j: ground -> a along [0, 0, 1]
+                 Sleeve k: ground.at([1, 0, 0]) -> b along [0, 0, 1]\nWeld weld1: {ends}"
+            ),
+        );
+    }
+}
+
+/// The coupling that contradicts others is the one reported; one that joints at rest satisfy is left out.
+#[test]
+fn couplings_of_joints_that_stand_still() {
+    let model = |last: &str| {
+        format!(
+            "<worldbody><body name='b'><joint name='j' type='slide'/><body name='c'><joint name='k' type='slide'/></body></body></worldbody>
+             <equality><joint name='e' joint1='j' polycoef='1'/><joint name='f' joint1='k' joint2='j'/>{last}</equality>"
+        )
+    };
+    check_model(
+        &model("<joint name='g' joint1='k' polycoef='3'/>"),
+        "r.xml:3:117: the coupling `g` contradicts others: the joints that it binds stand still, and it is off by -2
+         = help: remove it, or what holds these joints",
+    );
+    check_model(
+        &model("<joint name='g' joint1='k' polycoef='1'/>"),
+        "the root is the ground
+         body b
+         body c
+         Weld j: ground.at([0, 0, 1]) -> b
+         Weld k: b.at([0, 0, 1]) -> c",
     );
 }

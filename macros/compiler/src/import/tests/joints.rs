@@ -30,7 +30,7 @@ fn the_axis_is_x_unless_given() {
         &defaults(),
         &[
             ("revolute", ""),
-            ("prismatic", "<axis/>"),
+            ("prismatic", "<origin rpy='0 0 0'/>"),
             ("fixed", "<axis xyz='0 0 0'/><dynamics damping='-1'/>"),
         ],
         "Pin j1: l0 -> l1 about [1, 0, 0]
@@ -105,7 +105,8 @@ fn a_follower_follows_unless_independent() {
         "Pin j1: l0 -> l1 about [1, 0, 0] = -6 j4 + 11
          Weld j2: l1 -> l2
          Sleeve j3: l2 -> l3 along [1, 0, 0] = -3 j4 + 5
-         Pin j4: l3 -> l4 about [1, 0, 0] driven",
+         Pin j4: l3 -> l4 about [1, 0, 0] driven
+         left out `mimic` of j2: a fixed joint does not follow nobody",
     );
     check_chain(
         &FileOptions { follow_mimic: false, ..inputs },
@@ -119,7 +120,8 @@ fn a_follower_follows_unless_independent() {
 
 #[test]
 fn a_follower_needs_somebody_to_follow() {
-    let help = "= help: to leave `mimic` tags out, write `#[mechanism(…, mimic = independent)]`";
+    let help =
+        "= help: to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
     check(
         &chain(&[
             ("revolute", "<mimic joint='j22'/>"),
@@ -304,5 +306,62 @@ fn a_joint_says_what_it_joins_and_how() {
          = help: did you mean `<axis>`?
          r.urdf:5:89: unknown attribute `multipler` of `<mimic>`
          = help: did you mean `multiplier`?",
+    );
+}
+
+/// An axis or an origin that is written in another way is not taken for the default.
+#[test]
+fn parts_of_joints_are_attributes_of_their_elements() {
+    let elements = "= help: a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
+    let axis = "= help: expected `<axis xyz=\"…\"/>`";
+    let origin = "= help: expected `<origin xyz=\"…\" rpy=\"…\"/>`";
+    for (inside, expected) in [
+        ("<axis/>", format!("r.urdf:3:71: `<axis>` without `xyz`\n{axis}")),
+        ("<axis> 0 0 1</axis>", format!("r.urdf:3:78: unexpected text `0 0 1` in `<axis>`\n{axis}")),
+        ("<axis><xyz>0 0 1</xyz></axis>", format!("r.urdf:3:77: unexpected `<xyz>` in `<axis>`\n{axis}")),
+        ("<axis value='0 0 1'/>", format!("r.urdf:3:77: unknown attribute `value` of `<axis>`\n{axis}")),
+        (
+            "<axis xyz='0 0 1' rpy='0 0 1'/>",
+            format!("r.urdf:3:89: unknown attribute `rpy` of `<axis>`\n{axis}"),
+        ),
+        ("<origin>0 0 1</origin>", format!("r.urdf:3:79: unexpected text `0 0 1` in `<origin>`\n{origin}")),
+        (
+            "<origin pos='0 0 1'/>",
+            format!("r.urdf:3:79: unknown attribute `pos` of `<origin>`\n{origin}"),
+        ),
+        (
+            "<origin xyz='0 0 1'><rpy>0 0 1</rpy></origin>",
+            format!("r.urdf:3:91: unexpected `<rpy>` in `<origin>`\n{origin}"),
+        ),
+        (
+            "<dynamics><damping>3</damping></dynamics>",
+            "r.urdf:3:81: unexpected `<damping>` in `<dynamics>`\n= help: expected `<dynamics damping=\"…\" friction=\"…\"/>`".to_string(),
+        ),
+        (
+            "<dynamics stiffness='3'/>",
+            "r.urdf:3:81: unknown attribute `stiffness` of `<dynamics>`\n= help: expected `<dynamics damping=\"…\" friction=\"…\"/>`".to_string(),
+        ),
+        (
+            "<limit min='3' effort='1'/>",
+            "r.urdf:3:78: unknown attribute `min` of `<limit>`\n= help: expected `<limit lower=\"…\" upper=\"…\" velocity=\"…\" effort=\"…\"/>`".to_string(),
+        ),
+        ("<pose>0 0 1 0 0 0</pose>", format!("r.urdf:3:71: unexpected `<pose>` in `<joint>`\n{elements}")),
+        ("0 0 1", format!("r.urdf:3:71: unexpected text `0 0 1` in `<joint>`\n{elements}")),
+    ] {
+        check(&chain(&[("revolute", inside)]), &expected);
+    }
+    check(
+        &chain(&[("revolute", "")]).replace("<joint ", "<joint axis='0 0 1' "),
+        &format!("r.urdf:3:8: unknown attribute `axis` of `<joint>`\n{elements}"),
+    );
+    // Words of other tools, and an orientation that is none, are no parts of the joint.
+    check_chain(
+        &defaults(),
+        &[(
+            "revolute",
+            "<axis xyz='0 0 1' rpy='0 0 0'/><limit effort='1' velocity='1' acceleration='2'/><dynamics damping='1' K='3'/>\
+             <safety_controller k_velocity='1'/><calibration rising='0'/><hardware/><physics><axis>1</axis></physics>",
+        )],
+        "Pin j1: l0 -> l1 about [0, 0, 1] damping=1",
     );
 }

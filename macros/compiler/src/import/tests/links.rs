@@ -207,3 +207,80 @@ fn links_on_the_ground_need_no_inertia() {
          Weld root_joint: ground -> base\nWeld a: base -> arms\nWeld b: arms -> hand",
     );
 }
+
+/// Mass properties and places that are written in another way are not lost without a word.
+#[test]
+fn parts_of_links_are_attributes_of_their_elements() {
+    let parts = "= help: expected `<origin>`, `<mass>` and `<inertia>`";
+    let good = format!("<mass value='1'/>{INERTIA}");
+    for (inside, expected) in [
+        (
+            "<mass>2</mass>",
+            "r.urdf:2:32: unexpected text `2` in `<mass>`\n= help: expected `<mass value=\"…\"/>`"
+                .to_string(),
+        ),
+        (
+            "<mass kg='2'/>",
+            "r.urdf:2:32: unknown attribute `kg` of `<mass>`\n= help: expected `<mass value=\"…\"/>`"
+                .to_string(),
+        ),
+        (
+            &*format!("{good}<com>0 0 1</com>"),
+            format!("r.urdf:2:101: unexpected `<com>` in `<inertial>`\n{parts}"),
+        ),
+        (&*format!("{good} 2 kg"), format!("r.urdf:2:102: unexpected text `2 kg` in `<inertial>`\n{parts}")),
+    ] {
+        let inside =
+            if inside.starts_with(&good) { inside.to_string() } else { format!("{inside}{INERTIA}") };
+        check_inertial(&inside, &expected);
+    }
+    let asymmetric = INERTIA.replace("/>", " iyx='-2'/>");
+    check_inertial(
+        &format!("<mass value='1'/>{asymmetric}"),
+        "r.urdf:2:105: `iyx` differs from `ixy`: an inertia matrix is symmetric\n= help: remove `iyx`",
+    );
+    let help = "= help: a link has mass properties by `<inertial>`, and its place by a joint";
+    for (inside, expected) in [
+        ("<origin xyz='0 0 1'/>", "r.urdf:2:16: unexpected `<origin>` in `<link>`"),
+        ("<pose>0 0 1 0 0 0</pose>", "r.urdf:2:16: unexpected `<pose>` in `<link>`"),
+        ("<mass value='1'/>", "r.urdf:2:16: unexpected `<mass>` in `<link>`"),
+    ] {
+        check_robot(&format!("<link name='a'>{inside}</link>"), &format!("{expected}\n{help}"));
+    }
+    check_robot(
+        "<link name='a' mass='1'/>",
+        &format!("r.urdf:2:16: unknown attribute `mass` of `<link>`\n{help}"),
+    );
+    check_robot(
+        "<link name='a'/><inertial><mass value='1'/></inertial>",
+        "r.urdf:2:17: unexpected `<inertial>` in `<robot>`\n= help: expected `<link>` and `<joint>`, which hold all that moves",
+    );
+    // What other tools read passes, and a place that is none.
+    check_robot(
+        "<gazebo reference='a'><inertial/></gazebo><transmission name='t'><joint name='j'/></transmission>\
+         <ros2_control name='c'><joint name='j'/></ros2_control><link name='a' type='laser'><origin xyz='0 0 0'/>\
+         <contact><inertia_scaling value='1'/></contact><sensor><origin xyz='1 1 1'/></sensor></link>",
+        "body a\nWeld root_joint: ground -> a",
+    );
+}
+
+/// Blanks that keyboards and spreadsheets write are blanks; columns stay those of the file.
+#[test]
+fn strange_blanks_are_blanks() {
+    let text = |blank: &str| {
+        format!(
+            "<robot{blank}name='r'>{blank}<link name='a'><inertial><origin{blank}xyz='0{blank}0 1{blank}'/>{blank}<mass value='{blank}2'/>\
+             {INERTIA}</inertial></link>{blank}</robot>"
+        )
+    };
+    let expected = run(&defaults(), &text(" "));
+    assert!(expected.contains("com=[0, 0, 1]"), "{expected}");
+    for blank in ["\u{a0}", " \u{feff}", "\u{2003}", "\u{200b}", "\u{3000}"] {
+        assert_eq!(run(&defaults(), &text(blank)), expected, "{blank:?}");
+        assert_eq!(run(&defaults(), &format!("\u{feff}{}", text(blank))), expected, "{blank:?}");
+    }
+    check(
+        "<robot>\n<link\u{a0}name='a'\u{a0}/>\u{feff}<lnk/></robot>",
+        "r.urdf:2:19: unknown element `<lnk>`\n= help: did you mean `<link>`?",
+    );
+}

@@ -78,9 +78,6 @@ fn classes_are_handed_down() {
     );
 }
 
-/// What no joint alone follows from is a condition.
-/// In a class all shortcuts write one record: the servo has the bias of the muscle, but for its own stiffness.
-/// At the pose of the file the two ends are one place.
 /// What would change the motion is not left out in silence.
 #[test]
 fn what_is_not_supported_is_said() {
@@ -158,7 +155,7 @@ fn sections() {
     for (inside, expected) in [
         (
             "<worldbdy/>",
-            "r.xml:2:1: unknown element `<worldbdy>`\n= help: did you mean `worldbody`?\nr.xml:1:1: `<mujoco>` without `<worldbody>`",
+            "r.xml:2:1: unknown element `<worldbdy>`\n= help: did you mean `<worldbody>`?\nr.xml:1:1: `<mujoco>` without `<worldbody>`",
         ),
         (
             "<worldbody/><option density='1' wind='1 0 0'/>",
@@ -364,6 +361,10 @@ fn planes_are_touched() {
         ),
         "b_geom1_contact: b.collision(1) ground.at([0, 0, 0]).plane([0, 0, 1]) 0.3 0.01 0.002\n"
     );
+    for force in ["adhesion='1'", "surfacevel='1 0 0'"] {
+        let refused = contacts(&format!("<geom type='plane' {force}/>"));
+        assert!(refused.contains("of a shape that touches others is not supported"), "{refused}");
+    }
     let none = contacts("<geom type='box' size='1 1 1'/>");
     assert!(none.starts_with("the world of the file has no plane to touch"), "{none}");
 }
@@ -379,4 +380,158 @@ fn every_beginning_of_a_file_gets_an_answer() {
         assert!(!run(&mjcf(), &FILE[..end]).contains("the root is"));
     }
     assert!(run(&mjcf(), FILE).contains("the root is"));
+}
+
+/// Flags of `<option>` switch off what they name; constraints of all kinds are couplings, limits and dry
+/// friction.
+#[test]
+fn flags() {
+    let model = |flags: &str| {
+        format!(
+            "<option><flag {flags}/></option><worldbody><body name='b'><joint name='j' range='-1 1' stiffness='5' damping='0.3' frictionloss='2'/>\
+             <joint name='k'/></body></worldbody><tendon><fixed name='t' stiffness='7' damping='3' frictionloss='4'><joint joint='j' coef='2'/></fixed></tendon>\
+             <equality><joint joint1='k' joint2='j'/></equality>"
+        )
+    };
+    let (spring, damper) = ("j: spring 5 from 0 on 1 j\n", "damping=0.3");
+    let (spring2, damper2) = ("t: spring 7 from 0 on 2 j\n", "t: damper 3 on 2 j\n");
+    let (friction, friction2) = ("friction=2", "t: friction 4 on 2 j\n");
+    let follows = " = 1 j + 0";
+    for (flags, off) in [
+        ("spring='disable'", vec![spring, spring2]),
+        ("damper='disable'", vec![damper, damper2]),
+        ("passive='disable'", vec![spring, spring2, damper, damper2]),
+        ("spring='disable' damper='disable'", vec![spring, spring2, damper, damper2]),
+        ("frictionloss='disable'", vec![friction, friction2]),
+        ("equality='disable'", vec![follows]),
+        ("constraint='disable'", vec![friction, friction2, follows]),
+        ("contact='disable'", vec![]),
+    ] {
+        let found = run(&mjcf(), &format!("<mujoco>\n{}\n</mujoco>", model(flags)));
+        for part in [spring, spring2, damper, damper2, friction, friction2, follows] {
+            assert_eq!(found.contains(part), !off.contains(&part), "{flags}: {part}\n{found}");
+        }
+    }
+    for (flags, limits) in [("limit='disable'", 0), ("constraint='disable'", 0), ("equality='disable'", 1)] {
+        let mut cx = Diagnostics::new();
+        let imported = import_text(&format!("<mujoco>{}</mujoco>", model(flags)), &mjcf(), &mut cx);
+        assert_eq!(imported.map(|imported| imported.limits.len()), Some(limits), "{flags}");
+    }
+    let weightless = "<option><flag gravity='disable'/></option><option gravity='0 0 -1'/><worldbody/>";
+    let imported = import_text(&format!("<mujoco>{weightless}</mujoco>"), &mjcf(), &mut Diagnostics::new());
+    assert_eq!(
+        imported.and_then(|imported| Some(render_expr(imported.gravity.as_ref()?))).as_deref(),
+        Some("[0, 0, 0]")
+    );
+}
+
+/// Joints and mass properties in a `<frame>`: places and axes by MuJoCo 4.0.0 (`jnt_pos`, `jnt_axis`,
+/// `body_ipos`).
+#[test]
+fn what_stands_in_a_frame_is_placed_by_it() {
+    check_body(
+        "<frame pos='1 2 3' euler='0 0 90'><joint name='j' pos='1 0 0' axis='1 0 0'/><inertial pos='1 0 0' mass='1' diaginertia='1 2 2.5'/></frame>",
+        "the root is the ground
+         body b mass=1 com=[1, 3, 3] inertia=[[2, 0, 0], [0, 1, 0], [0, 0, 2.5]]
+         Pin j: ground.at([1, 3, 3]) -> b.at([1, 3, 3]) about [0, 1, 0]",
+    );
+}
+
+/// The axes of a site between two points: z from the second to the first, as MuJoCo 4.0.0 has it
+/// (`site_xmat`).
+#[test]
+fn sites_between_two_points_have_their_axes() {
+    check_body(
+        "<joint name='j'/><site name='s' type='capsule' size='.1' fromto='0 0 0 2 0 0'/>",
+        "the root is the ground
+         body b
+         body s
+         Pin j: ground -> b about [0, 0, 1]
+         Weld s_weld: b.at([1, 0, 0]).rotated(y(-1.5707963267948966)) -> s",
+    );
+    for (inside, at, message) in [
+        ("<site fromto='0 0 0 2 0 0'/>", "0 0 0", "`fromto` of a `sphere`, which has no length"),
+        (
+            "<geom size='1' type='box' pos='1 0 0' fromto='0 0 0 2 0 0'/>",
+            "1 0 0",
+            "`fromto` and `pos` of one `<geom>`",
+        ),
+    ] {
+        let column = "<worldbody><body name=\"b\">".len() + inside.find(at).expect("it stands there") + 1;
+        let answer = run(
+            &mjcf(),
+            &format!("<mujoco>\n<worldbody><body name=\"b\">{inside}</body></worldbody></mujoco>"),
+        );
+        assert!(answer.starts_with(&format!("r.xml:2:{column}: {message}")), "{answer}");
+    }
+}
+
+/// Numbers that an element does not write are those of its defaults: sizes by MuJoCo 4.0.0 (`geom_size`).
+#[test]
+fn lists_are_completed_by_defaults() {
+    check_model(
+        "<default><geom type='box' size='1 2 3'/></default><worldbody><body name='b'><geom size='.5' mass='3'/></body></worldbody>",
+        "the root is the ground
+         body b mass=3 inertia=[[13, 0, 0], [0, 9.25, 0], [0, 0, 4.25]]
+         Weld b_weld: ground -> b
+         left out geometry of bodies, for contact: 1 shapes",
+    );
+}
+
+/// What MuJoCo refuses is refused, each error once.
+#[test]
+fn what_mujoco_refuses() {
+    let body =
+        |joint: &str| format!("<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>");
+    let motor = |said: &str| format!("{}<actuator><motor {said}/></actuator>", body(""));
+    let fixed = |inside: &str| format!("{}<tendon><fixed {inside}</fixed></tendon>", body(""));
+    for (text, message) in [
+        (
+            format!("<compiler autolimits='false'/>{}", body("range='0 1'")),
+            "`range` without `limited`, which nothing uses",
+        ),
+        (
+            format!("<compiler autolimits='false'/>{}", motor("joint='j' ctrlrange='0 1'")),
+            "`ctrlrange` without `ctrllimited`, which nothing uses",
+        ),
+        (body("range='0 x' limited='true'"), "`x` is not a number"),
+        (body("limited='true'"), "`limited=\"true\"` without `range`"),
+        (motor(""), "an actuator that acts on nothing"),
+        (motor("joint='j' site='s'"), "an actuator acts on one thing, but here are `joint` and `site`"),
+        (
+            fixed("><joint joint='j' coef='1'/><joint joint='j' coef='2'/>"),
+            "joint `j` stands in one tendon twice",
+        ),
+        (fixed(">"), "`<fixed>` without a joint"),
+        (fixed("armature='-1'><joint joint='j' coef='1'/>"), "negative armature `-1`"),
+        (
+            fixed("stiffness='1' springlength='1 0'><joint joint='j' coef='1'/>"),
+            "`springlength` from 1 to 0, which is below it",
+        ),
+        (
+            "<worldbody><body><joint/><body name='m' mocap='true'/></body></worldbody>".to_string(),
+            "mocap body `m` does not stand still in the world",
+        ),
+        (
+            "<worldbody><body><freejoint align='true'/><geom size='1'/></body></worldbody>".to_string(),
+            "a free body in principal axes is not supported",
+        ),
+        (
+            "<compiler alignfree='true'/><worldbody><body><freejoint/><geom size='1'/></body></worldbody>"
+                .to_string(),
+            "a free body in principal axes is not supported",
+        ),
+    ] {
+        let answer = run(&mjcf(), &format!("<mujoco>\n{text}\n</mujoco>"));
+        assert!(answer.contains(message), "{text}\n{answer}");
+        assert_eq!(answer.matches("r.xml:").count(), 1, "{answer}");
+    }
+    for text in [
+        body("range='0 0' limited='auto'"),
+        format!("<compiler autolimits='false'/>{}", body("range='0 1' limited='false'")),
+        "<compiler alignfree='true'/><worldbody><body><freejoint align='false'/><geom size='1'/></body></worldbody>".to_string(),
+        "<worldbody><body><freejoint align='true'/><geom size='1'/><body/></body></worldbody>".to_string(),
+    ] {
+        assert!(run(&mjcf(), &format!("<mujoco>\n{text}\n</mujoco>")).contains("the root is"), "{text}");
+    }
 }

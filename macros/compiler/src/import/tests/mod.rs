@@ -18,6 +18,7 @@ mod links;
 mod malformed;
 mod mjcf;
 mod names;
+mod schema;
 mod sdf;
 mod spatial;
 mod turns;

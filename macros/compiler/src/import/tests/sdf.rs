@@ -172,7 +172,7 @@ fn another_format_is_named() {
         ),
         (
             "<sdf><world><model name='a'/><model name='b'/></world></sdf>",
-            "r.sdf:1:30: SDF file with several models\n= help: a mechanism is one model: put the others into files of their own, or all into one `<model>`",
+            "r.sdf:1:30: SDF file with several models\n= help: a mechanism is one model, or several that joints of their world connect: put the others into files of their own",
         ),
     ] {
         check_with(&sdf(), text, expected);
@@ -256,4 +256,236 @@ fn included_models_stand_in_the_place_of_their_elements() {
         let answer = folder.answer(&sdf(), &model(inside));
         assert!(answer.starts_with(expected), "{answer}");
     }
+}
+
+const ONE: &str = "mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+
+/// The child is turned by a right angle about z: x of the model is −y of the child, and of the joint.
+#[test]
+fn axes_of_old_versions_are_in_the_model() {
+    let text = |version: &str, axis: &str| {
+        format!(
+            "<sdf version='{version}'><model name='m'><link name='a'/><link name='b'><pose>0 0 0 0 0 1.5707963267948966</pose></link>\
+             <joint name='j' type='prismatic'><parent>a</parent><child>b</child><axis>{axis}</axis></joint></model></sdf>"
+        )
+    };
+    let plain = "<xyz>1 0 0</xyz>";
+    let of_model = format!("{plain}<use_parent_model_frame>1</use_parent_model_frame>");
+    let of_joint = format!("{plain}<use_parent_model_frame>0</use_parent_model_frame>");
+    for (version, axis, along) in [
+        ("1.2", plain, "[0, -1, 0]"),
+        ("1.3", plain, "[0, -1, 0]"),
+        ("1.4", plain, "[0, -1, 0]"),
+        ("1.4", &of_joint, "[1, 0, 0]"),
+        ("1.4", "", "[0, 0, 1]"),
+        ("1.5", plain, "[1, 0, 0]"),
+        ("1.5", &of_model, "[0, -1, 0]"),
+        ("1.6", &of_model, "[0, -1, 0]"),
+        ("1.6", &of_joint, "[1, 0, 0]"),
+        ("1.7", &of_joint, "[1, 0, 0]"),
+        ("1.10", plain, "[1, 0, 0]"),
+        ("1.12", "<xyz expressed_in='__model__'>1 0 0</xyz>", "[0, -1, 0]"),
+    ] {
+        let expected = format!(
+            "body a {ONE}\nbody b {ONE}\nWeld root_joint: ground -> a\nSleeve j: a.rotated(z(1.5707963267948966)) -> b along {along}"
+        );
+        check_with(&sdf(), &text(version, axis), &expected);
+    }
+    check_with(
+        &sdf(),
+        &text("1.7", &of_model),
+        "r.sdf:1:204: `<use_parent_model_frame>` has another name since version 1.7 of SDF\n= help: write `<xyz expressed_in=\"__model__\">`",
+    );
+}
+
+/// The version of an included file is its own.
+#[test]
+fn included_files_are_read_in_their_own_version() {
+    let arm = |version: &str| {
+        format!(
+            "<sdf version='{version}'><model name='arm'><link name='a'/><link name='b'><pose>0 0 0 0 0 1.5707963267948966</pose></link>\
+             <joint name='j' type='prismatic'><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"
+        )
+    };
+    let folder = Folder::new("sdf-versions", &[("old.sdf", &arm("1.4")), ("new.sdf", &arm("1.9"))]);
+    for (outer, file, along) in
+        [("1.9", "old", "[0, -1, 0]"), ("1.4", "old", "[0, -1, 0]"), ("1.4", "new", "[1, 0, 0]")]
+    {
+        let text = format!(
+            "<sdf version='{outer}'><model name='m'><include><uri>{file}.sdf</uri></include></model></sdf>"
+        );
+        let answer = folder.answer(&sdf(), &text);
+        assert!(answer.contains(&format!("arm::b along {along}")), "{answer}");
+    }
+}
+
+/// Poses of versions 1.5 and 1.6 name frames by `frame`, in inertial frames too, and links have frames of their own.
+#[test]
+fn poses_of_old_versions_name_frames() {
+    let text = |version: &str, pose: &str, inertial: &str| {
+        format!(
+            "<sdf version='{version}'><model name='m'><link name='a'><pose>0 0 1 0 0 0</pose></link>\
+             <link name='b'><frame name='f'><pose>0 3 0 0 0 0</pose></frame>{pose}<inertial>{inertial}<mass>2</mass></inertial></link>\
+             <joint name='j' type='fixed'><parent>a</parent><child>b</child></joint></model></sdf>"
+        )
+    };
+    let expected = |at: &str, com: &str| {
+        format!(
+            "body a {ONE}\nbody b mass=2 com={com} inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n\
+             Weld root_joint: ground.at([0, 0, 1]) -> a\nWeld j: a.at({at}) -> b"
+        )
+    };
+    let placed = "<pose frame='a'>0 0 1 0 0 0</pose>";
+    for version in ["1.5", "1.6"] {
+        let text = |inertial: &str| text(version, placed, inertial);
+        let expected = |com: &str| expected("[0, 0, 1]", com);
+        check_with(&sdf(), &text("<pose>1 0 0 0 0 0</pose>"), &expected("[1, 0, 0]"));
+        check_with(&sdf(), &text("<pose frame='a'>1 0 0 0 0 0</pose>"), &expected("[1, 0, -1]"));
+        check_with(&sdf(), &text("<pose frame='f'>1 0 0 0 0 0</pose>"), &expected("[1, 3, 0]"));
+        check_with(&sdf(), &text("<pose frame=''>1 0 0 0 0 0</pose>"), &expected("[1, 0, 0]"));
+    }
+    let answer = run(&sdf(), &text("1.7", placed, ""));
+    assert!(
+        answer.starts_with("r.sdf:1:151: `frame` of a pose has another name since version 1.7 of SDF"),
+        "{answer}"
+    );
+    let answer = run(&sdf(), &text("1.7", "", "<pose relative_to='a'>1 0 0 0 0 0</pose>"));
+    assert!(answer.contains("the pose of an `<inertial>` is relative to its link"), "{answer}");
+}
+
+/// Joints and frames of the world: names in it begin with those of its models.
+#[test]
+fn joints_of_the_world_hold_models() {
+    let world = |inside: &str| {
+        format!(
+            "<sdf version='1.10'><world name='w'><gravity>0 0 -1</gravity>{inside}\
+             <model name='m'><pose>0 0 1 0 0 0</pose><link name='a'><pose>1 0 0 0 0 0</pose></link></model></world></sdf>"
+        )
+    };
+    let slide = |parent: &str, more: &str| {
+        format!(
+            "<joint name='a' type='prismatic'>{more}<parent>{parent}</parent><child>m::a</child><axis><xyz>1 0 0</xyz></axis></joint>"
+        )
+    };
+    for (inside, expected) in [
+        (
+            slide("world", ""),
+            format!(
+                "body world\nbody a {ONE}\nWeld root_joint: ground -> world\nSleeve world::a: world.at([1, 0, 1]) -> a along [1, 0, 0]"
+            ),
+        ),
+        // A frame of the world stands still, and a static model is one of its parts.
+        (
+            format!(
+                "<frame name='f'><pose>0 2 0 0 0 0</pose></frame>{}",
+                slide("f", "<pose relative_to='f'/>")
+            ),
+            format!(
+                "body world\nbody a {ONE}\nbody f\nWeld root_joint: ground -> world\nWeld f_weld: world.at([0, 2, 0]) -> f\n\
+                 Sleeve world::a: world.at([0, 2, 0]) -> a.at([-1, 2, -1]) along [1, 0, 0]"
+            ),
+        ),
+        (
+            format!(
+                "<model name='wall'><static>true</static><pose>0 5 0 0 0 0</pose><link name='k'/></model>{}",
+                slide("wall::k", "<pose relative_to='wall'/>")
+            ),
+            format!(
+                "body world\nbody a {ONE}\nWeld root_joint: ground -> world\n\
+                 Sleeve world::a: world.at([0, 5, 0]) -> a.at([-1, 5, -1]) along [1, 0, 0]\nleft out static models of the world: 1"
+            ),
+        ),
+        // A frame that no joint needs is none of the robot's links.
+        (
+            "<frame name='a'/>".to_string(),
+            format!("body a {ONE}\nWeld root_joint: ground.at([1, 0, 1]) -> a"),
+        ),
+        // Joints of the world make several models one mechanism.
+        (
+            format!(
+                "<model name='n'><link name='a'/></model>{}",
+                slide("n::a", "").replace("name='a'", "name='i'")
+            ),
+            format!(
+                "body n::a {ONE}\nbody m::a {ONE}\nWeld root_joint: ground -> n::a\nSleeve i: n::a.at([1, 0, 1]) -> m::a along [1, 0, 0]"
+            ),
+        ),
+    ] {
+        let trim = |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_string()).collect() };
+        let (mut found, mut expected) = (trim(&run(&sdf(), &world(&inside))), trim(&expected));
+        // The order of bodies follows the names of the joints.
+        found.sort();
+        expected.sort();
+        assert_eq!(found, expected);
+    }
+    let answer = run(&sdf(), &world(&slide("m::b", "")));
+    assert!(answer.contains("unknown frame `b`"), "{answer}");
+    let answer = run(&sdf(), &world("<jont name='x'/>"));
+    assert!(
+        answer.contains("unknown element `<jont>`") && answer.contains("did you mean `<joint>`?"),
+        "{answer}"
+    );
+}
+
+/// The thread of the older word is left-handed where it is positive, in rad/m.
+#[test]
+fn screws_of_old_versions_advance_by_their_thread() {
+    let text = |pitch: &str| {
+        format!(
+            "<sdf version='1.5'><model name='m'><link name='a'/><link name='b'/><joint name='j' type='screw'><parent>a</parent>\
+             <child>b</child><axis/><thread_pitch>{pitch}</thread_pitch></joint></model></sdf>"
+        )
+    };
+    let imported = import_text(&text("-4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
+    let lead = imported.joints.iter().find_map(|joint| joint.lead.as_ref()).and_then(Expr::literal);
+    assert_eq!(lead, Some(std::f64::consts::FRAC_PI_2));
+    assert!(run(&sdf(), &text("0")).contains("advances infinitely far in a turn"));
+}
+
+#[test]
+fn versions_are_numbers() {
+    let model = "<model name='m'><link name='a'/></model>";
+    for (version, expected) in [
+        ("1.x", "r.sdf:1:15: `1.x` is no version of SDF\n= help: expected a number, as in `version=\"1.9\"`"),
+        (
+            "1.0",
+            "r.sdf:1:1: version 1.0 of SDF is not supported\n= help: convert the file: `gz sdf -p robot.sdf > converted.sdf`",
+        ),
+    ] {
+        check_with(&sdf(), &format!("<sdf version='{version}'>{model}</sdf>"), expected);
+    }
+    let answer = run(&sdf(), &format!("<gazebo version='1.2'>{model}</gazebo>"));
+    assert!(answer.contains("files of versions 1.0 and 1.2 begin so"), "{answer}");
+    // Values that are written as attributes, as in version 1.0 or in URDF, are not taken for the default.
+    for (inside, expected) in [
+        ("<link name='a'><pose xyz='0 0 1'/></link>", "unknown attribute `xyz` of `<pose>`"),
+        ("<link name='a'><inertial mass='2'/></link>", "unknown attribute `mass` of `<inertial>`"),
+        (
+            "<link name='a'><inertial><inertia ixx='2'/></inertial></link>",
+            "unknown attribute `ixx` of `<inertia>`",
+        ),
+        (
+            "<link name='a'/><link name='b'/><joint name='j' type='revolute'><parent>a</parent><child>b</child><axis xyz='1 0 0'/></joint>",
+            "unknown attribute `xyz` of `<axis>`",
+        ),
+    ] {
+        let answer = run(&sdf(), &format!("<sdf version='1.9'><model name='m'>{inside}</model></sdf>"));
+        assert!(answer.contains(expected), "{answer}");
+    }
+}
+
+/// Gravity is an element of `<physics>` up to version 1.5.
+#[test]
+fn gravity_of_old_worlds_is_that_of_their_physics() {
+    let text = |version: &str| {
+        format!(
+            "<sdf version='{version}'><world name='w'><physics type='ode'><gravity>0 0 -3</gravity></physics>\
+             <model name='m'><link name='a'/></model></world></sdf>"
+        )
+    };
+    let imported = import_text(&text("1.4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
+    assert_eq!(imported.gravity.map(|gravity| render_expr(&gravity)), Some("[0, 0, -3]".to_string()));
+    assert!(
+        run(&sdf(), &text("1.6")).contains("`<gravity>` is an element of the world since version 1.6 of SDF")
+    );
 }

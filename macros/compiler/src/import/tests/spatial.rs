@@ -7,7 +7,7 @@ use super::*;
 fn model(tendon: &str, actuator: &str) -> String {
     format!(
         "<mujoco><compiler angle='radian'/><worldbody><site name='w' pos='0 0 1'/><body name='b' pos='0 0 2'>\
-         <joint name='j' axis='0 1 0' springref='1'/><site name='s' pos='3 0 0'/><site name='side' pos='0 0 9'/>\
+         <joint name='j' axis='0 1 0' springref='1'/><site name='s' pos='3 0 0'/><site name='side' pos='-1 0 9'/>\
          <geom name='ball' size='.5' mass='0'/><geom name='drum' type='cylinder' size='.5 1' zaxis='0 1 0' mass='0'/>\
          <geom name='box' type='box' size='1 1 1' mass='0'/></body></worldbody>\
          <tendon>{tendon}</tendon><actuator>{actuator}</actuator></mujoco>"
@@ -48,7 +48,7 @@ fn pulleys_and_gears_are_factors() {
     let length = |end: &str| format!("norm(r((ground.at([0, 0, 1]) / b.at([{end}]))))");
     assert_eq!(
         drives(tendon, "<motor tendon='t' name='m' gear='3'/>"),
-        [format!("m: input in N on (3 * ({} + (0.25 * {})))", length("3, 0, 0"), length("0, 0, 9"))]
+        [format!("m: input in N on (3 * ({} + (0.25 * {})))", length("3, 0, 0"), length("-1, 0, 9"))]
     );
 }
 

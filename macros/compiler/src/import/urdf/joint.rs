@@ -1,10 +1,13 @@
 //! `<joint>` → [`FileJoint`]: what the file says of one joint, before locks and followers are looked at.
 
 use super::limit::read_limits;
+use super::misplaced;
 use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, children, name, number, numbers, place, required};
+use crate::import::element::{
+    Node, check_attributes, check_only, children, name, number, numbers, place, required,
+};
 use crate::import::imported::Placed;
 use crate::import::robot::{FileJoint, has_axis, has_coordinate};
 use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
@@ -20,13 +23,26 @@ const TYPES: [(&str, JointKind); 7] = [
     ("spherical", JointKind::Ball),
 ];
 
-/// Reads a joint; `None` if it does not say what it joins.
-pub(super) fn read_joint(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<FileJoint> {
+/// The elements of `<joint>` that are read.
+const PARTS: [&str; 7] = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
+
+const ELEMENTS: &str = "a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
+
+/// Coefficients of other tools' controllers in `<dynamics>`.
+const OF_CONTROLLERS: [&str; 4] = ["D", "K", "mu_coulomb", "mu_viscous"];
+
+/// Reads a joint; `None` if it does not say what it joins. Lists in `left_out` a leader that a fixed joint cannot follow.
+pub(super) fn read_joint(
+    node: Node<'_>,
+    options: &FileOptions,
+    left_out: &mut Vec<String>,
+    cx: &mut Cx<'_>,
+) -> Option<FileJoint> {
     check_attributes(node, &["name", "type"], &[], cx);
     let joint = name(node, "name", cx);
     let kind = read_type(node, cx);
-    let known = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
-    let [origin, parent, child, axis, dynamics, mimic, limit] = children(node, known, cx);
+    let [origin, parent, child, axis, dynamics, mimic, limit] = children(node, PARTS, cx);
+    misplaced::check(node, &PARTS, ELEMENTS, cx);
     let origin = read_origin(origin, node, cx);
     let parent = read_end(parent, node, "parent", cx);
     let child = read_end(child, node, "child", cx);
@@ -36,7 +52,12 @@ pub(super) fn read_joint(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>)
     let axis = read_axis(axis.filter(|_| has_axis(kind)), node, cx);
     let [damping, friction] =
         read_dynamics(dynamics.filter(|_| moves && options.honour_passive), word, kind, cx);
-    let mimic = mimic.filter(|_| moves && options.follow_mimic).and_then(|mimic| read_mimic(mimic, cx));
+    let mimic = mimic.filter(|_| options.follow_mimic).and_then(|mimic| read_mimic(mimic, cx));
+    if let (Some(joint), Some(mimic), false) = (&joint, &mimic, moves) {
+        left_out
+            .push(format!("`mimic` of {}: a fixed joint does not follow {}", joint.text, mimic.joint.text));
+    }
+    let mimic = mimic.filter(|_| moves);
     let limit = limit.filter(|_| has_coordinate(kind) && options.limits != LimitOption::Ignore);
     let limits = read_limits(limit, joint.as_ref(), word == "continuous", cx);
     let (name, parent, child) = (joint?, parent?, child?);
@@ -72,7 +93,7 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
 /// The link at one end of a joint.
 fn read_end(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
     let end = required(end, node, which, &["link"], cx)?;
-    check_attributes(end, &["link"], &[], cx);
+    check_only(end, &["link"], &[], &[], cx);
     name(end, "link", cx)
 }
 
@@ -82,7 +103,10 @@ fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<
     let Some(axis) = axis else {
         return default(place(node, cx));
     };
-    check_attributes(axis, &[], &["xyz"], cx);
+    // Some exporters write an orientation that is none.
+    let has_rpy =
+        axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
+    check_only(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
     let axis = numbers(axis, "xyz", cx).unwrap_or(default(place(axis, cx)));
     if axis.value == [0.0; 3] {
         cx.error(&axis.place, "axis of zero length has no direction", |d| d);
@@ -95,7 +119,7 @@ fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut C
     let Some(node) = node else {
         return [None, None];
     };
-    check_attributes(node, &[], &["damping", "friction"], cx);
+    check_only(node, &[], &["damping", "friction"], &OF_CONTROLLERS, cx);
     ["damping", "friction"].map(|which| {
         let found = number(node, which, cx).filter(|found| found.value != 0.0)?;
         if found.value < 0.0 {
@@ -112,7 +136,7 @@ fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut C
 const IGNORE_PASSIVE: &str = "to leave damping and friction out, write `#[mechanism(…, passive = ignore)]`";
 
 fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Mimic> {
-    check_attributes(node, &["joint"], &["multiplier", "offset"], cx);
+    check_only(node, &["joint"], &["multiplier", "offset"], &[], cx);
     let multiplier = number(node, "multiplier", cx).map_or(1.0, |found| found.value);
     let offset = number(node, "offset", cx).map_or(0.0, |found| found.value);
     Some(Mimic { joint: name(node, "joint", cx)?, multiplier, offset })

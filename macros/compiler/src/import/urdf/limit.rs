@@ -1,10 +1,26 @@
 //! `<limit>` of a joint → bounds of its coordinate.
 
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, number};
+use crate::import::element::{Node, check_only, number};
 use crate::import::imported::Placed;
 use crate::import::robot::{FileLimits, IGNORE_LIMITS};
 use crate::syntax::Name;
+
+const BOUNDS: [&str; 4] = ["lower", "upper", "velocity", "effort"];
+
+/// Bounds that other tools read: they are not of this joint's coordinate, its rate or its force.
+const OF_OTHERS: [&str; 10] = [
+    "acceleration",
+    "deceleration",
+    "jerk",
+    "command_effort",
+    "current",
+    "gear_velocity",
+    "k_position",
+    "k_velocity",
+    "soft_lower_limit",
+    "soft_upper_limit",
+];
 
 /// Reads the limits of a joint that has one coordinate; `continuous` ones have no ends.
 pub(super) fn read_limits(
@@ -14,7 +30,7 @@ pub(super) fn read_limits(
     cx: &mut Cx<'_>,
 ) -> FileLimits {
     let Some(node) = node else { return FileLimits::default() };
-    check_attributes(node, &[], &["lower", "upper", "velocity", "effort"], cx);
+    check_only(node, &[], &BOUNDS, &OF_OTHERS, cx);
     let ends = !continuous && ["lower", "upper"].iter().any(|which| node.has_attribute(*which));
     let mut end = |which: &str, infinite: &str| ends.then(|| bound(node, which, infinite, cx)).flatten();
     let (lower, upper) = (end("lower", "-inf"), end("upper", "inf"));

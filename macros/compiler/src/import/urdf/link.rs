@@ -1,13 +1,26 @@
 //! `<link>` → [`Body`].
 
+use super::misplaced;
 use super::origin::read_origin;
+use crate::diag::nearest;
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, children, name, number, place, required};
+use crate::import::element::{
+    Node, check_attributes, check_only, children, elements, name, number, place, required, tag,
+};
 use crate::import::robot::{Origin, bare_link};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 
 /// The entries of the inertia matrix, as URDF names them.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+
+/// Entries that some exporters write although the matrix is symmetric, and their counterparts.
+const BELOW_DIAGONAL: [(&str, &str); 3] = [("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")];
+
+/// Difference between these that exporters make, as a part of the largest entry.
+const ASYMMETRY: f64 = 0.01;
+
+/// The elements of `<inertial>`.
+const PARTS: [&str; 3] = ["origin", "mass", "inertia"];
 
 /// Reads a link; `None` if it has no name. Where nothing needs inertia, it is not read; what `stands` on the ground may lack
 /// some.
@@ -18,6 +31,12 @@ pub(super) fn read_link(
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
     check_attributes(node, &["name"], &[], cx);
+    misplaced::check(
+        node,
+        &["inertial"],
+        "a link has mass properties by `<inertial>`, and its place by a joint",
+        cx,
+    );
     let name = name(node, "name", cx);
     let [inertial] = match options.inertias {
         Inertias::None => [None],
@@ -33,7 +52,8 @@ pub(super) fn read_link(
 
 /// Reads mass, centre of mass and inertia. A link that says that all are zero is one that says nothing.
 fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>) {
-    let [origin, mass, inertia] = children(node, ["origin", "mass", "inertia"], cx);
+    let [origin, mass, inertia] = children(node, PARTS, cx);
+    check_parts(node, cx);
     let origin = read_origin(origin, node, cx);
     let mut found = |child, element, attributes: &[&str]| match stands {
         true => child,
@@ -41,7 +61,7 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
     };
     let (mass, inertia) = (found(mass, "mass", &["value"]), found(inertia, "inertia", &INERTIA));
     if let Some(mass) = mass {
-        check_attributes(mass, &["value"], &[], cx);
+        check_only(mass, &["value"], &[], &[], cx);
         body.mass = number(mass, "value", cx).map(|m| Expr::number(m.value, &m.place));
     }
     if let Some(inertia) = inertia {
@@ -53,14 +73,35 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
     }
 }
 
+/// Reports what `<inertial>` holds besides its parts.
+fn check_parts(node: Node<'_>, cx: &mut Cx<'_>) {
+    let help = "expected `<origin>`, `<mass>` and `<inertia>`";
+    for child in elements(node).filter(|child| !PARTS.contains(&child.tag_name().name())) {
+        if nearest(child.tag_name().name(), &PARTS).is_none() {
+            let message = format!("unexpected {} in `<inertial>`", tag(child));
+            cx.error(&place(child, cx), message, |d| d.help(help));
+        }
+    }
+    misplaced::check(node, &PARTS, help, cx);
+}
+
 fn is_zero(expr: Option<&Expr>) -> bool {
     matches!(expr, Some(Expr { kind: ExprKind::Number(value), .. }) if *value == 0.0)
 }
 
-/// The inertia matrix, turned from the axes of the inertial frame into the link's; `None` if it is zero.
+/// Reads the inertia matrix, rotated from the axes of the inertial frame into those of the link; `None` if it is zero.
 fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr> {
-    check_attributes(node, &INERTIA, &[], cx);
+    check_only(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
     let read = INERTIA.map(|entry| number(node, entry, cx));
+    let largest = read.iter().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.value.abs()));
+    for (entry, other) in BELOW_DIAGONAL {
+        let Some(found) = number(node, entry, cx) else { continue };
+        let above = INERTIA.iter().position(|known| *known == other).and_then(|k| read[k].as_ref());
+        if above.is_some_and(|above| (above.value - found.value).abs() > ASYMMETRY * largest) {
+            let message = format!("`{entry}` differs from `{other}`: an inertia matrix is symmetric");
+            cx.error(&found.place, message, |d| d.help(format!("remove `{entry}`")));
+        }
+    }
     if read.iter().flatten().all(|entry| entry.value == 0.0) {
         return None;
     }

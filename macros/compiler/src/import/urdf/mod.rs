@@ -14,6 +14,7 @@ mod collision;
 mod joint;
 mod limit;
 mod link;
+mod misplaced;
 mod origin;
 mod standing;
 mod visual;
@@ -24,7 +25,7 @@ pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Op
         return None;
     }
     let mut robot = read_robot(node, options, cx)?;
-    robot::check_names(&robot, cx);
+    robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
     robot::check_ends(&robot, cx);
@@ -62,6 +63,12 @@ fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
     let mut counts = [0, 0];
     let standing = standing::links(node, options);
     let mut robot = Robot::default();
+    misplaced::check(
+        node,
+        &["link", "joint"],
+        "expected `<link>` and `<joint>`, which hold all that moves",
+        cx,
+    );
     for child in elements(node) {
         let kind = match child.tag_name().name() {
             "link" => 0,
@@ -89,7 +96,7 @@ fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
                         .extend(collision::read(child, cx).into_iter().map(|part| (number, part)));
                 }
             }
-            _ => robot.joints.extend(joint::read_joint(child, options, cx)),
+            _ => robot.joints.extend(joint::read_joint(child, options, &mut robot.left_out, cx)),
         }
     }
     if let Some(tolerance) = options.snap.filter(|_| !cx.failed()) {

@@ -1,7 +1,7 @@
 //! `<origin xyz="…" rpy="…"/>` → [`Origin`].
 
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, check_radians, numbers, place};
+use crate::import::element::{Node, check_only, check_radians, numbers, place};
 use crate::import::imported::Placed;
 use crate::import::robot::Origin;
 
@@ -14,10 +14,11 @@ pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'
         return Origin { xyz: zero(owner), rpy: zero(owner) };
     };
     let (no_xyz, no_rpy) = (zero(node), zero(node));
-    check_attributes(node, &[], &["xyz", "rpy"], cx);
     if let Some(found) = node.attribute_node("quat_xyzw") {
         let place = cx.place(found.range().start);
         cx.error(&place, "`quat_xyzw` is not supported", |d| d.help("expected `rpy=\"roll pitch yaw\"`"));
+    } else {
+        check_only(node, &[], &["xyz", "rpy"], &[], cx);
     }
     let xyz = numbers(node, "xyz", cx).unwrap_or(no_xyz);
     let rpy = numbers(node, "rpy", cx).unwrap_or(no_rpy);

@@ -1,14 +1,15 @@
 //! Expressions → dimensions: every expression is walked once, and what must be alike is equated.
 //!
-//! A number stands for a quantity of any unit, and so does a direction that stands alone (it means one metre where a
-//! length is expected). As a factor beside a named quantity, a number of formulas (2, ½, ¹⁄₁₂, π) is a plain number;
-//! others take a unit where nothing else fits, and are plain numbers otherwise. An expression without any parameter may
-//! mean figures of a problem whose units are one: it is held to nothing.
+//! A number that is a term or stands alone is a quantity of any unit, and so is a direction that stands alone (it means one
+//! metre where a length is expected). As a factor beside a parameter a number is a plain number, but that of the gravity an acceleration. Beside coordinates, rates,
+//! time and inputs alone it is a coefficient: it takes a unit where nothing else fits, and is a plain number otherwise. Terms of
+//! a sum have one unit. A place takes an expression of coordinates, rates and time alone, whatever its unit is, as a
+//! number of the unit that it needs.
 
 use super::ratio::Ratio;
 use super::si::PLAIN;
 use super::unify::{Dimension, Outcome, System, Variable};
-use super::value::Value;
+use super::value::{Anchor, Value};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 use std::collections::BTreeMap;
 
@@ -56,10 +57,10 @@ pub struct Mismatch<'a> {
 /// What a name stands for.
 #[derive(Clone, Debug)]
 pub enum Meaning {
-    /// A parameter or a definition; true if it owes its unit to a parameter.
-    Named(Variable, bool),
+    /// A parameter or a definition.
+    Named(Variable, Anchor),
     /// A coordinate or an input.
-    Moving(Dimension),
+    Moving(Dimension, Anchor),
 }
 
 /// Most contradictions that are kept.
@@ -79,14 +80,20 @@ pub struct Inference<'a> {
     pub origins: BTreeMap<Variable, Origin<'a>>,
     /// By unknown: how its unit is written where it stands alone.
     pub hints: BTreeMap<Variable, String>,
+    /// The numbers of the mechanism's gravity, which are accelerations beside parameters, too.
+    pub gravity: Vec<f64>,
     /// What is a plain number unless something else demands a unit; the second one if the first is.
     pub wishes: Vec<(Dimension, Option<Dimension>)>,
-    /// Terms that are not alike, in expressions without parameters.
-    unlike: Vec<Mismatch<'a>>,
     /// Contradictions.
     pub mismatches: Vec<Mismatch<'a>>,
     /// There was too much to do.
     pub gave_up: bool,
+}
+
+/// The numbers that gravity is given by, such as 9.81, without signs.
+fn numbers_of_gravity(description: &Description) -> Vec<f64> {
+    let parts = description.gravity.iter().flat_map(Expr::parts);
+    parts.filter_map(Expr::literal).map(f64::abs).filter(|g| *g > 0.0).collect()
 }
 
 impl<'a> Inference<'a> {
@@ -99,13 +106,13 @@ impl<'a> Inference<'a> {
             locals: Vec::new(),
             origins: BTreeMap::new(),
             hints: BTreeMap::new(),
+            gravity: numbers_of_gravity(description),
             wishes: Vec::new(),
-            unlike: Vec::new(),
             mismatches: Vec::new(),
             gave_up: false,
         };
         for parameter in &description.parameters {
-            new.name_unknown(&parameter.text, true);
+            new.name_unknown(&parameter.text, Anchor::Parameter);
         }
         for table in &description.tables {
             let unknown = (0..=table.variables).map(|_| new.system.variable()).collect();
@@ -115,10 +122,9 @@ impl<'a> Inference<'a> {
     }
 
     /// Gives a name an unknown dimension.
-    pub fn name_unknown(&mut self, name: &str, named: bool) -> Variable {
+    pub fn name_unknown(&mut self, name: &str, anchor: Anchor) {
         let v = self.system.variable();
-        self.names.insert(name.to_string(), Meaning::Named(v, named));
-        v
+        self.names.insert(name.to_string(), Meaning::Named(v, anchor));
     }
 
     /// Demands that two dimensions are the same; false if they cannot be.
@@ -178,9 +184,9 @@ impl<'a> Inference<'a> {
             ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => self.sum(e, Some(dimension)),
             _ => self.value(e),
         };
-        let Value::Quantity { dimension: found, named } = value else { return value };
-        // What no parameter gives a unit may have a number in front that is one.
-        if !named && self.differ(&found, dimension) {
+        let Value::Quantity { dimension: found, anchor } = value else { return value };
+        // A number in front that is one has any unit.
+        if anchor == Anchor::Motion && self.differ(&found, dimension) {
             return Value::Unknown;
         }
         if !self.equate(&found, dimension, Origin { reason, at: e, like: None }) {
@@ -189,7 +195,7 @@ impl<'a> Inference<'a> {
         if let (Some(v), false) = (self.alone(e), unit.is_empty()) {
             self.hints.entry(v).or_insert_with(|| unit.to_string());
         }
-        Value::Quantity { dimension: found, named }
+        Value::Quantity { dimension: found, anchor }
     }
 
     /// The unknown of a name that stands alone.
@@ -198,34 +204,13 @@ impl<'a> Inference<'a> {
             ExprKind::Neg(inner) => return self.alone(inner),
             ExprKind::Name(name) => match self.names.get(name)? {
                 Meaning::Named(v, _) => return Some(*v),
-                Meaning::Moving(dimension) => dimension,
+                Meaning::Moving(dimension, _) => dimension,
             },
             _ => return None,
         };
         match dimension.unknown.as_slice() {
             [(v, Ratio::ONE)] if dimension.base == PLAIN.base => Some(*v),
             _ => None,
-        }
-    }
-
-    /// Terms that are not alike, in an expression without parameters so far.
-    pub fn mixed(&mut self, mismatch: Mismatch<'a>) -> Value {
-        self.unlike.push(mismatch);
-        Value::Mixed(self.unlike.len() - 1)
-    }
-
-    /// Beside a parameter, terms that are not alike are a mistake.
-    pub fn check_mixed(&mut self, values: &[&Value]) {
-        if !values.iter().any(|value| value.is_named()) {
-            return;
-        }
-        for value in values {
-            if let Value::Mixed(k) = value
-                && let Some(mismatch) = self.unlike.get(*k)
-                && self.mismatches.len() < MOST_MISMATCHES
-            {
-                self.mismatches.push(mismatch.clone());
-            }
         }
     }
 }

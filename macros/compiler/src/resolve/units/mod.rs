@@ -18,12 +18,9 @@ use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
 use infer::{Inference, Meaning, Origin, Reason};
 use places::{Places, Task};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use unify::{Dimension, Variable};
-use value::Value;
-
-/// How deep definitions of definitions are looked into.
-const MOST_ROUNDS: usize = 8;
+use value::{Anchor, Value};
 
 /// The coordinates that expressions can name: true for an angle.
 pub type Coordinates = [(String, Coordinate, bool)];
@@ -40,8 +37,8 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
             *slot = Some(text);
         }
     }
-    name_everything(d, coordinates, &mut inference);
-    let mut places = places::collect(d, &mut inference);
+    let definitions = name_everything(d, coordinates, &mut inference);
+    let mut places = places::collect(d, &definitions, &mut inference);
     let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.variable()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
         // A diagram names a body, and has forces and torques.
@@ -90,63 +87,99 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     units
 }
 
-/// Gives coordinates, inputs and definitions their dimensions, as far as they are known.
-fn name_everything(d: &Description, coordinates: &Coordinates, inference: &mut Inference<'_>) {
+/// Gives coordinates, inputs and definitions their dimensions, as far as they are known. Returns the definitions, each
+/// after those that it mentions.
+fn name_everything<'a>(
+    d: &'a Description,
+    coordinates: &Coordinates,
+    inference: &mut Inference<'_>,
+) -> Vec<&'a Definition> {
     for (name, _, angle) in coordinates {
         let dimension = if *angle { si::PLAIN } else { si::LENGTH };
-        inference.names.insert(name.clone(), Meaning::Moving(dimension));
+        inference.names.insert(name.clone(), Meaning::Moving(dimension, Anchor::Motion));
     }
+    let acting: BTreeSet<&str> = d.actions.iter().map(|action| action.name.text.as_str()).collect();
     let free = d.coordinates.iter().map(|c| &c.name);
     for name in free.chain(&d.inputs) {
         let dimension = Dimension::variable(inference.system.variable());
-        inference.names.insert(name.text.clone(), Meaning::Moving(dimension));
+        let anchor = if acting.contains(name.text.as_str()) { Anchor::Input } else { Anchor::Motion };
+        inference.names.insert(name.text.clone(), Meaning::Moving(dimension, anchor));
     }
-    // Which definitions owe their units to parameters: as many rounds as they are nested, within reason.
-    let mut named: BTreeSet<&str> = d.parameters.iter().map(|p| p.text.as_str()).collect();
-    let mut others: Vec<&Definition> = d.definitions.iter().collect();
-    for _ in 0..MOST_ROUNDS {
-        let (found, rest): (Vec<&Definition>, Vec<&Definition>) =
-            others.iter().partition(|d| mentions(&d.value, &named));
-        named = found.iter().map(|d| d.name.text.as_str()).collect();
-        for name in &named {
-            inference.name_unknown(name, true);
-        }
-        others = rest;
-        if found.is_empty() {
-            break;
-        }
+    let definitions = sort_by_dependency(&d.definitions);
+    for definition in &definitions {
+        let anchors = definition.value.parts().into_iter().filter_map(|part| match &part.kind {
+            ExprKind::Name(name) => match inference.names.get(name)? {
+                Meaning::Named(_, anchor) | Meaning::Moving(_, anchor) => Some(*anchor),
+            },
+            ExprKind::Call(table, _) => inference.tables.get(&table.text).map(|_| Anchor::Parameter),
+            _ => None,
+        });
+        let anchor = anchors.max().unwrap_or(Anchor::Motion);
+        inference.name_unknown(&definition.name.text, anchor);
     }
-    for definition in others {
-        inference.name_unknown(&definition.name.text, false);
-    }
+    definitions
 }
 
-/// True if an expression names one of these.
-fn mentions(e: &Expr, names: &BTreeSet<&str>) -> bool {
-    e.parts().into_iter().filter_map(Expr::name).any(|name| names.contains(name))
+/// Sorts definitions so that each comes after those that it mentions.
+fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
+    let numbers: BTreeMap<&str, usize> =
+        definitions.iter().enumerate().map(|(k, d)| (d.name.text.as_str(), k)).collect();
+    let mentioned = |d: &Definition| -> BTreeSet<usize> {
+        let names = d.value.parts().into_iter().filter_map(Expr::name);
+        names.filter_map(|name| numbers.get(name).copied()).collect()
+    };
+    let mut missing: Vec<usize> = Vec::new();
+    let mut uses: Vec<Vec<usize>> = vec![Vec::new(); definitions.len()];
+    for (k, definition) in definitions.iter().enumerate() {
+        let mentioned = mentioned(definition);
+        missing.push(mentioned.len());
+        for of in mentioned {
+            if let Some(uses) = uses.get_mut(of) {
+                uses.push(k);
+            }
+        }
+    }
+    let mut order: Vec<usize> = (0..definitions.len()).filter(|k| missing.get(*k) == Some(&0)).collect();
+    let mut at = 0;
+    while let Some(k) = order.get(at).copied() {
+        at += 1;
+        for user in uses.get(k).into_iter().flatten() {
+            if let Some(count) = missing.get_mut(*user) {
+                *count -= 1;
+                if *count == 0 {
+                    order.push(*user);
+                }
+            }
+        }
+    }
+    order.into_iter().filter_map(|k| definitions.get(k)).collect()
 }
 
-/// Walks all places; those first that say the dimension of one thing, so that the others are measured by them.
+/// Infers from all places. Places that give the dimension of one name come first, so that the others are compared with them.
 fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
-    let (simple, others): (Vec<Task<'a>>, Vec<Task<'a>>) =
-        places.tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference));
-    let mut points = Some(places.points);
-    for task in simple.into_iter().map(Some).chain([None]).chain(others.into_iter().map(Some)) {
-        let Some(task) = task else {
-            points.take().into_iter().flatten().for_each(|e| inference.point(e));
-            continue;
-        };
-        inference.locals = task.locals;
-        let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
-        // A definition that is a number is a plain one, unless its uses demand a unit.
-        if !matches!(value, Value::Quantity { .. }) {
-            inference.wish(task.dimension);
-        }
-        inference.locals.clear();
-    }
+    let simple = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
+        tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))
+    };
+    let ((mut first, definitions), (places_first, others)) =
+        (simple(places.definitions), simple(places.tasks));
+    first.extend(places_first);
+    first.into_iter().chain(definitions).for_each(|task| solve_one(task, inference));
+    places.points.into_iter().for_each(|e| inference.point(e));
+    others.into_iter().for_each(|task| solve_one(task, inference));
 }
 
-/// True for a product with one named factor.
+/// Infers from one place.
+fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
+    inference.locals = task.locals;
+    let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
+    // A definition that is a number is a plain one, unless its uses demand a unit.
+    if !matches!(value, Value::Quantity { .. }) {
+        inference.wish(task.dimension);
+    }
+    inference.locals.clear();
+}
+
+/// True for a product with one named factor, but no definition by coordinates alone: they say what it is.
 fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
     let mut at = e;
     let mut named = 0;
@@ -160,7 +193,10 @@ fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
         };
         match factor.map(|f| &f.kind) {
             None | Some(ExprKind::Number(_) | ExprKind::Field(..)) => {}
-            Some(ExprKind::Name(name)) => named += usize::from(inference.names.contains_key(name)),
+            Some(ExprKind::Name(name)) => match inference.names.get(name) {
+                Some(Meaning::Named(_, Anchor::Motion | Anchor::Input)) => return false,
+                found => named += usize::from(found.is_some()),
+            },
             Some(_) => return false,
         }
         match rest {
@@ -201,7 +237,9 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
             Chart::Plain(k, _) => {
                 let angle = coordinates.iter().find(|(_, c, _)| c.q == k).is_some_and(|(.., angle)| *angle);
                 let (unit, rate) = match inference.names.get(model.configuration.get(k.0).map_or("", |n| n)) {
-                    Some(Meaning::Moving(dimension)) if !angle => of_coordinate(dimension.clone(), inference),
+                    Some(Meaning::Moving(dimension, _)) if !angle => {
+                        of_coordinate(dimension.clone(), inference)
+                    }
                     _ => ("rad".to_string(), "rad/s".to_string()),
                 };
                 push(q, &unit, 1);
@@ -223,7 +261,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
             continue;
         }
         let dimension = match inference.names.get(name) {
-            Some(Meaning::Moving(dimension)) => dimension.clone(),
+            Some(Meaning::Moving(dimension, _)) => dimension.clone(),
             _ => si::PLAIN,
         };
         units.inputs.push(of_input(&dimension, inference));

@@ -1,7 +1,7 @@
 //! Which field an expression belongs to, for notes on what else a mistake has to do with.
 
 use crate::resolve::inertia::SOLIDS;
-use crate::syntax::{ActionKind, Description, Expr, ExprKind, Law, Target};
+use crate::syntax::{Description, Expr, ExprKind, Target};
 
 /// The argument and the field that an expression stands in, as in ``in `com` of `arm` ``; empty if it is not known.
 pub fn place_of(d: &Description, e: &Expr) -> String {
@@ -19,7 +19,7 @@ pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> 
     let inertias = d.bodies.iter().filter_map(|body| body.inertia.as_ref());
     inertias.flat_map(Expr::parts).find_map(|call| {
         let ExprKind::Call(word, arguments) = &call.kind else { return None };
-        let (solid, names) = SOLIDS.iter().find(|(solid, _)| *solid == word.text)?;
+        let (solid, _, names) = SOLIDS.iter().find(|(solid, ..)| *solid == word.text)?;
         let holds = arguments.iter().any(|a| a.parts().into_iter().any(|part| std::ptr::eq(part, e)));
         holds.then(|| (call, format!("{solid}({})", names.join(", "))))
     })
@@ -67,7 +67,7 @@ fn fields(d: &Description) -> Found<'_> {
         if let Target::Between(_, second) = &action.on {
             all.push(("between", name, second));
         }
-        all.extend(of_action(&action.kind).into_iter().map(|(word, e)| (word, name, e)));
+        all.extend(action.kind.expressions().into_iter().map(|(word, e)| (word, name, e)));
     }
     for point in &d.points {
         all.extend(point.at.iter().map(|e| ("at", point.name.text.as_str(), e)));
@@ -88,48 +88,4 @@ fn fields(d: &Description) -> Found<'_> {
         all.extend(speed.map(|e| ("speed", constraint.name.text.as_str(), e)));
     }
     all
-}
-
-/// The expressions of a force element, with their arguments.
-fn of_action(kind: &ActionKind) -> Vec<(&'static str, &Expr)> {
-    let law = |law: &'_ Law, linear: &'static str| match law {
-        Law::Linear(_) => linear,
-        Law::Force(_) => "force",
-        Law::Energy(_) => "energy",
-    };
-    match kind {
-        ActionKind::Spring { law: given, free } => {
-            let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
-            let free = free.iter().map(|(e, angle)| (if *angle { "free_angle" } else { "free_length" }, e));
-            [(law(given, "stiffness"), e)].into_iter().chain(free).collect()
-        }
-        ActionKind::Dashpot { law: given } => {
-            let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
-            vec![(law(given, "damping"), e)]
-        }
-        ActionKind::Inerter { inertance } => vec![("inertance", inertance)],
-        ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed } => {
-            let others = [
-                ("stiction", stiction),
-                ("stribeck_speed", stribeck_speed),
-                ("viscous", viscous),
-                ("speed", speed),
-            ];
-            let others = others.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?)));
-            [("coulomb", coulomb)].into_iter().chain(others).collect()
-        }
-        ActionKind::Gravity { constant, mu } => {
-            let both = [("constant", constant), ("mu", mu)];
-            both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
-        }
-        ActionKind::Attraction { strength } => vec![("strength", strength)],
-        ActionKind::Force { along: direction, value } => {
-            let both = [("along", direction), ("value", value)];
-            both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
-        }
-        ActionKind::Torque { about: direction, value } => {
-            let both = [("about", direction), ("value", value)];
-            both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
-        }
-    }
 }

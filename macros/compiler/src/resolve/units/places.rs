@@ -1,19 +1,20 @@
 //! The places of a description where expressions stand, each with the dimension that it gives to what stands there.
 
-use super::infer::{Inference, Meaning};
+use super::infer::{Inference, Meaning, Origin, Reason};
 use super::ratio::Ratio;
 use super::si::{
     ACCELERATION, ATTRACTION, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER, SPEED,
     STRENGTH, TIME,
 };
 use super::unify::Dimension;
+use super::value::Value;
 use crate::resolve::contact::{PLACE, arguments_of};
 use crate::resolve::curves::FRAMES;
 use crate::resolve::inertia::SOLIDS;
 use crate::syntax::contact::collision;
 use crate::syntax::{
-    Action, ActionKind, Body, Constraint, ConstraintKind, Description, Endpoint, Expr, ExprKind, Joint, Law,
-    Limit, Target,
+    Action, ActionKind, Body, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr, ExprKind,
+    Joint, Law, Limit, Target,
 };
 
 /// An expression with the dimension of its place.
@@ -30,7 +31,9 @@ pub struct Task<'a> {
 
 /// All places, as they are collected.
 pub struct Places<'a> {
-    /// The expressions.
+    /// The definitions, each after those that it mentions.
+    pub definitions: Vec<Task<'a>>,
+    /// The other expressions.
     pub tasks: Vec<Task<'a>>,
     /// Ends of force elements, which may be placed by vectors.
     pub points: Vec<&'a Expr>,
@@ -49,15 +52,21 @@ struct Work {
 const ALONG: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
 const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
 
-/// Collects the places of a description. What comes from a file is all numbers.
-pub fn collect<'a>(d: &'a Description, inference: &mut Inference<'a>) -> Places<'a> {
-    let mut places = Places { tasks: Vec::new(), points: Vec::new(), sides: Vec::new() };
-    // Definitions have unknowns of their own, which come with their names; where they are used comes after.
-    for definition in &d.definitions {
+/// Collects the places of a description, with its `definitions` in order. What comes from a file is all numbers.
+pub fn collect<'a>(
+    d: &'a Description,
+    definitions: &[&'a Definition],
+    inference: &mut Inference<'a>,
+) -> Places<'a> {
+    let mut places =
+        Places { definitions: Vec::new(), tasks: Vec::new(), points: Vec::new(), sides: Vec::new() };
+    // Definitions have unknowns of their own, which come with their names.
+    for definition in definitions {
         if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
             places.add(&definition.value, &Dimension::variable(*v), "");
         }
     }
+    places.definitions = std::mem::take(&mut places.tasks);
     places.all(&d.gravity, &ACCELERATION, "m/s²");
     places.all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
     d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.body(b));
@@ -140,7 +149,7 @@ impl<'a> Places<'a> {
                 self.rotations(steps);
             }
             ExprKind::Call(solid, arguments) => {
-                let Some((_, names)) = SOLIDS.iter().find(|(name, _)| *name == solid.text) else { return };
+                let Some((.., names)) = SOLIDS.iter().find(|(name, ..)| *name == solid.text) else { return };
                 for (argument, name) in arguments.iter().zip(*names) {
                     match *name {
                         "mass" => self.add(argument, &MASS, "kg"),
@@ -233,8 +242,15 @@ impl<'a> Places<'a> {
         let work = Work { coordinate: on.unwrap_or(LENGTH), units };
         let force = match action.kind {
             ActionKind::Torque { .. } if on_point => Some(ENERGY),
-            ActionKind::Force { .. } if on_point => Some(FORCE),
-            _ => ENERGY.over(&work.coordinate),
+            // A force at a point works on a length.
+            ActionKind::Force { .. }
+            | ActionKind::Torque { .. }
+            | ActionKind::Spring { .. }
+            | ActionKind::Dashpot { .. }
+            | ActionKind::Inerter { .. }
+            | ActionKind::Friction { .. }
+            | ActionKind::Gravity { .. }
+            | ActionKind::Attraction { .. } => ENERGY.over(&work.coordinate),
         };
         if let Some(force) = force {
             self.element(action, &work, &force, inference);
@@ -295,17 +311,27 @@ impl<'a> Places<'a> {
                 self.all(mu, &ATTRACTION, "");
             }
             ActionKind::Attraction { strength } => self.add(strength, &STRENGTH, ""),
-            ActionKind::Force { along: direction, value }
-            | ActionKind::Torque { about: direction, value } => {
-                let unit = match &action.kind {
-                    ActionKind::Torque { .. } => "N·m",
-                    _ => "N",
-                };
-                self.all(value, force, unit);
-                if value.is_none() {
-                    self.input(action, direction.as_ref(), force, inference);
-                }
+            ActionKind::Force { along: direction, value } => {
+                self.acting(action, direction.as_ref(), value.as_ref(), (force, "N"), inference);
             }
+            ActionKind::Torque { about: direction, value } => {
+                self.acting(action, direction.as_ref(), value.as_ref(), (force, "N·m"), inference);
+            }
+        }
+    }
+
+    /// Adds the value of a force or a torque; without one it is an input, which gets its unit.
+    fn acting(
+        &mut self,
+        action: &'a Action,
+        direction: Option<&'a Expr>,
+        value: Option<&'a Expr>,
+        (force, unit): (&Dimension, &'static str),
+        inference: &mut Inference<'a>,
+    ) {
+        match value {
+            Some(value) => self.add(value, force, unit),
+            None => input(action, direction, force, inference),
         }
     }
 
@@ -380,20 +406,26 @@ impl<'a> Places<'a> {
             Law::Energy(e) => self.tasks.push(Task { e, dimension: ENERGY, unit: "J", locals }),
         }
     }
+}
 
-    /// An input times its direction is a force.
-    fn input(
-        &mut self,
-        action: &'a Action,
-        direction: Option<&'a Expr>,
-        force: &Dimension,
-        inference: &mut Inference<'a>,
-    ) {
-        let Some(Meaning::Moving(input)) = inference.names.get(&action.name.text) else { return };
-        let Some(rest) = force.over(input) else { return };
-        // A bare direction has no unit.
-        inference.wish(rest.clone());
-        self.all(direction, &rest, "");
+/// Gives an input its unit: times its direction it is a force or a torque. A bare direction has no unit.
+fn input<'a>(
+    action: &'a Action,
+    direction: Option<&'a Expr>,
+    force: &Dimension,
+    inference: &mut Inference<'a>,
+) {
+    let Some(Meaning::Moving(input, _)) = inference.names.get(&action.name.text).cloned() else { return };
+    let (Target::On(on) | Target::Between(on, _)) = &action.on;
+    let (at, product) = match direction.map(|e| (e, inference.value(e))) {
+        Some((at, Value::Quantity { dimension, .. })) => {
+            inference.wish(dimension.clone());
+            (at, input.times(&dimension))
+        }
+        _ => (direction.unwrap_or(on), Some(input)),
+    };
+    if let Some(product) = product {
+        inference.equate(&product, force, Origin { reason: Reason::Place, at, like: None });
     }
 }
 
@@ -408,7 +440,7 @@ fn coordinate(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
         _ => None,
     };
     match meaning {
-        Some(Meaning::Moving(dimension)) => Some(dimension.clone()),
+        Some(Meaning::Moving(dimension, _)) => Some(dimension.clone()),
         Some(Meaning::Named(v, _)) => Some(Dimension::variable(*v)),
         None => None,
     }

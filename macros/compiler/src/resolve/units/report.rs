@@ -40,9 +40,32 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
             } else if error.is_bare() {
                 error.help(what_is_missing(d, &names));
             }
+            if !names.is_empty() && has_number_as_factor(mismatch.origin.at) {
+                error.help(NUMBER_WITH_UNIT);
+            }
             cx.add(error);
         }
     }
+}
+
+/// How a number beside a parameter gets a unit.
+const NUMBER_WITH_UNIT: &str = "a number beside a parameter is a plain factor; one with a unit is a parameter, or has a name: `#[define(9.81)] g: Scalar`";
+
+/// True if a number multiplies or divides something in an expression.
+fn has_number_as_factor(e: &Expr) -> bool {
+    e.parts().into_iter().any(|part| match &part.kind {
+        ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, a, b, _) => is_number(a) || is_number(b),
+        _ => false,
+    })
+}
+
+/// True for an expression that names nothing but pi.
+fn is_number(e: &Expr) -> bool {
+    e.parts().into_iter().all(|part| match &part.kind {
+        ExprKind::Name(name) => name == "pi",
+        ExprKind::Number(_) | ExprKind::Neg(_) | ExprKind::Binary(..) | ExprKind::Call(..) => true,
+        ExprKind::Field(..) | ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Array(_) => false,
+    })
 }
 
 /// What is wrong where nothing says which of the things is not what it should be: the definitions among them, too.
@@ -146,7 +169,7 @@ fn several(
         _ => &mismatch.origin.at.place,
     };
     let mut diagnostic = Diagnostic::new(place.clone(), message(mismatch, &found, &expected));
-    if names.is_empty() && matches!(mismatch.origin.reason, Reason::Place | Reason::Argument) {
+    if names.is_empty() {
         diagnostic.help("a factor is missing; a number in front has any unit that it needs");
     }
     for (v, e) in names.iter().take(MOST_PLACES) {

@@ -1,13 +1,13 @@
 //! The walk over an expression: what its parts are, and what must be alike.
 
-use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
+use super::infer::{Inference, Meaning, Origin, Reason};
 use super::ratio::Ratio;
 use super::si::{
     ACCELERATION, ANGULAR_MOMENTUM, DENSITY, ENERGY, FORCE, INERTIA, LENGTH, MOMENTUM, PLAIN, POWER,
     PRESSURE, RATE, RATE_OF_RATE, SPEED, TIME,
 };
 use super::unify::{Dimension, Variable};
-use super::value::{Value, product};
+use super::value::{Anchor, Value, product};
 use crate::expr::Function;
 use crate::syntax::{BinaryOp, Expr, ExprKind, IF, Name};
 
@@ -15,7 +15,7 @@ impl<'a> Inference<'a> {
     /// The dimension of an expression.
     pub fn value(&mut self, e: &'a Expr) -> Value {
         match &e.kind {
-            ExprKind::Number(n) => Value::number(*n),
+            ExprKind::Number(n) => Value::Number(*n),
             ExprKind::Name(name) => self.name(name),
             ExprKind::Field(inner, member) => self.member(inner, member),
             ExprKind::Neg(inner) => self.value(inner).negated(),
@@ -28,20 +28,19 @@ impl<'a> Inference<'a> {
     }
 
     fn name(&self, name: &str) -> Value {
-        if let Some(Meaning::Named(v, named)) = self.names.get(name)
-            && !self.locals.iter().any(|(local, _)| *local == name)
-        {
-            return Value::Quantity { dimension: Dimension::variable(*v), named: *named };
+        if let Some((_, dimension)) = self.locals.iter().find(|(local, _)| *local == name) {
+            return Value::quantity(dimension.clone());
         }
-        let moving = match name {
-            "x" | "y" | "z" => return Value::Direction,
-            "pi" => return Value::formula(std::f64::consts::PI),
-            _ => self.locals.iter().find(|(local, _)| *local == name).map(|(_, d)| d.clone()),
-        };
-        match (moving, name, self.names.get(name)) {
-            (Some(dimension), ..) => Value::quantity(dimension),
-            (None, "t", _) => Value::quantity(TIME),
-            (None, _, Some(Meaning::Moving(dimension))) => Value::quantity(dimension.clone()),
+        match (name, self.names.get(name)) {
+            (_, Some(Meaning::Named(v, anchor))) => {
+                Value::Quantity { dimension: Dimension::variable(*v), anchor: *anchor }
+            }
+            ("x" | "y" | "z", _) => Value::Direction,
+            ("pi", _) => Value::Number(std::f64::consts::PI),
+            ("t", _) => Value::quantity(TIME),
+            (_, Some(Meaning::Moving(dimension, anchor))) => {
+                Value::Quantity { dimension: dimension.clone(), anchor: *anchor }
+            }
             _ => Value::Unknown,
         }
     }
@@ -50,24 +49,20 @@ impl<'a> Inference<'a> {
     fn member(&self, inner: &Expr, member: &Name) -> Value {
         let ExprKind::Name(joint) = &inner.kind else { return Value::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
-            Some(Meaning::Moving(dimension)) => Value::quantity(dimension.clone()),
+            Some(Meaning::Moving(dimension, _)) => Value::quantity(dimension.clone()),
             _ => Value::Direction,
         }
     }
 
     /// Demands that two values are alike; returns what they are.
     fn alike(&mut self, a: Value, b: Value, origin: Origin<'a>) -> Value {
-        let (Value::Quantity { dimension, named }, Value::Quantity { dimension: other, named: too }) =
+        let (Value::Quantity { dimension, anchor }, Value::Quantity { dimension: other, anchor: second }) =
             (&a, &b)
         else {
-            self.check_mixed(&[&a, &b]);
             return a.or(b);
         };
-        if !named && !too && self.differ(dimension, other) {
-            return self.mixed(Mismatch { origin, found: other.clone(), expected: dimension.clone() });
-        }
         match self.equate(other, dimension, origin) {
-            true => Value::Quantity { dimension: dimension.clone(), named: *named || *too },
+            true => Value::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
             false => Value::Unknown,
         }
     }
@@ -75,7 +70,7 @@ impl<'a> Inference<'a> {
     /// The common dimension of several expressions.
     fn all_alike(&mut self, items: &'a [Expr], reason: Reason<'a>) -> Value {
         let mut first: Option<&Expr> = None;
-        let mut common = Value::number(0.0);
+        let mut common = Value::Number(0.0);
         for item in items {
             let value = self.value(item);
             let is_quantity = matches!(value, Value::Quantity { .. });
@@ -83,13 +78,13 @@ impl<'a> Inference<'a> {
             first = first.or(is_quantity.then_some(item));
         }
         match common {
-            Value::Number { .. } => Value::other_number(f64::NAN),
+            Value::Number(_) => Value::Number(f64::NAN),
             other => other,
         }
     }
 
-    /// A sum of any number of terms. Those whose dimension is open take the one that is expected, so that what does not
-    /// fit is not blamed on them.
+    /// A sum of any number of terms. Beside a parameter or an input, terms whose dimension is open take the expected one, so
+    /// that another term is blamed where they do not fit.
     pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
         let mut at = e;
@@ -100,8 +95,9 @@ impl<'a> Inference<'a> {
         written.push((None, at));
         let terms: Vec<_> =
             written.into_iter().rev().map(|(sum, term)| (sum, term, self.value(term))).collect();
+        let is_anchored = terms.iter().any(|(.., value)| value.anchor() > Anchor::Motion);
         for (_, term, value) in &terms {
-            if let (Value::Quantity { dimension, .. }, Some(expected)) = (value, expected)
+            if let (Value::Quantity { dimension, .. }, Some(expected), true) = (value, expected, is_anchored)
                 && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
             {
                 self.equate(dimension, expected, Origin { reason: Reason::Place, at: term, like: None });
@@ -114,7 +110,7 @@ impl<'a> Inference<'a> {
             self.alike(total, value, Origin { reason, at, like: None })
         });
         match total {
-            Value::Number { .. } => Value::other_number(f64::NAN),
+            Value::Number(_) => Value::Number(f64::NAN),
             other => other,
         }
     }
@@ -132,18 +128,33 @@ impl<'a> Inference<'a> {
                 _ => factors.push((below, self.value(at))),
             }
         }
-        self.multiply(&factors)
+        let value = self.multiply(&factors);
+        // `sin(angle) * x` is a metre along `x` where a length is expected, as `x` is.
+        let has_direction = factors.iter().any(|(_, factor)| matches!(factor, Value::Direction));
+        match &value {
+            Value::Quantity { dimension, anchor: Anchor::Motion }
+                if has_direction && self.system.resolve(dimension).is_some_and(|d| d.is_plain()) =>
+            {
+                Value::Direction
+            }
+            _ => value,
+        }
     }
 
     /// The product of factors; those marked divide.
     fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
-        self.check_mixed(&factors.iter().map(|(_, f)| f).collect::<Vec<_>>());
         let (value, free) = product(factors);
-        let (Value::Quantity { dimension, named }, true) = (&value, free) else { return value };
+        let is_gravity = factors.iter().any(|(_, factor)| match factor {
+            Value::Number(g) => self.gravity.contains(&g.abs()),
+            _ => false,
+        });
+        let (Value::Quantity { dimension, anchor }, true) = (&value, free || is_gravity) else {
+            return value;
+        };
         let number = Dimension::variable(self.system.variable());
         self.wish(number.clone());
         match dimension.times(&number) {
-            Some(dimension) => Value::Quantity { dimension, named: *named },
+            Some(dimension) => Value::Quantity { dimension, anchor: *anchor },
             None => Value::Unknown,
         }
     }
@@ -178,7 +189,7 @@ impl<'a> Inference<'a> {
                 Value::quantity(PLAIN)
             }
             ("sqrt", [a]) => match self.value(a) {
-                Value::Number { value, .. } => Value::other_number(value.sqrt()),
+                Value::Number(value) => Value::Number(value.sqrt()),
                 other => other.power(Ratio::new(1, 2)),
             },
             ("pow", [a, n]) => self.power(a, n),
@@ -190,7 +201,7 @@ impl<'a> Inference<'a> {
             ("min" | "max", _) => self.all_alike(arguments, Reason::Alike(text)),
             ("atan2", _) => match self.all_alike(arguments, Reason::Alike(text)) {
                 Value::Quantity { .. } => Value::quantity(PLAIN),
-                _ => Value::formula(f64::NAN),
+                _ => Value::Number(f64::NAN),
             },
             _ => return None,
         })
@@ -201,7 +212,10 @@ impl<'a> Inference<'a> {
         Some(match (text, arguments) {
             ("dot" | "cross", _) => {
                 let factors: Vec<_> = arguments.iter().map(|a| (false, self.value(a))).collect();
-                self.multiply(&factors)
+                match self.multiply(&factors) {
+                    Value::Direction if text == "dot" => Value::quantity(PLAIN),
+                    product => product,
+                }
             }
             ("norm", [a]) => match self.value(a) {
                 Value::Direction => Value::quantity(PLAIN),
@@ -282,7 +296,7 @@ impl<'a> Inference<'a> {
                 self.point(base);
                 let radius =
                     arguments.first().map(|radius| self.expect(radius, &LENGTH, "m", Reason::Argument));
-                Value::Quantity { dimension: LENGTH, named: radius.is_some_and(|radius| radius.is_named()) }
+                Value::Quantity { dimension: LENGTH, anchor: radius.map_or(Anchor::Motion, |r| r.anchor()) }
             }
             _ => return None,
         })
@@ -363,7 +377,7 @@ impl<'a> Inference<'a> {
         for (argument, variable) in arguments.iter().zip(variables) {
             self.expect(argument, &Dimension::variable(*variable), "", Reason::Argument);
         }
-        Value::Quantity { dimension: Dimension::variable(*value), named: true }
+        Value::Quantity { dimension: Dimension::variable(*value), anchor: Anchor::Parameter }
     }
 
     /// A function of a plain number.
@@ -373,7 +387,7 @@ impl<'a> Inference<'a> {
         };
         let unit = if matches!(text, "sin" | "cos" | "tan") { "rad" } else { "1" };
         match self.expect(a, &PLAIN, unit, Reason::Argument) {
-            Value::Number { value, .. } => Value::formula(f.apply(value)),
+            Value::Number(value) => Value::Number(f.apply(value)),
             Value::Direction => Value::Unknown,
             _ => Value::quantity(PLAIN),
         }
@@ -384,16 +398,13 @@ impl<'a> Inference<'a> {
         let base = self.value(a);
         let exponent = self.expect(n, &PLAIN, "1", Reason::Argument);
         match (base, exponent) {
-            (Value::Number { value, .. }, Value::Number { value: n, .. }) => {
-                Value::other_number(value.powf(n))
-            }
-            (Value::Number { .. }, _) => Value::quantity(PLAIN),
-            (base, Value::Number { value, .. }) => base.power(Ratio::of(value)),
-            (Value::Mixed(k), _) => Value::Mixed(k),
-            (Value::Quantity { dimension, named }, _) => {
+            (Value::Number(value), Value::Number(n)) => Value::Number(value.powf(n)),
+            (Value::Number(_), _) => Value::quantity(PLAIN),
+            (base, Value::Number(n)) => base.power(Ratio::of(n)),
+            (Value::Quantity { dimension, anchor }, _) => {
                 let power = Dimension::variable(self.system.variable());
                 self.wishes.push((dimension, Some(power.clone())));
-                Value::Quantity { dimension: power, named }
+                Value::Quantity { dimension: power, anchor }
             }
             _ => Value::Unknown,
         }
@@ -430,8 +441,8 @@ impl<'a> Inference<'a> {
 /// A quantity divided by one of this dimension; anything else as it is.
 fn quotient(value: Value, by: &Dimension) -> Value {
     match value {
-        Value::Quantity { dimension, named } => match dimension.over(by) {
-            Some(dimension) => Value::Quantity { dimension, named },
+        Value::Quantity { dimension, anchor } => match dimension.over(by) {
+            Some(dimension) => Value::Quantity { dimension, anchor },
             None => Value::Unknown,
         },
         other => other,

@@ -196,3 +196,50 @@ pub enum ActionKind {
         value: Option<Expr>,
     },
 }
+
+impl ActionKind {
+    /// The expressions of a force element, with the names of their arguments.
+    pub fn expressions(&self) -> Vec<(&'static str, &Expr)> {
+        let law = |law: &Law, linear: &'static str| match law {
+            Law::Linear(_) => linear,
+            Law::Force(_) => "force",
+            Law::Energy(_) => "energy",
+        };
+        match self {
+            ActionKind::Spring { law: given, free } => {
+                let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
+                let free =
+                    free.iter().map(|(e, angle)| (if *angle { "free_angle" } else { "free_length" }, e));
+                [(law(given, "stiffness"), e)].into_iter().chain(free).collect()
+            }
+            ActionKind::Dashpot { law: given } => {
+                let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
+                vec![(law(given, "damping"), e)]
+            }
+            ActionKind::Inerter { inertance } => vec![("inertance", inertance)],
+            ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed } => {
+                let others = [
+                    ("stiction", stiction),
+                    ("stribeck_speed", stribeck_speed),
+                    ("viscous", viscous),
+                    ("speed", speed),
+                ];
+                let others = others.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?)));
+                [("coulomb", coulomb)].into_iter().chain(others).collect()
+            }
+            ActionKind::Gravity { constant, mu } => {
+                let both = [("constant", constant), ("mu", mu)];
+                both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
+            }
+            ActionKind::Attraction { strength } => vec![("strength", strength)],
+            ActionKind::Force { along: direction, value } => {
+                let both = [("along", direction), ("value", value)];
+                both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
+            }
+            ActionKind::Torque { about: direction, value } => {
+                let both = [("about", direction), ("value", value)];
+                both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
+            }
+        }
+    }
+}

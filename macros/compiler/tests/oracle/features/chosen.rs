@@ -10,7 +10,7 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
         #[joint(ground -> cart, along = x)] rail: Sleeve,
         #[joint(cart -> arm, about = z)] hinge: Pin,
         #[acts(on = arm.at(l * x), along = arm.y)] jet: Force,
-        #[acts(on = rail, damping = 0.3 * l)] rubbing: Dashpot,
+        #[acts(on = rail, damping = c * l)] rubbing: Dashpot, #[define(0.3)] c: Scalar,
         #[speed(rate(rail) * cos(hinge) + 0.3 * rate(hinge))] along: Speed,
         #[speed(1.5 * rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,
         #[output(along * hinge)] product: Scalar,

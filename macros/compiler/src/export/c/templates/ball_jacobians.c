@@ -1,21 +1,21 @@
 /* How q + dv of a ball joint moves in its body axes with q and with dv, column by column: exp(-dv) and the right Jacobian of
  * SO(3) (Chirikjian, Stochastic Models, Information Theory, and Lie Groups, vol. 2, 2012, 10.6). */
-static void ball_integrate_derivatives(const double dv[3], double by_q[9], double by_dv[9]) {
+static void lw_ball_integrate_derivatives(const double dv[3], double by_q[9], double by_dv[9]) {
     static const double identity[4] = {0.0, 0.0, 0.0, 1.0};
     const double back[3] = {-dv[0], -dv[1], -dv[2]};
     double turn[4], factors[2];
-    ball_integrate(identity, back, turn);
-    left_jacobian(dot_of(dv, dv), factors);
+    lw_ball_integrate(identity, back, turn);
+    lw_left_jacobian(lw_dot_of(dv, dv), factors);
     for (int j = 0; j < 3; ++j) {
         const double e[3] = {j == 0, j == 1, j == 2};
         double first[3], second[3], inner[3], outer[3];
-        cross_into(dv, e, first);
-        cross_into(dv, first, second);
-        cross_into(turn, e, inner);
+        lw_cross_into(dv, e, first);
+        lw_cross_into(dv, first, second);
+        lw_cross_into(turn, e, inner);
         for (int k = 0; k < 3; ++k) {
             inner[k] += turn[3] * e[k];
         }
-        cross_into(turn, inner, outer);
+        lw_cross_into(turn, inner, outer);
         for (int k = 0; k < 3; ++k) {
             by_q[3 * j + k] = e[k] + 2.0 * outer[k];
             by_dv[3 * j + k] = e[k] - factors[0] * first[k] + factors[1] * second[k];
@@ -24,21 +24,21 @@ static void ball_integrate_derivatives(const double dv[3], double by_q[9], doubl
 }
 
 /* How the rate of dv of a ball joint changes with dv and with v. */
-static void ball_tangent_rate_derivatives(const double dv[3], const double v[3], double by_dv[9], double by_v[9]) {
-    const double square = dot_of(dv, dv);
-    const double second = second_bracket(square), fall = -2.0 * fourth_bracket(square);
+static void lw_ball_tangent_rate_derivatives(const double dv[3], const double v[3], double by_dv[9], double by_v[9]) {
+    const double square = lw_dot_of(dv, dv);
+    const double second = lw_second_bracket(square), fall = -2.0 * lw_fourth_bracket(square);
     double first[3], twice[3];
-    cross_into(dv, v, first);
-    cross_into(dv, first, twice);
+    lw_cross_into(dv, v, first);
+    lw_cross_into(dv, first, twice);
     for (int j = 0; j < 3; ++j) {
         const double e[3] = {j == 0, j == 1, j == 2};
         double changed[3], outer[3], inner[3];
-        cross_into(e, v, changed);
-        cross_into(e, first, outer);
-        cross_into(dv, changed, inner);
+        lw_cross_into(e, v, changed);
+        lw_cross_into(e, first, outer);
+        lw_cross_into(dv, changed, inner);
         for (int k = 0; k < 3; ++k) {
             by_dv[3 * j + k] = 0.5 * changed[k] + second * (outer[k] + inner[k]) + fall * dv[j] * twice[k];
         }
-        ball_tangent_rate(dv, e, by_v + 3 * j);
+        lw_ball_tangent_rate(dv, e, by_v + 3 * j);
     }
 }

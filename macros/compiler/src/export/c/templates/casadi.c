@@ -43,7 +43,7 @@
     }
 
 /* Rows of so many columns from one matrix to another, with the distances between columns. */
-static void block(int rows, int columns, int from_stride, const casadi_real *from, int stride, casadi_real *to) {
+static void lw_block(int rows, int columns, int from_stride, const casadi_real *from, int stride, casadi_real *to) {
     for (int j = 0; j < columns; ++j) {
         for (int i = 0; i < rows; ++i) {
             to[j * stride + i] = from[j * from_stride + i];

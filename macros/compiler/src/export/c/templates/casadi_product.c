@@ -1,5 +1,5 @@
 /* The product of two matrices. */
-static void product(int rows, int inner, int columns, const casadi_real *a, const casadi_real *b, casadi_real *c) {
+static void lw_product(int rows, int inner, int columns, const casadi_real *a, const casadi_real *b, casadi_real *c) {
     for (int j = 0; j < columns; ++j) {
         for (int i = 0; i < rows; ++i) {
             c[j * rows + i] = 0.0;

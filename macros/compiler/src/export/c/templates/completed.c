@@ -1,5 +1,5 @@
 /* Adds to every column of a matrix its combination of the columns of the trunk, whose factors stand in a row for each column. */
-static void complete(int rows, int width, double *matrix, const int *trunk, const double *factors) {
+static void lw_complete(int rows, int width, double *matrix, const int *trunk, const double *factors) {
     for (int j = 0; j < rows; ++j) {
         for (int t = 0; t < width; ++t) {
             const double by = factors[j * width + t];

@@ -1,5 +1,5 @@
 /* Four at a time, which compilers turn into vector instructions. Where they are sure to be there these are written out: the angles
- * come and go in registers, the operations are those of `small_sin_cos`. */
+ * come and go in registers, the operations are those of `lw_small_sin_cos`. */
 #if defined(ROUND) && defined(FP_FAST_FMA) && defined(__AVX2__) && defined(__FMA__)
 #include <immintrin.h>
 #define ALL(x) _mm256_set1_pd(x)
@@ -14,16 +14,16 @@
 #else
 #define INLINED
 #endif
-static void large_sin_cos_4(const double x[4], double s[4], double c[4]) {
+static void lw_large_sin_cos_4(const double x[4], double s[4], double c[4]) {
     for (int k = 0; k < 4; ++k) {
-        sin_cos(x[k], &s[k], &c[k]);
+        lw_sin_cos(x[k], &s[k], &c[k]);
     }
 }
-INLINED static inline void sin_cos_4(const double x[4], double s[4], double c[4]) {
+INLINED static inline void lw_sin_cos_4(const double x[4], double s[4], double c[4]) {
     const __m256d angles = _mm256_set_pd(x[3], x[2], x[1], x[0]);
     const __m256d sizes = _mm256_andnot_pd(ALL(-0.0), angles);
     if (_mm256_movemask_pd(_mm256_cmp_pd(sizes, ALL(1e5), _CMP_LE_OQ)) != 15) {
-        large_sin_cos_4(x, s, c);
+        lw_large_sin_cos_4(x, s, c);
         return;
     }
     const __m256d shifted = MUL_ADD(angles, ALL(0.63661977236758134308), ALL(ROUND));
@@ -65,7 +65,7 @@ INLINED static inline void sin_cos_4(const double x[4], double s[4], double c[4]
 #undef BITS
 #undef NUMBERS
 #else
-static inline void sin_cos_4(const double x[4], double s[4], double c[4]) {
+static inline void lw_sin_cos_4(const double x[4], double s[4], double c[4]) {
 #ifdef ROUND
     double sines[4], cosines[4];
     int large = 0;
@@ -74,7 +74,7 @@ static inline void sin_cos_4(const double x[4], double s[4], double c[4]) {
     }
     if (!large) {
         for (int k = 0; k < 4; ++k) {
-            small_sin_cos(x[k], &sines[k], &cosines[k]);
+            lw_small_sin_cos(x[k], &sines[k], &cosines[k]);
         }
         for (int k = 0; k < 4; ++k) {
             s[k] = sines[k];
@@ -84,7 +84,7 @@ static inline void sin_cos_4(const double x[4], double s[4], double c[4]) {
     }
 #endif
     for (int k = 0; k < 4; ++k) {
-        sin_cos(x[k], &s[k], &c[k]);
+        lw_sin_cos(x[k], &s[k], &c[k]);
     }
 }
 #endif

@@ -3,13 +3,13 @@
 #define FP_FAST_FMA
 #endif
 #ifdef FP_FAST_FMA
-#define mul_add(a, b, c) fma(a, b, c)
-#define mul_sub(a, b, c) fma(a, b, -(c))
-#define neg_mul_add(a, b, c) fma(-(a), b, c)
+#define lw_mul_add(a, b, c) fma(a, b, c)
+#define lw_mul_sub(a, b, c) fma(a, b, -(c))
+#define lw_neg_mul_add(a, b, c) fma(-(a), b, c)
 #else
-#define mul_add(a, b, c) ((a) * (b) + (c))
-#define mul_sub(a, b, c) ((a) * (b) - (c))
-#define neg_mul_add(a, b, c) ((c) - (a) * (b))
+#define lw_mul_add(a, b, c) ((a) * (b) + (c))
+#define lw_mul_sub(a, b, c) ((a) * (b) - (c))
+#define lw_neg_mul_add(a, b, c) ((c) - (a) * (b))
 #endif
 
 /* gcc puts the entries of results that stand side by side into vector registers one by one, which takes longer than to store them. */

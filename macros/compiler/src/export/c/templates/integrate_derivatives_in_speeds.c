@@ -6,8 +6,8 @@
     @PREFIX@_speed_matrix(@OWN@there, y);
     @PREFIX@_rate_changes(@OWN@q, dv, changes);
     @PREFIX@_joints_integrate_derivatives(@OWN@way, of_q, of_way);
-    product_of(of_q, z, sum);
-    add_products(@NV@, of_way, changes, sum);
-    product_of(y, sum, by_q);
-    product_of(of_way, z, sum);
-    product_of(y, sum, by_dv);
+    lw_product_of(of_q, z, sum);
+    lw_add_products(@NV@, of_way, changes, sum);
+    lw_product_of(y, sum, by_q);
+    lw_product_of(of_way, z, sum);
+    lw_product_of(y, sum, by_dv);

@@ -1,6 +1,6 @@
 /* Puts the inverse of a symmetric positive definite matrix in its place: Gauss-Jordan elimination without interchanges (Golub and
  * Van Loan 2013, ch. 3.2). */
-static void invert_inner(int n, double *m) {
+static void lw_invert_inner(int n, double *m) {
     for (int k = 0; k < n; ++k) {
         const double by = 1.0 / m[k * n + k];
         m[k * n + k] = 1.0;
@@ -22,7 +22,7 @@ static void invert_inner(int n, double *m) {
 
 /* Inverts a mass matrix [A B; B' C]: the matrix has the inverse of C, a block for each limb, in the columns of the limbs; borders
  * has the rows of the trunk by column. The limb of a velocity of the trunk is -1. */
-static void invert(int rows, int width, double *matrix, const int *trunk, const int *limb, const double *borders) {
+static void lw_invert(int rows, int width, double *matrix, const int *trunk, const int *limb, const double *borders) {
     double g[@NV@ * @NV@], inner[@NV@ * @NV@];
     for (int c = 0; c < width; ++c) {
         for (int t = 0; t < width; ++t) {
@@ -50,7 +50,7 @@ static void invert(int rows, int width, double *matrix, const int *trunk, const 
             }
         }
     }
-    invert_inner(width, inner);
+    lw_invert_inner(width, inner);
     for (int c = 0; c < width; ++c) {
         double *column = matrix + trunk[c] * rows;
         for (int i = 0; i < rows; ++i) {
@@ -64,5 +64,5 @@ static void invert(int rows, int width, double *matrix, const int *trunk, const 
             column[trunk[t]] = inner[c * width + t];
         }
     }
-    complete(rows, width, matrix, trunk, g);
+    lw_complete(rows, width, matrix, trunk, g);
 }

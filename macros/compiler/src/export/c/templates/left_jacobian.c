@@ -1,5 +1,5 @@
 /* (1 - cos x)/x^2 and (x - sin x)/x^3 of x^2: the left Jacobian of SO(3) is 1 + a [x] + b [x]^2. */
-static void left_jacobian(double square, double factors[2]) {
+static void lw_left_jacobian(double square, double factors[2]) {
     if (square < 0.05) {
         static const double even[6] = {2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0};
         static const double odd[6] = {6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0};

@@ -1,5 +1,5 @@
 /* a + s b */
-static void plus_into(const double a[6], double s, const double b[6], double c[6]) {
+static void lw_plus_into(const double a[6], double s, const double b[6], double c[6]) {
     for (int k = 0; k < 6; ++k) {
         c[k] = a[k] + s * b[k];
     }
@@ -7,7 +7,7 @@ static void plus_into(const double a[6], double s, const double b[6], double c[6
 
 /* Factors of ad, ad^2, ad^3 and ad^4 in the left Jacobian of SE(3), the sum of ad^k / (k + 1)!, of x^2: ad has the minimal
  * polynomial ad (ad^2 + x^2)^2 (Selig, Geometric Fundamentals of Robotics, 4.6). */
-static void jacobian_factors(double square, double c[4]) {
+static void lw_jacobian_factors(double square, double c[4]) {
     if (square < 1.0) {
         double power = 1.0, odd = 0.5, even = 1.0 / 6.0;
         c[0] = 0.5;
@@ -36,25 +36,25 @@ static void jacobian_factors(double square, double c[4]) {
 
 /* How q + dv of a free joint moves in its body axes with q and with dv: the adjoint of exp(-dv) and the right Jacobian of
  * SE(3); linear parts first, column by column. */
-static void free_integrate_derivatives(const double dv[6], double by_q[36], double by_dv[36]) {
+static void lw_free_integrate_derivatives(const double dv[6], double by_q[36], double by_dv[36]) {
     static const double identity[7] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0};
     double end[7], c[4];
-    free_integrate(identity, dv, end);
+    lw_free_integrate(identity, dv, end);
     const double back[4] = {-end[3], -end[4], -end[5], end[6]};
-    jacobian_factors(dot_of(dv + 3, dv + 3), c);
+    lw_jacobian_factors(lw_dot_of(dv + 3, dv + 3), c);
     for (int j = 0; j < 6; ++j) {
         double e[6] = {0.0}, moved[3], once[6], twice[6], thrice[6], four_times[6];
         e[j] = 1.0;
-        cross_into(e + 3, end, moved);
+        lw_cross_into(e + 3, end, moved);
         for (int k = 0; k < 3; ++k) {
             moved[k] += e[k];
         }
-        rotate(back, moved, by_q + 6 * j);
-        rotate(back, e + 3, by_q + 6 * j + 3);
-        bracket(dv, e, once);
-        bracket(dv, once, twice);
-        bracket(dv, twice, thrice);
-        bracket(dv, thrice, four_times);
+        lw_rotate(back, moved, by_q + 6 * j);
+        lw_rotate(back, e + 3, by_q + 6 * j + 3);
+        lw_bracket(dv, e, once);
+        lw_bracket(dv, once, twice);
+        lw_bracket(dv, twice, thrice);
+        lw_bracket(dv, thrice, four_times);
         for (int k = 0; k < 6; ++k) {
             by_dv[6 * j + k] = e[k] - c[0] * once[k] + c[1] * twice[k] - c[2] * thrice[k] + c[3] * four_times[k];
         }
@@ -62,7 +62,7 @@ static void free_integrate_derivatives(const double dv[6], double by_q[36], doub
 }
 
 /* Derivatives by x^2 of the factors of ad^2 and ad^4 in the inverse Jacobian of SE(3). */
-static void even_slopes(double square, double slopes[2]) {
+static void lw_even_slopes(double square, double slopes[2]) {
     static const double series[8] = {1.0 / 12.0, 1.0 / 720.0, 1.0 / 30240.0, 1.0 / 1209600.0, 1.0 / 47900160.0,
         691.0 / 1307674368000.0, 1.0 / 74724249600.0, 3617.0 / 10670622842880000.0};
     if (square < 0.25) {
@@ -86,34 +86,34 @@ static void even_slopes(double square, double slopes[2]) {
 }
 
 /* How the rate of dv of a free joint changes with dv and with v. */
-static void free_tangent_rate_derivatives(const double dv[6], const double v[6], double by_dv[36], double by_v[36]) {
-    const double square = dot_of(dv + 3, dv + 3);
-    const double fourth = fourth_bracket(square);
-    const double second = second_bracket(square) + square * fourth;
+static void lw_free_tangent_rate_derivatives(const double dv[6], const double v[6], double by_dv[36], double by_v[36]) {
+    const double square = lw_dot_of(dv + 3, dv + 3);
+    const double fourth = lw_fourth_bracket(square);
+    const double second = lw_second_bracket(square) + square * fourth;
     double slopes[2], b1[6], b2[6], b3[6], b4[6];
-    even_slopes(square, slopes);
-    bracket(dv, v, b1);
-    bracket(dv, b1, b2);
-    bracket(dv, b2, b3);
-    bracket(dv, b3, b4);
+    lw_even_slopes(square, slopes);
+    lw_bracket(dv, v, b1);
+    lw_bracket(dv, b1, b2);
+    lw_bracket(dv, b2, b3);
+    lw_bracket(dv, b3, b4);
     for (int j = 0; j < 6; ++j) {
         double e[6] = {0.0}, c1[6], c2[6], c3[6], c4[6], inner[6];
         e[j] = 1.0;
         const double along = j < 3 ? 0.0 : 2.0 * dv[j];
-        bracket(e, v, c1);
-        bracket(e, b1, c2);
-        bracket(dv, c1, inner);
-        plus_into(c2, 1.0, inner, c2);
-        bracket(e, b2, c3);
-        bracket(dv, c2, inner);
-        plus_into(c3, 1.0, inner, c3);
-        bracket(e, b3, c4);
-        bracket(dv, c3, inner);
-        plus_into(c4, 1.0, inner, c4);
+        lw_bracket(e, v, c1);
+        lw_bracket(e, b1, c2);
+        lw_bracket(dv, c1, inner);
+        lw_plus_into(c2, 1.0, inner, c2);
+        lw_bracket(e, b2, c3);
+        lw_bracket(dv, c2, inner);
+        lw_plus_into(c3, 1.0, inner, c3);
+        lw_bracket(e, b3, c4);
+        lw_bracket(dv, c3, inner);
+        lw_plus_into(c4, 1.0, inner, c4);
         for (int k = 0; k < 6; ++k) {
             by_dv[6 * j + k] = 0.5 * c1[k] + second * c2[k] + fourth * c4[k] + slopes[0] * along * b2[k]
                 + slopes[1] * along * b4[k];
         }
-        free_tangent_rate(dv, e, by_v + 6 * j);
+        lw_free_tangent_rate(dv, e, by_v + 6 * j);
     }
 }

@@ -1,5 +1,5 @@
 /* Rows of a block of a square matrix with the same rows of all columns; values stay. */
-static void moved_block(int rows, int first, const double *by, const double *part, double *result) {
+static void lw_moved_block(int rows, int first, const double *by, const double *part, double *result) {
     for (int j = 1; j <= @COLUMNS@; ++j) {
         for (int i = 0; i < rows; ++i) {
             double sum = 0.0;

@@ -1,5 +1,5 @@
 /* The factor becomes minus its product with the inverse: both column by column, of so many rows. */
-static void minus_products(int rows, int columns, const double *inverse, double *factor) {
+static void lw_minus_products(int rows, int columns, const double *inverse, double *factor) {
     for (int j = 0; j < columns; ++j) {
         double *column = factor + j * rows;
         double sum[@NV@] = {0.0};

@@ -1,8 +1,8 @@
 /* The product of two square matrices. */
-static void product_of(const double *a, const double *b, double *result) {
+static void lw_product_of(const double *a, const double *b, double *result) {
     for (int k = 0; k < @NV@ * @NV@; ++k) {
         result[k] = 0.0;
     }
-    add_products(@NV@, a, b, result);
+    lw_add_products(@NV@, a, b, result);
 }
 

@@ -14,15 +14,15 @@
     @PREFIX@_rate_changes(@OWN@there, v, changes_there);
     @PREFIX@_integrate_derivatives(@OWN@q, dv, moved_by_q, moved_by_dv);
     @PREFIX@_joints_tangent_rate_derivatives(@OWN@way, rates, of_way, of_rates);
-    product_of(of_rates, changes_there, turned);
-    product_of(of_way, changes, sum);
-    add_products(@NV@, turned, moved_by_q, sum);
+    lw_product_of(of_rates, changes_there, turned);
+    lw_product_of(of_way, changes, sum);
+    lw_add_products(@NV@, turned, moved_by_q, sum);
     for (int k = 0; k < N; ++k) {
         sum[k] -= of_found[k];
     }
-    product_of(y, sum, by_q);
-    product_of(of_way, z, sum);
-    add_products(@NV@, turned, moved_by_dv, sum);
-    product_of(y, sum, by_dv);
-    product_of(of_rates, z_there, sum);
-    product_of(y, sum, by_v);
+    lw_product_of(y, sum, by_q);
+    lw_product_of(of_way, z, sum);
+    lw_add_products(@NV@, turned, moved_by_dv, sum);
+    lw_product_of(y, sum, by_dv);
+    lw_product_of(of_rates, z_there, sum);
+    lw_product_of(y, sum, by_v);

@@ -1,5 +1,5 @@
 /* Sine and cosine, by the library. */
-static inline void sin_cos(double x, double *s, double *c) {
+static inline void lw_sin_cos(double x, double *s, double *c) {
     *s = sin(x);
     *c = cos(x);
 }

@@ -1,6 +1,6 @@
 /* Accelerations of forces by the inverse, with what is left over corrected: the inverse of an ill-conditioned matrix is exact enough
  * for that, not for the whole. Every velocity belongs to the trunk where there are no limbs. */
-static void solve(int rows, int width, const double *inverse, const int *trunk, const int *limb, const double *borders, double *column) {
+static void lw_solve(int rows, int width, const double *inverse, const int *trunk, const int *limb, const double *borders, double *column) {
     double x[@NV@], rest[@NV@];
     int limbs = 0;
     for (int i = 0; i < rows; ++i) {

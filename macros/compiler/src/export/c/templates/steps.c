@@ -1,5 +1,5 @@
 /* Accelerations under inputs. */
-static void accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, const double *v, const double *u, double *a) {
+static void lw_accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, const double *v, const double *u, double *a) {
     double tau[@NV@];
     @FORCES@
     @PREFIX@_forward_dynamics(@OWN@@T@q, v, tau, a);
@@ -7,7 +7,7 @@ static void accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, const
 
 @semi_implicit_euler_step@ {
     double a[@NV@], w[@NV@], dv[@NV@];
-    accelerations_under(@OWN@@T@q, v, u, a);
+    lw_accelerations_under(@OWN@@T@q, v, u, a);
     for (int k = 0; k < @N@; ++k) {
         w[k] = v[k] + h * a[k];
         dv[k] = h * w[k];
@@ -21,7 +21,7 @@ static void accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, const
 @rk4_step@ {
     static const double parts[3] = {0.5, 0.5, 1.0};
     double rate[@NV@], a[@NV@], dv[@NV@], w[@NV@], sum_rate[@NV@], sum_a[@NV@], at[@NQ@];
-    accelerations_under(@OWN@@T@q, v, u, a);
+    lw_accelerations_under(@OWN@@T@q, v, u, a);
     for (int k = 0; k < @N@; ++k) {
         rate[k] = v[k];
         sum_rate[k] = v[k];
@@ -35,7 +35,7 @@ static void accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, const
         }
         @RATE_OF_WAY@;
         @PREFIX@_integrate(@OWN@q, dv, at);
-        accelerations_under(@OWN@@LATER@at, w, u, a);
+        lw_accelerations_under(@OWN@@LATER@at, w, u, a);
         for (int k = 0; k < @N@; ++k) {
             sum_rate[k] += weight * rate[k];
             sum_a[k] += weight * a[k];

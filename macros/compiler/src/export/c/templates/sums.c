@@ -1,5 +1,5 @@
 /* Adds the product of a square matrix with so many columns. */
-static void add_products(int columns, const double *by, const double *part, double *sum) {
+static void lw_add_products(int columns, const double *by, const double *part, double *sum) {
     for (int j = 0; j < columns; ++j) {
         double column[@NV@];
         for (int i = 0; i < @NV@; ++i) {

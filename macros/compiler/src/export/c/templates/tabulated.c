@@ -1,5 +1,5 @@
 /* The weights of the four points around the cell of an axis that holds x, of the derivative of some order; the cell's number. */
-static int weights_around(const double *points, int count, double x, int order, int smooth, int extrapolated,
+static int lw_weights_around(const double *points, int count, double x, int order, int smooth, int extrapolated,
     double weights[4]) {
     const double low = points[0], high = points[count - 1];
     const double inner = x < low ? low : (x > high ? high : x);
@@ -72,12 +72,12 @@ static int weights_around(const double *points, int count, double x, int order, 
 }
 
 /* The derivative of these orders of a table of so many variables. */
-static double tabulated(const @PREFIX@_table *table, int variables, const double *x, const int *orders) {
+static double lw_tabulated(const @PREFIX@_table *table, int variables, const double *x, const int *orders) {
     double weights[3][4] = {{0.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}};
     int cells[3] = {0, 0, 0}, counts[3] = {1, 1, 1};
     for (int k = 0; k < variables; ++k) {
         counts[k] = table->points[k];
-        cells[k] = weights_around(table->axes[k], counts[k], x[k], orders[k], table->smooth, table->extrapolated,
+        cells[k] = lw_weights_around(table->axes[k], counts[k], x[k], orders[k], table->smooth, table->extrapolated,
             weights[k]);
     }
     double sum = 0.0;

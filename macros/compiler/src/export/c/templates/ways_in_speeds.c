@@ -1,28 +1,28 @@
 /* How the configuration moves that a displacement leads to. */
-static void moved(@START_DECLARED@const double *displacement, double *motion) {
+static void lw_moved(@START_DECLARED@const double *displacement, double *motion) {
     double by_q[@NV@ * @NV@], by_dv[@NV@ * @NV@];
     @PREFIX@_integrate_derivatives(@START@displacement, by_q, by_dv);
-    for (int k = 0; k < CHANGING; ++k) {
+    for (int k = 0; k < LW_CHANGING; ++k) {
         motion[k] = k < @N@ ? displacement[k] : 0.0;
     }
-    add_products(@COLUMNS@, by_dv, displacement + BY_Q, motion + BY_Q);
+    lw_add_products(@COLUMNS@, by_dv, displacement + LW_BY_Q, motion + LW_BY_Q);
     for (int k = 0; k < @N@ * @N@; ++k) {
-        motion[BY_Q + k] += by_q[k];
+        motion[LW_BY_Q + k] += by_q[k];
     }
 }
 
 /* The rate of a displacement with which the configuration moves with the velocity v. */
-static void rate_of(@START_DECLARED@const double *displacement, const double *v, double *rate) {
+static void lw_rate_of(@START_DECLARED@const double *displacement, const double *v, double *rate) {
     double by_q[@NV@ * @NV@], by_dv[@NV@ * @NV@], by_v[@NV@ * @NV@];
     @PREFIX@_displacement_rate_derivatives(@START@displacement, v, by_q, by_dv, by_v);
-    for (int k = 0; k < CHANGING; ++k) {
+    for (int k = 0; k < LW_CHANGING; ++k) {
         rate[k] = 0.0;
     }
     @PREFIX@_displacement_rate(@START@displacement, v, rate);
-    add_products(@COLUMNS@, by_dv, displacement + BY_Q, rate + BY_Q);
-    add_products(@COLUMNS@, by_v, v + BY_Q, rate + BY_Q);
+    lw_add_products(@COLUMNS@, by_dv, displacement + LW_BY_Q, rate + LW_BY_Q);
+    lw_add_products(@COLUMNS@, by_v, v + LW_BY_Q, rate + LW_BY_Q);
     for (int k = 0; k < @N@ * @N@; ++k) {
-        rate[BY_Q + k] += by_q[k];
+        rate[LW_BY_Q + k] += by_q[k];
     }
 }
 

@@ -1,0 +1,57 @@
+//! Conditions on coordinates, after locks: coordinates of joints that stand still are numbers.
+
+use super::joint::FileJoint;
+use super::motion::{Motion, frozen};
+use crate::import::context::{Cx, quote};
+use crate::syntax::{BinaryOp, Constraint, Expr, ExprKind};
+use std::collections::BTreeMap;
+
+/// Residuals below this part of what a condition adds up are rounding errors.
+const ROUNDING: f64 = 1e-9;
+
+/// Returns the conditions on what still moves. One that binds only joints that stand still is reported
+/// unless it is met.
+pub(in crate::import) fn resolve(
+    constraints: Vec<Constraint>,
+    joints: &[Option<(FileJoint, Motion)>],
+    cx: &mut Cx<'_>,
+) -> Vec<Constraint> {
+    let frozen = frozen(joints);
+    constraints.into_iter().filter_map(|constraint| without(constraint, &frozen, cx)).collect()
+}
+
+fn without(mut constraint: Constraint, frozen: &BTreeMap<&str, f64>, cx: &mut Cx<'_>) -> Option<Constraint> {
+    let sides = std::iter::once(&mut constraint.value).chain(&mut constraint.other);
+    sides.for_each(|side| *side = replaced(side, frozen));
+    let other = constraint.other.as_ref().map_or(Some(0.0), number);
+    let (Some(value), Some(other)) = (number(&constraint.value), other) else { return Some(constraint) };
+    if (value - other).abs() > ROUNDING * (1.0 + value.abs() + other.abs()) {
+        let message = format!(
+            "the coupling {} contradicts others: the joints that it binds stand still, and it is off by {}",
+            quote(&constraint.name.text),
+            value - other
+        );
+        cx.error(&constraint.name.place, message, |d| d.help("remove it, or what holds these joints"));
+    }
+    None
+}
+
+/// The expression with numbers in the place of the joints that stand still.
+fn replaced(e: &Expr, frozen: &BTreeMap<&str, f64>) -> Expr {
+    match &e.kind {
+        ExprKind::Name(name) => {
+            frozen.get(name.as_str()).map_or_else(|| e.clone(), |at| Expr::number(*at, &e.place))
+        }
+        ExprKind::Binary(op, a, b, _) => Expr::binary(*op, replaced(a, frozen), replaced(b, frozen)),
+        _ => e.clone(),
+    }
+}
+
+/// The value of sums and products of numbers.
+fn number(e: &Expr) -> Option<f64> {
+    match &e.kind {
+        ExprKind::Binary(BinaryOp::Add, a, b, _) => Some(number(a)? + number(b)?),
+        ExprKind::Binary(BinaryOp::Mul, a, b, _) => Some(number(a)? * number(b)?),
+        _ => e.literal(),
+    }
+}

@@ -1,0 +1,90 @@
+//! Names that a model, the world or a link gives its parts → their whole names.
+
+use crate::import::element::{Node, elements};
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+
+/// The frame of the world, and of the outermost model: all others are at last relative to it.
+pub(super) const WORLD: &str = "world";
+
+/// A model or the world: where names are looked up.
+#[derive(Clone, Debug)]
+pub(super) enum Scope {
+    /// A model. The whole names of its parts begin with this text: `arm::hand::`, or nothing for the only model of a file.
+    Model(String),
+    /// The world around the models.
+    World(Rc<World>),
+}
+
+/// The names of a world.
+#[derive(Debug, Default)]
+pub(super) struct World {
+    /// By model: the text that the whole names of its parts begin with.
+    models: BTreeMap<String, String>,
+    /// By frame and joint of the world: its whole name.
+    parts: BTreeMap<String, String>,
+}
+
+impl World {
+    /// Collects the names of the world `node`, if there is one, whose `models` have these prefixes.
+    pub(super) fn new(node: Option<Node<'_>>, models: &[(Node<'_>, String)]) -> World {
+        let name = |node: &Node<'_>| node.attribute("name").map(str::to_string);
+        // Parts of a model without a prefix keep their names: equal ones of the world become others.
+        let bare = models.iter().filter(|(_, prefix)| prefix.is_empty());
+        let taken: BTreeSet<String> =
+            bare.flat_map(|(model, _)| elements(*model)).filter_map(|part| name(&part)).collect();
+        let parts = node.into_iter().flat_map(elements);
+        let parts = parts.filter(|part| matches!(part.tag_name().name(), "frame" | "joint"));
+        let whole = |name: String| match taken.contains(&name) {
+            true => (name.clone(), format!("{WORLD}::{name}")),
+            false => (name.clone(), name),
+        };
+        World {
+            models: models
+                .iter()
+                .filter_map(|(model, prefix)| Some((name(model)?, prefix.clone())))
+                .collect(),
+            parts: parts.filter_map(|part| name(&part)).map(whole).collect(),
+        }
+    }
+}
+
+impl Scope {
+    /// Returns the whole name that `name` stands for in a reference.
+    pub(super) fn whole_name(&self, name: &str) -> String {
+        match (self, name) {
+            (_, WORLD) => WORLD.to_string(),
+            (Scope::Model(prefix), "__model__") => model(prefix),
+            (Scope::Model(prefix), _) => format!("{prefix}{name}"),
+            (Scope::World(world), _) => {
+                let (first, rest) = name.split_once("::").unwrap_or((name, "__model__"));
+                match (world.models.get(first), world.parts.get(name)) {
+                    (Some(prefix), _) => format!("{prefix}{rest}"),
+                    (None, Some(whole)) => whole.clone(),
+                    (None, None) => name.to_string(),
+                }
+            }
+        }
+    }
+
+    /// Returns the whole name of a part that is declared with this name.
+    pub(super) fn name_of_part(&self, name: &str) -> String {
+        match self {
+            Scope::Model(prefix) => format!("{prefix}{name}"),
+            Scope::World(_) => self.whole_name(name),
+        }
+    }
+
+    /// Returns the whole name of the frame of the model, or of the world.
+    pub(super) fn frame(&self) -> String {
+        match self {
+            Scope::Model(prefix) => model(prefix),
+            Scope::World(_) => WORLD.to_string(),
+        }
+    }
+}
+
+/// Returns the whole name of the frame of a model.
+fn model(prefix: &str) -> String {
+    format!("{prefix}__model__")
+}

@@ -1,0 +1,48 @@
+//! The version of the format that an element is written in.
+
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, place};
+
+/// Attribute of an included model: the version of its file.
+pub(super) const OF_INCLUDED: &str = "sdf_version";
+
+/// The first version in which links, joints and poses are elements with text.
+const FIRST: (u32, u32) = (1, 2);
+
+/// True if an element belongs to a file of an earlier version than `number`; a file that gives none is of the latest.
+pub(super) fn is_before(node: Node<'_>, number: (u32, u32)) -> bool {
+    let version = node.ancestors().find_map(|above| {
+        above
+            .attribute(OF_INCLUDED)
+            .or_else(|| above.attribute("version").filter(|_| above.tag_name().name() == "sdf"))
+    });
+    version.and_then(parse).is_some_and(|version| version < number)
+}
+
+/// Reports a version that cannot be read.
+pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
+    let is_sdf = root.tag_name().name() == "sdf";
+    let Some(version) = root.attribute_node("version").filter(|_| is_sdf) else { return };
+    let at = cx.place(version.range_value().start);
+    match parse(version.value()) {
+        None => {
+            let message = format!("{} is no version of SDF", quote(version.value()));
+            cx.error(&at, message, |d| d.help("expected a number, as in `version=\"1.9\"`"));
+        }
+        Some(found) if found < FIRST => report_first(root, cx),
+        Some(_) => {}
+    }
+}
+
+/// Reports a file of the first version, whose elements have other names.
+pub(super) fn report_first(root: Node<'_>, cx: &mut Cx<'_>) {
+    cx.error(&place(root, cx), "version 1.0 of SDF is not supported", |d| {
+        d.help("convert the file: `gz sdf -p robot.sdf > converted.sdf`")
+    });
+}
+
+/// Returns major and minor number of a version.
+fn parse(text: &str) -> Option<(u32, u32)> {
+    let (major, minor) = text.trim().split_once('.')?;
+    Some((major.parse().ok()?, minor.parse().ok()?))
+}

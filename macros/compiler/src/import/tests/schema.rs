@@ -1,0 +1,191 @@
+//! Attributes of MJCF: each that may change a motion changes what is made of a file, or is refused.
+
+use super::mjcf::mjcf;
+use super::*;
+use crate::import::mjcf::schema;
+use std::collections::{BTreeMap, BTreeSet};
+
+const CASES: &str = include_str!("schema.txt");
+
+/// Bodies with joints, sites, a shape, tendons, couplings and an actuator.
+const BODIES: &str = "<worldbody><site name='o'/><body name='b' euler='10 20 30'>\
+    <joint name='j' range='-1 1' limited='true' stiffness='3' damping='2' frictionloss='1'/><geom type='box' size='1 2 3'/>\
+    <body name='e'><joint name='k' type='slide' range='-1 1' limited='true'/><joint name='n'/>\
+    <inertial pos='1 0 0' mass='2' diaginertia='1 1 3'/><geom name='g' type='cylinder' size='.1 1' pos='3 0 0'/>\
+    <site name='s' pos='5 1 0'/></body></body></worldbody>\
+    <tendon><fixed name='t'><joint joint='j' coef='2'/></fixed><fixed name='u'><joint joint='n' coef='3'/></fixed></tendon>\
+    <equality><joint joint1='n' joint2='k'/></equality><actuator><motor joint='j' group='2'/></actuator>";
+
+/// A class with values of its own.
+const CLASS: &str = "<default><default class='c'><joint stiffness='7'/><geom density='7'/><site pos='7 7 7'/><motor gear='9'/>\
+    <tendon stiffness='7'/><equality active='false'/></default></default>";
+
+const LISTS: [(&str, &str); 4] = [
+    ("*axes", "quat=1 2 3 4; axisangle=1 0 0 1; euler=10 20 30; xyaxes=0 1 0 1 0 0; zaxis=1 0 0"),
+    (
+        "*tendon",
+        "actuatorfrclimited=true; actuatorfrcrange=-1 1; armature=2; damping=3; frictionloss=4; limited=true; \
+         range=-1 1; springlength=0.5; springyield=1; stiffness=8",
+    ),
+    (
+        "*motor",
+        "armature=2; class=c; ctrllimited=true; ctrlrange=-1 1; damping=3; delay=1; forcelimited=true; forcerange=-1 1; gear=7; \
+         name=x",
+    ),
+    ("*target", "joint=k; jointinparent=k; site=s; slidersite=s; cranksite=s; tendon=t"),
+];
+
+/// Elements that are refused with all their attributes.
+const REFUSED: [&str; 8] =
+    ["intvelocity", "damper", "cylinder", "muscle", "adhesion", "orientation", "pid", "dcmotor"];
+
+/// What is made of a file, or the errors.
+fn answer(text: &str) -> String {
+    let mut cx = Diagnostics::new();
+    match import_text(text, &mjcf(), &mut cx) {
+        Some(imported) => format!("{imported:?}"),
+        None => cx.messages().join("\n"),
+    }
+}
+
+/// The answers to a file with an attribute and without it, all else at the same places.
+fn answers(file: &str, attribute: &str, value: &str) -> [String; 2] {
+    let said = format!("{attribute}=\"{value}\"");
+    let file = file.replace('$', CLASS).replace('#', BODIES);
+    [said.clone(), " ".repeat(said.len())]
+        .map(|said| answer(&format!("<mujoco>{}</mujoco>", file.replace('@', &said))))
+}
+
+#[test]
+fn each_attribute_that_may_change_a_motion_is_read_or_refused() {
+    let mut silent = Vec::new();
+    let (mut shown, mut at): (BTreeMap<&str, BTreeSet<&str>>, _) = (BTreeMap::new(), None);
+    for line in CASES.lines().skip_while(|line| !line.starts_with('>')).filter(|line| !line.is_empty()) {
+        if let Some((element, file)) = line.strip_prefix("> ").and_then(|line| line.split_once(": ")) {
+            at = Some((element, file));
+            continue;
+        }
+        let (element, file) = at.expect("an element stands before its attributes");
+        let known = shown.entry(element).or_default();
+        if let Some(elsewhere) = line.strip_prefix("! ") {
+            known.extend(elsewhere.split(' '));
+            continue;
+        }
+        let list = LISTS.iter().find(|(name, _)| *name == line).map_or(line, |(_, list)| list);
+        for (attribute, value) in list.split("; ").filter_map(|one| one.split_once('=')) {
+            known.insert(attribute);
+            let [with, without] = answers(file, attribute, value);
+            if with == without || with.contains("unknown attribute") {
+                silent.push(format!("{element} {attribute}=\"{value}\""));
+            }
+        }
+    }
+    for (element, attributes) in schema::read() {
+        if REFUSED.iter().any(|kind| element == format!("actuator/{kind}")) {
+            let text =
+                format!("<mujoco>{BODIES}<actuator><{}/></actuator></mujoco>", &element["actuator/".len()..]);
+            assert!(answer(&text).contains("is not supported"), "{element}");
+            continue;
+        }
+        let known = shown.get(element.as_str());
+        let missing: Vec<&str> = attributes
+            .moving
+            .into_iter()
+            .filter(|one| !known.is_some_and(|known| known.contains(one)))
+            .collect();
+        silent.extend(missing.into_iter().map(|one| format!("{element} {one} is not in the list")));
+    }
+    assert!(silent.is_empty(), "attributes that change nothing:\n{}", silent.join("\n"));
+}
+
+#[test]
+fn attributes_that_change_no_motion_are_accepted() {
+    for (element, attribute) in
+        [("joint", "margin"), ("geom", "rgba"), ("site", "user"), ("geom", "castshadow")]
+    {
+        let text = |said: &str| {
+            answer(&format!(
+                "<mujoco><worldbody><body><joint/><geom size='1'/><{element} {said}/></body></worldbody></mujoco>"
+            ))
+        };
+        let said = format!("{attribute}=\"1\"");
+        assert_eq!(text(&said), text(&" ".repeat(said.len())), "{element} {attribute}");
+    }
+}
+
+#[test]
+fn what_mjcf_does_not_have_is_refused() {
+    for (inside, at, message, help) in [
+        (
+            "<worldbody><body colour='red'/></worldbody>",
+            "colour",
+            "attribute `colour` of `<body>`",
+            "remove it",
+        ),
+        (
+            "<worldbody><body><joint stifness='1'/></body></worldbody>",
+            "stifness",
+            "attribute `stifness` of `<joint>`",
+            "`stiffness`",
+        ),
+        (
+            "<worldbody/><sensor><clock frequency='1'/></sensor>",
+            "frequency",
+            "attribute `frequency` of `<clock>`",
+            "remove it",
+        ),
+        ("<worldbody/><sensor><clok/></sensor>", "<clok", "element `<clok>`", "did you mean `<clock>`?"),
+        (
+            "<default><joint name='j'/></default><worldbody/>",
+            "name",
+            "attribute `name` of `<joint>`",
+            "remove it",
+        ),
+        (
+            "<default><spatial stiffness='1'/></default><worldbody/>",
+            "<spatial",
+            "element `<spatial>`",
+            "remove it",
+        ),
+        ("<worldbody><foo/></worldbody>", "<foo", "element `<foo>`", "remove it"),
+        ("<worldbody/><tendon><fixde/></tendon>", "<fixde", "element `<fixde>`", "did you mean `<fixed>`?"),
+        (
+            "<worldbody/><actuator><moter joint='j'/></actuator>",
+            "<moter",
+            "element `<moter>`",
+            "did you mean `<motor>`?",
+        ),
+    ] {
+        let column = inside.find(at).expect("it stands there") + 1;
+        let answer = run(&mjcf(), &format!("<mujoco>\n{inside}\n</mujoco>"));
+        let expected = format!("r.xml:2:{column}: unknown {message}");
+        assert!(answer.starts_with(&expected) && answer.contains(help), "{inside}\n{answer}");
+        assert_eq!(answer.matches("r.xml:").count(), 1, "{answer}");
+    }
+}
+
+#[test]
+fn names_are_taken_once() {
+    for (inside, message) in [
+        (
+            "<worldbody><site name='s'/><frame><site name='s'/></frame></worldbody>",
+            "second site with the name `s`",
+        ),
+        (
+            "<worldbody><geom name='s' size='1'/><geom name='s' size='1'/></worldbody>",
+            "second geom with the name `s`",
+        ),
+        ("<worldbody><body name='s'/><body name='s'/></worldbody>", "second body with the name `s`"),
+        (
+            "<worldbody><body><joint name='j'/></body></worldbody><actuator><motor name='m' joint='j'/><position name='m' joint='j'/></actuator>",
+            "second actuator with the name `m`",
+        ),
+        (
+            "<worldbody><body><joint name='j'/></body></worldbody><equality><joint name='m' joint1='j'/><joint name='m' joint1='j'/></equality>",
+            "second equality with the name `m`",
+        ),
+    ] {
+        let answer = run(&mjcf(), &format!("<mujoco>{inside}</mujoco>"));
+        assert!(answer.contains(message), "{inside}\n{answer}");
+    }
+}

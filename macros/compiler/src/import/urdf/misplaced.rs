@@ -1,0 +1,80 @@
+//! Words in robots, links and joints that mean something in another place: they are errors, because otherwise they would be lost
+//! without a word. Elements and attributes of other tools pass.
+
+use crate::diag::nearest;
+use crate::import::context::{Cx, quote};
+use crate::import::element::{Node, elements, place, tag};
+
+/// Elements and attributes of URDF and of other formats that say where something is, how heavy it is, or how it moves.
+const WORDS: [&str; 38] = [
+    "armature",
+    "axis",
+    "child",
+    "cog",
+    "com",
+    "center_of_mass",
+    "centre_of_mass",
+    "damping",
+    "dynamics",
+    "effort",
+    "friction",
+    "inertia",
+    "inertial",
+    "ixx",
+    "iyy",
+    "izz",
+    "joint_axis",
+    "limit",
+    "link",
+    "lower",
+    "mass",
+    "mimic",
+    "multiplier",
+    "offset",
+    "orientation",
+    "origin",
+    "parent",
+    "pos",
+    "pose",
+    "position",
+    "quat",
+    "rotation",
+    "rpy",
+    "stiffness",
+    "translation",
+    "upper",
+    "velocity",
+    "xyz",
+];
+
+/// Reports attributes, text, and elements other than `own` in a robot, a link or a joint, if they mean something in another place. Text
+/// between links is a remark.
+pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
+    for child in elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
+        // Names that are nearly one of its own are reported by others.
+        if nearest(child.tag_name().name(), own).is_none() && !is_neutral(child) {
+            let message = format!("unexpected {} in {}", tag(child), tag(node));
+            cx.error(&place(child, cx), message, |d| d.help(help));
+        }
+    }
+    for attribute in node.attributes().filter(|a| a.namespace().is_none() && WORDS.contains(&a.name())) {
+        let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
+        cx.error(&cx.place(attribute.range().start), message, |d| d.help(help));
+    }
+    let is_robot = node.tag_name().name() == "robot";
+    let texts = node.children().filter(|child| child.is_text() && !is_robot);
+    for text in texts.filter(|text| text.text().is_some_and(|text| text.contains(char::is_alphanumeric))) {
+        let words = text.text().unwrap_or_default();
+        let start = text.range().start + words.len() - words.trim_start().len();
+        let message = format!("unexpected text {} in {}", quote(words.trim()), tag(node));
+        cx.error(&cx.place(start), message, |d| d.help(help));
+    }
+}
+
+/// True for an element that moves nothing: without text, and all numbers of its attributes are zero.
+fn is_neutral(node: Node<'_>) -> bool {
+    let is_zero = |text: &str| text.split_whitespace().all(|word| word.parse() == Ok(0.0));
+    node.attributes().all(|attribute| is_zero(attribute.value()))
+        && node.children().all(|child| child.text().is_none_or(|text| text.trim().is_empty()))
+        && !node.children().any(|child| child.is_element())
+}

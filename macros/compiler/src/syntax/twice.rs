@@ -1,0 +1,94 @@
+//! Two structs of one name in one module: rustc reports the name once, but also each function that both have. So the second
+//! struct gets no functions.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::{Attribute, Item, ItemStruct, Stmt};
+
+/// Returns the bare struct if the source file defines its name in the same scope before the attribute's line, counted from one.
+pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<TokenStream> {
+    let named = |ident: &str| {
+        let definition = format!("struct {ident}");
+        let is_whole =
+            |end: usize| text[end..].chars().next().is_none_or(|next| !next.is_alphanumeric() && next != '_');
+        let found = text.match_indices(&definition).map(|(at, word)| (at, at + word.len()));
+        found.filter(|(_, end)| is_whole(*end)).map(|(at, _)| at).collect::<Vec<_>>()
+    };
+    // Cheap first: there is only one in nearly every file.
+    let ItemStruct { vis, ident, .. } = match text.matches("struct ").count() {
+        0 | 1 => return None,
+        _ => syn::parse2(item.clone()).ok()?,
+    };
+    let found = named(&ident.to_string());
+    let first = found.first().map(|at| 1 + text[..*at].matches('\n').count())?;
+    if found.len() < 2 || first >= line {
+        return None;
+    }
+    let mut scopes = vec![syn::parse_file(text).ok()?.items];
+    while let Some(items) = scopes.pop() {
+        let same = items.iter().filter(|item| match item {
+            Item::Struct(item) => item.ident == ident && !item.attrs.iter().any(is_conditional),
+            _ => false,
+        });
+        if same.count() > 1 {
+            return Some(quote!(#vis struct #ident;));
+        }
+        scopes.extend(items.into_iter().filter_map(|item| match item {
+            Item::Mod(module) => module.content.map(|(_, items)| items),
+            Item::Fn(function) => {
+                let statements = function.block.stmts.into_iter();
+                let items =
+                    statements.filter_map(|s| if let Stmt::Item(item) = s { Some(item) } else { None });
+                Some(items.collect())
+            }
+            _ => None,
+        }));
+    }
+    None
+}
+
+/// True for an attribute that may leave the struct out.
+fn is_conditional(attribute: &Attribute) -> bool {
+    attribute.path().is_ident("cfg") || attribute.path().is_ident("cfg_attr")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_second(text: &str, line: usize) -> bool {
+        second_definition(
+            &quote!(
+                pub struct Cart {
+                    mass: f64,
+                }
+            ),
+            text,
+            line,
+        )
+        .is_some()
+    }
+
+    #[test]
+    fn the_second_of_one_scope_is_found() {
+        let one = "#[mechanism]\nstruct Cart { mass: f64 }\n";
+        let twice = format!("{one}{one}");
+        assert!(!is_second(one, 1) && !is_second(&twice, 1) && is_second(&twice, 3));
+        for scope in [format!("mod carts {{\n{twice}}}"), format!("fn main() {{\n{twice}}}")] {
+            assert!(!is_second(&scope, 2) && is_second(&scope, 4), "{scope}");
+        }
+    }
+
+    #[test]
+    fn others_are_not() {
+        let one = "#[mechanism]\nstruct Cart { mass: f64 }\n";
+        for other in [
+            format!("{one}mod more {{\n{one}}}"),
+            format!("#[cfg(a)]\n{one}#[cfg(not(a))]\n{one}"),
+            format!("{one}struct Carts;\nstruct Carts;\n"),
+            format!("// struct Cart\n{one}"),
+        ] {
+            assert!((1..8).all(|line| !is_second(&other, line)), "{other}");
+        }
+    }
+}

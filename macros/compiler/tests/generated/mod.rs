@@ -1,0 +1,21 @@
+//! Generated code as items.
+
+use syn::{Expr, Item, Stmt};
+
+/// The items of generated code, those in `const _: () = { … };` in its place.
+pub fn items(file: syn::File) -> Vec<Item> {
+    let inner = |item: Item| match item {
+        Item::Const(block) if block.ident == "_" => match *block.expr {
+            Expr::Block(block) => {
+                let items = block.block.stmts.into_iter().filter_map(|statement| match statement {
+                    Stmt::Item(item) => Some(item),
+                    _ => None,
+                });
+                items.collect()
+            }
+            _ => Vec::new(),
+        },
+        item => vec![item],
+    };
+    file.items.into_iter().flat_map(inner).collect()
+}

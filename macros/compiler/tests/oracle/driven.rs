@@ -1,0 +1,229 @@
+//! Random mechanisms with as many drives as velocities: sums of coordinates and ways between points, or their rates, are
+//! functions of time. Accelerations follow from the drives alone, and the multipliers are what Kane's equations leave.
+
+use crate::kane::{self, Measure, State};
+use crate::random::Random;
+use crate::spec::{End, Spec, Style, spec};
+use crate::words;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::Quantity;
+use linkwork_compiler::{compile, read};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Largest difference, relative to the largest number of its kind.
+const TOLERANCE: f64 = 1e-7;
+/// Drives whose least pivot is smaller than this, next to the largest entry, are left out.
+const REGULAR: f64 = 1e-2;
+const TIME: f64 = 0.4;
+
+/// A measure that follows `c₀ + c₁ t + c₂ t²`, or whose rate follows the rate of that.
+struct Drive {
+    measure: Measure,
+    path: [f64; 3],
+    by_rate: bool,
+}
+
+/// Checks the mechanism of a seed; false where its drives nearly depend on each other.
+pub fn check(seed: u64) -> bool {
+    let style = Style { bodies: 4, limbs: 0, decades: 0.3, noise: None };
+    let mut spec = spec(9_000_000 + seed, style);
+    for body in &mut spec.bodies {
+        // A slider's coordinate is none that a drive names.
+        body.slider = None;
+    }
+    let (nq, nv) = kane::sizes(&spec);
+    let mut random = Random::new(seed ^ 0xd41e);
+    let drives: Vec<Drive> = drives(&spec, nv, &mut random);
+    let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
+    let (mut q, v, tau) = (list(nq, 1.2), list(nv, 1.0), list(nv, 3.0));
+    normalise(&spec, &mut q);
+    if !kane::cables_are_outside(&spec, &q) || drives.len() != nv {
+        return false;
+    }
+    let zero = vec![0.0; nv];
+    let partial = |k: usize| -> Vec<f64> {
+        let unit: Vec<f64> = (0..nv).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
+        let state = State::new(&q, &unit, &zero);
+        drives.iter().map(|drive| kane::measured(&spec, &state, &drive.measure).rate().re).collect()
+    };
+    // By rows.
+    let columns: Vec<Vec<f64>> = (0..nv).map(partial).collect();
+    let jacobian: Vec<Vec<f64>> = (0..nv).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
+    let state = State::new(&q, &v, &zero);
+    let missing = drives
+        .iter()
+        .map(|drive| 2.0 * drive.path[2] - kane::measured(&spec, &state, &drive.measure).second_rate().re);
+    let Some(a) = solved(jacobian, missing.collect()) else { return false };
+    let forces = kane::inverse_dynamics(&spec, &State::new(&q, &v, &a));
+    let left = forces.iter().zip(&tau).map(|(force, tau)| force.re - tau);
+    let Some(lambda) = solved(columns, left.collect()) else { return false };
+    for words in ["", ", derivatives", ", formulation = speeds"] {
+        compare(&spec, &drives, words, (&q, &v, &tau), (&a, &lambda), seed);
+    }
+    true
+}
+
+fn normalise(spec: &Spec, q: &mut [f64]) {
+    let mut first = 0;
+    for body in &spec.bodies {
+        let (own, _) = body.kind.sizes();
+        if own >= 4 {
+            let quaternion = &mut q[first + own - 4..first + own];
+            let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+            quaternion.iter_mut().for_each(|x| *x /= length);
+        }
+        first += own;
+    }
+}
+
+/// A drive for every velocity: of the coordinates of a joint, some with others; where it has none, of points of its body.
+fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
+    let mut drives = Vec::new();
+    let mut before: Vec<(usize, usize)> = Vec::new();
+    for (k, body) in spec.bodies.iter().enumerate() {
+        let (_, own) = body.kind.sizes();
+        for i in 0..own {
+            let plain = !body.kind.coordinates().is_empty();
+            let is_way = !plain || random.below(4) == 0;
+            let measure = if is_way {
+                let mut at = [0.0; 3];
+                at.iter_mut().for_each(|x| *x = 1.2 * random.uniform(1.0));
+                let carrier = body.parent.filter(|_| random.below(2) == 0);
+                Measure::Way(End { body: Some(k), at }, End { body: carrier, at: [0.3; 3] }, random.below(3))
+            } else {
+                let mut list = vec![(1.0, k, i)];
+                if let Some(more) = before.len().checked_sub(1).map(|last| random.below(last + 1)) {
+                    let (body, coordinate) = before[more];
+                    list.push((random.uniform(0.8), body, coordinate));
+                }
+                before.push((k, i));
+                Measure::Coordinates(list)
+            };
+            let path = [0.0; 3].map(|_| random.uniform(1.0));
+            let by_rate = !is_way && random.below(3) == 0;
+            drives.push(Drive { measure, path, by_rate });
+        }
+    }
+    debug_assert_eq!(drives.len(), nv);
+    // Constraints on configurations come first.
+    drives.sort_by_key(|drive| drive.by_rate);
+    drives
+}
+
+/// Elimination with all pivots; `None` for a matrix that is nearly singular.
+fn solved(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+    let n = rows.len();
+    let largest = rows.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let mut order: Vec<usize> = (0..n).collect();
+    for k in 0..n {
+        let all = (k..n).flat_map(|i| (k..n).map(move |j| (i, j)));
+        let (i, j) = all.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))?;
+        if rows[i][j].abs() < REGULAR * largest.max(0.1) {
+            return None;
+        }
+        rows.swap(k, i);
+        right.swap(k, i);
+        rows.iter_mut().for_each(|row| row.swap(k, j));
+        order.swap(k, j);
+        for i in k + 1..n {
+            let factor = rows[i][k] / rows[k][k];
+            let (upper, lower) = rows.split_at_mut(i);
+            lower[0].iter_mut().zip(&upper[k]).for_each(|(x, own)| *x -= factor * own);
+            right[i] -= factor * right[k];
+        }
+    }
+    let mut found = vec![0.0; n];
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| rows[k][j] * found[order[j]]).sum();
+        found[order[k]] = (right[k] - known) / rows[k][k];
+    }
+    Some(found)
+}
+
+fn compare(
+    spec: &Spec,
+    drives: &[Drive],
+    more: &str,
+    (q, v, tau): (&[f64], &[f64], &[f64]),
+    (a, lambda): (&[f64], &[f64]),
+    seed: u64,
+) {
+    let (arguments, item) = words::source(spec, "Driven", more);
+    let mut item = item.trim_end().trim_end_matches('}').to_string();
+    for (k, drive) in drives.iter().enumerate() {
+        let coordinate = |(_, body, k): &(f64, usize, usize)| {
+            format!("joint{body}{}", spec.bodies[*body].kind.coordinates()[*k])
+        };
+        let [start, speed, growth] = drive.path;
+        let (kind, left, right) = match &drive.measure {
+            Measure::Coordinates(list) if drive.by_rate => {
+                let terms = list.iter().map(|term| format!("({:?}) * rate({})", term.0, coordinate(term)));
+                ("Nonholonomic", terms.collect::<Vec<_>>(), format!("{speed:?} + ({growth:?}) * 2 * t"))
+            }
+            measure => {
+                let terms = match measure {
+                    Measure::Coordinates(list) => {
+                        list.iter().map(|term| format!("({:?}) * {}", term.0, coordinate(term))).collect()
+                    }
+                    Measure::Way(a, b, axis) => {
+                        let axis = ["x", "y", "z"][*axis];
+                        vec![format!("dot(r({} / {}), ground.{axis})", words::point(a), words::point(b))]
+                    }
+                };
+                ("Holonomic", terms, format!("{start:?} + ({speed:?}) * t + ({growth:?}) * t * t"))
+            }
+        };
+        let left = left.join(" + ");
+        let _ = writeln!(item, "#[constraint({left} = {right})] drive{k}: {kind},");
+    }
+    item.push('}');
+    let mut cx = Diagnostics::new();
+    let graph = Graph::new();
+    let tokens = |text: &str| text.parse().expect("the generated source is Rust");
+    let source = read(tokens(&arguments), tokens(&item), Path::new(""), &mut cx);
+    let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
+    let Some((model, output)) = compiled else {
+        let told = cx.messages();
+        // Without samples that fulfil the constraints it is not known how speeds depend on each other.
+        assert!(
+            more.contains("speeds") && told.iter().all(|told| told.contains("do not follow")),
+            "seed {seed}{more}: {}\n{item}",
+            told.join("\n")
+        );
+        return;
+    };
+    assert_eq!((model.freedom.velocities, model.constraints.len()), (0, v.len()), "seed {seed}\n{item}");
+    let symbol = |symbol| match Quantity::of(symbol) {
+        Quantity::Configuration(k) => q[k],
+        Quantity::Velocity(k) => v[k],
+        Quantity::Force(k) => tau[k],
+        Quantity::Time => TIME,
+        Quantity::Parameter(k) => mass(spec, &model.parameters[k]),
+        other => panic!("seed {seed}: {other:?}"),
+    };
+    let passive = output.functions.iter().find(|f| f.name == "__passive_forces");
+    let passive = passive.map_or(Vec::new(), |f| f.program.run(&symbol));
+    let all = |s| match Quantity::of(s) {
+        Quantity::PassiveForce(k) => passive[k],
+        _ => symbol(s),
+    };
+    let f = output.functions.iter().find(|f| f.name == "__constrained_dynamics").expect("it is constrained");
+    let found = f.program.run(&all);
+    close(&format!("seed {seed}{more}: accelerations\n{item}"), &found[..v.len()], a);
+    close(&format!("seed {seed}{more}: multipliers\n{item}"), &found[v.len()..2 * v.len()], lambda);
+}
+
+/// The value of a mass that is a parameter.
+fn mass(spec: &Spec, name: &str) -> f64 {
+    let body = name.strip_prefix("mass").and_then(|k| k.parse::<usize>().ok());
+    spec.bodies[body.expect("masses alone are parameters")].mass
+}
+
+fn close(what: &str, found: &[f64], expected: &[f64]) {
+    let size = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
+    for (k, (a, b)) in found.iter().zip(expected).enumerate() {
+        assert!((a - b).abs() <= TOLERANCE * size, "{what}: entry {k}: {a} instead of {b}");
+    }
+}

@@ -1,0 +1,172 @@
+//! A random robot as an SDF file of any version: poses in the model or in other links, axes in the frames that the version has.
+
+use crate::random::Random;
+use crate::robot::{KINDS, Link, Robot};
+use std::array::from_fn;
+use std::fmt::Write;
+
+/// Types of joints that SDF has, by their index among those of URDF.
+pub const OF_SDF: [usize; 5] = [0, 1, 2, 3, 6];
+
+/// Minor numbers of the versions 1.2 to 1.12.
+const VERSIONS: [usize; 11] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
+
+type Matrix = [[f64; 3]; 3];
+
+/// A rigid pose in numbers: axes as columns, and a position.
+#[derive(Clone, Copy)]
+struct Placed(Matrix, [f64; 3]);
+
+fn apply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
+    m.map(|row| (0..3).map(|k| row[k] * v[k]).sum())
+}
+
+fn transposed(m: &Matrix) -> Matrix {
+    from_fn(|i| from_fn(|j| m[j][i]))
+}
+
+impl Placed {
+    const ZERO: Placed = Placed([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
+
+    /// The pose with this position, and roll, pitch and yaw.
+    fn new(xyz: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Placed {
+        let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(f64::sin_cos);
+        let rows = [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ];
+        Placed(rows, xyz)
+    }
+
+    fn then(&self, inner: &Placed) -> Placed {
+        let columns = transposed(&inner.0).map(|column| apply(&self.0, column));
+        let moved = apply(&self.0, inner.1);
+        Placed(transposed(&columns), from_fn(|k| self.1[k] + moved[k]))
+    }
+
+    fn back(&self) -> Placed {
+        let axes = transposed(&self.0);
+        Placed(axes, apply(&axes, self.1).map(|x| -x))
+    }
+
+    /// The six numbers of a `<pose>`.
+    fn text(&self) -> String {
+        let Placed(m, [x, y, z]) = self;
+        let angles =
+            [m[2][1].atan2(m[2][2]), (-m[2][0]).atan2(m[0][0].hypot(m[1][0])), m[1][0].atan2(m[0][0])];
+        [*x, *y, *z].iter().chain(&angles).map(|x| format!("{x:?}")).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// What a file of one version is written with.
+struct Writer<'a> {
+    robot: &'a Robot,
+    minor: usize,
+    /// By link: its pose in the model while all coordinates are zero.
+    placed: Vec<Placed>,
+}
+
+/// Writes the robot, whose joints are [`OF_SDF`], in a random version.
+pub fn text(robot: &Robot, random: &mut Random) -> String {
+    let minor = VERSIONS[random.below(VERSIONS.len())];
+    let mut placed = vec![Placed::ZERO];
+    for link in &robot.links[1..] {
+        let parent = link
+            .joint
+            .as_ref()
+            .map_or(Placed::ZERO, |joint| placed[joint.parent].then(&Placed::new(joint.xyz, joint.rpy)));
+        placed.push(parent);
+    }
+    let writer = Writer { robot, minor, placed };
+    let parts: Vec<String> = (0..robot.links.len()).map(|k| writer.link(k, random)).collect();
+    let joints: Vec<String> = (1..robot.links.len()).map(|k| writer.joint(k, random)).collect();
+    let model = format!("<model name=\"m\">\n{}{}</model>", parts.concat(), joints.concat());
+    let version = format!("1.{minor}");
+    if robot.free || random.below(3) > 0 {
+        return format!("<sdf version=\"{version}\">{model}</sdf>");
+    }
+    // In a world, gravity is an element of `<physics>` before version 1.6, and joints may hold the model since 1.10.
+    let gravity = "<gravity>0 0 -9.81</gravity>";
+    let gravity = if minor < 6 { format!("<physics>{gravity}</physics>") } else { gravity.to_string() };
+    let held = "<joint name=\"hold\" type=\"fixed\"><parent>world</parent><child>m::l0</child></joint>";
+    let held = if minor < 10 { "" } else { held };
+    format!("<sdf version=\"{version}\"><world name=\"w\">{gravity}{held}{model}</world></sdf>")
+}
+
+impl Writer<'_> {
+    /// An attribute of a pose that names an earlier link than `k`, and that link's pose; nothing, and the pose `usual`.
+    fn base(&self, k: usize, usual: Placed, random: &mut Random) -> (String, Placed) {
+        let word = match self.minor {
+            ..5 => "",
+            5 | 6 => "frame",
+            _ => "relative_to",
+        };
+        if word.is_empty() || k == 0 || random.below(2) == 0 {
+            return (String::new(), usual);
+        }
+        let other = random.below(k);
+        (format!(" {word}=\"l{other}\""), self.placed[other])
+    }
+
+    fn link(&self, k: usize, random: &mut Random) -> String {
+        let Link { mass, com, inertia, .. } = self.robot.links[k];
+        let (attribute, base) = self.base(k, Placed::ZERO, random);
+        let pose = base.back().then(&self.placed[k]).text();
+        // The inertial frame may be placed in other links before version 1.7.
+        let center = self.placed[k].then(&Placed::new(com, [0.0; 3]));
+        let usual = (String::new(), self.placed[k]);
+        let (of_center, base) = if self.minor < 7 { self.base(k, usual.1, random) } else { usual };
+        let center = base.back().then(&center).text();
+        let entries =
+            [(0, 0, "ixx"), (0, 1, "ixy"), (0, 2, "ixz"), (1, 1, "iyy"), (1, 2, "iyz"), (2, 2, "izz")];
+        let entries: String =
+            entries.iter().map(|(i, j, name)| format!("<{name}>{:?}</{name}>", inertia[*i][*j])).collect();
+        format!(
+            "<link name=\"l{k}\"><pose{attribute}>{pose}</pose><inertial><pose{of_center}>{center}</pose><mass>{mass:?}</mass><inertia>{entries}</inertia></inertial></link>\n"
+        )
+    }
+
+    fn joint(&self, child: usize, random: &mut Random) -> String {
+        let Some(joint) = &self.robot.links[child].joint else { return String::new() };
+        let kind = match KINDS[joint.kind] {
+            "spherical" => "ball",
+            // The older versions have no word for it.
+            "continuous" if self.minor < 10 => "revolute",
+            kind => kind,
+        };
+        let mut text = format!(
+            "<joint name=\"{}\" type=\"{kind}\"><parent>l{}</parent><child>l{child}</child>",
+            joint.name, joint.parent
+        );
+        if !matches!(kind, "ball" | "fixed") {
+            self.axis(&mut text, child, joint.axis, random);
+        }
+        text + "</joint>\n"
+    }
+
+    fn axis(&self, text: &mut String, child: usize, axis: [f64; 3], random: &mut Random) {
+        let in_model = random.below(2) == 0;
+        let other = random.below(self.placed.len());
+        let own = self.placed[child];
+        let (attribute, element, frame) = match self.minor {
+            ..5 => (String::new(), "", Placed::ZERO),
+            5 | 6 if in_model => {
+                (String::new(), "<use_parent_model_frame>true</use_parent_model_frame>", Placed::ZERO)
+            }
+            7.. if in_model => (" expressed_in=\"__model__\"".to_string(), "", Placed::ZERO),
+            7.. if random.below(2) == 0 => (format!(" expressed_in=\"l{other}\""), "", self.placed[other]),
+            _ => (String::new(), "", own),
+        };
+        let axis = apply(&transposed(&frame.0), apply(&own.0, axis)).map(|x| format!("{x:?}")).join(" ");
+        let _ = write!(text, "<axis><xyz{attribute}>{axis}</xyz>{element}");
+        if let Some((leader, factor, offset)) = self.robot.links[child].joint.as_ref().and_then(|j| j.mimic) {
+            let leader = self.robot.links[leader].joint.as_ref().map_or("", |joint| &joint.name);
+            let _ = write!(
+                text,
+                "<mimic joint=\"{leader}\"><multiplier>{factor:?}</multiplier><offset>{offset:?}</offset></mimic>"
+            );
+        }
+        text.push_str("</axis>");
+    }
+}

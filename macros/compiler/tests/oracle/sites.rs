@@ -1,0 +1,198 @@
+//! Random MJCF files with motors on sites: the power of their forces and torques, by partial velocities.
+
+use crate::jet::{C, cross, real, still};
+use crate::kane::State;
+use crate::motion::{Pose, complex_dot, spin, velocity};
+use crate::random::Random;
+use crate::robot::{Robot, fixed_axes, spaced};
+use crate::seeds;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::{Graph, Symbol};
+use linkwork_compiler::mechanism::Quantity;
+use linkwork_compiler::resolve::build_model;
+use linkwork_compiler::{derive, read};
+use std::array::from_fn;
+use std::path::Path;
+
+/// Generalized forces of a configuration, velocities and inputs.
+type Function = dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>;
+
+/// Names of coordinates and inputs of a file, and its generalized forces.
+struct Forces {
+    coordinates: Vec<String>,
+    inputs: Vec<String>,
+    values: Box<Function>,
+}
+
+fn forces(text: &str, locked: &[String]) -> Forces {
+    let thread = std::thread::current().id();
+    let file = std::env::temp_dir().join(format!("linkwork-sites-{}-{thread:?}.xml", std::process::id()));
+    std::fs::write(&file, text).expect("a file");
+    let mut cx = Diagnostics::new();
+    let arguments = format!("mjcf = {:?}, lock = {locked:?}", file.to_string_lossy());
+    let source = read(
+        arguments.parse().expect("arguments"),
+        "pub struct Robot;".parse().expect("a struct"),
+        Path::new("/"),
+        &mut cx,
+    );
+    // What is left in the folder for temporary files harms nobody.
+    let _ = std::fs::remove_file(&file);
+    let source = source.filter(|_| cx.is_empty()).unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
+    let graph = Graph::new();
+    let model = build_model(&source.mechanism.description, &graph, &mut cx);
+    let output = model.as_ref().and_then(|model| derive(model, &mut cx));
+    let (Some(model), Some(output)) = (&model, output) else { panic!("{:?}\n{text}", cx.messages()) };
+    let (coordinates, inputs) =
+        (model.configuration.clone(), model.inputs.iter().map(|(name, _)| name.clone()));
+    let inputs = inputs.collect();
+    let function = output.functions.into_iter().find(|f| f.name == "generalized_forces");
+    let values = move |q: &[f64], v: &[f64], u: &[f64]| {
+        let symbol = |symbol: Symbol| match Quantity::of(symbol) {
+            Quantity::Configuration(k) => q[k],
+            Quantity::Velocity(k) => v[k],
+            Quantity::Input(k) => u[k],
+            other => panic!("{other:?}"),
+        };
+        function.as_ref().map_or_else(Vec::new, |function| function.program.run(&symbol))
+    };
+    Forces { coordinates, inputs, values: Box::new(values) }
+}
+
+/// A frame on a link, or on the ground.
+struct Site {
+    link: Option<usize>,
+    xyz: [f64; 3],
+    rpy: [f64; 3],
+}
+
+impl Site {
+    fn random(link: Option<usize>, random: &mut Random) -> Site {
+        Site { link, xyz: random.figures(), rpy: random.figures::<3>().map(|angle| 3.0 * angle) }
+    }
+
+    fn write(&self, name: &str) -> String {
+        format!("<site name=\"{name}\" pos=\"{}\" euler=\"{}\"/>", spaced(self.xyz), spaced(self.rpy))
+    }
+
+    fn pose(&self, robot: &Robot, state: &State) -> Pose {
+        let ground = Pose { r: fixed_axes(self.rpy), p: still(self.xyz) };
+        self.link.map_or(ground, |link| robot.frame(link, self.xyz, self.rpy, state))
+    }
+}
+
+/// A motor on a site, with another one that feels the reaction or without.
+struct Motor {
+    sites: [usize; 2],
+    against: bool,
+    gear: [f64; 6],
+}
+
+impl Motor {
+    /// The power of the motor at a unit input: the work of its force and torque on what moves relative to
+    /// the other site.
+    fn power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
+        let [on, against] = self.sites.map(|k| sites[k].pose(robot, state));
+        let axes = if self.against { &against } else { &on };
+        let along = |v: [f64; 3]| -> [C; 3] { from_fn(|i| (0..3).map(|j| axes.r[i][j].0[0] * v[j]).sum()) };
+        let [x, y, z, a, b, c] = self.gear;
+        let (mut v, mut w) = (velocity(on.p), spin(&on.r).0);
+        if self.against {
+            let (other, turn) = (velocity(against.p), spin(&against.r).0);
+            let arm = from_fn(|i| on.p[i].0[0] - against.p[i].0[0]);
+            let carried = cross(turn, arm);
+            v = from_fn(|i| v[i] - other[i] - carried[i]);
+            w = from_fn(|i| w[i] - turn[i]);
+        }
+        complex_dot(along([x, y, z]), v) + complex_dot(along([a, b, c]), w)
+    }
+}
+
+/// Files of two to seven links with one to four motors, on links that move and on links that do not.
+#[test]
+fn random_motors_on_sites_do_the_work_of_their_forces() {
+    for seed in seeds(60) {
+        let mut random = Random::new(6_000_000 + seed);
+        let robot = Robot::random_mjcf(&mut random);
+        let links = robot.links.len();
+        let mut sites = vec![Site::random(None, &mut random)];
+        sites.extend((0..links).map(|link| Site::random(Some(link), &mut random)));
+        let motors: Vec<Motor> = (0..1 + random.below(4))
+            .map(|_| {
+                let link = random.below(links);
+                let carriers: Vec<usize> =
+                    (0..links).filter(|k| *k != link && robot.carries(*k, link)).collect();
+                let other = random.below(carriers.len() + 1).checked_sub(1).map_or(0, |k| carriers[k] + 1);
+                let mut gear: [f64; 6] = random.figures();
+                match random.below(3) {
+                    0 => gear[..3].fill(0.0),
+                    1 => gear[3..].fill(0.0),
+                    _ => {}
+                }
+                Motor { sites: [link + 1, other], against: random.below(2) == 0, gear }
+            })
+            .collect();
+        let inside = |link: usize| sites[link + 1].write(&format!("s{}", link + 1));
+        let actuator = |(k, motor): (usize, &Motor)| {
+            let [on, other] = motor.sites;
+            let against = if motor.against { format!(" refsite=\"s{other}\"") } else { String::new() };
+            let gear = motor.gear.map(|x| format!("{x:?}")).join(" ");
+            format!("<motor name=\"m{k}\" site=\"s{on}\"{against} gear=\"{gear}\"/>")
+        };
+        let motors_text: String = motors.iter().enumerate().map(actuator).collect();
+        let text = robot
+            .mjcf(&inside, &format!("<actuator>{motors_text}</actuator>"))
+            .replace("<worldbody>", &format!("<worldbody>{}", sites[0].write("s0")));
+        let locked: Vec<String> = robot.locked().map(str::to_string).collect();
+        if !(0..links).any(|link| robot.moves(link)) {
+            continue;
+        }
+        let found = forces(&text, &locked);
+        assert_eq!(found.coordinates, robot.coordinates(), "{text}");
+        assert_eq!(found.inputs.len(), motors.len(), "{text}");
+        let [q, v, _] = robot.state(&mut random);
+        let u: Vec<f64> = motors.iter().map(|_| random.figure()).collect();
+        let values = (found.values)(&q, &v, &u);
+        for (k, value) in values.iter().enumerate() {
+            let unit: Vec<f64> = (0..v.len()).map(|j| f64::from(u8::from(j == k))).collect();
+            let state = State::new(&q, &unit, &vec![0.0; v.len()]);
+            let expected: C =
+                motors.iter().zip(&u).map(|(motor, u)| motor.power(&sites, &robot, &state) * real(*u)).sum();
+            let expected = expected.re;
+            assert!(
+                (value - expected).abs() < 1e-10 * (1.0 + expected.abs()),
+                "{seed} {k}: {value} {expected}\n{text}"
+            );
+        }
+    }
+}
+
+/// A nozzle at the end of an arm: by hand, and by MuJoCo 4.0.0.
+#[test]
+fn motors_on_sites_of_an_arm() {
+    let arm = |actuator: &str| {
+        format!(
+            "<mujoco><worldbody><site name='base'/><body name='arm'><inertial pos='0.2 0 0' mass='1' diaginertia='0.01 0.01 0.01'/>\
+             <joint name='hinge' axis='0 1 0'/><site name='tip' pos='0.5 0 0'/></body></worldbody>\
+             <actuator><motor name='jet' site='tip' {actuator}/></actuator></mujoco>"
+        )
+    };
+    let at = 0.1_f64;
+    for (actuator, expected) in [
+        ("gear='0 0 1'", -0.5),
+        ("gear='0 0 0 0 2 0'", 2.0),
+        ("refsite='base' gear='0 0 1'", -0.5 * at.cos()),
+        ("refsite='base' gear='0 0 1 0 1 0'", 1.0 - 0.5 * at.cos()),
+    ] {
+        let found = (forces(&arm(actuator), &[]).values)(&[at], &[0.0], &[1.0]);
+        assert!((found[0] - expected).abs() < 1e-15, "{actuator}: {found:?}");
+    }
+    // Two rotors lift a hull with the sum of their forces, and turn it by the difference of their torques.
+    let hull = "<mujoco><worldbody><body><freejoint/><inertial pos='0 0 0' mass='0.5' diaginertia='0.01 0.01 0.02'/>\
+        <site name='front' pos='0.2 0 0'/><site name='back' pos='-0.2 0 0'/></body></worldbody>\
+        <actuator><motor site='front' gear='0 0 1 0 0 0.1'/><motor site='back' gear='0 0 1 0 0 -0.1'/></actuator></mujoco>";
+    let pose = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let found = (forces(hull, &[]).values)(&pose, &[0.0; 6], &[3.0, 1.0]);
+    let expected = [0.0, 0.0, 4.0, 0.0, -0.4, 0.2];
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?}");
+}

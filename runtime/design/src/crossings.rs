@@ -1,0 +1,123 @@
+//! Frequencies at which a response has a given gain or is real, by eigenvalues of matrix pencils.
+
+use crate::matrices::{C, balance_system, eigenvalues, solve};
+use crate::{Error, StateSpace};
+use nalgebra::DMatrix;
+
+/// A pencil `M − s E` that is singular at the frequencies looked for; `s` is `z` of a discrete system.
+struct Pencil {
+    m: DMatrix<f64>,
+    e: DMatrix<f64>,
+}
+
+impl Pencil {
+    /// Finite eigenvalues, as `σ + 1 / μ` with the eigenvalues `μ` of `(M − σ E)⁻¹ E`. Infinite ones may come
+    /// out as large ones. A pencil that is singular for all `s` has none.
+    fn eigenvalues(&self, shift: f64) -> Vec<C> {
+        let inverse = solve("the pencil", &(&self.m - &self.e * shift), &self.e);
+        let found = inverse.and_then(|inverse| eigenvalues(&inverse)).unwrap_or_default();
+        let finite = found.iter().filter(|mu| mu.norm() > 0.0);
+        finite.map(|mu| mu.inv() + shift).filter(|s| s.re.is_finite() && s.im.is_finite()).collect()
+    }
+}
+
+impl StateSpace {
+    /// The frequency of a complex number in the plane of poles and zeros, rad/s: `|Im s|`, or `|arg z| / h`.
+    pub(crate) fn frequency_of(&self, root: C) -> f64 {
+        self.period.map_or(root.im.abs(), |h| root.arg().abs() / h)
+    }
+
+    /// Upper end of the frequency axis, rad/s: infinity, or Nyquist's frequency.
+    pub(crate) fn highest_frequency(&self) -> f64 {
+        self.period.map_or(f64::INFINITY, |h| std::f64::consts::PI / h)
+    }
+
+    /// Frequencies of poles and zeros: of their oscillation and of their magnitude, rad/s.
+    pub(crate) fn root_frequencies(&self) -> Result<Vec<f64>, Error> {
+        let mut all = Vec::new();
+        for root in self.poles()?.into_iter().chain(self.zeros().unwrap_or_default()) {
+            let exponent = self.period.map_or(root, |h| root.ln() / h);
+            all.extend([self.frequency_of(root), exponent.norm()]);
+        }
+        all.retain(|w| *w > 0.0 && *w < self.highest_frequency());
+        Ok(all)
+    }
+
+    /// Frequencies that include all at which a singular value of the response is `level`, from low to high.
+    /// Further ones may be among them.
+    pub(crate) fn level_frequencies(&self, level: f64) -> Result<Vec<f64>, Error> {
+        let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
+        let ((n, m), p) = (b.shape(), c.nrows());
+        // y = G u = γ w and Gᵀ(−s) w = γ u, or Gᵀ(1 / z) w = γ u, in the unknowns x, q, u, w.
+        let size = 2 * n + m + p;
+        let (mut left, mut right) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
+        let (u, w) = (2 * n, 2 * n + m);
+        left.view_mut((0, 0), (n, n)).copy_from(&a);
+        left.view_mut((0, u), (n, m)).copy_from(&b);
+        right.view_mut((0, 0), (n, n)).fill_with_identity();
+        if self.period.is_none() {
+            left.view_mut((n, n), (n, n)).copy_from(&-a.transpose());
+            left.view_mut((n, w), (n, p)).copy_from(&-c.transpose());
+            right.view_mut((n, n), (n, n)).fill_with_identity();
+        } else {
+            left.view_mut((n, n), (n, n)).fill_with_identity();
+            right.view_mut((n, n), (n, n)).copy_from(&a.transpose());
+            right.view_mut((n, w), (n, p)).copy_from(&c.transpose());
+        }
+        left.view_mut((u, 0), (p, n)).copy_from(&c);
+        left.view_mut((u, u), (p, m)).copy_from(&self.d);
+        left.view_mut((u, w), (p, p)).fill_diagonal(-level);
+        left.view_mut((u + p, n), (m, n)).copy_from(&b.transpose());
+        left.view_mut((u + p, w), (m, p)).copy_from(&self.d.transpose());
+        left.view_mut((u + p, u), (m, m)).fill_diagonal(-level);
+        self.pencil_frequencies(&Pencil { m: left, e: right })
+    }
+
+    /// Frequencies that include all at which the response of a single channel is real, from low to high:
+    /// zeros of `G(s) − G(−s)`, or of `G(z) − G(1 / z)`. Further ones may be among them.
+    pub(crate) fn real_frequencies(&self) -> Result<Vec<f64>, Error> {
+        let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
+        let n = a.nrows();
+        let size = 2 * n + 1;
+        let (mut left, mut right) = (DMatrix::zeros(size, size), DMatrix::zeros(size, size));
+        left.view_mut((0, 0), (n, n)).copy_from(&a);
+        left.view_mut((0, 2 * n), (n, 1)).copy_from(&b);
+        right.view_mut((0, 0), (n, n)).fill_with_identity();
+        if self.period.is_none() {
+            left.view_mut((n, n), (n, n)).copy_from(&-&a);
+            left.view_mut((n, 2 * n), (n, 1)).copy_from(&-&b);
+            right.view_mut((n, n), (n, n)).fill_with_identity();
+        } else {
+            left.view_mut((n, n), (n, n)).fill_with_identity();
+            right.view_mut((n, n), (n, n)).copy_from(&a);
+            right.view_mut((n, 2 * n), (n, 1)).copy_from(&b);
+        }
+        left.view_mut((2 * n, 0), (1, n)).copy_from(&c);
+        left.view_mut((2 * n, n), (1, n)).copy_from(&-&c);
+        self.pencil_frequencies(&Pencil { m: left, e: right })
+    }
+
+    /// Frequencies of a pencil's eigenvalues from several shifts: each is accurate for eigenvalues of about
+    /// its magnitude.
+    fn pencil_frequencies(&self, pencil: &Pencil) -> Result<Vec<f64>, Error> {
+        let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
+        let mut scales = self.root_frequencies()?;
+        let unit = self.period.map_or_else(|| a.norm().max(b.norm() * c.norm()), |h| 1.0 / h);
+        scales.push(if unit > 0.0 { unit } else { 1.0 });
+        scales.sort_by(f64::total_cmp);
+        let mut last = 0.0;
+        scales.retain(|scale| {
+            let far = *scale > 100.0 * last;
+            last = if far { *scale } else { last };
+            far
+        });
+        let mut found = Vec::new();
+        for scale in scales {
+            let shift = self.period.map_or(1.13 * scale, |h| (1.13 * scale * h).min(1.0).exp());
+            found.extend(pencil.eigenvalues(shift).into_iter().map(|s| self.frequency_of(s)));
+        }
+        found.retain(|w| *w > 0.0 && *w < self.highest_frequency());
+        found.sort_by(f64::total_cmp);
+        Ok(found)
+    }
+}

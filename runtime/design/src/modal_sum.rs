@@ -1,0 +1,412 @@
+//! Sums of decaying modes over time: their crossings and extremes by bounds over intervals, without samples.
+
+use crate::Error;
+use crate::margins::root_between;
+use crate::matrices::{C, CMatrix, Schur, balanced, complex};
+use nalgebra::DMatrix;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Largest entry of the transformation that separates two groups of modes; beyond it they form one group.
+const MAX_COUPLING: f64 = 1e4;
+/// Limit for the terms of the series of a group of modes.
+const MAX_TERMS: usize = 300;
+/// Limit for the intervals of one search.
+const MAX_INTERVALS: usize = 2_000_000;
+/// Modes of sampled systems with a smaller eigenvalue are below rounding after `FIRST_SAMPLES`.
+const FAST: f64 = 0.3;
+/// Samples of a sampled system that are computed one by one.
+pub(crate) const FIRST_SAMPLES: usize = 64;
+
+const FAILED: Error = Error::NotConverged { what: "the separation of the modes" };
+
+/// A mode, or a group of modes whose eigenvalues nearly coincide: `e^{λ t} P(t)`.
+struct Term {
+    exponent: C,
+    /// Lowest power first.
+    coefficients: Vec<C>,
+}
+
+impl Term {
+    /// The term of `c e^{T t} x`, or of `c Tᵗ x`, with a triangular matrix whose eigenvalues nearly coincide.
+    fn group(c: &CMatrix, t: &CMatrix, x: &CMatrix, sampled: bool) -> Result<Option<Self>, Error> {
+        let k = t.nrows();
+        let center = t.diagonal().sum() / k as f64;
+        if sampled && center.norm() < FAST {
+            return Ok(None);
+        }
+        let mut nilpotent = t - CMatrix::identity(k, k) * center;
+        if sampled {
+            nilpotent = logarithm_beside_one(&(nilpotent / center))?;
+        }
+        let exponent = if sampled { center.ln() } else { center };
+        if exponent.re >= 0.0 {
+            return Err(FAILED);
+        }
+        let mut coefficients = Vec::new();
+        let mut v = x.clone();
+        let mut largest = f64::NEG_INFINITY;
+        for j in 0..MAX_TERMS {
+            coefficients.push((c * &v)[(0, 0)]);
+            let size = (c.norm() * v.norm()).ln() + logarithm_of_peak(j, exponent);
+            largest = largest.max(size);
+            if k == 1 || (j + 1 >= k && (size.is_nan() || size <= largest - 46.0)) {
+                return Ok(Some(Self { exponent, coefficients }));
+            }
+            v = &nilpotent * v / C::new((j + 1) as f64, 0.0);
+        }
+        Err(FAILED)
+    }
+
+    /// The polynomial at an instant.
+    fn polynomial(&self, t: f64) -> C {
+        self.coefficients.iter().rev().fold(C::new(0.0, 0.0), |sum, c| sum * t + c)
+    }
+
+    /// Bound of the magnitude from `low` to `high`.
+    fn bound(&self, low: f64, high: f64) -> f64 {
+        let polynomial = self.coefficients.iter().rev().fold(0.0, |sum, c| sum * high + c.norm());
+        if polynomial == 0.0 { 0.0 } else { (self.exponent.re * low).exp() * polynomial }
+    }
+
+    /// Bound of the magnitude at all instants.
+    fn largest(&self) -> f64 {
+        let power = |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_peak(k, self.exponent)).exp();
+        self.coefficients.iter().enumerate().map(power).sum()
+    }
+
+    fn derivative(&self) -> Self {
+        let next = |k: usize| self.coefficients.get(k + 1).map_or(C::new(0.0, 0.0), |c| c * (k + 1) as f64);
+        let own = self.coefficients.iter().enumerate();
+        let coefficients = own.map(|(k, c)| self.exponent * c + next(k)).collect();
+        Self { exponent: self.exponent, coefficients }
+    }
+}
+
+/// The logarithm of the largest value of `tᵏ |e^{λ t}|`, at `t = k / −Re λ`.
+fn logarithm_of_peak(k: usize, exponent: C) -> f64 {
+    let k = k as f64;
+    if k == 0.0 { 0.0 } else { k * (k / -exponent.re).ln() - k }
+}
+
+/// `ln(I + M)` of a small triangular matrix by its series.
+fn logarithm_beside_one(m: &CMatrix) -> Result<CMatrix, Error> {
+    let mut sum = m.clone();
+    let mut power = m.clone();
+    for j in 2..MAX_TERMS {
+        power = -(&power * m);
+        if power.norm() <= 1e-18 * sum.norm() {
+            return Ok(sum);
+        }
+        sum += &power / C::new(j as f64, 0.0);
+    }
+    Err(FAILED)
+}
+
+/// `X` of `T₁ X − X T₂ = −T₁₂` with the leading `k` rows and columns of a triangular matrix as `T₁`.
+fn coupling(t: &CMatrix, k: usize) -> CMatrix {
+    let m = t.nrows();
+    let mut x = CMatrix::zeros(k, m - k);
+    for j in 0..m - k {
+        for i in (0..k).rev() {
+            let known: C = (0..j).map(|l| x[(i, l)] * t[(k + l, k + j)]).sum();
+            let below: C = (i + 1..k).map(|l| t[(i, l)] * x[(l, j)]).sum();
+            x[(i, j)] = (known - below - t[(i, k + j)]) / (t[(i, i)] - t[(k + j, k + j)]);
+        }
+    }
+    x
+}
+
+/// `c e^{A t} x` of a stable matrix as a real sum of modes; or `c Aᵏ x`, where time counts samples.
+pub(crate) struct ModalSum {
+    /// Each term with its first three derivatives.
+    terms: Vec<[Term; 4]>,
+    /// Whether only whole numbers are instants.
+    sampled: bool,
+    /// Smaller differences are rounding.
+    pub noise: f64,
+    /// From here on the sum is below `noise`.
+    end: f64,
+}
+
+/// An interval of time with bounds of the sum.
+struct Interval {
+    from: f64,
+    to: f64,
+    low: f64,
+    high: f64,
+    middle: f64,
+    /// The sum or its slope is monotone: no more than one turn is inside.
+    simple: bool,
+}
+
+/// An interval by the bound that a search for an extreme begins with.
+struct Ranked(f64, Interval);
+
+impl PartialEq for Ranked {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Ranked {}
+
+impl PartialOrd for Ranked {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ranked {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+impl ModalSum {
+    /// Separates the modes (Bavely and Stewart, *An algorithm for computing reducing subspaces by block
+    /// diagonalization*, 1979). Fast modes of a sampled system are left out.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`] if modes cannot be separated.
+    pub fn new(c: &DMatrix<f64>, a: &DMatrix<f64>, x: &DMatrix<f64>, sampled: bool) -> Result<Self, Error> {
+        let (a, d) = balanced(a);
+        let mut rest = Schur::new(&complex(&a))?;
+        let mut c = CMatrix::from_fn(1, d.len(), |_, j| C::new(c[(0, j)] * d[j], 0.0));
+        let mut x = CMatrix::from_fn(d.len(), 1, |i, _| C::new(x[(i, 0)] / d[i], 0.0));
+        let mut terms = Vec::new();
+        while rest.t.nrows() > 0 {
+            let m = rest.t.nrows();
+            let mut k = 1;
+            let separate = loop {
+                let found = coupling(&rest.t, k);
+                if found.iter().all(|x| x.norm() <= MAX_COUPLING) {
+                    break found;
+                }
+                let center = rest.t.diagonal().rows(0, k).sum() / k as f64;
+                let distance = |j: &usize| (rest.t[(*j, *j)] - center).norm();
+                let nearest = (k..m).min_by(|i, j| distance(i).total_cmp(&distance(j)));
+                rest.raise(nearest.unwrap_or(k), k);
+                k += 1;
+            };
+            (c, x) = (c * &rest.q, rest.q.adjoint() * x);
+            let (own_c, others_x) = (c.columns(0, k).into_owned(), x.rows(k, m - k).into_owned());
+            let own_x = x.rows(0, k) - &separate * &others_x;
+            let block = rest.t.view((0, 0), (k, k)).into_owned();
+            terms.extend(Term::group(&own_c, &block, &own_x, sampled)?);
+            (c, x) = (c.columns(k, m - k) + own_c * separate, others_x);
+            let t = rest.t.view((k, k), (m - k, m - k)).into_owned();
+            rest = Schur { q: CMatrix::identity(m - k, m - k), t };
+        }
+        Ok(Self::of_terms(terms, sampled))
+    }
+
+    fn of_terms(terms: Vec<Term>, sampled: bool) -> Self {
+        let noise = 64.0 * f64::EPSILON * terms.iter().map(Term::largest).sum::<f64>().max(1.0);
+        // Beyond the last peak of its powers a term decays.
+        let decays = |term: &Term| term.coefficients.len() as f64 / -term.exponent.re;
+        let mut end = terms.iter().map(decays).fold(0.0, f64::max);
+        while terms.iter().map(|term| term.bound(end, end)).sum::<f64>() > noise {
+            end *= 1.5;
+        }
+        let with_derivatives = |term: Term| {
+            let first = term.derivative();
+            let second = first.derivative();
+            let third = second.derivative();
+            [term, first, second, third]
+        };
+        Self {
+            terms: terms.into_iter().map(with_derivatives).collect(),
+            sampled,
+            noise,
+            end: if sampled { end.ceil() } else { end },
+        }
+    }
+
+    /// The derivative of this order at an instant.
+    fn derivative(&self, order: usize, t: f64) -> f64 {
+        let real = |all: &[Term; 4]| ((all[0].exponent * t).exp() * all[order].polynomial(t)).re;
+        self.terms.iter().map(real).sum()
+    }
+
+    /// The sum at an instant.
+    pub fn at(&self, t: f64) -> f64 {
+        self.derivative(0, t)
+    }
+
+    fn interval(&self, from: f64, to: f64) -> Interval {
+        let half = 0.5 * (to - from);
+        let t = from + half;
+        let (mut middle, mut near, mut slope, mut curvature, mut far) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut total_slope, mut total_curvature, mut bend, mut change) = (0.0, 0.0, 0.0, 0.0);
+        for all in &self.terms {
+            let oscillation = (all[0].exponent * t).exp();
+            let [value, first, second] = [0, 1, 2].map(|k| (oscillation * all[k].polynomial(t)).re);
+            let (largest, largest_second) = (all[0].bound(from, to), all[2].bound(from, to));
+            middle += value;
+            total_slope += first;
+            total_curvature += largest_second;
+            bend += second;
+            change += all[3].bound(from, to);
+            // About the value in the middle, or, of a term that oscillates many times, about zero.
+            if first.abs() * half + 0.5 * largest_second * half * half < largest {
+                near += value;
+                slope += first;
+                curvature += largest_second;
+            } else {
+                far += largest;
+            }
+        }
+        let radius = slope.abs() * half + 0.5 * curvature * half * half + far;
+        let simple = total_slope.abs() >= total_curvature * half || bend.abs() >= change * half;
+        Interval { from, to, low: near - radius, high: near + radius, middle, simple }
+    }
+
+    /// Whether an interval is not divided any more.
+    fn is_last(&self, interval: &Interval) -> bool {
+        let length = interval.to - interval.from;
+        interval.simple
+            || if self.sampled { length <= 1.0 } else { length <= 8.0 * f64::EPSILON * interval.to }
+    }
+
+    /// Divides an interval in two.
+    fn halves(&self, interval: &Interval) -> [Interval; 2] {
+        let middle = interval.from + 0.5 * (interval.to - interval.from);
+        let middle = if self.sampled { middle.floor() } else { middle };
+        [self.interval(interval.from, middle), self.interval(middle, interval.to)]
+    }
+
+    /// Divides an interval that is not divided any more where the sum turns: on each piece it is monotone.
+    fn pieces(&self, interval: &Interval) -> Vec<(f64, f64)> {
+        let (from, to) = (interval.from, interval.to);
+        let slope = |t: f64| self.derivative(1, t);
+        let mut ends = vec![from];
+        if slope(from) * slope(to) < 0.0 {
+            let turn = root_between(slope, from, to);
+            if self.sampled {
+                ends.extend([turn.floor(), turn.ceil()]);
+            } else {
+                ends.push(turn);
+            }
+        }
+        ends.push(to);
+        ends.windows(2).filter(|pair| pair[0] < pair[1]).map(|pair| (pair[0], pair[1])).collect()
+    }
+
+    /// Where a function of the sum changes its sign on a monotone piece; of a sampled sum the sample on the
+    /// side that is not negative.
+    fn sign_change(&self, f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+        if !self.sampled {
+            return root_between(|t| f(self.at(t)), from, to);
+        }
+        let rises = f(self.at(to)) >= 0.0;
+        let (mut low, mut high) = (from, to);
+        while high - low > 1.0 {
+            let middle = (0.5 * (low + high)).floor();
+            if (f(self.at(middle)) >= 0.0) == rises { high = middle } else { low = middle }
+        }
+        if rises { high } else { low }
+    }
+
+    /// The first instant from `from` on at which the sum reaches a negative level from below.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`] after too many intervals.
+    pub fn first_above(&self, level: f64, from: f64) -> Result<f64, Error> {
+        let mut open = vec![self.interval(from, self.end.max(from))];
+        let mut count = 0;
+        while let Some(interval) = open.pop() {
+            if interval.high + self.noise < level {
+                continue;
+            }
+            if self.is_last(&interval) {
+                for (low, high) in self.pieces(&interval) {
+                    if self.at(low) >= level {
+                        return Ok(low);
+                    }
+                    if self.at(high) >= level {
+                        return Ok(self.sign_change(|e| e - level, low, high));
+                    }
+                }
+            } else {
+                let [left, right] = self.halves(&interval);
+                open.extend([right, left]);
+            }
+            count_interval(&mut count)?;
+        }
+        Ok(self.end.max(from))
+    }
+
+    /// The last instant from `from` on at which the magnitude is larger than a band; `None` if it is not.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`] after too many intervals.
+    pub fn last_outside(&self, band: f64, from: f64) -> Result<Option<f64>, Error> {
+        let mut open = vec![self.interval(from, self.end.max(from))];
+        let mut count = 0;
+        while let Some(interval) = open.pop() {
+            if interval.high.max(-interval.low) + self.noise <= band {
+                continue;
+            }
+            if self.is_last(&interval) {
+                for (low, high) in self.pieces(&interval).into_iter().rev() {
+                    if self.at(high).abs() > band {
+                        return Ok(Some(high));
+                    }
+                    if self.at(low).abs() > band {
+                        return Ok(Some(self.sign_change(|e| e.abs() - band, low, high)));
+                    }
+                }
+            } else {
+                open.extend(self.halves(&interval));
+            }
+            count_interval(&mut count)?;
+        }
+        Ok((self.at(from).abs() > band).then_some(from))
+    }
+
+    /// The largest value of the sum, or of its negative, from `from` on, and its instant.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotConverged`] after too many intervals.
+    pub fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
+        let mut best = (from, sign * self.at(from));
+        let mut reached = best.1;
+        let bound = |interval: &Interval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
+        let mut open = BinaryHeap::new();
+        let whole = self.interval(from, self.end.max(from));
+        open.push(Ranked(bound(&whole), whole));
+        let mut count = 0;
+        while let Some(Ranked(most, interval)) = open.pop() {
+            if most <= best.1 + 2.0 * self.noise || most < reached {
+                break;
+            }
+            if self.is_last(&interval) {
+                for t in self.pieces(&interval).into_iter().flat_map(|(low, high)| [low, high]) {
+                    let value = sign * self.at(t);
+                    if value > best.1 {
+                        best = (t, value);
+                    }
+                }
+            } else {
+                for half in self.halves(&interval) {
+                    if !self.sampled {
+                        reached = reached.max(sign * half.middle);
+                    }
+                    open.push(Ranked(bound(&half), half));
+                }
+            }
+            count_interval(&mut count)?;
+        }
+        Ok((best.0, sign * best.1))
+    }
+}
+
+fn count_interval(count: &mut usize) -> Result<(), Error> {
+    *count += 1;
+    if *count > MAX_INTERVALS { Err(Error::NotConverged { what: "the search over time" }) } else { Ok(()) }
+}

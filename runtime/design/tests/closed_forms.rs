@@ -1,0 +1,385 @@
+//! Peaks, crossings, step figures and stable gains of random systems against closed forms.
+
+use linkwork_design::nalgebra::{Complex, DMatrix};
+use linkwork_design::{Error, GainRange, Hold, Polynomial, StateSpace, StepFigures, TransferFunction};
+use std::f64::consts::PI;
+
+type C = Complex<f64>;
+
+struct Random(u64);
+
+impl Random {
+    /// A number between zero and one.
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// A number whose logarithm is uniform.
+    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+}
+
+fn transfer(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
+    TransferFunction::new(numerator.to_vec(), denominator.to_vec()).unwrap()
+}
+
+fn state_space(numerator: &[f64], denominator: &[f64]) -> StateSpace {
+    transfer(numerator, denominator).state_space().unwrap()
+}
+
+#[track_caller]
+fn close(what: &str, found: f64, expected: f64, relative: f64) {
+    assert!(
+        (found - expected).abs() <= relative * expected.abs(),
+        "{what}: expected {expected}, found {found}"
+    );
+}
+
+/// The largest of `|(s² + e s + f) / (s² + b s + c)|` over frequencies: in `x = ω²` its square is a quotient
+/// of quadratics, which is stationary at the roots of a further quadratic.
+fn biproper_peak(e: f64, f: f64, b: f64, c: f64) -> f64 {
+    let (n, d) = ([1.0, e * e - 2.0 * f, f * f], [1.0, b * b - 2.0 * c, c * c]);
+    let square = |x: f64| ((f - x).powi(2) + e * e * x) / ((c - x).powi(2) + b * b * x);
+    let (p, q, r) = (d[1] - n[1], 2.0 * (d[2] - n[2]), n[1] * d[2] - n[2] * d[1]);
+    let root = (q * q - 4.0 * p * r).max(0.0).sqrt();
+    let stationary = [(-q + root) / (2.0 * p), (-q - root) / (2.0 * p)];
+    let squares = stationary.into_iter().filter(|x| *x > 0.0).map(square);
+    squares.fold(square(0.0).max(1.0), f64::max).sqrt()
+}
+
+#[test]
+fn peak_gains_of_biproper_systems() {
+    let mut random = Random(1);
+    for k in 0..1000 {
+        let light = k % 4 == 3;
+        let (c, f) = (random.between(0.1, 50.0), random.between(0.0, 50.0));
+        let damping = |random: &mut Random| {
+            if light { random.magnitude(1e-5, 1.0) } else { random.between(0.05, 10.0) }
+        };
+        let (b, e) = (damping(&mut random), damping(&mut random));
+        let system = state_space(&[1.0, e, f], &[1.0, b, c]);
+        let expected = biproper_peak(e, f, b, c);
+        close(&format!("{e} {f} {b} {c}"), system.peak_gain().unwrap().gain, expected, 1e-9);
+        if k % 3 == 0 {
+            let held = system.discretize(0.05, Hold::Tustin).unwrap();
+            close("Tustin's", held.peak_gain().unwrap().gain, expected, 1e-7);
+        }
+    }
+}
+
+/// The largest singular value of the direct term is one, that of the response is larger: SLICOT's AB13DD with
+/// a tolerance of 1e-13 (slycot 0.7.1) finds 1.414487935024265 at 4.638148816470194 rad/s.
+#[test]
+fn peak_gain_of_two_channels() {
+    let system = StateSpace::new(
+        DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, -16.0, -4.0, 0.0, 0.0, 1.0, -1.0]),
+        DMatrix::from_row_slice(3, 2, &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]),
+        DMatrix::from_row_slice(2, 3, &[-9.0, 1.0, 0.0, 0.0, 0.2, 0.1]),
+        DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.5]),
+    );
+    let peak = system.unwrap().peak_gain().unwrap();
+    close("gain", peak.gain, 1.414487935024265, 1e-11);
+    close("frequency", peak.frequency, 4.638148816470194, 1e-6);
+}
+
+/// The magnitude of an all-pass is one everywhere, and crosses one nowhere; `s / (s + a)` only approaches it.
+#[test]
+fn magnitudes_that_do_not_cross_one() {
+    let mut random = Random(2);
+    for _ in 0..200 {
+        let (a, b) = (random.magnitude(1e-2, 1e2), random.magnitude(1e-2, 1e2));
+        let all_pass = state_space(&[1.0, -(a + b), a * b], &[1.0, a + b, a * b]);
+        close("gain", all_pass.peak_gain().unwrap().gain, 1.0, 1e-12);
+        let margins = all_pass.margins().unwrap();
+        assert!(margins.phase.is_empty(), "{margins:?}");
+        // It passes −1 where the lags are 90° each on average.
+        let [gain] = margins.gain[..] else { panic!("{margins:?}") };
+        close("factor", gain.factor, 1.0, 1e-9);
+        close("frequency", gain.frequency, (a * b).sqrt(), 1e-9);
+        assert!(margins.stability.distance < 1e-9, "{margins:?}");
+        for washout in [state_space(&[1.0, 0.0], &[1.0, a]), state_space(&[a], &[1.0, a])] {
+            for loose in [washout.discretize(0.1, Hold::Tustin).unwrap(), washout] {
+                let margins = loose.margins().unwrap();
+                assert!(margins.gain.is_empty() && margins.phase.is_empty(), "{a}: {margins:?}");
+            }
+        }
+        // A pole at rest that a zero cancels: (s + a) / (s − a) begins at −1.
+        let cancelled = state_space(&[1.0, a, 0.0], &[1.0, -a, 0.0]).margins().unwrap();
+        assert!(cancelled.stability.distance < 1e-6, "{cancelled:?}");
+    }
+}
+
+/// `k / (s (s + a) (s + b))` is real and negative at `ω = √(a b)`, where its magnitude is `k / (a b (a +
+/// b))`; Tustin's rule moves the frequency only. Neither has a margin at rest, where there is a pole, or at
+/// Nyquist's frequency, where there is a zero.
+#[test]
+fn gain_margins_of_loops_with_an_integrator() {
+    let mut random = Random(3);
+    for _ in 0..300 {
+        let (a, b) = (random.magnitude(0.1, 10.0), random.magnitude(0.1, 10.0));
+        let (k, h) = (random.magnitude(1e-3, 1e3), random.magnitude(1e-3, 0.3));
+        let system = state_space(&[k], &[1.0, a + b, a * b, 0.0]);
+        let (factor, frequency) = (a * b * (a + b) / k, (a * b).sqrt());
+        let held = system.discretize(h, Hold::Tustin).unwrap().margins().unwrap();
+        let found = system.margins().unwrap();
+        for (margins, frequency) in [(&found, frequency), (&held, 2.0 / h * (0.5 * h * frequency).atan())] {
+            let [gain] = margins.gain[..] else { panic!("{a} {b} {k} {h}: {margins:?}") };
+            close("factor", gain.factor, factor, 1e-7);
+            close("frequency", gain.frequency, frequency, 1e-7);
+            assert_eq!(margins.phase.len(), 1, "{a} {b} {k} {h}: {margins:?}");
+        }
+        close("distance", held.stability.distance, found.stability.distance, 1e-6);
+    }
+}
+
+/// An integrator with a hold is `h / (z − 1)`: real at Nyquist's frequency alone, with magnitude `h / 2`; of
+/// magnitude one at `sin(ω h / 2) = h / 2`. A double integrator by Tustin's rule is real everywhere.
+#[test]
+fn margins_of_held_integrators() {
+    let mut random = Random(4);
+    for _ in 0..200 {
+        let h = random.magnitude(1e-3, 1.0);
+        let margins = state_space(&[1.0], &[1.0, 0.0]).discretize(h, Hold::Zero).unwrap().margins().unwrap();
+        let ([gain], [phase]) = (&margins.gain[..], &margins.phase[..]) else { panic!("{h}: {margins:?}") };
+        close("factor", gain.factor, 2.0 / h, 1e-9);
+        close("frequency", gain.frequency, PI / h, 1e-12);
+        let half = (0.5 * h).asin();
+        close("frequency", phase.frequency, 2.0 * half / h, 1e-9);
+        close("degrees", phase.degrees, 90.0 - half.to_degrees(), 1e-9);
+        close("distance", margins.stability.distance, 1.0 - 0.5 * h, 1e-12);
+        let double = state_space(&[1.0], &[1.0, 0.0, 0.0]).discretize(h, Hold::Tustin).unwrap();
+        let margins = double.margins().unwrap();
+        assert!(margins.gain.is_empty(), "{h}: {margins:?}");
+        let [phase] = margins.phase[..] else { panic!("{h}: {margins:?}") };
+        close("frequency", phase.frequency, 2.0 / h * (0.5 * h).atan(), 1e-9);
+    }
+    // A lead for a lagging motor, held for 0.1 s: recomputed with 50 digits (mpmath).
+    let held = state_space(&[2.0, 1.0], &[1.0, 3.0, 2.0, 0.0]).discretize(0.1, Hold::Zero).unwrap();
+    let margins = held.margins().unwrap();
+    let [low, high] = margins.gain[..] else { panic!("{margins:?}") };
+    close("factor", low.factor, 26.185347040842, 1e-11);
+    close("frequency", low.frequency, 6.9937676541209, 1e-11);
+    close("factor", high.factor, 4822.08927739, 1e-8);
+    assert_eq!(margins.gain_reduction(), None);
+}
+
+/// In the limit of low frequencies `((z − 1) / h)^k` times the matched system is `s^k` times the continuous
+/// one.
+#[test]
+fn matched_systems_keep_low_frequencies() {
+    let coefficients = |g: &TransferFunction, h: f64| {
+        let matched = g.factored().unwrap().matched(h).unwrap().transfer_function();
+        (matched.numerator().coefficients().to_vec(), matched.denominator().coefficients().to_vec())
+    };
+    let mut random = Random(5);
+    for _ in 0..300 {
+        let (h, a) = (random.magnitude(1e-4, 10.0), random.magnitude(1e-8, 30.0));
+        let (numerator, denominator) = coefficients(&transfer(&[1.0], &[1.0, 0.0]), h);
+        assert_eq!((numerator, denominator), (vec![h], vec![1.0, -1.0]));
+        let (numerator, denominator) = coefficients(&transfer(&[1.0], &[1.0, 0.0, 0.0]), h);
+        assert_eq!(denominator, [1.0, -2.0, 1.0]);
+        numerator.iter().for_each(|found| close("1 / s²", *found, 0.5 * h * h, 1e-14));
+        // 1 / (s (s + a)): h (1 − e^{−a h}) (z + 1) / (2 a (z − 1) (z − e^{−a h})).
+        let (numerator, _) = coefficients(&transfer(&[1.0], &[1.0, a, 0.0]), h);
+        let expected = -0.5 * h * (-a * h).exp_m1() / a;
+        numerator.iter().for_each(|found| close("1 / (s (s + a))", *found, expected, 1e-9));
+        // a / (s + a) and s / (s + a), whose gains do not depend on how near to rest the pole is.
+        let (numerator, _) = coefficients(&transfer(&[a], &[1.0, a]), h);
+        close("a / (s + a)", numerator[0], -(-a * h).exp_m1(), 1e-12);
+        let (numerator, _) = coefficients(&transfer(&[1.0, 0.0], &[1.0, a]), h);
+        close("s / (s + a)", numerator[0], -(-a * h).exp_m1() / (a * h), 1e-12);
+    }
+    // An oscillation by the sampling frequency looks like one at rest.
+    let aliased = transfer(&[1.0], &[1.0, 0.0, 4.0 * PI * PI]).factored().unwrap();
+    assert_eq!(aliased.matched(1.0), Err(Error::Singular { what: "the gain of the matched system at rest" }));
+}
+
+/// The distance of `ω² / (s² + 2 ζ ω s + ω²)` from its final value, with time in units of `1 / ω`.
+fn oscillation(zeta: f64, t: f64) -> f64 {
+    let damped = (1.0 - zeta * zeta).sqrt();
+    -(-zeta * t).exp() * ((damped * t).cos() + zeta / damped * (damped * t).sin())
+}
+
+/// The first rise through a level, by bisection before the first peak.
+fn first_rise(zeta: f64, level: f64) -> f64 {
+    let (mut low, mut high) = (0.0, PI / (1.0 - zeta * zeta).sqrt());
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if 1.0 + oscillation(zeta, middle) < level { low = middle } else { high = middle }
+    }
+    low
+}
+
+#[test]
+fn step_figures_of_second_order() {
+    let mut random = Random(6);
+    for _ in 0..1000 {
+        let (zeta, omega) = (random.magnitude(1e-6, 0.95), random.magnitude(1e-2, 1e3));
+        let final_value = random.between(-5.0, 5.0);
+        let square = omega * omega;
+        let system = state_space(&[final_value * square], &[1.0, 2.0 * zeta * omega, square]);
+        let figures = system.step_figures().unwrap();
+        let damped = (1.0 - zeta * zeta).sqrt();
+        let part = (-PI * zeta / damped).exp();
+        close("overshoot", figures.overshoot, 100.0 * part, 1e-9);
+        close("peak", figures.peak, final_value.abs() * (1.0 + part), 1e-10);
+        close("peak time", figures.peak_time * omega, PI / damped, 1e-7);
+        close("rise time", figures.rise_time * omega, first_rise(zeta, 0.9) - first_rise(zeta, 0.1), 1e-8);
+        // The last extreme outside of the band is at half a period k; it comes back before the next.
+        let last = (50.0_f64.ln() * damped / (zeta * PI)).floor();
+        let settled = figures.settling_time * omega;
+        let half = PI / damped;
+        assert!(settled > last * half && settled < (last + 1.0) * half, "{zeta}: {settled}");
+        // Rounding of the natural frequency shifts the phase after many periods.
+        let tolerance = 1e-10 + 1e-13 / zeta;
+        assert!((oscillation(zeta, settled).abs() - 0.02).abs() < tolerance, "{zeta}: {settled}");
+        let trough = final_value * (1.0 - part * part);
+        let turns = [final_value * (1.0 + part), if part * part > 0.1 { trough } else { 0.9 * final_value }];
+        close("least", figures.least_after_rise, turns[0].min(turns[1]), 1e-8);
+        close("largest", figures.largest_after_rise, turns[0].max(turns[1]), 1e-8);
+    }
+}
+
+/// A fast oscillation on a slow rise: `½ / (s + 1) + ½ ω² / (s² + 0.1 ω s + ω²)` with `ω` = 1000 has 90 % of
+/// its final value within its first half period. The instants are those of 50 digits (mpmath).
+#[test]
+fn step_figures_of_two_time_scales() {
+    let slow = transfer(&[0.5], &[1.0, 1.0]);
+    let both = slow.plus(&transfer(&[5e5], &[1.0, 100.0, 1e6])).unwrap();
+    let figures = both.step_figures().unwrap();
+    close("rise time", figures.rise_time, 0.0021301006296717387, 1e-8);
+    close("settling time", figures.settling_time, 25.0_f64.ln(), 1e-9);
+    assert_eq!((figures.overshoot, figures.peak_time), (0.0, f64::INFINITY));
+}
+
+/// `1 − (1 + t + … + t⁷ / 7!) e^{−t}` of `1 / (s + 1)⁸`, whose poles coincide.
+#[test]
+fn step_figures_of_repeated_poles() {
+    let denominator = Polynomial::from_roots(&[C::new(-1.0, 0.0); 8]);
+    let system = TransferFunction::quotient(&Polynomial::constant(1.0), &denominator).unwrap();
+    let figures = system.step_figures().unwrap();
+    let distance = |t: f64| {
+        let terms = (1..8).scan(1.0, |term, k| {
+            *term *= t / f64::from(k);
+            Some(*term)
+        });
+        (1.0 + terms.sum::<f64>()) * (-t).exp()
+    };
+    let instant = |level: f64| {
+        let (mut low, mut high) = (0.0, 40.0);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if distance(middle) > level { low = middle } else { high = middle }
+        }
+        low
+    };
+    close("settling time", figures.settling_time, instant(0.02), 1e-9);
+    close("rise time", figures.rise_time, instant(0.1) - instant(0.9), 1e-9);
+    assert_eq!((figures.overshoot, figures.undershoot, figures.peak_time), (0.0, 0.0, f64::INFINITY));
+}
+
+/// Samples of a held oscillation are those of the continuous one.
+#[test]
+fn step_figures_of_sampled_systems() {
+    let mut random = Random(7);
+    for _ in 0..200 {
+        let (zeta, h) = (random.magnitude(3e-4, 0.9), random.magnitude(1e-2, 2.0));
+        let held = state_space(&[1.0], &[1.0, 2.0 * zeta, 1.0]).discretize(h, Hold::Zero).unwrap();
+        let StepFigures { rise_time, settling_time, overshoot, peak_time, .. } = held.step_figures().unwrap();
+        let count = (12.0 / (zeta * h)) as usize;
+        let samples: Vec<f64> = (0..count).map(|k| oscillation(zeta, h * k as f64)).collect();
+        let first = |level: f64| samples.iter().position(|e| 1.0 + e >= level).unwrap();
+        let last = samples.iter().rposition(|e| e.abs() > 0.02).unwrap();
+        assert_eq!((rise_time / h).round() as usize, first(0.9) - first(0.1), "{zeta} {h}");
+        assert_eq!((settling_time / h).round() as usize, last + 1, "{zeta} {h}");
+        let largest = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert!((overshoot - 100.0 * largest.max(0.0)).abs() < 1e-8, "{zeta} {h}: {overshoot}, {largest}");
+        if largest > 1e-6 {
+            let at = oscillation(zeta, peak_time);
+            assert!((at - largest).abs() < 1e-9, "{zeta} {h}: {at} at {peak_time}, {largest}");
+        }
+    }
+    // The oscillation of an undamped zero at rest has no final value.
+    let at_rest = state_space(&[1.0, 0.0], &[1.0, 3.0, 2.0]);
+    let error = Err(Error::Range { what: "a final value", value: 0.0 });
+    assert_eq!(at_rest.step_figures(), error);
+    assert_eq!(at_rest.discretize(0.1, Hold::Zero).unwrap().step_figures(), error);
+}
+
+fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
+    Polynomial::new(one.to_vec()).stable_gains(&Polynomial::new(other.to_vec())).unwrap()
+}
+
+/// By Hurwitz' criterion: `s³ + (3 + k) s² + 3 s + 1 + k` needs `k > −1`, and `s³ + k (s² + 2 s + 1)` needs
+/// `2 k² > k`; a polynomial and its multiple are as stable as the one for all gains that do not cancel them.
+#[test]
+fn stable_gains_by_hurwitz() {
+    let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
+    let cases: [(&[f64], &[f64], &[(f64, f64)]); 8] = [
+        (&[1.0, 3.0, 3.0, 1.0], &[1.0, 0.0, 1.0], &[(-1.0, most)]),
+        (&[1.0, 0.0, 0.0, 0.0], &[1.0, 2.0, 1.0], &[(0.5, most)]),
+        (&[1.0, 3.0, 2.0], &[1.0, 3.0, 2.0], &[(least, -1.0), (-1.0, most)]),
+        (&[1.0, 3.0, 2.0], &[1.0], &[(-2.0, most)]),
+        // A higher degree: k s² + (1 + k) s + 1.
+        (&[1.0, 1.0], &[1.0, 1.0, 0.0], &[(0.0, most)]),
+        // Zeros at ±i: s + 1 + k (s² + 1).
+        (&[1.0, 1.0], &[1.0, 0.0, 1.0], &[(0.0, most)]),
+        // A common factor on the axis is stable for no gain.
+        (&[1.0, 1.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[]),
+        // Small numbers: 1e-9 s² + 1e-9 s + k.
+        (&[1e-9, 1e-9, 0.0], &[1.0], &[(0.0, most)]),
+    ];
+    for (one, other, expected) in cases {
+        let found = stable_gains(one, other);
+        let same = |(found, (low, high)): (&GainRange, &(f64, f64))| {
+            let near = |a: f64, b: f64| a == b || (a - b).abs() < 1e-10;
+            near(found.low, *low) && near(found.high, *high)
+        };
+        assert!(
+            found.len() == expected.len() && found.iter().zip(expected).all(same),
+            "{one:?} {other:?}: {found:?}"
+        );
+    }
+}
+
+/// A gain is within a range if and only if the roots are on the left.
+#[test]
+fn stable_gains_by_roots() {
+    let mut random = Random(8);
+    for round in 0..600 {
+        let mut polynomial = |degree: usize| {
+            let mut product = Polynomial::constant(random.between(0.5, 2.0));
+            while product.degree() < degree {
+                let w = random.magnitude(0.1, 10.0);
+                let factor = match (random.unit(), degree - product.degree()) {
+                    (x, 2..) if x < 0.3 => Polynomial::new([1.0, 0.0, w * w]),
+                    (x, 2..) if x < 0.7 => Polynomial::new([1.0, random.between(-0.4, 2.0) * w, w * w]),
+                    (x, _) if x < 0.2 => Polynomial::new([1.0, 0.0]),
+                    _ => Polynomial::new([1.0, w]),
+                };
+                product = &product * &factor;
+            }
+            product
+        };
+        let (one, other) = (polynomial(round % 6), polynomial(round / 6 % 6));
+        let ranges = one.stable_gains(&other).unwrap();
+        for pair in ranges.windows(2) {
+            assert!(pair[0].high <= pair[1].low, "{one} and {other}: {ranges:?}");
+        }
+        for k in 0..60 {
+            let gain = random.magnitude(1e-4, 1e4) * if k % 2 == 0 { 1.0 } else { -1.0 };
+            let roots = (&one + &other.scaled(gain)).roots().unwrap();
+            let rightmost = roots.iter().map(|r| r.re / r.norm().max(1e-3)).fold(f64::NEG_INFINITY, f64::max);
+            if rightmost.abs() > 1e-6 && rightmost.is_finite() {
+                let within = ranges.iter().any(|range| range.low < gain && gain < range.high);
+                assert_eq!(within, rightmost < 0.0, "{one} and {gain} times {other}: {ranges:?}, {roots:?}");
+            }
+        }
+    }
+}

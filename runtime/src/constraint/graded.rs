@@ -1,0 +1,52 @@
+//! Rows that are held in mechanisms whose masses differ by many orders of magnitude.
+
+use super::span::{Metric, Span, at, rounding};
+use crate::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// Returns the change `x` of the velocity with `J x = changes` in the rows that are `held`, and impulses `λ`
+/// in these rows with `M x = Jᵀ λ`; `None` if the rows depend on each other.
+///
+/// The rows are factorised in the metric of the kinetic energy, so that light bodies lose no digits to heavy
+/// ones. Rows of one number in `groups` are components of one vector.
+pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
+    mass: &SMatrix<T, NV, NV>,
+    jacobian: &SMatrix<T, NC, NV>,
+    (held, groups): (&[bool; NC], &[usize; NC]),
+    changes: &SVector<T, NC>,
+) -> Option<(SVector<T, NV>, SVector<T, NC>)> {
+    let mut rows = *jacobian;
+    for column in &mut rows.data.0 {
+        column.iter_mut().zip(held).filter(|(_, held)| !**held).for_each(|(entry, _)| *entry = T::zero());
+    }
+    let metric = Metric::of(&mass.data.0);
+    let mut span = Span::of(&metric, &rows, groups);
+    span.extend(rounding(), NC);
+    if span.rank < held.iter().filter(|held| **held).count() {
+        return None;
+    }
+    let solve = |changes: &SVector<T, NC>| {
+        // `Rᵀ z = changes`, then `R λ = z`, by columns in the order in which they joined the basis.
+        let mut z = [T::zero(); NV];
+        for step in 0..span.rank {
+            let (k, pivot) = span.pivot(step)?;
+            let change = at(&changes.data.0[0], k) / pivot.length;
+            let rest = pivot.x.iter().zip(&z).take(step).fold(change, |rest, (x, z)| rest - *x * *z);
+            *z.get_mut(step)? = rest / at(&pivot.x, step);
+        }
+        let mut impulses = SVector::<T, NC>::zeros();
+        for step in (0..span.rank).rev() {
+            let later = (step + 1..span.rank).filter_map(|later| span.pivot(later));
+            let rest = later.fold(at(&z, step), |rest, (k, column)| {
+                rest - at(&column.x, step) * column.length * at(&impulses.data.0[0], k)
+            });
+            let (k, pivot) = span.pivot(step)?;
+            *impulses.get_mut(k)? = rest / (at(&pivot.x, step) * pivot.length);
+        }
+        Some((SVector::from(metric.back(span.backward(z))), impulses))
+    };
+    let (x, impulses) = solve(changes)?;
+    // Velocities of light bodies are large beside what rounding leaves of them: the rows fix them.
+    let (rest, more) = solve(&(changes - rows * x))?;
+    Some((x + rest, impulses + more))
+}

@@ -1,0 +1,171 @@
+//! Assembly from partial guesses: within half a turn, in the assembly mode next to the guess, or in the one that is asked for.
+
+use super::jansen;
+use linkwork::prelude::*;
+use std::f64::consts::PI;
+use support::random::Random;
+
+#[mechanism(gravity = -9.81 * y)]
+pub struct FourBar {
+    pub base: f64,
+    pub first: f64,
+    pub second: f64,
+    pub third: f64,
+    #[body(mass = 1, com = first / 3 * x, inertia = rod(1, first, x))]
+    crank: Body,
+    #[body(mass = 1.5, com = second / 2 * x + 0.1 * y, inertia = rod(1.5, second, x))]
+    coupler: Body,
+    #[body(mass = 0.8, com = third / 2 * x, inertia = rod(0.8, third, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    shaft: Pin,
+    #[joint(crank.at(first * x) -> coupler, about = z)]
+    knee: Pin,
+    #[joint(ground.at(base * x) -> rocker, about = z)]
+    pivot: Pin,
+    #[joint(coupler.at(second * x) -> rocker.at(third * x), about = z)]
+    last: Pin,
+}
+
+impl FourBar {
+    /// Angles of the joints.
+    pub fn angles(&self, side: f64, angle: f64) -> SVector<f64, 3> {
+        let bars = [self.base, self.first, self.second, self.third];
+        let [pin, end] = corners(bars, side, angle);
+        let coupler = (end[1] - pin[1]).atan2(end[0] - pin[0]);
+        [angle, wrapped(coupler - angle), end[1].atan2(end[0] - self.base)].into()
+    }
+}
+
+/// Pin of the crank and end of the coupler of a four-bar, by circles.
+pub fn corners([base, first, second, third]: [f64; 4], side: f64, angle: f64) -> [[f64; 2]; 2] {
+    let pin = [first * angle.cos(), first * angle.sin()];
+    [pin, jansen::corner(pin, [base, 0.0], second, third, side)]
+}
+
+/// Bars, a side and an angle of a random four-bar; its transmission angle has a sine of at least `least`.
+pub fn random(source: &mut Random, least: f64) -> ([f64; 4], f64, f64) {
+    loop {
+        let bars = [(); 4].map(|()| 0.6 + source.uniform(0.4));
+        let side = if source.uniform(1.0) < 0.0 { -1.0 } else { 1.0 };
+        let angle = source.uniform(PI);
+        let pin = [bars[1] * angle.cos(), bars[1] * angle.sin()];
+        let square = (pin[0] - bars[0]).powi(2) + pin[1].powi(2);
+        let cosine = (bars[2] * bars[2] + bars[3] * bars[3] - square) / (2.0 * bars[2] * bars[3]);
+        if 1.0 - cosine * cosine > least * least && square > 0.01 {
+            return (bars, side, angle);
+        }
+    }
+}
+
+fn wrapped(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
+}
+
+/// How far angles are from each other, whole turns apart.
+fn distance(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
+    (a - b).iter().fold(0.0, |most, off| most.max(wrapped(*off).abs()))
+}
+
+/// From a guess of the crank alone, whole turns off or not: one of the two ways that circles give, within half a turn.
+#[test]
+fn partial_guesses_stay_within_half_a_turn() {
+    let mut source = Random::new(5);
+    for case in 0..1000 {
+        let (bars, side, angle) = random(&mut source, 0.02);
+        let m = FourBar { base: bars[0], first: bars[1], second: bars[2], third: bars[3] };
+        let turns = 6.0 * PI * f64::from(case % 3);
+        let guess = [angle + turns, if case % 2 == 0 { 0.0 } else { source.uniform(9.0) }, 0.0].into();
+        let q = m.assemble(&guess, &[0]).unwrap_or_else(|error| panic!("{bars:?}, {guess}: {error}"));
+        assert!(m.constraint_residuals(&q).amax() < 1e-12 && q[0] == guess[0]);
+        assert!((q - guess).amax() <= PI + 1e-12, "{bars:?}: from {guess} to {q}");
+        let ways = [side, -side].map(|side| m.angles(side, angle));
+        let modes = ways.map(|way| m.assembly_mode(&way, &[0]).unwrap());
+        assert_eq!(modes[0], -modes[1]);
+        let found = m.assembly_mode(&q, &[0]).unwrap();
+        let own = usize::from(found != modes[0]);
+        assert!(distance(&q, &ways[own]) < 1e-9, "{bars:?}: {q}");
+        // The other one, from the same guess.
+        let other = m.assemble_in_mode(&guess, &[0], -found).unwrap();
+        assert!(distance(&other, &ways[1 - own]) < 1e-9 && (other - guess).amax() <= PI + 1e-12);
+        assert_eq!(m.assemble_in_mode(&guess, &[0], found), Ok(q));
+    }
+}
+
+/// Along the straight way from its residuals to none (Davidenko's homotopy, in small steps) a guess leads to what assembly
+/// finds, unless assembly finds something that is nearer.
+#[test]
+fn guesses_near_a_mode_lead_to_it() {
+    let mut source = Random::new(6);
+    let mut same = 0;
+    for _ in 0..1000 {
+        let (bars, side, angle) = random(&mut source, 0.1);
+        let m = FourBar { base: bars[0], first: bars[1], second: bars[2], third: bars[3] };
+        let near = 0.6;
+        let guess: SVector<f64, 3> =
+            m.angles(side, angle) + SVector::from([0.0, source.uniform(near), source.uniform(near)]);
+        let Some(way) = followed(&m, guess) else { continue };
+        let q = m.assemble(&guess, &[0]).unwrap();
+        if (q - way).amax() < 1e-6 {
+            same += 1;
+        } else {
+            let (found, other) = ((q - guess).norm(), (way - guess).norm());
+            assert!(found < other, "{bars:?}: from {guess} to {q}, not {way}");
+        }
+    }
+    assert!(same > 800, "{same}");
+}
+
+/// The end of the homotopy; `None` where it gets near a singular position on its way.
+fn followed(m: &FourBar, guess: SVector<f64, 3>) -> Option<SVector<f64, 3>> {
+    let (mut q, mode) = (guess, m.assembly_mode(&guess, &[0]));
+    let start = m.constraint_residuals(&q);
+    for step in 1..=400 {
+        let aim = start * (1.0 - f64::from(step) / 400.0);
+        for _ in 0..3 {
+            let (j, gap) = (m.constraint_jacobian(&q), m.constraint_residuals(&q) - aim);
+            let determinant = j[(0, 1)] * j[(1, 2)] - j[(0, 2)] * j[(1, 1)];
+            if determinant.abs() < 0.03 {
+                return None;
+            }
+            q[1] -= (j[(1, 2)] * gap[0] - j[(0, 2)] * gap[1]) / determinant;
+            q[2] -= (j[(0, 1)] * gap[1] - j[(1, 1)] * gap[0]) / determinant;
+        }
+    }
+    (m.assembly_mode(&q, &[0]) == mode).then_some(q)
+}
+
+#[mechanism]
+struct Gears {
+    #[body(mass = 1, inertia = disk(1, 0.4, z))]
+    large: Body,
+    #[body(mass = 1, inertia = disk(1, 0.1, z))]
+    small: Body,
+    #[joint(ground -> large, about = z)]
+    slow: Pin,
+    #[joint(ground.at(0.5 * x) -> small, about = z)]
+    quick: Pin,
+    #[constraint(quick = -4 * slow)]
+    mesh: Holonomic,
+}
+
+/// Gears turn farther than half a turn where they have to; a mode that is not there is an error.
+#[test]
+fn gears_turn_as_far_as_they_must() {
+    let gears = Gears {};
+    let q = gears.assemble(&[3.0, 0.0].into(), &[0]).unwrap();
+    assert!((q[1] + 12.0).abs() < 1e-12 && q[0] == 3.0);
+    let mode = gears.assembly_mode(&q, &[0]).unwrap();
+    assert_eq!(gears.assemble_in_mode(&q, &[0], -mode), Err(ConstraintError::Mode { mode: -mode }));
+    assert_eq!(gears.assembly_mode(&q, &[]), None);
+}
+
+/// In line, the two modes of a parallelogram meet.
+#[test]
+fn singular_positions_have_no_mode() {
+    let m = FourBar { base: 1.0, first: 0.5, second: 1.0, third: 0.5 };
+    assert_eq!(m.assembly_mode(&[0.0, 0.0, 0.0].into(), &[0]), None);
+    let (open, crossed) = (m.angles(1.0, 0.8), m.angles(-1.0, 0.8));
+    assert!(open[1] + 0.8 < 1e-12 && crossed[1] + 0.8 < -0.1);
+    assert_eq!(m.assembly_mode(&open, &[0]).map(|mode| -mode), m.assembly_mode(&crossed, &[0]));
+}

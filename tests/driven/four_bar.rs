@@ -1,0 +1,111 @@
+//! Random four-bars at random speeds and accelerations of the crank: d'Alembert's principle on corners by circles.
+
+use super::assembly::{FourBar, corners, random};
+use linkwork::prelude::*;
+use support::compare::assert_close;
+use support::random::Random;
+
+/// The same linkage with a crank that time drives.
+#[mechanism(gravity = -9.81 * y)]
+struct Driven {
+    base: f64,
+    first: f64,
+    second: f64,
+    third: f64,
+    start: f64,
+    speed: f64,
+    growth: f64,
+    #[body(mass = 1, com = first / 3 * x, inertia = rod(1, first, x))]
+    crank: Body,
+    #[body(mass = 1.5, com = second / 2 * x + 0.1 * y, inertia = rod(1.5, second, x))]
+    coupler: Body,
+    #[body(mass = 0.8, com = third / 2 * x, inertia = rod(0.8, third, x))]
+    rocker: Body,
+    #[joint(ground -> crank, about = z)]
+    shaft: Pin,
+    #[joint(crank.at(first * x) -> coupler, about = z)]
+    knee: Pin,
+    #[joint(ground.at(base * x) -> rocker, about = z)]
+    pivot: Pin,
+    #[joint(coupler.at(second * x) -> rocker.at(third * x), about = z)]
+    last: Pin,
+    #[constraint(shaft = start + speed * t + growth * t * t / 2)]
+    motor: Holonomic,
+}
+
+/// First and second derivatives, by differences of order six.
+fn differences(f: impl Fn(f64) -> f64) -> [f64; 2] {
+    let h = 2e-3;
+    let [a, b, c, d, e, g, m] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 0.0].map(|k| f(k * h));
+    [
+        (g - a - 9.0 * (e - b) + 45.0 * (d - c)) / (60.0 * h),
+        (2.0 * (a + g) - 27.0 * (b + e) + 270.0 * (c + d) - 490.0 * m) / (180.0 * h * h),
+    ]
+}
+
+/// The torque on the crank.
+fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64 {
+    let [base, first, second, third] = bars;
+    let body = |k: usize, angle: f64| -> [f64; 3] {
+        let [pin, end] = corners(bars, side, angle);
+        let (a, b, com) = match k {
+            0 => ([0.0, 0.0], pin, [first / 3.0, 0.0]),
+            1 => (pin, end, [second / 2.0, 0.1]),
+            _ => ([base, 0.0], end, [third / 2.0, 0.0]),
+        };
+        let (s, c) = (b[1] - a[1]).atan2(b[0] - a[0]).sin_cos();
+        [a[0] + c * com[0] - s * com[1], a[1] + s * com[0] + c * com[1], s.atan2(c)]
+    };
+    let inertias = [first * first / 12.0, 1.5 * second * second / 12.0, 0.8 * third * third / 12.0];
+    let mut sum = 0.0;
+    for (k, (mass, inertia)) in [1.0, 1.5, 0.8].into_iter().zip(inertias).enumerate() {
+        let here = body(k, angle)[2];
+        for i in 0..3 {
+            let [by, bend] = differences(|more| match i {
+                2 => {
+                    let turned = body(k, angle + more)[2] - here;
+                    turned.sin().atan2(turned.cos())
+                }
+                _ => body(k, angle + more)[i],
+            });
+            let acceleration = by * growth + bend * speed * speed;
+            sum += by
+                * match i {
+                    0 => mass * acceleration,
+                    1 => mass * (acceleration + 9.81),
+                    _ => inertia * acceleration,
+                };
+        }
+    }
+    sum
+}
+
+#[test]
+fn drives_of_random_four_bars_follow_dalembert() {
+    let (mut source, mut checked) = (Random::new(31), 0);
+    for _ in 0..300 {
+        let (bars, side, angle) = random(&mut source, 0.4);
+        let [base, first, second, third] = bars;
+        let (speed, growth) = (source.uniform(5.0), source.uniform(20.0));
+        let expected = torque(bars, side, angle, speed, growth);
+        // Differences may go beyond where the coupler and the rocker are in line.
+        if !expected.is_finite() {
+            continue;
+        }
+        checked += 1;
+        let m = FourBar { base, first, second, third };
+        let at = m.angles(side, angle);
+        let q = m.assemble(&at, &[0]).unwrap();
+        let v = m.complete_velocity(&q, &[speed, 0.0, 0.0].into(), &[0]).unwrap();
+        let a = m.complete_acceleration(&q, &v, &[growth, 0.0, 0.0].into(), &[0]).unwrap();
+        let (tau, lambda) = m.constrained_inverse_dynamics(&q, &v, &a, &[0]).unwrap();
+        assert_close(format!("{bars:?}"), &tau.data.0[0], &[expected, 0.0, 0.0], 1e-5);
+        let driven = Driven { base, first, second, third, start: angle, speed, growth };
+        let now = driven.complete_velocity(0.0, &q, &SVector::zeros(), &[]).unwrap();
+        assert_close("v", &now.data.0[0], &v.data.0[0], 1e-9);
+        let (again, multipliers) = driven.constrained_dynamics(0.0, &q, &v, &SVector::zeros());
+        assert_close("a", &again.data.0[0], &a.data.0[0], 1e-8);
+        assert_close("λ", &multipliers.data.0[0], &[lambda[0], lambda[1], tau[0]], 1e-7);
+    }
+    assert!(checked > 250, "{checked}");
+}

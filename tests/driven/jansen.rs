@@ -1,0 +1,159 @@
+//! A leg of Jansen's beast on a crank at a given speed: eleven bars, six loops' conditions, no degree of freedom.
+
+use linkwork::prelude::*;
+use support::compare::assert_close;
+
+#[mechanism(gravity = -9.81 * y)]
+struct Leg {
+    speed: f64,
+    #[frame(ground, z(speed * t))]
+    turned: Frame,
+    #[body(mass = 0.1, com = 0.075 * x, inertia = rod(0.1, 0.15, x), frame = turned)]
+    crank: Body,
+    /// From the fixed pivot along the upper bar; the left corner by its sides.
+    #[body(mass = 0.9, com = 0.2 * x + 0.13 * y, inertia = diagonal(0.02, 0.02, 0.03))]
+    upper: Body,
+    #[body(mass = 0.4, com = 0.1965 * x, inertia = rod(0.4, 0.393, x))]
+    lower: Body,
+    #[body(mass = 1.1, com = 0.2 * x + 0.2 * y, inertia = diagonal(0.03, 0.03, 0.05))]
+    foot: Body,
+    #[body(mass = 0.5, com = 0.25 * x, inertia = rod(0.5, 0.5, x))]
+    to_upper: Body,
+    #[body(mass = 0.6, com = 0.3095 * x, inertia = rod(0.6, 0.619, x))]
+    to_lower: Body,
+    #[body(mass = 0.4, com = 0.197 * x, inertia = rod(0.4, 0.394, x))]
+    coupling: Body,
+    #[joint(ground.at(-0.38 * x - 0.078 * y) -> upper, about = z)]
+    upper_pivot: Pin,
+    #[joint(ground.at(-0.38 * x - 0.078 * y) -> lower, about = z)]
+    lower_pivot: Pin,
+    #[joint(lower.at(0.393 * x) -> foot, about = z)]
+    ankle: Pin,
+    #[joint(crank.at(0.15 * x) -> to_upper, about = z)]
+    upper_pin: Pin,
+    #[joint(crank.at(0.15 * x) -> to_lower, about = z)]
+    lower_pin: Pin,
+    #[joint(upper.at(0.0260987951807229 * x + 0.400149788067062 * y) -> coupling, about = z)]
+    knee: Pin,
+    #[joint(to_upper.at(0.5 * x) -> upper.at(0.415 * x), about = z)]
+    first: Pin,
+    #[joint(to_lower.at(0.619 * x) -> lower.at(0.393 * x), about = z)]
+    second: Pin,
+    #[joint(coupling.at(0.394 * x) -> foot.at(0.367 * x), about = z)]
+    third: Pin,
+    #[output(crank)]
+    on_crank: FreeBody,
+    #[output(r(foot.at(-0.07746594 * x + 0.48383781 * y) / ground))]
+    toe: Vector,
+}
+
+pub type Point = [f64; 2];
+
+/// The corner of a triangle over two others, at distances from them; to the left of the way from the first to the second where
+/// `side` is 1.
+pub fn corner(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let square = d[0] * d[0] + d[1] * d[1];
+    let along = (from_a * from_a - from_b * from_b + square) / (2.0 * square);
+    let across = side * (from_a * from_a / square - along * along).sqrt();
+    [a[0] + along * d[0] - across * d[1], a[1] + along * d[1] + across * d[0]]
+}
+
+/// A point of a body by its axis from `a` to `b`.
+fn on(a: Point, b: Point, x: f64, y: f64) -> Point {
+    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+    let e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+    [a[0] + x * e[0] - y * e[1], a[1] + x * e[1] + y * e[0]]
+}
+
+/// Bars by their ends: mass, centre of mass and moment of inertia, and where the leg's corners are.
+struct Skeleton(Vec<(f64, Point, f64, [Point; 2])>);
+
+/// The corners by circles alone.
+fn skeleton(angle: f64) -> Skeleton {
+    let (pivot, centre) = ([-0.38, -0.078], [0.0, 0.0]);
+    let pin = [0.15 * angle.cos(), 0.15 * angle.sin()];
+    let top = corner(pivot, pin, 0.415, 0.5, 1.0);
+    let left = on(pivot, top, 0.026_098_795_180_722_9, 0.400_149_788_067_062);
+    let bottom = corner(pivot, pin, 0.393, 0.619, -1.0);
+    let rear = corner(left, bottom, 0.394, 0.367, -1.0);
+    let rod = |m: f64, l: f64| m * l * l / 12.0;
+    Skeleton(vec![
+        (0.1, [0.075, 0.0], rod(0.1, 0.15), [centre, pin]),
+        (0.9, [0.2, 0.13], 0.03, [pivot, top]),
+        (0.4, [0.1965, 0.0], rod(0.4, 0.393), [pivot, bottom]),
+        (1.1, [0.2, 0.2], 0.05, [bottom, rear]),
+        (0.5, [0.25, 0.0], rod(0.5, 0.5), [pin, top]),
+        (0.6, [0.3095, 0.0], rod(0.6, 0.619), [pin, bottom]),
+        (0.4, [0.197, 0.0], rod(0.4, 0.394), [left, rear]),
+    ])
+}
+
+impl Skeleton {
+    fn angle(&self, k: usize) -> f64 {
+        let [a, b] = self.0[k].3;
+        (b[1] - a[1]).atan2(b[0] - a[0])
+    }
+
+    fn centre(&self, k: usize) -> Point {
+        let (_, com, _, [a, b]) = self.0[k];
+        on(a, b, com[0], com[1])
+    }
+}
+
+/// Energy by differences of the corners.
+fn energy(speed: f64, t: f64) -> f64 {
+    let rate = |f: &dyn Fn(f64) -> f64| super::derivative(|t| f(speed * t), t);
+    let here = skeleton(speed * t);
+    let mut sum = 0.0;
+    for (k, (mass, _, inertia, _)) in here.0.iter().enumerate() {
+        let v = [0, 1].map(|i| rate(&|angle| skeleton(angle).centre(k)[i]));
+        // From the angle at this instant, so that no jump of a turn is between.
+        let base = here.angle(k);
+        let w = rate(&|angle| {
+            let turned = skeleton(angle).angle(k) - base;
+            turned.sin().atan2(turned.cos())
+        });
+        sum += mass * ((v[0] * v[0] + v[1] * v[1]) / 2.0 + 9.81 * here.centre(k)[1]) + inertia * w * w / 2.0;
+    }
+    sum
+}
+
+/// The power of the crank is the rate of the energy, all along a turn in which the leg keeps its form.
+#[test]
+fn the_power_of_the_crank_is_the_rate_of_energy() {
+    assert_eq!((Leg::NV, Leg::NC, Leg::NS), (6, 6, 0));
+    let speed = 2.0;
+    let m = Leg { speed };
+    let mut last: Option<SVector<f64, 6>> = None;
+    for k in 0..=24 {
+        let t = f64::from(k) * std::f64::consts::TAU / speed / 24.0;
+        let s = skeleton(speed * t);
+        let tilt = |k: usize, of: f64| {
+            let angle = s.angle(k) - of;
+            angle.sin().atan2(angle.cos())
+        };
+        // From the corners at first, then from the instant before.
+        let turned = speed * t;
+        let corners = [
+            s.angle(1),
+            s.angle(2),
+            tilt(3, s.angle(2)),
+            tilt(4, turned),
+            tilt(5, turned),
+            tilt(6, s.angle(1)),
+        ];
+        let q = m.assemble(t, &last.unwrap_or(corners.into()), &[]).unwrap();
+        last = Some(q);
+        for (found, corner) in q.iter().zip(corners) {
+            let off = found - corner;
+            assert!(off.sin().atan2(off.cos()).abs() < 1e-7, "{k}: {q} {corners:?}");
+        }
+        let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
+        let total = |t: f64| energy(speed, t);
+        let found = m.kinetic_energy(t, &q, &v) + m.potential_energy(t, &q);
+        assert_close("energy", &[found], &[total(t)], 1e-6);
+        let place = *m.on_crank(t, &q, &v).get("crank.place").unwrap();
+        assert_close("power", &[place.torque[2] * speed], &[super::derivative(total, t)], 1e-5);
+    }
+}

@@ -1,0 +1,18 @@
+//! Mechanisms that are driven at given positions, rates and accelerations: loops without a degree of freedom, forces of drives
+//! and bearings over a turn, and the assembly of linkages.
+
+mod assembly;
+mod cam;
+mod four_bar;
+mod frames;
+mod jansen;
+mod prelude;
+mod slider_crank;
+mod yoke;
+
+/// Derivative of a function of time, by central differences of order six.
+fn derivative(f: impl Fn(f64) -> f64, t: f64) -> f64 {
+    let h = 2e-3;
+    let odd = |k: f64| f(t + k * h) - f(t - k * h);
+    (45.0 * odd(1.0) - 9.0 * odd(2.0) + odd(3.0)) / (60.0 * h)
+}

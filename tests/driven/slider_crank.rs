@@ -1,0 +1,357 @@
+//! A slider-crank whose crank turns at a given speed, in four declarations, against d'Alembert's principle by hand.
+
+use linkwork::prelude::*;
+use support::compare::assert_close;
+
+const R: f64 = 0.04;
+const L: f64 = 0.13;
+const ROD: f64 = 0.8;
+const PISTON: f64 = 0.5;
+const CRANK: f64 = 1.2;
+const G: f64 = 9.81;
+
+macro_rules! slider_crank {
+    ($name:ident, ($($words:tt)*), {$($fields:tt)*}) => {
+        #[mechanism(gravity = -9.81 * y $($words)*)]
+        struct $name {
+            #[body(mass = 1.2, com = 0.02 * x, inertia = rod(1.2, 0.04, x))]
+            crank: Body,
+            #[body(mass = 0.8, com = 0.065 * x, inertia = rod(0.8, 0.13, x))]
+            rod: Body,
+            #[body(mass = 0.5)]
+            piston: Body,
+            #[joint(ground -> crank, about = z)]
+            main: Pin,
+            #[joint(crank.at(0.04 * x) -> rod, about = z)]
+            big_end: Pin,
+            #[joint(ground -> piston, along = x)]
+            cylinder: Sleeve,
+            #[joint(rod.at(0.13 * x) -> piston, about = z)]
+            small_end: Pin,
+            #[output(reaction_force(main))]
+            bearing: Vector,
+            #[output(reaction_torque(main))]
+            turning: Vector,
+            #[output(crank)]
+            on_crank: FreeBody,
+            #[output(dot(a(piston / ground / ground), x))]
+            shaking: Scalar,
+            $($fields)*
+        }
+    };
+}
+
+slider_crank!(Positioned, (, derivatives), {
+    omega: f64,
+    #[constraint(main = omega * t)]
+    drive: Holonomic,
+});
+slider_crank!(Rated, (), {
+    omega: f64,
+    #[constraint(rate(main) = omega)]
+    drive: Nonholonomic,
+});
+slider_crank!(Independent, (, formulation = speeds), {
+    omega: f64,
+    #[constraint(main = omega * t)]
+    drive: Holonomic,
+});
+slider_crank!(Motorised, (), {});
+
+slider_crank!(Twice, (), {
+    omega: f64,
+    #[constraint(main = omega * t)]
+    drive: Holonomic,
+    #[constraint(main = 2 * omega * t)]
+    other: Holonomic,
+});
+slider_crank!(Whole, (, derivatives, second_derivatives, batch, prepare, sensitivities, drawing, regressor, centroidal), {
+    omega: f64,
+    stiffness: f64,
+    #[constraint(main = omega * t)]
+    drive: Holonomic,
+    #[acts(on = cylinder, stiffness = stiffness)]
+    coil: Spring,
+    #[acts(on = cylinder)]
+    gas: Force,
+});
+
+/// The crank is placed by time.
+#[mechanism(gravity = -9.81 * y)]
+struct Framed {
+    omega: f64,
+    #[frame(ground, z(omega * t))]
+    turned: Frame,
+    #[body(mass = 1.2, com = 0.02 * x, inertia = rod(1.2, 0.04, x), frame = turned)]
+    crank: Body,
+    #[body(mass = 0.8, com = 0.065 * x, inertia = rod(0.8, 0.13, x))]
+    rod: Body,
+    #[body(mass = 0.5)]
+    piston: Body,
+    #[joint(crank.at(0.04 * x) -> rod, about = z)]
+    big_end: Pin,
+    #[joint(ground -> piston, along = x)]
+    cylinder: Sleeve,
+    #[joint(rod.at(0.13 * x) -> piston, about = z)]
+    small_end: Pin,
+    #[output(crank)]
+    on_crank: FreeBody,
+}
+
+/// The loop is solved in closed form as well: no coordinate is left.
+#[mechanism(gravity = -9.81 * y)]
+struct ClosedForm {
+    omega: f64,
+    #[frame(ground, z(omega * t))]
+    turned: Frame,
+    #[body(mass = 1.2, com = 0.02 * x, inertia = rod(1.2, 0.04, x), frame = turned)]
+    crank: Body,
+    #[body(mass = 0.8, com = 0.065 * x, inertia = rod(0.8, 0.13, x))]
+    rod: Body,
+    #[body(mass = 0.5)]
+    piston: Body,
+    #[joint(crank.at(0.04 * x) -> rod, about = z)]
+    big_end: Pin,
+    #[joint(ground -> piston, along = x)]
+    cylinder: Sleeve,
+    #[joint(rod.at(0.13 * x) -> piston, about = z, branch = 1)]
+    small_end: Pin,
+    #[output(crank)]
+    on_crank: FreeBody,
+    #[output(dot(r(piston / ground), x))]
+    stroke: Scalar,
+    #[output(reaction_force(small_end))]
+    pin_force: Vector,
+}
+
+/// Angle of the rod, its rate and acceleration; place, rate and acceleration of the piston; torque on the crank and the force
+/// of the crank's bearing on it, at a constant speed of the crank.
+struct ByHand {
+    rod: [f64; 3],
+    piston: [f64; 3],
+    torque: f64,
+    bearing: [f64; 2],
+}
+
+impl ByHand {
+    fn at(theta: f64, omega: f64) -> ByHand {
+        let (s, c) = theta.sin_cos();
+        // r sin θ + l sin β = 0.
+        let beta = (-R * s / L).asin();
+        let (sb, cb) = beta.sin_cos();
+        let by = -R * c / (L * cb);
+        let rate = by * omega;
+        let bend = (R * s * omega * omega + L * sb * rate * rate) / (L * cb);
+        let piston = [
+            R * c + L * cb,
+            -R * s * omega - L * sb * rate,
+            -R * c * omega * omega - L * (cb * rate * rate + sb * bend),
+        ];
+        // Acceleration of the rod's centre of mass, and its displacement by the angle of the crank.
+        let half = L / 2.0;
+        let a = [
+            -R * c * omega * omega - half * (cb * rate * rate + sb * bend),
+            -R * s * omega * omega + half * (-sb * rate * rate + cb * bend),
+        ];
+        let d = [-R * s - half * sb * by, R * c + half * cb * by];
+        let inertia = ROD * L * L / 12.0;
+        let torque = ROD * (a[0] * d[0] + (a[1] + G) * d[1])
+            + inertia * bend * by
+            + PISTON * piston[2] * (-R * s - L * sb * by)
+            + CRANK * G * R / 2.0 * c;
+        // The cylinder carries what keeps the rod from turning otherwise: moments about the crank pin.
+        let wall = {
+            let moment = inertia * bend + ROD * half * (cb * (a[1] + G) - sb * a[0]);
+            // Forces on the rod at the small end: −m a of the piston along x, the wall across.
+            (moment - L * sb * PISTON * piston[2]) / (L * cb)
+        };
+        let crank = [-R / 2.0 * c * omega * omega, -R / 2.0 * s * omega * omega];
+        let bearing = [
+            CRANK * crank[0] + ROD * a[0] + PISTON * piston[2],
+            CRANK * (crank[1] + G) + ROD * (a[1] + G) - wall,
+        ];
+        ByHand { rod: [beta - theta, rate - omega, bend], piston, torque, bearing }
+    }
+}
+
+const OMEGA: f64 = 35.0;
+
+/// Times over a turn.
+fn turn() -> impl Iterator<Item = f64> {
+    (0..24).map(|k| f64::from(k) * std::f64::consts::TAU / OMEGA / 24.0)
+}
+
+macro_rules! check {
+    ($m:expr, $t:expr) => {{
+        let (m, t) = (&$m, $t);
+        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let guess = [OMEGA * t, hand.rod[0] + 0.2, hand.piston[0] - 0.02].into();
+        let q = m.assemble(t, &guess, &[0]).unwrap();
+        let v = m.complete_velocity(t, &q, &[OMEGA, 0.0, 0.0].into(), &[]).unwrap();
+        let (a, lambda) = m.constrained_dynamics(t, &q, &v, &SVector::zeros());
+        assert_close("q", &q.data.0[0], &[OMEGA * t, hand.rod[0], hand.piston[0]], 1e-11);
+        assert_close("v", &v.data.0[0], &[OMEGA, hand.rod[1], hand.piston[1]], 1e-11);
+        assert_close("a", &a.data.0[0], &[0.0, hand.rod[2], hand.piston[2]], 1e-9);
+        let (tau, same) = m.constrained_inverse_dynamics(t, &q, &v, &a, &[]).unwrap();
+        assert_eq!(tau, SVector::<f64, 3>::zeros());
+        assert_close("multipliers", &same.data.0[0], &lambda.data.0[0], 1e-8);
+        assert_close("torque of the drive", &[lambda[2]], &[hand.torque], 1e-9);
+        assert_close("piston", &[-lambda[0].abs()], &[-(PISTON * hand.piston[2]).abs()], 1e-9);
+        let bearing = m.bearing(t, &q, &v);
+        assert_close("bearing", &bearing.data.0[0][..2], &hand.bearing, 1e-9);
+        assert_close("turning", &[m.turning(t, &q, &v)[2]], &[hand.torque], 1e-9);
+        assert_close("shaking", &[m.shaking(t, &q, &v, &a)], &[hand.piston[2]], 1e-9);
+        // All that acts on the crank.
+        let sum = m.on_crank(t, &q, &v);
+        let crank =
+            [-0.5 * R * OMEGA * OMEGA * (OMEGA * t).cos(), -0.5 * R * OMEGA * OMEGA * (OMEGA * t).sin()];
+        assert_close("crank", &sum.force().data.0[0][..2], &crank.map(|a| CRANK * a), 1e-9);
+        // The joint transmits what drives it.
+        let joint = sum.get("main").unwrap();
+        assert_close("joint", &[joint.torque[2]], &[hand.torque], 1e-9);
+    }};
+}
+
+#[test]
+fn drives_over_a_turn_balance_inertia() {
+    for t in turn() {
+        check!(Positioned { omega: OMEGA }, t);
+        check!(Independent { omega: OMEGA }, t);
+    }
+}
+
+/// A rate that is given by a parameter drives without time: functions take none.
+#[test]
+fn a_given_rate_drives() {
+    assert_eq!((Rated::NP, Rated::NS, Rated::NC), (1, 0, 3));
+    let m = Rated { omega: OMEGA };
+    for t in turn() {
+        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
+        let v = m.complete_velocity(&q, &SVector::zeros(), &[]).unwrap();
+        assert_close("v", &v.data.0[0], &[OMEGA, hand.rod[1], hand.piston[1]], 1e-11);
+        let (a, lambda) = m.constrained_dynamics(&q, &v, &SVector::zeros());
+        assert_close("a", &a.data.0[0], &[0.0, hand.rod[2], hand.piston[2]], 1e-9);
+        assert_close("torque", &[lambda[2]], &[hand.torque], 1e-9);
+    }
+}
+
+/// Inverse dynamics of the mechanism with one degree of freedom: from the motion of the crank to its torque.
+#[test]
+fn inverse_dynamics_find_the_torque_of_a_motion() {
+    let m = Motorised {};
+    for t in turn() {
+        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
+        let v = m.complete_velocity(&q, &[OMEGA, 0.0, 0.0].into(), &[0]).unwrap();
+        let a = m.complete_acceleration(&q, &v, &SVector::zeros(), &[0]).unwrap();
+        assert_close("a", &a.data.0[0], &[0.0, hand.rod[2], hand.piston[2]], 1e-9);
+        let (tau, lambda) = m.constrained_inverse_dynamics(&q, &v, &a, &[0]).unwrap();
+        assert_close("torque", &tau.data.0[0], &[hand.torque, 0.0, 0.0], 1e-9);
+        // The same motion under this torque.
+        let (again, multipliers) = m.constrained_dynamics(&q, &v, &tau);
+        assert_close("motion", &again.data.0[0], &a.data.0[0], 1e-8);
+        assert_close("multipliers", &multipliers.data.0[0], &lambda.data.0[0], 1e-8);
+    }
+    let q = m.assemble(&[0.7, -0.9, 0.15].into(), &[0]).unwrap();
+    let v = m.complete_velocity(&q, &[OMEGA, 0.0, 0.0].into(), &[0]).unwrap();
+    let a = m.complete_acceleration(&q, &v, &SVector::zeros(), &[0]).unwrap();
+    let by = |v: &_, a: &_, driven: &[usize]| m.constrained_inverse_dynamics(&q, v, a, driven);
+    assert!(matches!(by(&v, &a, &[]), Err(ConstraintError::Undriven { .. })));
+    assert!(matches!(by(&v, &SVector::zeros(), &[0]), Err(ConstraintError::Acceleration { .. })));
+    assert!(matches!(by(&[1.0, 1.0, 1.0].into(), &a, &[0]), Err(ConstraintError::Velocity { .. })));
+    assert_eq!(by(&v, &a, &[3]), Err(ConstraintError::Held { index: 3, velocities: 3 }));
+    // The piston may drive as well as the crank: the same power.
+    let (by_crank, by_piston) = (by(&v, &a, &[0]).unwrap().0, by(&v, &a, &[2]).unwrap().0);
+    assert_close("power", &[by_piston.dot(&v)], &[by_crank.dot(&v)], 1e-10);
+    assert_eq!((by_piston[0], by_piston[1]), (0.0, 0.0));
+}
+
+#[test]
+fn frames_drive_loops() {
+    assert_eq!((Framed::NV, Framed::NS), (2, 0));
+    let m = Framed { omega: OMEGA };
+    let closed = ClosedForm { omega: OMEGA };
+    assert_eq!(ClosedForm::NV, 0);
+    let (none, rest) = (SVector::<f64, 0>::zeros(), SVector::<f64, 0>::zeros());
+    for t in turn() {
+        let hand = ByHand::at(OMEGA * t, OMEGA);
+        let q = m.assemble(t, &[hand.rod[0] - 0.2, hand.piston[0]].into(), &[]).unwrap();
+        let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
+        assert_close("q", &q.data.0[0], &[hand.rod[0], hand.piston[0]], 1e-10);
+        assert_close("v", &v.data.0[0], &[hand.rod[1], hand.piston[1]], 1e-10);
+        let a = m.forward_dynamics(t, &q, &v, &SVector::zeros());
+        assert_close("a", &a.data.0[0], &[hand.rod[2], hand.piston[2]], 1e-9);
+        let energy = m.kinetic_energy(t, &q, &v);
+        assert_close("energies", &[closed.kinetic_energy(t, &none, &rest)], &[energy], 1e-10);
+        for on_crank in [m.on_crank(t, &q, &v), closed.on_crank(t, &none, &rest)] {
+            let place = on_crank.get("crank.place").unwrap();
+            assert_close("torque", &[place.torque[2]], &[hand.torque], 1e-9);
+            assert_close("bearing", &place.force.data.0[0][..2], &hand.bearing, 1e-9);
+        }
+        assert_close("stroke", &[closed.stroke(t, &none)], &[hand.piston[0]], 1e-12);
+        assert_close("pin", &[closed.pin_force(t, &none, &rest)[0]], &[PISTON * hand.piston[2]], 1e-9);
+    }
+}
+
+/// Simulations follow what is given, also where nothing is left to integrate.
+#[test]
+fn simulations_follow_the_drive() {
+    let end = 2.2 * std::f64::consts::TAU / OMEGA;
+    let hand = ByHand::at(OMEGA * end, OMEGA);
+    let (start, m) = (ByHand::at(0.0, OMEGA), Positioned { omega: OMEGA });
+    let (q, v) = ([0.0, start.rod[0], start.piston[0]], [OMEGA, start.rod[1], start.piston[1]]);
+    let found = simulate(&m).from(q, v).duration(end).finish().unwrap();
+    let turned = OMEGA * end;
+    assert_close("q", &found.q.data.0[0], &[turned, hand.rod[0], hand.piston[0]], 1e-8);
+    assert_close("v", &found.v.data.0[0], &[OMEGA, hand.rod[1], hand.piston[1]], 1e-7);
+    let wrong = simulate(&m).from(q, [0.9 * OMEGA, v[1], v[2]]).duration(end).finish();
+    assert!(matches!(wrong, Err(Error::OffConstraints { .. })), "{wrong:?}");
+    let closed = ClosedForm { omega: OMEGA };
+    let found = simulate(&closed).from([], []).duration(end).finish().unwrap();
+    assert_close("time", &[found.t], &[end], 1e-12);
+    assert_close("stroke", &[closed.stroke(found.t, &found.q)], &[hand.piston[0]], 1e-12);
+}
+
+/// A mechanism without a degree of freedom has no independent states: its linear system has inputs and outputs alone.
+#[test]
+fn linear_systems_are_empty() {
+    let m = Positioned { omega: OMEGA };
+    let hand = ByHand::at(0.6, OMEGA);
+    let t = 0.6 / OMEGA;
+    let q = m.assemble(t, &[0.6, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
+    let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
+    let linear = m.linearize(t, &q, &v, &SVector::zeros(), &[]).unwrap();
+    assert_eq!(linear.a.shape(), (0, 0));
+}
+
+/// Two drives of one coordinate that disagree leave no configuration but at the time zero; none of them is left out.
+#[test]
+fn drives_that_disagree_are_reported() {
+    assert_eq!((Twice::NC, Twice::NS), (4, 0));
+    let m = Twice { omega: 3.0 };
+    assert!(m.assemble(0.0, &[0.0, 0.0, 0.17].into(), &[]).is_ok());
+    let found = m.assemble(0.2, &[0.6, -0.78, 0.16].into(), &[]);
+    assert!(matches!(found, Err(ConstraintError::Configuration { .. })), "{found:?}");
+}
+
+/// With everything that can be asked for: derivatives along a motion that is given, and the force of a drive against a gas.
+#[test]
+fn functions_that_are_asked_for_hold_without_a_degree_of_freedom() {
+    let m = Whole { omega: OMEGA, stiffness: 250.0 };
+    let (t, hand) = (0.9 / OMEGA, ByHand::at(0.9, OMEGA));
+    let q = m.assemble(t, &[0.9, hand.rod[0], hand.piston[0]].into(), &[]).unwrap();
+    let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
+    let u = [70.0].into();
+    let tau = m.generalized_forces(t, &q, &u);
+    let (a, lambda) = m.constrained_dynamics(t, &q, &v, &tau);
+    assert_close("a", &a.data.0[0], &[0.0, hand.rod[2], hand.piston[2]], 1e-9);
+    let by_crank = hand.piston[1] / OMEGA;
+    let torque = hand.torque + (250.0 * hand.piston[0] - 70.0) * by_crank;
+    assert_close("torque", &[lambda[2]], &[torque], 1e-9);
+    let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(t, &q, &v, &tau);
+    // Forces change nothing but multipliers.
+    assert!(by_tau.amax() < 1e-9 && by_q.iter().chain(&by_v).all(|x| x.is_finite()));
+    let by_gas = m.multiplier_derivatives(t, &q, &v, &tau).2 * SVector::from([0.0, 0.0, 1.0]);
+    assert_close("torque by force", &[by_gas[2]], &[-by_crank], 1e-9);
+}

@@ -1,0 +1,250 @@
+//! Random expressions of things whose units are known: accepted if and only if the units fit.
+
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::{read, resolve::build_model};
+use std::path::Path;
+use support::random::Random;
+
+/// Exponents of metre, kilogram and second.
+type Dimension = [i32; 3];
+
+const PLAIN: Dimension = [0, 0, 0];
+const FORCE: Dimension = [1, 1, -2];
+const ENERGY: Dimension = [2, 1, -2];
+
+/// Parameters, whose units are declared in `MACHINE`: a power of each gives every dimension.
+const PARAMETERS: [(&str, Dimension); 7] = [
+    ("l", [1, 0, 0]),
+    ("m", [0, 1, 0]),
+    ("w", [0, 0, -1]),
+    ("k", [0, 1, -2]),
+    ("c", [0, 1, -1]),
+    ("n", PLAIN),
+    ("j", [2, 1, 0]),
+];
+
+/// Quantities of the motion.
+const MOTION: [(&str, Dimension); 12] = [
+    ("rail", [1, 0, 0]),
+    ("hinge", PLAIN),
+    ("rate(rail)", [1, 0, -1]),
+    ("rate(hinge)", [0, 0, -1]),
+    ("t", [0, 0, 1]),
+    ("dot(r(arm.at(x) / ground), y)", [1, 0, 0]),
+    ("norm(v(arm / ground / ground))", [1, 0, -1]),
+    ("dot(omega(arm / cart), z)", [0, 0, -1]),
+    ("kinetic_energy(arm)", ENERGY),
+    ("dot(momentum(cart), x)", [1, 1, -1]),
+    ("sin(hinge)", PLAIN),
+    ("moment_of_inertia(arm / ground, ground.z)", [2, 1, 0]),
+];
+
+/// Inputs, with the unit of what they act on.
+const INPUTS: [(&str, Dimension); 4] =
+    [("push", FORCE), ("turn", ENERGY), ("pull", FORCE), ("lever", [0, 1, -2])];
+
+/// A machine with an element more.
+fn machine(more: &str) -> String {
+    format!(
+        "struct Machine {{
+        #[unit(m)] l: f64, #[unit(kg)] m: f64, #[unit(1 / s)] w: f64, #[unit(N / m)] k: f64,
+        #[unit(kg / s)] c: f64, #[unit(1)] n: f64, #[unit(kg * m2)] j: f64,
+        #[body(mass = 1)] cart: Body,
+        #[body(mass = 1, com = x)] arm: Body,
+        #[joint(ground -> cart, along = x)] rail: Sleeve,
+        #[joint(cart -> arm, about = z)] hinge: Pin,
+        #[acts(on = rail)] push: Force,
+        #[acts(on = hinge)] turn: Torque,
+        #[acts(on = arm, along = y)] pull: Force,
+        #[acts(on = cart, along = l * x)] lever: Force,
+        #[output(l * m * w * k * c * n * j)] all: Scalar,
+        {more} }}"
+    )
+}
+
+/// What is reported of a machine with an element more, one message each.
+fn messages(more: &str) -> Vec<String> {
+    let mut cx = Diagnostics::new();
+    let source = read("".parse().unwrap(), machine(more).parse().unwrap(), Path::new(""), &mut cx).unwrap();
+    build_model(&source.mechanism.description, &Graph::new(), &mut cx);
+    cx.messages()
+}
+
+/// An integer less than `n`.
+fn below(n: usize, random: &mut Random) -> usize {
+    ((random.uniform(0.5) + 0.5) * n as f64) as usize % n
+}
+
+fn times(a: Dimension, b: Dimension, power: i32) -> Dimension {
+    std::array::from_fn(|k| a[k] + power * b[k])
+}
+
+fn pick<T: Copy>(from: &[T], random: &mut Random) -> T {
+    from[below(from.len(), random)]
+}
+
+/// A factor that gives a product a dimension: powers of the first three parameters.
+fn missing(mut by: Dimension) -> String {
+    let mut text = String::new();
+    for (k, (name, unit)) in PARAMETERS.iter().take(3).enumerate() {
+        let power = by[k] / unit[k];
+        by = times(by, *unit, -power);
+        let sign = if power > 0 { '*' } else { '/' };
+        (0..power.abs()).for_each(|_| text.push_str(&format!(" {sign} {name}")));
+    }
+    assert_eq!(by, PLAIN);
+    text
+}
+
+/// A product of this dimension that a parameter anchors: its numbers are plain factors.
+fn anchored(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+    let (mut text, mut has) = (String::from("n"), PLAIN);
+    for _ in 0..below(3, random) {
+        let (name, unit) = match below(4, random) {
+            0 => pick(&INPUTS, random),
+            1 | 2 => pick(&MOTION, random),
+            _ => pick(&PARAMETERS, random),
+        };
+        let below = below(3, random) == 0;
+        text = format!("{text} {} {name}", if below { '/' } else { '*' });
+        has = times(has, unit, if below { -1 } else { 1 });
+    }
+    if below(2, random) == 0 {
+        text = format!("{} * {text}", pick(&["0.6", "0.5", "9.81", "40", "2", "pi"], random));
+    }
+    text.push_str(&missing(times(dimension, has, -1)));
+    match depth.checked_sub(1).map(|depth| (depth, below(6, random))) {
+        Some((depth, 0)) => format!("{text} * sin({})", expression(PLAIN, depth, random)),
+        Some((depth, 1)) => {
+            let square = times(dimension, dimension, 1);
+            format!("sqrt({})", expression(square, depth, random))
+        }
+        Some((depth, 2)) => format!("max({text}, {})", expression(dimension, depth, random)),
+        Some((depth, 3)) => format!("{text} / ({})", expression(PLAIN, depth, random)),
+        _ => text,
+    }
+}
+
+/// A term of this dimension: anchored, or a number, or the motion's own with a coefficient.
+fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+    let with_coefficient = [MOTION.as_slice(), INPUTS.as_slice()].concat();
+    match below(8, random) {
+        0 => "0.7".to_string(),
+        1 => format!("30 * {}", pick(&with_coefficient, random).0),
+        2 => match with_coefficient.iter().find(|(_, unit)| *unit == dimension) {
+            Some((name, _)) => name.to_string(),
+            None => anchored(dimension, depth, random),
+        },
+        _ => anchored(dimension, depth, random),
+    }
+}
+
+/// A sum of terms of this dimension, one of which is anchored.
+fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+    let mut text = anchored(dimension, depth, random);
+    for _ in 0..below(3, random) {
+        let sign = if below(2, random) == 0 { '+' } else { '-' };
+        text = match below(2, random) {
+            0 => format!("{text} {sign} {}", term(dimension, depth, random)),
+            _ => format!("{} {sign} {text}", term(dimension, depth, random)),
+        };
+    }
+    text
+}
+
+/// Another dimension than this one.
+fn another(dimension: Dimension, random: &mut Random) -> Dimension {
+    loop {
+        let other = std::array::from_fn(|k| dimension[k] + below(5, random) as i32 - 2);
+        if other != dimension {
+            return other;
+        }
+    }
+}
+
+/// A sum in which one thing does not fit.
+fn wrong(dimension: Dimension, random: &mut Random) -> String {
+    let (good, bad) = (expression(dimension, 1, random), anchored(another(dimension, random), 1, random));
+    match below(6, random) {
+        0 => format!("{bad} + {good}"),
+        1 => format!("{good} - {bad}"),
+        2 => format!("({good}) * cos({})", anchored(another(PLAIN, random), 1, random)),
+        3 => format!("min({good}, {bad})"),
+        4 => {
+            // Without any parameter.
+            let all = [MOTION.as_slice(), INPUTS.as_slice()].concat();
+            let (a, b) = loop {
+                let (a, b) = (pick(&all, random), pick(&all, random));
+                if a.1 != b.1 {
+                    break (a.0, b.0);
+                }
+            };
+            format!("{a} + {b}")
+        }
+        _ => format!("if {good} < {bad} {{ {good} }} else {{ {good} }}"),
+    }
+}
+
+/// An element that holds an expression of this dimension, directly or by way of definitions.
+fn element(e: &str, dimension: Dimension, random: &mut Random) -> String {
+    match below(if dimension == FORCE || dimension == ENERGY { 6 } else { 4 }, random) {
+        0 => format!("#[output({e})] o: Scalar"),
+        1 => format!("#[define({e})] d: Scalar, #[output(2 * d)] o: Scalar"),
+        2 => format!("#[output(r2 + d)] o: Scalar, #[define(d - d)] r2: Scalar, #[define({e})] d: Scalar"),
+        3 => format!(
+            "#[define(n * d)] twice: Scalar, #[define({e})] d: Scalar, #[output(twice - d)] o: Scalar"
+        ),
+        4 if dimension == FORCE => format!("#[acts(on = rail, value = {e})] o: Force"),
+        4 => format!("#[acts(on = hinge, value = {e})] o: Torque"),
+        _ if dimension == FORCE => format!("#[acts(on = cart, value = ({e}) * x)] o: Force"),
+        _ => format!("#[acts(on = arm, value = ({e}) * z)] o: Torque"),
+    }
+}
+
+fn dimension(random: &mut Random) -> Dimension {
+    match below(3, random) {
+        0 => FORCE,
+        1 => ENERGY,
+        _ => std::array::from_fn(|_| below(4, random) as i32 - 2),
+    }
+}
+
+#[test]
+fn expressions_whose_units_fit_are_accepted() {
+    let mut random = Random::new(41);
+    for _ in 0..600 {
+        let dimension = dimension(&mut random);
+        let e = expression(dimension, 2, &mut random);
+        let more = element(&e, dimension, &mut random);
+        assert_eq!(messages(&more), Vec::<String>::new(), "{more}");
+    }
+}
+
+#[test]
+fn expressions_whose_units_do_not_fit_are_refused() {
+    let mut random = Random::new(42);
+    for _ in 0..600 {
+        let dimension = dimension(&mut random);
+        let e = wrong(dimension, &mut random);
+        let more = element(&e, dimension, &mut random);
+        assert!(!messages(&more).is_empty(), "{more}");
+    }
+}
+
+/// Anchored expressions at places of another dimension.
+#[test]
+fn places_refuse_other_units() {
+    let mut random = Random::new(43);
+    for _ in 0..600 {
+        let (kind, place) = pick(&[("rail", FORCE), ("hinge", ENERGY)], &mut random);
+        let dimension = another(place, &mut random);
+        let e = match INPUTS.iter().find(|(_, unit)| *unit != place && below(4, &mut random) == 0) {
+            Some((name, _)) => name.to_string(),
+            None => anchored(dimension, 2, &mut random),
+        };
+        let element = if kind == "rail" { "Force" } else { "Torque" };
+        let more = format!("#[acts(on = {kind}, value = {e})] o: {element}");
+        assert!(!messages(&more).is_empty(), "{more}");
+    }
+}
