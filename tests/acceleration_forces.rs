@@ -2,7 +2,7 @@
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
-use linkwork::{Lanes, Rheonomic, RheonomicDerivatives, mechanism};
+use linkwork::{Lanes, RheonomicDerivatives, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 

@@ -206,7 +206,7 @@ impl Evaluated<'_, '_> {
             row /= length;
         });
         let determinant = rows.determinant();
-        (determinant.abs() > SINGULAR).then(|| if determinant > 0.0 { 1 } else { -1 })
+        (determinant.abs() > SINGULAR).then_some(if determinant > 0.0 { 1 } else { -1 })
     }
 
     /// Brings a configuration onto the constraints by Newton's method, the next one in the metric of the mass matrix, without the

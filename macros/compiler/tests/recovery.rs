@@ -211,8 +211,8 @@ fn an_error_keeps_the_arguments_of_every_measure() {
         let messages = expand("".parse().unwrap(), item.parse().unwrap(), Path::new("")).tokens.to_string();
         let error = messages.find("compile_error").map(|at| &messages[at..]);
         assert_eq!(error, None, "{function}");
-        let whole = generated("", "Measured", &fields);
-        let failed = generated("", "Measured", &format!("{fields} {MISTAKE}"));
+        let whole = code("", "Measured", &fields);
+        let failed = code("", "Measured", &format!("{fields} {MISTAKE}"));
         let of = |all: &Generated| all.present.get("Measured::measure").cloned();
         assert!(of(&whole).is_some(), "{function}");
         assert_eq!(of(&failed), of(&whole), "{function}");

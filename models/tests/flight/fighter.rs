@@ -1,7 +1,6 @@
 //! The fighter: a state by the book, trimmed flight, and its linear motion.
 
 use crate::is_at;
-use linkwork::Rheonomic;
 use linkwork::nalgebra::{DMatrix, SVector, UnitQuaternion};
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;

@@ -1,6 +1,5 @@
 //! Linear systems and steady motions under forces that depend on accelerations, against automatic differentiation.
 
-use linkwork::Rheonomic;
 use linkwork::nalgebra::{DMatrix, SVector};
 use linkwork::prelude::*;
 use linkwork_design::Error;

@@ -321,7 +321,9 @@ fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
 #[test]
 fn stable_gains_by_hurwitz() {
     let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
-    let cases: [(&[f64], &[f64], &[(f64, f64)]); 8] = [
+    /// Denominator and numerator of a loop, and the ranges of its stable gains.
+    type Case<'a> = (&'a [f64], &'a [f64], &'a [(f64, f64)]);
+    let cases: [Case<'_>; 8] = [
         (&[1.0, 3.0, 3.0, 1.0], &[1.0, 0.0, 1.0], &[(-1.0, most)]),
         (&[1.0, 0.0, 0.0, 0.0], &[1.0, 2.0, 1.0], &[(0.5, most)]),
         (&[1.0, 3.0, 2.0], &[1.0, 3.0, 2.0], &[(least, -1.0), (-1.0, most)]),

@@ -153,13 +153,10 @@ impl Robot {
         text + "</robot>"
     }
 
-    /// A robot whose joints are those of MJCF: balls in the place of joints in space and in a plane.
+    /// Returns a random robot whose joints are those of MJCF.
     pub fn random_mjcf(random: &mut Random) -> Robot {
-        let mut robot = Robot::random(random);
+        let mut robot = Robot::random(&[0, 1, 2, 3, 6, 6, 6], random);
         for joint in robot.links.iter_mut().filter_map(|link| link.joint.as_mut()) {
-            if joint.kind == 4 || joint.kind == 5 {
-                joint.kind = 6;
-            }
             // A body without a joint has none that can be locked.
             joint.locked &= joint.kind != 3;
         }
