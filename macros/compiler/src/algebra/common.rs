@@ -1,28 +1,29 @@
-//! Factors that items of a sum have in common, taken out as long as that leaves fewer symbols to read.
+//! Extraction of common factors from the items of a sum, as long as it reduces the number of printed symbols.
 
 use super::item::{Item, Order, Sum, common_number, near};
 use super::polynomial::Monomial;
 
-/// Most items among which common factors are looked for: what is longer is not read.
+/// Maximum number of items of a sum that are searched for common factors: longer sums are not readable
+/// anyway.
 const MOST: usize = 200;
 
-/// Most items of which every beginning is tried.
+/// Maximum number of items for which every first extraction is tried.
 const FEW: usize = 10;
-/// Most parentheses within each other.
+/// Maximum nesting depth of parentheses.
 const NESTED: usize = 3;
 
-/// From which items of a sum common factors are taken out.
+/// Selection of the items of a sum from which common factors are taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
-    /// All of them: an equation.
+    /// All items, for an equation.
     All,
-    /// Those with the same number of rates, if they have any; neither rates nor positions are taken out: an energy.
+    /// Items of the same nonzero degree in rates, for an energy. Rates and positions are not taken out.
     Kinds,
-    /// None: a linear form, of which the coefficients alone are shortened.
+    /// No items, for a linear form: only its coefficients are shortened.
     None,
 }
 
-/// A sum with common factors taken out.
+/// Takes common factors out of a sum and of the sums in its items.
 pub fn gathered(order: &Order, mut items: Vec<Item>, among: Among) -> Vec<Item> {
     let kept = if among == Among::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
     let rules = Rules { order, kept, room: NESTED };
@@ -43,23 +44,23 @@ pub fn gathered(order: &Order, mut items: Vec<Item>, among: Among) -> Vec<Item> 
     out
 }
 
-/// What holds for a sum.
+/// Rules for taking common factors out of a sum.
 struct Rules<'a> {
     order: &'a Order,
-    /// Atoms that are not taken out.
+    /// Mask of the atoms that are not taken out.
     kept: Monomial,
-    /// Most parentheses within each other.
+    /// Maximum nesting depth of parentheses of an item.
     room: usize,
 }
 
 impl Rules<'_> {
-    /// Those within parentheses.
+    /// Returns the rules for a sum in parentheses: one level less is allowed.
     fn inner(&self) -> Self {
         Rules { room: self.room.saturating_sub(1), ..*self }
     }
 }
 
-/// Takes common factors out of the sums in items.
+/// Takes common factors out of the sums within items.
 fn within(rules: &Rules<'_>, items: &mut [Item]) {
     let inner = rules.inner();
     for item in items {
@@ -72,7 +73,7 @@ fn within(rules: &Rules<'_>, items: &mut [Item]) {
     }
 }
 
-/// Makes sums of one item factors of their own.
+/// Merges sums of a single item into the item that they are a factor of.
 fn unwrap(item: &mut Item) {
     for sum in std::mem::take(&mut item.sums) {
         match sum.items.as_slice() {
@@ -89,7 +90,8 @@ fn unwrap(item: &mut Item) {
     }
 }
 
-/// Takes common factors out of a sum, but those to be kept: in a short one, those first that leave least in the end.
+/// Takes common factors out of a sum, except the atoms in `rules.kept`. In a short sum, every group is tried
+/// as the first one, and the shortest result is used.
 fn gather(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
     let mut best = greedily(rules, items.clone());
     if items.len() > FEW {
@@ -104,7 +106,7 @@ fn gather(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
     best
 }
 
-/// Takes those factors out first that save most.
+/// Repeatedly takes out the common factor that saves the most symbols.
 fn greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
     while items.len() <= MOST {
         let mut best: Option<Group> = None;
@@ -119,16 +121,16 @@ fn greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
     items
 }
 
-/// Items of a sum with something in common.
+/// Items of a sum with a common factor.
 struct Group {
     members: Vec<usize>,
-    /// What they are together.
+    /// The sum of the members, with the common factor taken out.
     whole: Item,
-    /// How many symbols that saves.
+    /// Number of printed symbols that this saves.
     saved: usize,
 }
 
-/// A sum with a group in the place of its members.
+/// Replaces the members of a group by the factored item.
 fn with(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<Item> {
     let Group { members, mut whole, .. } = group;
     if let Some(last) = whole.sums.last_mut() {
@@ -146,7 +148,8 @@ fn with(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<Item> {
     items
 }
 
-/// The groups of a sum that are shorter than their members.
+/// Returns the groups of items whose factored form is shorter than their sum, within the allowed nesting
+/// depth.
 fn groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
     let size = |items: &[Item]| rules.order.size(items);
     let group = |members: Vec<usize>| {
@@ -158,7 +161,7 @@ fn groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
     candidates(rules, items).into_iter().filter_map(group).collect()
 }
 
-/// Items that share an atom or a sum: two or more.
+/// Returns the sets of at least two items that share an atom or a sum.
 fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
     let mut add = |has: &dyn Fn(&Item) -> bool| {
@@ -176,8 +179,9 @@ fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
     found
 }
 
-/// Items as one: their common factors times the sum of what is left of them. It begins with something positive, by the sign
-/// before it where an acceleration leads and other items remain.
+/// Returns the sum of items as one item: their common factors times the sum of the quotients. The first
+/// summand in parentheses is positive. If its acceleration has a negative coefficient and the sum has other
+/// items, the sign is taken out; otherwise a positive summand is moved to the front.
 fn together(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     let first = items.first()?;
     let factor = items.iter().fold(first.factor, |m, item| m.common(item.factor)).without(rules.kept);
@@ -217,7 +221,7 @@ fn together(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     Some(Item { coefficient: number, factor, sums })
 }
 
-/// The items of a sum that nothing but a sign stands before; any other as it is.
+/// Removes the parentheses of a sum whose only factor is a sign. Any other item is returned unchanged.
 fn opened(item: Item) -> Vec<Item> {
     match item.sums.as_slice() {
         [sum] if sum.power == 1 && item.factor == Monomial::ONE && near(item.coefficient.abs(), 1.0) => {
@@ -229,13 +233,14 @@ fn opened(item: Item) -> Vec<Item> {
     }
 }
 
-/// How many parentheses an item has within each other.
+/// Returns the nesting depth of the parentheses of an item.
 fn nested(item: &Item) -> usize {
     let inner = item.sums.iter().flat_map(|sum| &sum.items).map(nested).max();
     inner.map_or(0, |n| n + 1)
 }
 
-/// One where two sums are equal, less one where they are opposite; their items may stand in any order.
+/// Returns one if two sums are equal, minus one if they are opposite. The order of their items does not
+/// matter.
 fn ratio(a: &Sum, b: &Sum) -> Option<f64> {
     if a.power != b.power || a.items.len() != b.items.len() {
         return None;
@@ -248,7 +253,7 @@ fn ratio(a: &Sum, b: &Sum) -> Option<f64> {
     }
 }
 
-/// True if the second item is the first times a sign.
+/// Returns true if the second item is the first one times a sign.
 fn equal(a: &Item, b: &Item, sign: f64) -> bool {
     a.factor == b.factor
         && a.sums.len() == b.sums.len()

@@ -1,14 +1,15 @@
-//! A polynomial as a person groups it: by rates, then by functions, each with the parameters' factors in front. Decides
-//! the order in which terms and factors are read; makes no text.
+//! Grouping of polynomials as in textbooks: by rates, then by functions of positions, with parameters as
+//! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
 use super::common::{Among, gathered};
 use super::item::{Item, Order, Sum, common_number, near};
 use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
 
-/// Coefficients this much smaller than others of their kind are rounding.
+/// Relative magnitude below which a coefficient counts as rounding error among similar terms.
 const NOISE: f64 = 1e-11;
 
-/// A polynomial without terms that are only rounding: small against those with the same parameters and as many rates.
+/// Removes terms that are only rounding error: those whose coefficients are small relative to other terms
+/// with the same parameters, the same degree in rates, and an acceleration or none.
 pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     let parameters = ring.mask(|_, rank| rank == Rank::Parameter);
     let rates = ring.mask(|_, rank| rank >= Rank::Rate);
@@ -32,7 +33,8 @@ pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
     Polynomial { terms: p.terms.iter().filter(keep).copied().collect() }
 }
 
-/// The items of a polynomial in the order of reading, common factors of some of them taken out.
+/// Returns the items of a polynomial in printing order. `among` selects the items from which common factors
+/// are taken out.
 pub fn items(ring: &Ring, order: &Order, p: &Polynomial, among: Among) -> Vec<Item> {
     let mut items = Vec::new();
     let mut groups = grouped(&p.terms, order.rates);
@@ -55,7 +57,7 @@ pub fn items(ring: &Ring, order: &Order, p: &Polynomial, among: Among) -> Vec<It
     gathered(order, items, among)
 }
 
-/// Terms by the part of them that is in a mask.
+/// Groups terms by the factors that are in a mask.
 fn grouped(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
     let mut groups: Vec<(Monomial, Vec<Term>)> = Vec::new();
     for term in terms {
@@ -68,8 +70,8 @@ fn grouped(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
     groups
 }
 
-/// Parameters and positions alone: squares of linear forms; then what has all its positions in common, and what has any
-/// factor in common.
+/// Appends the items of terms in parameters and positions alone: first squares of linear forms, then groups
+/// with identical positions, then groups with any common factor.
 fn plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
     order.sort(&mut terms);
     while let Some(square) = terms.iter().find_map(|t| square(order, t, &terms)) {
@@ -94,7 +96,8 @@ fn plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
     }
 }
 
-/// The square of a sum that starts with the position whose square is in `leading`, if all of it is there.
+/// Returns the square of a sum whose first summand is the squared position in `leading`, if all terms of the
+/// expanded square are among `terms`.
 fn square(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
     let positions = leading.monomial.only(order.positions);
     let (x, _) = positions.factors().find(|(_, power)| *power == 2)?;
@@ -113,7 +116,7 @@ fn square(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
     (several && expanded(&square).iter().all(there)).then_some(square)
 }
 
-/// The terms of a square of single terms.
+/// Expands the square of a sum of single terms.
 fn expanded(square: &Item) -> Vec<Term> {
     let mut terms = Vec::new();
     let sum = square.sums.first().map_or(&[][..], |sum| &sum.items);
@@ -130,7 +133,8 @@ fn expanded(square: &Item) -> Vec<Term> {
     terms
 }
 
-/// What all terms have in common, times what is left. What is left is grouped once more by functions.
+/// Returns the common factor of all terms times the sum of the quotients, which is grouped by functions of
+/// positions once more.
 fn item(order: &Order, terms: &[Term]) -> Item {
     let first = terms.first().map_or(Monomial::ONE, |t| t.monomial);
     let factor = terms.iter().fold(first, |m, t| m.common(t.monomial));
@@ -151,7 +155,7 @@ fn item(order: &Order, terms: &[Term]) -> Item {
             sum.extend(group.iter().map(|t| Item::single(t.coefficient, t.monomial)));
         }
     }
-    // A sum in parentheses starts with something positive.
+    // A sum in parentheses starts with a positive term.
     if let Some(positive) = sum.iter().position(|t| t.coefficient > 0.0) {
         sum[..=positive].rotate_right(1);
     }

@@ -1,57 +1,57 @@
-//! Sums of products as they are read, and the order of reading.
+//! Sums of products as they are printed, and the order of their terms and factors.
 
 use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term, Wave};
 use std::cmp::Reverse;
 
-/// Relative difference of coefficients that are taken to be equal.
+/// Relative difference below which coefficients count as equal.
 const ROUNDING: f64 = 1e-9;
 
-/// `coefficient × factor × sums`.
+/// A term of a printed sum: `coefficient × factor × sums`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
     /// Numeric factor.
     pub coefficient: f64,
-    /// Factors that are atoms.
+    /// Product of the factors that are atoms.
     pub factor: Monomial,
-    /// Factors that are sums.
+    /// Factors that are sums in parentheses.
     pub sums: Vec<Sum>,
 }
 
-/// A sum as a factor.
+/// A sum in parentheses that is a factor of an item.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sum {
-    /// Two items or more.
+    /// At least two summands.
     pub items: Vec<Item>,
-    /// One, or two for a square.
+    /// Exponent: one, or two for a square.
     pub power: u8,
 }
 
 impl Item {
-    /// One term.
+    /// Returns an item without sums.
     pub fn single(coefficient: f64, factor: Monomial) -> Item {
         Item { coefficient, factor, sums: Vec::new() }
     }
 }
 
-/// The order of reading.
+/// Order of the factors and terms of printed polynomials.
 pub struct Order {
-    /// All atoms, from left to right.
+    /// All atoms, in the order in which factors are printed.
     pub atoms: Vec<usize>,
-    /// Everything that has to do with rates, accelerations among them.
+    /// Mask of rates, functions of rates, accelerations and inputs.
     pub rates: Monomial,
-    /// Accelerations.
+    /// Mask of the accelerations.
     pub accelerations: Monomial,
-    /// Functions of positions.
+    /// Mask of the functions of positions.
     pub functions: Monomial,
-    /// Positions.
+    /// Mask of the positions.
     pub positions: Monomial,
     parameters: Monomial,
-    /// By atom, of how many symbols it is written.
+    /// For each atom, the number of names, numbers and functions in its printed form.
     sizes: Vec<usize>,
 }
 
-/// Where an atom stands: by rank; symbols before waves in order of their angles, before all else. An inverse of an atom
-/// stands where that atom does.
+/// Returns the sort key of an atom: first its rank; then symbols before waves, which are sorted by angle,
+/// before all other atoms. The inverse of a single atom has the key of that atom.
 fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
     let rank = ring.ranks[atom];
     match &ring.atoms[atom] {
@@ -71,7 +71,7 @@ fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
 }
 
 impl Order {
-    /// The order of the atoms of a ring.
+    /// Returns the order of the atoms of a ring.
     pub fn of(ring: &Ring) -> Order {
         let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
         atoms.sort_by_cached_key(|k| place(ring, *k));
@@ -86,7 +86,7 @@ impl Order {
         }
     }
 
-    /// True if nothing but parameters stands in a sum.
+    /// Returns true if a sum contains only parameters.
     pub fn is_constant(&self, items: &[Item]) -> bool {
         items.iter().all(|item| {
             item.factor.without(self.parameters) == Monomial::ONE
@@ -94,7 +94,8 @@ impl Order {
         })
     }
 
-    /// Of how many symbols a sum is written: names, numbers and functions, not signs, exponents and parentheses.
+    /// Returns the printed length of a sum: the number of names, numbers and functions. Signs, exponents and
+    /// parentheses do not count.
     pub fn size(&self, items: &[Item]) -> usize {
         items.iter().map(|item| self.size_of(item)).sum()
     }
@@ -105,18 +106,18 @@ impl Order {
         factors + usize::from(factors == 0 || !near(item.coefficient.abs(), 1.0))
     }
 
-    /// The factors of a monomial from left to right.
+    /// Returns the factors of a monomial, atom and power, in printing order.
     pub fn factors(&self, m: Monomial) -> Vec<(usize, u8)> {
         let powers = self.atoms.iter().map(|k| (*k, m.power(*k)));
         powers.filter(|(_, n)| *n > 0).collect()
     }
 
-    /// The parameters of a monomial.
+    /// Returns the parameters of a monomial with their powers.
     pub fn parameters(&self, m: Monomial) -> Monomial {
         m.only(self.parameters)
     }
 
-    /// Terms without functions first, then in the order of their factors, high powers first.
+    /// Sorts terms: ascending degree in functions of positions, then by their factors, high powers first.
     pub fn sort(&self, terms: &mut [Term]) {
         terms.sort_by_cached_key(|t| {
             let powers: Vec<Reverse<u8>> = self.atoms.iter().map(|k| Reverse(t.monomial.power(*k))).collect();
@@ -124,7 +125,7 @@ impl Order {
         });
     }
 
-    /// Accelerations first, then rates, then positions; high powers first.
+    /// Sorts groups of terms: accelerations first, then rates, then positions, and high powers first.
     pub fn sort_groups(&self, ring: &Ring, groups: &mut [(Monomial, Vec<Term>)]) {
         groups.sort_by_cached_key(|(key, _)| {
             let rank = key.factors().map(|(k, _)| ring.ranks[k]).max();
@@ -134,7 +135,7 @@ impl Order {
     }
 }
 
-/// By atom, of how many symbols it is written.
+/// Returns the printed length of each atom: its number of names, numbers and functions.
 fn sizes(ring: &Ring) -> Vec<usize> {
     let mut sizes = Vec::with_capacity(ring.atoms.len());
     for atom in &ring.atoms {
@@ -162,13 +163,13 @@ fn size_of_monomial(sizes: &[usize], m: Monomial) -> usize {
     m.factors().map(|(k, _)| sizes.get(k).copied().unwrap_or(1)).sum()
 }
 
-/// True if two numbers differ by rounding.
+/// Returns true if two numbers differ by rounding error only.
 pub fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * b.abs()
 }
 
-/// The number to take out of a sum with these coefficients: its sign if all agree, and its size where that leaves simpler
-/// numbers.
+/// Returns the number to factor out of a sum with these coefficients: the sign if all signs agree, times a
+/// magnitude if that leaves simpler coefficients.
 pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     let sign = if coefficients.clone().all(|c| c < 0.0) { -1.0 } else { 1.0 };
     let size = coefficients.clone().next().map_or(1.0, f64::abs);
@@ -183,12 +184,13 @@ pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     sign * common.map_or(1.0, |(p, q)| f64::from(p) / f64::from(q))
 }
 
-/// The greatest common divisor.
+/// Returns the greatest common divisor.
 pub fn gcd(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// Numerator and denominator of what looks like a fraction: of halves, thirds and their products.
+/// Returns numerator and denominator of a positive number that is, up to rounding, a fraction with a
+/// denominator made up of factors two and three, at most 48. The numerator is below 1000.
 pub fn fraction(size: f64) -> Option<(u32, u32)> {
     [1_u32, 2, 3, 4, 6, 8, 12, 16, 24, 48].into_iter().find_map(|q| {
         let p = size * f64::from(q);

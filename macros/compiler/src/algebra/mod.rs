@@ -1,6 +1,6 @@
-//! Normal forms of expressions: polynomials over atoms, the addition theorems of trigonometry, vectors on the unit
-//! sphere, common factors. What is equal for all values gets the same form as far as these rules tell, which the
-//! graph's own simplification does not attempt. Knows no mechanics.
+//! Normal forms of expressions: polynomials over atoms, trigonometric addition theorems, relations between
+//! the components of unit vectors, and common factors. Expressions that these rules prove equal get the same
+//! normal form. The expression graph's own simplification does not attempt this. Knows no mechanics.
 
 pub mod common;
 pub mod factor;

@@ -1,5 +1,5 @@
-//! Expressions → polynomials in normal form: products are multiplied out, sines and cosines of sums are written by
-//! those of their angles.
+//! Conversion of expressions to polynomials in normal form. Products are expanded; sines and cosines of sums
+//! are expressed in those of the summands.
 
 use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term};
 use crate::expr::diff::TINY;
@@ -7,26 +7,26 @@ use crate::expr::node::{Function, Id, Node, Symbol};
 use crate::expr::{Expr, Graph};
 
 const UNKNOWN: u32 = u32::MAX;
-/// Largest multiple of an angle that is written by sine and cosine of the angle itself.
+/// Largest multiple of an angle whose sine and cosine are expressed in those of the angle itself.
 const MULTIPLE: f64 = 4.0;
 
-/// Normal forms of expressions of one graph; what was found once is kept.
+/// Cache of normal forms of the expressions of one graph.
 pub struct Normal<'g> {
     graph: &'g Graph,
-    /// The atoms.
+    /// Ring of all polynomials in the cache.
     pub ring: Ring,
-    /// By node, index of its polynomial.
+    /// Index in `polynomials` of each node, `UNKNOWN` if not yet computed.
     known: Vec<u32>,
     polynomials: Vec<Polynomial>,
 }
 
 impl<'g> Normal<'g> {
-    /// No expression yet; `rank` tells what a symbol is.
+    /// Creates an empty cache. `rank` returns the rank of a symbol.
     pub fn new(graph: &'g Graph, rank: fn(Symbol) -> Rank) -> Normal<'g> {
         Normal { graph, ring: Ring::new(rank), known: Vec::new(), polynomials: Vec::new() }
     }
 
-    /// The normal form of `e`; `None` beyond the limits.
+    /// Returns the normal form of `e`, `None` if it exceeds the limits of the ring.
     pub fn of(&mut self, e: Expr<'g>) -> Option<Polynomial> {
         self.known.resize(self.known.len().max(e.id() as usize + 1), UNKNOWN);
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
@@ -56,7 +56,8 @@ impl<'g> Normal<'g> {
     fn rule(&mut self, id: Id) -> Option<Polynomial> {
         let at = |id: Id| &self.polynomials[self.known[id as usize] as usize];
         let atom = match self.graph.node(id) {
-            // What keeps the direction of a zero length from being NaN is no part of the equations.
+            // This constant only prevents NaN for the direction of a zero-length vector. The equations do not
+            // contain it.
             Node::Const(c) if c == TINY => return Some(Polynomial::default()),
             Node::Const(c) => return c.is_finite().then(|| Polynomial::number(c)),
             Node::Neg(a) => return Some(at(a).scaled(-1.0)),
@@ -86,7 +87,8 @@ impl<'g> Normal<'g> {
     }
 }
 
-/// The sine or cosine of a sum of angles, multiplied out: the point on the unit circle turned angle by angle.
+/// Expands the sine or cosine of a sum of angles: rotates a point on the unit circle by one angle after
+/// another.
 fn wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomial> {
     let (mut cos, mut sin) = (Polynomial::number(1.0), Polynomial::default());
     for term in &argument.terms {
@@ -105,7 +107,8 @@ fn wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomi
     Some(if cosine { cos } else { sin })
 }
 
-/// `1 / p`: factor by factor for a single term, else an atom of its own for what is left after common factors.
+/// Returns `1 / p`. The common factors of all terms are inverted one by one; if several terms remain after
+/// that, the inverse of their sum is one atom.
 pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     let first = *p.terms.first()?;
     let common = p.terms.iter().fold(first.monomial, |m, t| m.common(t.monomial));

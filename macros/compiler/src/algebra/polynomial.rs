@@ -1,7 +1,8 @@
-//! Polynomials over atoms, the form in which small expressions are read: sums of monomials with numbers as
-//! coefficients. An atom is a symbol, a sine or cosine, an inverse, or any other function, which is not looked into.
-//! Squares of sines and of roots are replaced as they arise, so that equal expressions meet. Everything is bounded:
-//! whatever grows beyond the limits is given up with `None`.
+//! Polynomials over atoms, the form in which small expressions are printed: sums of monomials with numeric
+//! coefficients. An atom is a symbol, a sine or cosine, an inverse, or another function, which is opaque.
+//! Squares of sines and of square roots are replaced as soon as they occur, so that equal expressions get
+//! equal polynomials. Number of terms, atoms and steps are bounded: functions return `None` beyond these
+//! limits.
 
 use crate::expr::node::{Extreme, Function, Lookup, Symbol};
 
@@ -13,15 +14,15 @@ pub(crate) mod tests;
 pub use expression::expression;
 pub use monomial::{ATOMS, Monomial};
 
-/// Most terms of a polynomial.
+/// Maximum number of terms of a polynomial.
 pub const TERMS: usize = 400;
-/// Most angles.
+/// Maximum number of angles of a ring.
 pub const ANGLES: usize = 8;
-/// Most steps of a whole derivation, of about a microsecond each in an unoptimised build.
+/// Maximum number of steps of a whole derivation. A step takes about a microsecond in an unoptimised build.
 const WORK: usize = 40_000;
-/// How much more is done where it is asked for.
+/// Factor by which the limits are raised for equations that the user requests.
 const MORE: usize = 20;
-/// What remains of two numbers that cancel, relative to them, is rounding.
+/// A sum is rounding error, and set to zero, if its magnitude relative to its summands is at most this.
 const ROUNDING: f64 = 1e-13;
 
 /// A monomial with its coefficient.
@@ -29,27 +30,27 @@ const ROUNDING: f64 = 1e-13;
 pub struct Term {
     /// Product of powers of atoms.
     pub monomial: Monomial,
-    /// Factor, not zero.
+    /// Coefficient, not zero.
     pub coefficient: f64,
 }
 
-/// A sum of terms in order of their monomials, each of which occurs once.
+/// A sum of terms, sorted by monomial. No monomial occurs twice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polynomial {
-    /// The terms.
+    /// Terms in ascending order of their monomials.
     pub terms: Vec<Term>,
 }
 
-/// The sine or cosine of a sum of whole multiples of the ring's angles.
+/// The sine or cosine of a sum of integer multiples of the ring's angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Wave {
-    /// How often each angle is taken; the first that occurs is positive.
+    /// Integer multiple of each angle. The first one that is not zero is positive.
     pub angle: [i8; ANGLES],
-    /// False for the cosine.
+    /// True for the cosine, false for the sine.
     pub cosine: bool,
 }
 
-/// What a polynomial is made of.
+/// An indivisible factor of monomials.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it all")]
 pub enum Atom {
@@ -63,60 +64,60 @@ pub enum Atom {
     Table(String, Lookup, Vec<Polynomial>),
 }
 
-/// Where an atom stands in a product that is read from left to right.
+/// Position of an atom in a printed product, in ascending order from left to right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rank {
-    /// Constant in time, and functions of such.
+    /// Constant in time: a parameter, or a function of parameters.
     Parameter,
-    /// Variable in time.
+    /// A position, or another symbol that varies in time.
     Position,
     /// A function of positions.
     Function,
     /// A rate, or a function of rates.
     Rate,
-    /// A rate of a rate.
+    /// An acceleration.
     Acceleration,
-    /// Given from outside.
+    /// An input of the mechanism.
     Input,
 }
 
-/// The atoms of a family of polynomials, and their rules.
+/// The atoms of a family of polynomials, with the rewrite rules for their products.
 pub struct Ring {
-    /// The atoms; each is made of earlier ones.
+    /// The atoms. The arguments of an atom contain earlier atoms only.
     pub atoms: Vec<Atom>,
-    /// By atom.
+    /// Rank of each atom.
     pub ranks: Vec<Rank>,
-    /// By atom: the number of terms written in its arguments.
+    /// For each atom, the number of terms written in its arguments.
     written: Vec<usize>,
-    /// The angles that waves are made of: multiples of monomials.
+    /// The angles whose sines and cosines occur: a coefficient times a monomial each.
     pub angles: Vec<Term>,
     rank: fn(Symbol) -> Rank,
-    /// Atoms whose squares are replaced, and by what.
+    /// Atoms whose squares are replaced, with the polynomial that replaces the square.
     squares: Vec<(usize, Polynomial)>,
-    /// The bits of powers above one of these atoms.
+    /// Bits that are set in a monomial if it contains a power above one of an atom in `squares`.
     squared: Monomial,
-    /// Atoms whose product is one.
+    /// Pairs of atoms whose product is one.
     inverses: Vec<(usize, usize)>,
-    /// Atoms `1 / sin`, with the cosine and the sine of the angle.
+    /// Atoms `1 / sin` of an angle, each followed by the atoms of the cosine and the sine of the angle.
     cosecants: Vec<[usize; 3]>,
     work: usize,
-    /// Most terms of a polynomial.
+    /// Current maximum number of terms of a polynomial.
     terms: usize,
 }
 
 impl Polynomial {
-    /// A number.
+    /// Returns a constant polynomial.
     pub fn number(value: f64) -> Polynomial {
         Polynomial::single(Monomial::ONE, value)
     }
 
-    /// One term.
+    /// Returns a polynomial of one term, or zero if the coefficient is zero.
     pub fn single(monomial: Monomial, coefficient: f64) -> Polynomial {
         let terms = if coefficient == 0.0 { Vec::new() } else { vec![Term { monomial, coefficient }] };
         Polynomial { terms }
     }
 
-    /// The sum of terms in any order.
+    /// Adds terms in any order; terms with equal monomials are merged.
     pub fn sum(mut terms: Vec<Term>) -> Polynomial {
         terms.sort_by_key(|t| t.monomial);
         let mut sum: Vec<Term> = Vec::with_capacity(terms.len());
@@ -132,7 +133,7 @@ impl Polynomial {
         Polynomial { terms: sum }
     }
 
-    /// The sum.
+    /// Adds two polynomials.
     pub fn plus(&self, other: &Polynomial) -> Polynomial {
         let (a, b) = (&self.terms, &other.terms);
         let mut terms = Vec::with_capacity(a.len() + b.len());
@@ -158,13 +159,14 @@ impl Polynomial {
         Polynomial { terms }
     }
 
-    /// A multiple.
+    /// Multiplies a polynomial by a number.
     pub fn scaled(&self, factor: f64) -> Polynomial {
         let scale = |t: &Term| Term { coefficient: t.coefficient * factor, ..*t };
         Polynomial { terms: self.terms.iter().map(scale).collect() }
     }
 
-    /// The product with one term. The order of monomials is the same before and after.
+    /// Multiplies a polynomial by one term. This preserves the order of the monomials. `None` if a power
+    /// overflows.
     fn times(&self, factor: &Term) -> Option<Polynomial> {
         let mut terms = Vec::with_capacity(self.terms.len());
         for t in &self.terms {
@@ -175,14 +177,14 @@ impl Polynomial {
     }
 }
 
-/// The sum, zero where only rounding is left of it.
+/// Adds two numbers. Returns zero if the sum is only rounding error.
 fn add(a: f64, b: f64) -> f64 {
     let sum = a + b;
     if sum.abs() <= ROUNDING * a.abs().max(b.abs()) { 0.0 } else { sum }
 }
 
 impl Ring {
-    /// No atoms yet; `rank` tells what a symbol is.
+    /// Creates a ring without atoms. `rank` returns the rank of a symbol.
     pub fn new(rank: fn(Symbol) -> Rank) -> Ring {
         Ring {
             atoms: Vec::new(),
@@ -199,18 +201,19 @@ impl Ring {
         }
     }
 
-    /// Raises the limits to what somebody waits for who asks.
+    /// Raises the limits to those for equations that the user requests.
     pub fn allow_more(&mut self) {
         (self.work, self.terms) = (MORE * WORK, MORE * TERMS);
     }
 
-    /// Takes steps off what is left; `None` when nothing is.
+    /// Subtracts steps from the remaining work. `None` if fewer remain.
     pub fn spend(&mut self, steps: usize) -> Option<()> {
         self.work = self.work.checked_sub(steps)?;
         Some(())
     }
 
-    /// An atom as a monomial.
+    /// Returns an atom as a monomial and adds the atom to the ring if it is new. `None` beyond the maximum
+    /// number of atoms.
     pub fn atom(&mut self, atom: Atom) -> Option<Monomial> {
         let known = self.atoms.iter().position(|a| *a == atom);
         let index = match known {
@@ -248,8 +251,8 @@ impl Ring {
         Some(index)
     }
 
-    /// Returns the number of terms of a polynomial as it is written: those in the arguments of its functions, and in
-    /// theirs, are counted wherever they occur. Saturates.
+    /// Returns the number of terms of a polynomial in printed form. Terms in the arguments of functions, also
+    /// nested ones, are counted at each occurrence. The count saturates.
     pub fn written_terms(&self, p: &Polynomial) -> usize {
         let nested = p.terms.iter().flat_map(|t| t.monomial.factors()).map(|(k, _)| self.written[k]);
         nested.fold(p.terms.len(), usize::saturating_add)
@@ -289,7 +292,8 @@ impl Ring {
         }
     }
 
-    /// An angle, by its index.
+    /// Returns the index of an angle. A new angle is added to the ring with its sine and cosine; `None`
+    /// beyond the maximum number of angles.
     pub fn angle(&mut self, angle: Term) -> Option<usize> {
         if let Some(index) = self.angles.iter().position(|a| *a == angle) {
             return Some(index);
@@ -311,21 +315,21 @@ impl Ring {
         Some(index)
     }
 
-    /// Sine or cosine of an angle.
+    /// Returns the sine or cosine of the angle with this index as a monomial.
     pub fn circle(&mut self, index: usize, cosine: bool) -> Option<Monomial> {
         let mut angle = [0; ANGLES];
         angle[index] = 1;
         self.atom(Atom::Wave(Wave { angle, cosine }))
     }
 
-    /// The sum, within the limits.
+    /// Adds two polynomials. `None` if the sum exceeds the limits.
     pub fn plus(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
         self.spend(a.terms.len() + b.terms.len())?;
         let sum = a.plus(b);
         (sum.terms.len() <= self.terms).then_some(sum)
     }
 
-    /// The product.
+    /// Multiplies two polynomials and reduces the product. `None` beyond the limits.
     pub fn times(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
         let (few, many) = if a.terms.len() < b.terms.len() { (a, b) } else { (b, a) };
         let mut product = Polynomial::default();
@@ -337,7 +341,8 @@ impl Ring {
         self.reduced(product)
     }
 
-    /// Squares of sines and roots replaced, products with inverses made one.
+    /// Replaces squares of sines and square roots, and products of an atom and its inverse, until none is
+    /// left.
     fn reduced(&mut self, mut p: Polynomial) -> Option<Polynomial> {
         loop {
             let rewrites = |t: &Term| {
@@ -362,8 +367,9 @@ impl Ring {
         Monomial::atom(pair.0).times(Monomial::atom(pair.1))
     }
 
-    /// `cos² / sin`, which is `1 / sin − sin`: squares of cosines take the place of those of sines elsewhere, and would hide
-    /// what cancels.
+    /// Returns the cosecant, cosine and sine atoms of a factor `cos² / sin` in `m`, which equals
+    /// `1 / sin − sin`. Elsewhere squares of sines are replaced by squares of cosines, so that without this
+    /// rule such terms would not cancel.
     fn over_sine(&self, m: Monomial) -> Option<[usize; 3]> {
         self.cosecants
             .iter()
@@ -371,7 +377,7 @@ impl Ring {
             .copied()
     }
 
-    /// A term after one rule.
+    /// Applies one rewrite rule to a term. Returns the term unchanged if no rule applies.
     fn rewritten(&self, term: &Term) -> Option<Polynomial> {
         let Term { monomial, coefficient } = *term;
         if let Some(one) = self.cancels(monomial) {
@@ -395,13 +401,13 @@ impl Ring {
         }
     }
 
-    /// The full powers of the atoms that a condition holds for.
+    /// Returns a mask with all bits of the powers of the atoms for which `holds` is true.
     pub fn mask(&self, holds: impl Fn(&Atom, Rank) -> bool) -> Monomial {
         let atoms = self.atoms.iter().zip(&self.ranks).enumerate();
         atoms.filter(|(_, (a, r))| holds(a, **r)).fold(Monomial::ONE, |m, (k, _)| m.or(Monomial::all_of(k)))
     }
 
-    /// The value of a polynomial, given those of all symbols.
+    /// Evaluates a polynomial at the given values of the symbols.
     pub fn evaluate(&self, p: &Polynomial, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
         let mut values: Vec<f64> = Vec::with_capacity(self.atoms.len());
         for atom in &self.atoms {

@@ -1,27 +1,28 @@
-//! Fewer terms by trigonometric identities: `sin² + cos² = 1`, and products of sines and cosines against those of sums
-//! and differences of angles. Every step makes one term of two; it is tried from the products as they stand, with the
-//! squares of sines in place of those of cosines, and from the Fourier sum; the shortest end is kept.
+//! Simplification by trigonometric identities: `sin² + cos² = 1`, and the conversion between products of
+//! sines and cosines and the sines and cosines of sums and differences of angles. Each step merges two terms
+//! into one. The steps start from three forms of the sum: as it is given, with squares of cosines replaced by
+//! squares of sines, and as a Fourier sum. The shortest result is used.
 
 use super::polynomial::{ANGLES, Atom, Monomial, Polynomial, Ring, Term, Wave};
 
 #[cfg(test)]
 mod tests;
 
-/// More terms than these are left alone.
+/// Maximum number of terms that are simplified together.
 const MAX_TERMS: usize = 40;
-/// The highest product that is written as a Fourier sum.
+/// Maximum degree of a product that is converted to a Fourier sum.
 const DEGREE: u32 = 6;
-/// Relative difference of coefficients that are taken to be equal.
+/// Relative difference below which coefficients count as equal.
 const ROUNDING: f64 = 1e-11;
 
-/// A product of waves, in order, with a coefficient.
+/// A coefficient times a sorted product of sines and cosines.
 #[derive(Clone, Debug, PartialEq)]
 struct Product {
     waves: Vec<Wave>,
     coefficient: f64,
 }
 
-/// The shortest form found.
+/// Returns the shortest form found of a polynomial. `None` if the limits of the ring are exceeded.
 pub fn simplified(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     let mask = ring.mask(|atom, _| matches!(atom, Atom::Wave(_)));
     let mut terms = p.terms.clone();
@@ -57,7 +58,7 @@ fn shortest(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Produ
     Some(best)
 }
 
-/// The same sum with `1 − sin²` for `cos²`.
+/// Replaces `cos²` by `1 − sin²` in a sum of products.
 fn in_sines(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
     let mut sum = Vec::new();
     while let Some(mut product) = products.pop() {
@@ -90,14 +91,15 @@ fn product(ring: &Ring, term: &Term, mask: Monomial) -> Product {
     Product { waves, coefficient: term.coefficient }
 }
 
-/// Terms; multiples of angles; factors. Less is better, in this order.
+/// Returns the length of a sum: number of terms, number of multiple angles, number of sines and cosines. Sums
+/// are compared in this order.
 fn length(products: &[Product]) -> (usize, usize, usize) {
     let waves = || products.iter().flat_map(|p| &p.waves);
     let multiples = waves().filter(|w| w.angle.iter().any(|n| n.abs() > 1)).count();
     (products.len(), multiples, waves().count())
 }
 
-/// Makes one product of two as long as any two allow it.
+/// Merges pairs of products until no two of them can be merged.
 fn merged(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
     'again: loop {
         for j in 1..products.len() {
@@ -116,7 +118,7 @@ fn merged(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
     }
 }
 
-/// The sum of two products, if it is one.
+/// Returns the sum of two products if it is a single product.
 fn combined(a: &Product, b: &Product) -> Option<Product> {
     let ratio = b.coefficient / a.coefficient;
     if a.waves == b.waves {
@@ -143,7 +145,8 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * b.abs()
 }
 
-/// What two products have in common, and what is left of each: no more than two waves.
+/// Splits two products into their common waves and the remaining waves of each. `None` if more than two waves
+/// of either remain.
 fn split(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
     let (mut common, mut x, mut y) = (Vec::new(), Vec::new(), b.to_vec());
     for wave in a {
@@ -155,7 +158,7 @@ fn split(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
     (x.len() <= 2 && y.len() <= 2).then_some((common, x, y))
 }
 
-/// `x + ratio y` as a product of waves with a factor, if it is one.
+/// Returns `x + ratio y` as a product of waves and a factor, if a rule covers it.
 fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let is = |r: f64| near(ratio, r);
     match (x, y) {
@@ -171,7 +174,7 @@ fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
     }
 }
 
-/// `cos a cos b ± sin a sin b = cos(a ∓ b)`, `sin a cos b ± cos a sin b = sin(a ± b)`.
+/// Applies `cos a cos b ± sin a sin b = cos(a ∓ b)` or `sin a cos b ± cos a sin b = sin(a ± b)`.
 fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let sign = [1, -1].into_iter().find(|s| near(ratio, f64::from(*s)))?;
     let (first, second) = if a.angle == c.angle { (c, d) } else { (d, c) };
@@ -183,12 +186,13 @@ fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<
         (true, true) => Some(made(true, sum(a, b, -sign), 1.0)),
         (false, true) => Some(made(false, sum(a, b, sign), 1.0)),
         (true, false) => Some(made(false, sum(b, a, sign), 1.0)),
-        // Two sines in front: the rule is tried the other way round.
+        // With two sines first, `combined` applies the rule with the products exchanged.
         (false, false) => None,
     }
 }
 
-/// `cos a + cos b = 2 cos((a+b)/2) cos((a−b)/2)` and its kin, where the halves are whole.
+/// Applies `cos a + cos b = 2 cos((a+b)/2) cos((a−b)/2)` or the corresponding rules for differences and
+/// sines. `None` if the half angles are not integer multiples.
 fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let sign = [1, -1].into_iter().find(|s| near(ratio, f64::from(*s)))?;
     let (up, down) = (sum(a, b, 1), sum(a, b, -1));
@@ -209,7 +213,7 @@ fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
     Some((waves, f))
 }
 
-/// `sin 2a` as `2 sin a cos a`, the company of `sin² a` and `cos² a`.
+/// Replaces `sin 2a` by `2 sin a cos a`, which can be combined with `sin² a` and `cos² a`.
 fn unfolded(mut product: Product) -> Product {
     let even = |w: &Wave| !w.cosine && w.angle.iter().all(|n| n % 2 == 0);
     while let Some(k) = product.waves.iter().position(even) {
@@ -220,12 +224,13 @@ fn unfolded(mut product: Product) -> Product {
     product
 }
 
-/// `a ± b`.
+/// Returns the angle `a ± b`.
 fn sum(a: &Wave, b: &Wave, sign: i8) -> [i8; ANGLES] {
     std::array::from_fn(|k| a.angle[k].saturating_add(sign * b.angle[k]))
 }
 
-/// A wave with a factor, its first angle made positive; one or zero for the angle zero.
+/// Returns a wave with a factor, with the sign of the angle normalised so that its first multiple is
+/// positive. A zero angle gives no wave, with the factor for the cosine and zero for the sine.
 fn made(cosine: bool, angle: [i8; ANGLES], factor: f64) -> (Vec<Wave>, f64) {
     match angle.iter().find(|n| **n != 0) {
         None => (Vec::new(), if cosine { factor } else { 0.0 }),
@@ -234,7 +239,7 @@ fn made(cosine: bool, angle: [i8; ANGLES], factor: f64) -> (Vec<Wave>, f64) {
     }
 }
 
-/// The same sum with one wave in every product.
+/// Converts a sum of products to a Fourier sum, in which each product has at most one wave.
 fn fourier(ring: &mut Ring, products: &[Product]) -> Option<Vec<Product>> {
     let mut sum: Vec<Product> = Vec::new();
     for product in products {
@@ -260,7 +265,8 @@ fn collect(sum: &mut Vec<Product>, part: Product) {
     }
 }
 
-/// One wave, or none, times another: half the waves of the sum and the difference.
+/// Multiplies a product of at most one wave by another wave: returns half the waves of the sum and the
+/// difference of their angles.
 fn times(p: &Product, b: &Wave) -> Vec<Product> {
     let Some(a) = p.waves.first() else {
         return vec![Product { waves: vec![*b], coefficient: p.coefficient }];

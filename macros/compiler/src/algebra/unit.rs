@@ -1,13 +1,16 @@
-//! Fewer terms where the squares of some symbols have the sum one, as those of a unit quaternion: what has the same factor
-//! before all four squares needs none of them.
+//! Simplification of polynomials on a unit sphere: the squares of some symbols, such as the components of a
+//! unit quaternion, sum to one. Terms with a common factor and all four squares therefore reduce to that
+//! factor.
 
 use super::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
 use crate::expr::node::Symbol;
 
-/// Relative difference of coefficients that are taken to be equal.
+/// Relative difference below which coefficients count as equal.
 const ROUNDING: f64 = 1e-11;
 
-/// A polynomial that is equal on the unit sphere of the symbols, in fewer terms if there is one.
+/// Returns a polynomial that equals `p` where the squares of `symbols` sum to one, with fewer terms if one is
+/// found. Returns `p` itself if the ring lacks one of the symbols, and `None` if the work limit of the ring
+/// is exceeded.
 pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Option<Polynomial> {
     let place = |s: &Symbol| ring.atoms.iter().position(|atom| *atom == Atom::Symbol(*s));
     let Some(atoms) = symbols.iter().map(place).collect::<Option<Vec<usize>>>() else {
@@ -31,7 +34,8 @@ pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Op
     }
 }
 
-/// `a h x² + b h y² + … + c h` with `h` times the sum of squares less or more, if that leaves fewer terms.
+/// Returns the terms with a multiple of `h (1 − x² − y² − …)` added, where `h` is `head`, if that leaves
+/// fewer terms. The terms affected are `a h x² + b h y² + … + c h`.
 fn shorter(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<Term>> {
     let places: Vec<Monomial> = squares.iter().filter_map(|s| head.times(*s)).chain([head]).collect();
     let of = |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
@@ -57,7 +61,7 @@ mod tests {
     use super::*;
     use crate::algebra::polynomial::Rank;
 
-    /// `w x y z` as they stand.
+    /// Checks simplifications of polynomials in the four components of a unit quaternion.
     #[test]
     fn squares_of_a_unit_quaternion_vanish() {
         let mut ring = Ring::new(|_| Rank::Position);
@@ -83,7 +87,7 @@ mod tests {
                 ]),
                 polynomial(&[(8.0, &[0, 1]), (-3.0, &[0, 1, 3, 3]), (1.0, &[2])]),
             ),
-            // One less three squares is the fourth.
+            // One minus three of the squares is the fourth.
             (
                 polynomial(&[(1.0, &[]), (-1.0, &[0, 0]), (-1.0, &[1, 1]), (-1.0, &[2, 2])]),
                 polynomial(&[(1.0, &[3, 3])]),

@@ -1,4 +1,4 @@
-//! Sums with common factors taken out, against the polynomials that they are of.
+//! Compares factored sums with the polynomials that they represent.
 
 use super::*;
 use crate::algebra::factor::items;
@@ -6,7 +6,7 @@ use crate::algebra::polynomial::tests::Random;
 use crate::algebra::polynomial::{Atom, Polynomial, Rank, Ring, Term};
 use crate::expr::node::Symbol;
 
-/// Four parameters, two positions, two rates and an acceleration.
+/// Returns a ring with four parameters, two positions, two rates and an acceleration.
 fn ring() -> Ring {
     let mut ring = Ring::new(|s| match s.0 {
         0..4 => Rank::Parameter,
@@ -32,7 +32,7 @@ fn times(ring: &mut Ring, all: &[&Polynomial]) -> Polynomial {
     all.iter().fold(one, |p, factor| ring.times(&p, factor).unwrap())
 }
 
-/// A few terms with small whole coefficients.
+/// Returns a random polynomial with at most `most` terms and small integer coefficients.
 fn random(r: &mut Random, most: u64) -> Polynomial {
     let terms = (0..1 + r.below(most)).map(|_| {
         let atoms = (0..1 + r.below(3)).map(|_| Monomial::atom(r.below(9) as usize));
@@ -67,7 +67,7 @@ fn factored_sums_are_what_they_were() {
     assert!(shorter > 600, "{shorter}");
 }
 
-/// `(a + b) (c + d)` multiplied out is found again.
+/// Expands `(a + b) (c + d)` and recovers the factors.
 #[test]
 fn products_of_sums_are_found() {
     let mut ring = ring();
@@ -81,7 +81,7 @@ fn term(atom: usize, coefficient: f64) -> Term {
     Term { monomial: Monomial::atom(atom), coefficient }
 }
 
-/// Kinetic and potential terms of an energy stay apart, and so do the coefficients of a linear form.
+/// Kinetic and potential energy have no common factors taken out, nor have the coefficients of a linear form.
 #[test]
 fn what_is_apart_stays_apart() {
     let mut ring = ring();

@@ -1,9 +1,9 @@
-//! Polynomials as expressions again.
+//! Conversion of polynomials back to expressions.
 
 use super::{Atom, Polynomial, Ring, Wave};
 use crate::expr::{Expr, Graph};
 
-/// A polynomial as an expression.
+/// Builds a polynomial as an expression of `graph`.
 pub fn expression<'g>(graph: &'g Graph, ring: &Ring, p: &Polynomial) -> Expr<'g> {
     let mut sum = graph.zero();
     for term in &p.terms {

@@ -1,13 +1,14 @@
-//! Products of powers of atoms, packed into four bits a power, so that a product of monomials is one addition.
+//! Products of powers of atoms, packed with four bits per power, so that a product of monomials is one
+//! integer addition.
 
-/// Most atoms.
+/// Maximum number of atoms of a ring.
 pub const ATOMS: usize = 64;
-/// Atoms in each half.
+/// Number of atoms in each 128-bit half.
 const HALF: usize = 32;
-/// The highest bit of every power: set when a power has grown too large, and free before that.
+/// The highest bit of every power: set after an overflow, otherwise zero.
 const OVERFLOW: u128 = 0x8888_8888_8888_8888_8888_8888_8888_8888;
 
-/// A product of powers of atoms, none above the seventh. Also a set of bits of powers.
+/// A product of powers of atoms, with powers of at most seven. Also used as a bit mask over such powers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Monomial {
     high: u128,
@@ -15,7 +16,7 @@ pub struct Monomial {
 }
 
 impl Monomial {
-    /// No atoms.
+    /// The empty product.
     pub const ONE: Monomial = Monomial { high: 0, low: 0 };
 
     fn bits(atom: usize, bits: u128) -> Monomial {
@@ -26,22 +27,22 @@ impl Monomial {
         }
     }
 
-    /// An atom.
+    /// Returns the first power of an atom.
     pub fn atom(atom: usize) -> Monomial {
         Monomial::bits(atom, 1)
     }
 
-    /// All bits of the power of an atom.
+    /// Returns a mask of all bits of the power of an atom.
     pub fn all_of(atom: usize) -> Monomial {
         Monomial::bits(atom, 15)
     }
 
-    /// The bits of an atom's powers above one.
+    /// Returns a mask of the bits that are set only in powers of the atom above one.
     pub fn above_one(atom: usize) -> Monomial {
         Monomial::bits(atom, 14)
     }
 
-    /// The power of an atom.
+    /// Returns the power of an atom.
     pub fn power(self, atom: usize) -> u8 {
         let shifted = match atom {
             0..HALF => self.low >> (4 * atom),
@@ -50,7 +51,7 @@ impl Monomial {
         (shifted & 15) as u8
     }
 
-    /// The atoms with their powers.
+    /// Returns the atoms with their powers.
     pub fn factors(self) -> impl Iterator<Item = (usize, u8)> {
         let mut rest = self;
         std::iter::from_fn(move || {
@@ -65,53 +66,53 @@ impl Monomial {
         })
     }
 
-    /// The product; `None` if a power grows too large.
+    /// Multiplies two monomials. `None` if a power exceeds seven.
     pub fn times(self, other: Monomial) -> Option<Monomial> {
-        // No carries: both powers are below eight.
+        // No carries into the next power: both powers are below eight.
         let product =
             Monomial { high: self.high.wrapping_add(other.high), low: self.low.wrapping_add(other.low) };
         ((product.high | product.low) & OVERFLOW == 0).then_some(product)
     }
 
-    /// The quotient by a divisor.
+    /// Divides by a monomial that is a divisor of this one.
     pub fn over(self, divisor: Monomial) -> Monomial {
         Monomial { high: self.high.wrapping_sub(divisor.high), low: self.low.wrapping_sub(divisor.low) }
     }
 
-    /// True if it divides the other.
+    /// Returns true if this monomial divides the other one.
     pub fn divides(self, other: Monomial) -> bool {
-        // Power by power: the free bit survives where nothing is borrowed.
+        // Compares power by power: the overflow bit stays set unless the subtraction borrows from it.
         let fits = |a: u128, b: u128| (b | OVERFLOW).wrapping_sub(a) & OVERFLOW == OVERFLOW;
         fits(self.high, other.high) && fits(self.low, other.low)
     }
 
-    /// The greatest common divisor.
+    /// Returns the greatest common divisor.
     pub fn common(self, other: Monomial) -> Monomial {
         let shared = |(atom, power): (usize, u8)| Monomial::bits(atom, power.min(other.power(atom)).into());
         self.factors().map(shared).fold(Monomial::ONE, Monomial::or)
     }
 
-    /// Sum of the powers.
+    /// Returns the sum of the powers.
     pub fn degree(self) -> u32 {
         self.factors().map(|(_, power)| u32::from(power)).sum()
     }
 
-    /// The bits of both.
+    /// Returns the union of the bits.
     pub fn or(self, other: Monomial) -> Monomial {
         Monomial { high: self.high | other.high, low: self.low | other.low }
     }
 
-    /// The bits that are in a mask.
+    /// Returns the bits that are in a mask.
     pub fn only(self, mask: Monomial) -> Monomial {
         Monomial { high: self.high & mask.high, low: self.low & mask.low }
     }
 
-    /// The bits that are not in a mask.
+    /// Returns the bits that are not in a mask.
     pub fn without(self, mask: Monomial) -> Monomial {
         Monomial { high: self.high & !mask.high, low: self.low & !mask.low }
     }
 
-    /// True if any bit is in both.
+    /// Returns true if the mask shares a bit with this monomial.
     pub fn meets(self, mask: Monomial) -> bool {
         self.only(mask) != Monomial::ONE
     }

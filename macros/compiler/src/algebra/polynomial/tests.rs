@@ -1,4 +1,4 @@
-//! The normal form against evaluation of the expression, for hand-picked and for random expressions.
+//! Compares normal forms with the evaluated expressions, for selected and for random expressions.
 
 use super::*;
 use crate::algebra::normal::Normal;
@@ -6,7 +6,7 @@ use crate::algebra::trigonometry::simplified;
 use crate::expr::eval::eval_one;
 use crate::expr::{Expr, Graph};
 
-/// The first symbols are parameters.
+/// Returns the rank of a symbol: the first three are parameters, all others positions.
 pub fn rank(symbol: Symbol) -> Rank {
     if symbol.0 < 3 { Rank::Parameter } else { Rank::Position }
 }
@@ -15,7 +15,7 @@ fn value_of(symbol: Symbol) -> f64 {
     0.37 + 0.61 * f64::from(symbol.0)
 }
 
-/// Repeatable numbers.
+/// A reproducible pseudo-random generator (xorshift).
 pub struct Random(pub u64);
 
 impl Random {
@@ -70,7 +70,7 @@ fn random_expressions_keep_their_values() {
     assert!(found > 300, "only {found} of 400 are within the limits");
 }
 
-/// What is in normal form stays as it is.
+/// The normal form of a normal form is identical to it.
 #[test]
 fn normal_forms_of_normal_forms_are_the_same() {
     let mut r = Random(77);

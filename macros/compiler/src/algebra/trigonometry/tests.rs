@@ -1,4 +1,4 @@
-//! Each rule on its own, and where several lead further.
+//! Tests of each rule alone, and of several rules in sequence.
 
 use super::simplified;
 use crate::algebra::normal::Normal;
@@ -6,7 +6,7 @@ use crate::algebra::polynomial::tests::rank;
 use crate::equations::print::Writer;
 use crate::expr::{Expr, Graph, Symbol};
 
-/// The shortest form as text, with a, b, c for angles and m for a parameter.
+/// Returns the shortest form as text, with angles `a`, `b`, `c` and a parameter `m`.
 fn short(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 3], Expr<'g>) -> Expr<'g>) -> String {
     let graph = Graph::new();
     let angles = [3, 4, 5].map(|k| graph.symbol(Symbol(k)));
@@ -49,7 +49,7 @@ fn products_stay_products() {
     assert_eq!(short(|_, [a, b, _], _| (a + b).sin() * (a + b).cos()), "sin(a + b) cos(a + b)");
 }
 
-/// A link's square as the sum of its parts: the square of the sum of the cosines of a bent arm.
+/// Simplifies the squared length of a bent arm: the square of a sum of cosines.
 #[test]
 fn bent_arm() {
     let text = short(|_, [a, b, _], m| (m * a.cos() + (a + b).cos()).square());
