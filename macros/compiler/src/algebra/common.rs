@@ -180,8 +180,8 @@ fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
 }
 
 /// Returns the sum of items as one item: their common factors times the sum of the quotients. The first
-/// summand in parentheses is positive. If its acceleration has a negative coefficient and the sum has other
-/// items, the sign is taken out; otherwise a positive summand is moved to the front.
+/// summand in parentheses is positive. If the first summand is a negative multiple of an acceleration, and
+/// `items` are not the whole sum, the sign is taken out; otherwise a positive summand is moved to the front.
 fn together(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     let first = items.first()?;
     let factor = items.iter().fold(first.factor, |m, item| m.common(item.factor)).without(rules.kept);

@@ -1,15 +1,15 @@
-//! Numbers of the standard atmosphere, as the runtime computes them: ISO 2533:1975 and the *U.S. Standard Atmosphere 1976*.
+//! Standard atmosphere, computed as in the runtime: ISO 2533:1975 and the *U.S. Standard Atmosphere 1976*.
 
-/// Acceleration of free fall over the gas constant of air, K/m.
+/// Standard gravity divided by the gas constant of air, K/m.
 pub const FALL_OVER_GAS: f64 = 9.80665 / GAS;
 /// Gas constant of air, J/(kg·K).
 pub const GAS: f64 = 287.05287;
 /// Ratio of the heat capacities of air.
 pub const HEATS: f64 = 1.4;
-/// Radius of the Earth that geopotential heights are made with, m.
+/// Radius of the Earth in the definition of geopotential height, m.
 pub const RADIUS: f64 = 6_356_766.0;
 
-/// Where the layers begin, m, and how their temperature changes with height, K/m.
+/// Base of each layer, m geopotential height, and its temperature gradient, K/m.
 const LAYERS: [(f64, f64); 8] = [
     (0.0, -6.5e-3),
     (11_000.0, 0.0),
@@ -21,7 +21,7 @@ const LAYERS: [(f64, f64); 8] = [
     (84_852.0, 0.0),
 ];
 
-/// Temperature, K, pressure, Pa, and rate of the temperature, K/m, at a geopotential height, m.
+/// Returns temperature, K, pressure, Pa, and temperature gradient, K/m, at a geopotential height, m.
 fn state(h: f64) -> [f64; 3] {
     let (mut temperature, mut pressure) = (288.15, 101_325.0);
     for (k, (base, lapse)) in LAYERS.iter().enumerate() {
@@ -40,17 +40,17 @@ fn state(h: f64) -> [f64; 3] {
     [temperature, pressure, f64::NAN]
 }
 
-/// The temperature, K.
+/// Returns the temperature, K, at a geopotential height, m.
 pub fn temperature(h: f64) -> f64 {
     state(h)[0]
 }
 
-/// The pressure, Pa.
+/// Returns the pressure, Pa, at a geopotential height, m.
 pub fn pressure(h: f64) -> f64 {
     state(h)[1]
 }
 
-/// By how much the temperature changes with height, K/m.
+/// Returns the temperature gradient, K/m, at a geopotential height, m.
 pub fn lapse_rate(h: f64) -> f64 {
     state(h)[2]
 }

@@ -1,18 +1,21 @@
-//! Differentiation with respect to a symbol, or along a direction in the space of several.
+//! Differentiation with respect to a symbol, or along a direction in the space of several symbols.
 
 use super::node::{Extreme, Function, Id, Node, Symbol};
 use super::{Expr, Graph, Memo, air};
 use std::collections::BTreeMap;
 
-/// Added to a length before it divides: too small to matter, large enough for `f32`.
+/// Constant added to lengths to avoid division by zero: too small to change a result, but a normal number in
+/// `f32`.
 pub const TINY: f64 = 1e-37;
 
-/// The derivatives of an expression by symbols, backwards: from the expression to its operands, each of which is met once, with all that
-/// the expression makes of it. Best where symbols are many and stand far from the result.
+/// Differentiates an expression with respect to all symbols in reverse mode. Each node is visited once, after
+/// all operations on it, with the derivative of the expression by this node. Efficient for many symbols deep
+/// in the expression.
 pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
     let g = e.graph();
     let mut found = vec![g.zero(); symbols.len()];
-    // Operands have smaller numbers than what is made of them, so that the largest is complete.
+    // Operands have smaller indices than the operations on them. The derivative by the node with the largest
+    // index is therefore complete.
     let mut open = BTreeMap::from([(e.id(), g.one())]);
     while let Some((id, by)) = open.pop_last() {
         let node = g.node(id);
@@ -28,7 +31,7 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
             }
         });
         for a in operands {
-            // The derivative of the node by this operand, all others kept.
+            // Partial derivative of the node by this operand, all other operands constant.
             let by_operand = Derivative::by_node(a, g);
             let step = by_operand.rule(id);
             if !step.is_zero() {
@@ -40,28 +43,30 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
     found
 }
 
-/// Derivatives of expressions of one graph along one direction; what was computed once is kept.
+/// Derivatives of expressions of one graph along one direction, with a cache of computed results.
 pub struct Derivative<'g> {
     graph: &'g Graph,
-    /// Rates of the symbols; those of all others are zero.
+    /// Rates of change of the symbols. All other symbols are constant.
     rates: Vec<(Symbol, Expr<'g>)>,
-    /// By node.
+    /// Index of the derivative of each node.
     known: Memo<'g>,
 }
 
 impl<'g> Derivative<'g> {
-    /// Derivatives with respect to `symbol`.
+    /// Creates the differentiation with respect to `symbol`.
     pub fn with_respect_to(symbol: Symbol, graph: &'g Graph) -> Derivative<'g> {
         Derivative::along(vec![(symbol, graph.one())], graph)
     }
 
-    /// Derivatives where the symbols change with the given rates, all others not at all.
+    /// Creates the differentiation along a direction in which the symbols change at the given rates and all
+    /// others are constant.
     pub fn along(rates: Vec<(Symbol, Expr<'g>)>, graph: &'g Graph) -> Derivative<'g> {
         Derivative { graph, rates, known: Memo::new(graph) }
     }
 
-    /// A derivative that takes those of some expressions as given, instead of differentiating their operands. They hold for the
-    /// expressions to which a constant is added, or which a constant multiplies, as well.
+    /// Presets the derivatives of some expressions, instead of differentiating their operands. If a preset
+    /// expression is a negation, a multiple, or a sum with a constant, the derivative of its operand is
+    /// preset as well.
     pub fn knowing(mut self, derivatives: impl IntoIterator<Item = (Expr<'g>, Expr<'g>)>) -> Derivative<'g> {
         for (e, derivative) in derivatives {
             let (mut e, mut derivative) = (e, derivative);
@@ -89,14 +94,15 @@ impl<'g> Derivative<'g> {
         self
     }
 
-    /// Derivatives of what a node is an operand of, where all others stay.
+    /// Creates the partial differentiation of an operation with respect to its operand `id`. Its other
+    /// operands are constant.
     fn by_node(id: Id, graph: &'g Graph) -> Derivative<'g> {
         let mut derivative = Derivative::along(Vec::new(), graph);
         derivative.known.set(id, graph.one().id());
         derivative
     }
 
-    /// The derivative of `e`.
+    /// Returns the derivative of `e`.
     pub fn of(&mut self, e: Expr<'g>) -> Expr<'g> {
         // Operands before operations, without recursion: a deep chain must not exhaust the stack.
         let mut todo = vec![e.id()];
@@ -161,7 +167,7 @@ impl<'g> Derivative<'g> {
                 })
             }
             Node::Pow(a, b) => {
-                // Finite at a base of zero, where a law begins.
+                // This form is finite at a base of zero, where the power laws of force elements begin.
                 let slope = |b: Expr<'g>| b * at(a).pow(b - self.graph.one());
                 let base = if d(a).is_zero() { self.graph.zero() } else { slope(at(b)) * d(a) };
                 match d(b).is_zero() {
@@ -172,7 +178,7 @@ impl<'g> Derivative<'g> {
         }
     }
 
-    /// `f'(x)`, with `y = f(x)`.
+    /// Returns `f'(x)`, given `y = f(x)`.
     fn outer(&self, f: Function, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
         let one = self.graph.one();
         match f {
@@ -187,12 +193,12 @@ impl<'g> Derivative<'g> {
             Function::Tanh => one - y.square(),
             Function::Exp => y,
             Function::Ln => one / x,
-            // Finite where the root is zero: what multiplies it is zero there too in every length.
+            // Finite where the root is zero. In derivatives of lengths, the other factor is zero there too.
             Function::Sqrt => one / ((y + y.num(TINY)) * 2.0),
             Function::Abs => x.call(Function::Signum),
             Function::Signum | Function::IsaLapseRate => self.graph.zero(),
             Function::IsaTemperature => x.call(Function::IsaLapseRate),
-            // The hydrostatic equation.
+            // Hydrostatic equation.
             Function::IsaPressure => -(y / x.call(Function::IsaTemperature) * air::FALL_OVER_GAS),
         }
     }
@@ -203,7 +209,7 @@ mod tests {
     use super::*;
     use crate::expr::eval::eval_one;
 
-    /// Backwards and forwards a derivative is the same number, whatever stands between.
+    /// Reverse and forward mode give the same derivatives.
     #[test]
     fn gradients_are_derivatives() {
         let g = Graph::new();

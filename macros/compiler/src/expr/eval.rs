@@ -1,32 +1,32 @@
-//! Evaluation of expressions with numbers: the oracle of the tests and of the checks of a model.
+//! Numerical evaluation of expressions, used as a reference in tests and to check models.
 
 use super::lanes::MAX_LANES;
 use super::node::{Id, Node, Symbol};
 use super::{Expr, Graph, Memo};
 
-/// The values of several expressions of one graph, given the value of every symbol.
+/// Evaluates several expressions of one graph at the given values of the symbols.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
     Tape::of(roots).values(symbol)
 }
 
-/// The value of one expression.
+/// Evaluates one expression at the given values of the symbols.
 pub fn eval_one(root: Expr<'_>, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
     eval(&[root], symbol)[0]
 }
 
-/// What several expressions need, in order, to be evaluated more than once.
+/// The nodes of several expressions in order of evaluation, for repeated evaluation.
 pub struct Tape<'g> {
     graph: Option<&'g Graph>,
-    /// Every node with its operands' places on the tape.
+    /// The nodes, with the positions of their operands in this list.
     steps: Vec<(Node, [u32; 3])>,
-    /// Where the values of the expressions are.
+    /// Positions of the expressions in `steps`.
     roots: Vec<u32>,
-    /// Some node has several lanes.
+    /// True if a node has several lanes.
     in_lanes: bool,
 }
 
 impl<'g> Tape<'g> {
-    /// For the given expressions, all of one graph.
+    /// Collects the nodes of expressions, which belong to one graph.
     pub fn of(roots: &[Expr<'g>]) -> Tape<'g> {
         let mut tape = Tape { graph: None, steps: Vec::new(), roots: Vec::new(), in_lanes: false };
         let Some(first) = roots.first() else { return tape };
@@ -47,17 +47,17 @@ impl<'g> Tape<'g> {
         tape
     }
 
-    /// How many operations it has, symbols and constants included.
+    /// Returns the number of nodes, symbols and constants included.
     pub fn steps(&self) -> usize {
         self.steps.len()
     }
 
-    /// The values of the expressions.
+    /// Evaluates the expressions.
     pub fn values(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         self.run_with(symbol)
     }
 
-    /// The values of the expressions, each with what rounding may do to it.
+    /// Evaluates the expressions with estimates of their rounding errors.
     pub fn rounded(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<Rounded> {
         self.run_with(&|s| Rounded::of(symbol(s)))
     }
@@ -70,7 +70,7 @@ impl<'g> Tape<'g> {
         }
     }
 
-    /// The values of the expressions (their first lanes), everything computed in so many lanes.
+    /// Evaluates all nodes in `N` lanes and returns the first lane of each expression.
     fn run<V: Value, const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
         let none = V::of(f64::NAN);
         let padded = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
@@ -95,12 +95,12 @@ impl<'g> Tape<'g> {
     }
 }
 
-/// What expressions are evaluated with.
+/// Number type of an evaluation.
 trait Value: Copy {
-    /// A constant.
+    /// Converts a constant.
     fn of(number: f64) -> Self;
     fn sum(lanes: &[Self]) -> Self;
-    /// An operation on the values of its operands.
+    /// Applies the operation of a node to the values of its operands.
     fn step(node: Node, operands: [Self; 3]) -> Self;
 }
 
@@ -118,23 +118,25 @@ impl Value for f64 {
     }
 }
 
-/// A value and what rounding may do to it: every constant, symbol and operation is off by a part [`f64::EPSILON`] of itself, each for
-/// itself, and their effects add as standard deviations do (a running error analysis: Higham, *Accuracy and Stability of Numerical
-/// Algorithms*, 2002, § 3.3; sums of squares let errors pass through rotations without growth).
+/// A value with an estimate of its rounding error. Every constant, symbol and operation has an independent
+/// relative error of [`f64::EPSILON`], and their effects add like standard deviations. This is a running
+/// error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, § 3.3); with sums of
+/// squares, errors do not grow in rotations.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounded {
-    /// What is computed.
+    /// The computed value.
     pub value: f64,
-    /// The standard deviation of its error, in the value's own unit.
+    /// Standard deviation of the rounding error, in the unit of the value.
     pub error: f64,
 }
 
 impl Rounded {
-    /// How many times its error a value may be if rounding alone has made it. Pivots of the mass matrices of random mechanisms that are
-    /// zero are 0.4 of their error at most, others `1e9` and more, `1e6` where masses lie twelve powers of ten apart.
+    /// Maximum ratio of a value to its error for which the value may be rounding error alone. For random
+    /// mechanisms, the ratio of pivots of the mass matrix that are exactly zero is at most 0.4. That of other
+    /// pivots is at least `1e9`, or `1e6` if masses differ by twelve orders of magnitude.
     const MOST_ERRORS: f64 = 32.0;
 
-    /// True if rounding alone may have made the value out of zero.
+    /// Returns true if the exact value may be zero.
     pub fn may_be_zero(self) -> bool {
         self.value.abs() <= Self::MOST_ERRORS * self.error
     }
@@ -165,7 +167,7 @@ impl Value for Rounded {
             });
             error = error.hypot(moved[0].max(moved[1]));
         }
-        // Where both factors are nothing but errors, so is their product.
+        // If both factors are only rounding error, the first-order terms above miss the error of the product.
         if let (Node::Mul(..), [a, b, _]) = (node, operands) {
             error = error.hypot(a.error * b.error);
         }
@@ -173,7 +175,7 @@ impl Value for Rounded {
     }
 }
 
-/// The nodes that the expressions depend on, operands first.
+/// Returns the nodes that the expressions depend on, operands before operations.
 pub fn needed(graph: &Graph, roots: &[Expr<'_>]) -> Vec<Id> {
     let mut seen = Memo::new(graph);
     let mut needed = Vec::new();
@@ -185,7 +187,7 @@ pub fn needed(graph: &Graph, roots: &[Expr<'_>]) -> Vec<Id> {
             graph.node(id).operands(|a| todo.push(a));
         }
     }
-    // Operands are made before operations.
+    // Operands have smaller indices than the operations on them.
     needed.sort_unstable();
     needed
 }
@@ -194,12 +196,12 @@ fn is_of_lanes(node: Node) -> bool {
     matches!(node, Node::Tuple(_) | Node::Gather(_) | Node::Sum(..) | Node::Lane(..) | Node::Join(..))
 }
 
-/// So many lanes of `a`, then those of `b`.
+/// Returns the first `n` lanes of `a`, followed by the lanes of `b`.
 pub fn joined<V: Copy, const N: usize>(n: usize, a: [V; N], b: [V; N]) -> [V; N] {
     std::array::from_fn(|k| if k < n { a[k] } else { b[k - n] })
 }
 
-/// An operation on the values of its operands.
+/// Applies the operation of a node to the numbers of its operands. NaN for symbols and lane operations.
 fn step(node: Node, [a, b, c]: [f64; 3]) -> f64 {
     match node {
         Node::Const(number) => number,

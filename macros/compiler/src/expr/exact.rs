@@ -1,15 +1,17 @@
-//! Expressions with sines and cosines of known angles in place of the functions: of multiples of π/6 and π/4, of inverse
-//! functions, and of sums with such. For reading and for proofs: what is generated computes as it is written.
+//! Replacement of sines and cosines by exact values: of multiples of π/6 and π/4, of inverse trigonometric
+//! functions, and of sums with one of these. Used for printing and proofs only: generated code evaluates the
+//! original expressions.
 
 use super::node::Function;
 use super::replace::replace_calls;
 use super::{Expr, Node, Symbol};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// A multiple of π has so many digits.
+/// Relative tolerance for multiples of π/12.
 const ROUNDING: f64 = 1e-14;
 
-/// Expressions with symbols replaced, and with sines and cosines of known angles by their values.
+/// Substitutes `by(s)` for symbols `s` of expressions, and replaces sines, cosines and tangents of known
+/// angles by exact values.
 pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
     replace_calls(e, by, &|f, x| match f {
         Function::Sin => circle(x)[0],
@@ -23,15 +25,15 @@ pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g
     })
 }
 
-/// Sums that are nested deeper stay as they are.
+/// Maximum nesting depth of sums that are replaced.
 const DEPTH: usize = 16;
 
-/// Sine and cosine.
+/// Returns sine and cosine of an expression, with exact values if known.
 fn circle(x: Expr<'_>) -> [Expr<'_>; 2] {
     known(x, DEPTH).unwrap_or_else(|| [x.sin(), x.cos()])
 }
 
-/// Sine and cosine, where they are known otherwise than by the function.
+/// Returns sine and cosine of an expression if they are known without the functions themselves.
 fn known(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
     let depth = depth.checked_sub(1)?;
     let at = |id| x.graph().expr(id);
@@ -55,7 +57,7 @@ fn known(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
     }
 }
 
-/// Of a sum, or a difference by the sign, one of which is known.
+/// Returns sine and cosine of `a ± b`, with the given sign, if those of `a` or `b` are known.
 fn sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Expr<'g>; 2]> {
     let (of_a, of_b) = (known(a, depth), known(b, depth));
     if of_a.is_none() && of_b.is_none() {
@@ -67,7 +69,8 @@ fn sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Ex
     Some([sin_a * cos_b + cos_a * sin_b, cos_a * cos_b - sin_a * sin_b])
 }
 
-/// Of multiples of π/6 and π/4, to the last digit; of zero and right angles exactly.
+/// Returns sine and cosine of multiples of π/6 and π/4, to the last digit; those of multiples of π/2 are
+/// exact.
 fn of_number(value: f64) -> Option<[f64; 2]> {
     let twelfths = value / (PI / 12.0);
     let whole = twelfths.round();
@@ -75,7 +78,7 @@ fn of_number(value: f64) -> Option<[f64; 2]> {
         return None;
     }
     let root = 0.75_f64.sqrt();
-    // Of 0°, 15°, … 90°; those of odd multiples of 15° are no simple numbers.
+    // Sines of 0°, 15°, … 90°. Those of 15° and 75° have no simple value.
     let first = [Some(0.0), None, Some(0.5), Some(FRAC_1_SQRT_2), Some(root), None, Some(1.0)];
     let sin = |k: i64| {
         let k = k.rem_euclid(24);

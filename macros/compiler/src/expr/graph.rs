@@ -1,10 +1,16 @@
-//! The graph: nodes are shared (structurally equal expressions have one id), and every constructor simplifies.
+//! The expression graph: nodes are shared, so that structurally equal expressions have one index, and every
+//! constructor simplifies.
 //!
-//! Normal form, kept by the constructors: constants are folded; zero and one vanish; a minus sign is lifted out of
-//! products, quotients, differences and odd functions, and absorbed by sums, so that `a − b` and `b − a` share one
-//! node; the operands of commutative operations stand in order of their ids; constants that meet in a product or in a
-//! sum are merged. Only rewrites that never cost an operation are made: `2 x` times `y` stays so, since `2 x` may be
-//! used again. A constant of each lane counts as a constant.
+//! Normal form, maintained by the constructors:
+//!
+//! - Constants are folded; zero summands and unit factors vanish.
+//! - A minus sign is lifted out of products, quotients, differences and odd functions, and absorbed by sums,
+//!   so that `a − b` and `b − a` share one node.
+//! - Operands of commutative operations are ordered by index.
+//! - Several constants in one product or sum are merged.
+//!
+//! Only rewrites that never cost an operation are made. The product of `2 x` and `y` is not reassociated,
+//! since `2 x` may be used elsewhere. A constant for each lane counts as a constant.
 
 use super::handle::Expr;
 use super::lanes::Tables;
@@ -14,18 +20,19 @@ use std::fmt;
 
 struct Store {
     nodes: Vec<Node>,
-    /// Open addressing, power of two, `EMPTY` where free.
+    /// Hash table with open addressing. Its size is a power of two; free slots contain `EMPTY`.
     table: Vec<Id>,
-    /// How many nodes there may be.
+    /// Maximum number of nodes.
     most: usize,
-    /// There would be more.
+    /// True if a node was rejected because of `most`.
     is_full: bool,
 }
 
 const EMPTY: Id = Id::MAX;
 
-/// How many nodes a graph may have. Derivatives of a chain of 64 skew pins have 1.3 million; with four million the compiler takes a
-/// gibibyte of memory and tens of seconds, and rustc several times that for what comes out.
+/// Maximum number of nodes of a graph. Derivatives of a chain of 64 skew pins have 1.3 million. With four
+/// million the compiler takes a gibibyte of memory and tens of seconds, and rustc several times as much for
+/// the generated code.
 const MOST_NODES: usize = 4_000_000;
 
 impl Store {
@@ -69,16 +76,16 @@ impl Store {
     }
 }
 
-/// The owner of all expressions of a mechanism.
+/// Owner of all expressions of a mechanism.
 pub struct Graph {
     store: RefCell<Store>,
-    /// A number for every node, zero between uses.
+    /// Table with a number for every node, all zero between uses.
     table: RefCell<Vec<u32>>,
-    /// Tables of zeros that are not in use, see [`Memo`](super::Memo).
+    /// Unused tables that contain only zeros, see [`Memo`](super::Memo).
     tables: RefCell<Vec<Vec<u32>>>,
-    /// What the lanes of nodes hold.
+    /// Constants and symbols of the lanes.
     pub(super) lanes: RefCell<Tables>,
-    /// Names of the functions that are given by tables.
+    /// Names of the functions that are defined by tables.
     functions: RefCell<Vec<String>>,
 }
 
@@ -98,12 +105,12 @@ pub(super) const ZERO: Id = 0;
 const ONE: Id = 1;
 
 impl Graph {
-    /// An empty graph.
+    /// Creates a graph that contains only the constants zero and one.
     pub fn new() -> Graph {
         Graph::with_room_for(MOST_NODES)
     }
 
-    /// An empty graph that can have so many nodes.
+    /// Creates a graph with a maximum number of nodes.
     pub fn with_room_for(most: usize) -> Graph {
         let mut store =
             Store { nodes: Vec::new(), table: vec![EMPTY; 1024], most: most.max(2), is_full: false };
@@ -118,80 +125,80 @@ impl Graph {
         }
     }
 
-    /// Number of nodes made so far.
+    /// Returns the number of nodes.
     pub fn len(&self) -> usize {
         self.store.borrow().nodes.len()
     }
 
-    /// Expressions were made that it has no room for. They count as zero, so that no work is spent on them: whatever was derived is of
-    /// no use.
+    /// Returns true if the maximum number of nodes was exceeded. Further new expressions are zero, so that no
+    /// work is spent on them, and all results must be discarded.
     pub fn is_full(&self) -> bool {
         self.store.borrow().is_full
     }
 
-    /// Never true: zero and one are always there.
+    /// Returns false: zero and one always exist.
     pub fn is_empty(&self) -> bool {
         false
     }
 
-    /// The node with an id.
+    /// Returns the node with an index.
     pub fn node(&self, id: Id) -> Node {
         self.store.borrow().nodes[id as usize]
     }
 
-    /// All nodes, operands before operations. None can be made while they are borrowed.
+    /// Returns all nodes, operands before operations. No node can be added while the result is borrowed.
     pub fn nodes(&self) -> Ref<'_, [Node]> {
         Ref::map(self.store.borrow(), |store| store.nodes.as_slice())
     }
 
-    /// A table with a zero for every node. Who borrows it sets back to zero what was written.
+    /// Borrows a table with a zero for every node. The borrower resets every entry that it writes to zero.
     pub fn borrow_table(&self) -> RefMut<'_, Vec<u32>> {
         let mut table = self.table.borrow_mut();
         table.resize(self.len(), 0);
         table
     }
 
-    /// A table of zeros, of any length.
+    /// Returns a table of zeros, of any length.
     pub(super) fn take_table(&self) -> Vec<u32> {
         self.tables.borrow_mut().pop().unwrap_or_default()
     }
 
-    /// Keeps a table that has zeros alone again.
+    /// Recycles a table that contains only zeros.
     pub(super) fn keep_table(&self, table: Vec<u32>) {
         self.tables.borrow_mut().push(table);
     }
 
-    /// The expression with an id.
+    /// Returns the expression with an index.
     pub fn expr(&self, id: Id) -> Expr<'_> {
         Expr { graph: self, id }
     }
 
-    /// A constant.
+    /// Returns a constant.
     pub fn num(&self, value: f64) -> Expr<'_> {
         self.expr(self.constant(value))
     }
 
-    /// Zero.
+    /// Returns the constant zero.
     pub fn zero(&self) -> Expr<'_> {
         self.expr(ZERO)
     }
 
-    /// One.
+    /// Returns the constant one.
     pub fn one(&self) -> Expr<'_> {
         self.expr(ONE)
     }
 
-    /// An input.
+    /// Returns an input.
     pub fn symbol(&self, symbol: Symbol) -> Expr<'_> {
         self.expr(self.intern(Node::Symbol(symbol)))
     }
 
-    /// Names the functions that are given by tables, by number.
+    /// Sets the names of the functions that are defined by tables, by table index.
     pub fn name_tables(&self, names: Vec<String>) {
         *self.functions.borrow_mut() = names;
     }
 
-    /// The name of a table, with a mark for every time that it is differentiated: `lift.d1.d2`.
+    /// Returns the name of a table, with a suffix for every differentiation: `lift.d1.d2`.
     pub fn table_name(&self, lookup: Lookup) -> String {
         let mut name = self.functions.borrow().get(lookup.table()).cloned().unwrap_or_default();
         for (k, order) in lookup.orders().into_iter().enumerate() {
@@ -200,7 +207,7 @@ impl Graph {
         name
     }
 
-    /// A table's value or derivative; variables that it does not have are left out.
+    /// Returns the value or derivative of a table. Surplus variables are ignored.
     pub fn lookup(&self, lookup: Lookup, x: [Expr<'_>; 3]) -> Expr<'_> {
         let last = lookup.variables().saturating_sub(1);
         let [a, b, c] = std::array::from_fn(|k: usize| x[k.min(last)].id);
@@ -212,7 +219,7 @@ impl Graph {
     }
 
     pub(super) fn constant(&self, value: f64) -> Id {
-        // Minus zero is zero: the sign of zero carries no meaning here.
+        // Minus zero becomes zero: the sign of zero has no meaning here.
         self.intern(Node::Const(if value == 0.0 { 0.0 } else { value }))
     }
 
@@ -223,12 +230,12 @@ impl Graph {
         }
     }
 
-    /// True for a constant, of all lanes or of each.
+    /// Returns true for a constant, shared by all lanes or one for each.
     pub(super) fn is_constant(&self, id: Id) -> bool {
         matches!(self.node(id), Node::Const(_) | Node::Tuple(_))
     }
 
-    /// `f` of two constants; `None` if one is not.
+    /// Applies `f` to two constants. `None` if an operand is not constant.
     fn fold(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
         match (self.node(a), self.node(b)) {
             (Node::Const(x), Node::Const(y)) => Some(self.constant(f(x, y))),
@@ -237,7 +244,8 @@ impl Graph {
         }
     }
 
-    /// `±a` without its sign: the sign is kept apart so that it can be lifted.
+    /// Splits an expression into its sign (true if negative) and the expression without it, so that the sign
+    /// can be lifted.
     pub(super) fn unsigned(&self, id: Id) -> (bool, Id) {
         match self.node(id) {
             Node::Neg(a) => (true, a),
@@ -282,7 +290,7 @@ impl Graph {
         }
     }
 
-    /// The sum of a constant and a sum or difference with another constant.
+    /// Adds a constant to a sum or difference that has a constant summand. `None` for other operands.
     fn constant_sum(&self, c: Id, b: Id) -> Option<Id> {
         if !self.is_constant(c) {
             return None;
@@ -321,7 +329,7 @@ impl Graph {
         if a == b {
             return ZERO;
         }
-        // (x + b) - b = x and (x - c) - x = -c, so that what was added can be taken away again.
+        // (x + b) - b = x and (x - c) - x = -c: a summand cancels when it is subtracted again.
         match self.node(a) {
             Node::Add(x, y) if y == b => return x,
             Node::Add(x, y) if x == b => return y,
@@ -334,7 +342,7 @@ impl Graph {
             Node::Sub(x, y) if x == a => return y,
             _ => {}
         }
-        // One order for both signs, so that `a − b` and `b − a` share.
+        // One operand order for both signs, so that `a − b` and `b − a` share a node.
         if a < b { self.intern(Node::Sub(a, b)) } else { self.neg(self.intern(Node::Sub(b, a))) }
     }
 
@@ -356,7 +364,7 @@ impl Graph {
         self.signed(na != nb, self.plain_product(a, b))
     }
 
-    /// The product of two operands without signs.
+    /// Multiplies two operands without signs.
     fn plain_product(&self, a: Id, b: Id) -> Id {
         if let Some(product) = self.fold(a, b, |x, y| x * y) {
             return product;
@@ -368,7 +376,7 @@ impl Graph {
         }
     }
 
-    /// A constant without sign times something that is not constant.
+    /// Multiplies an expression that is not constant by a constant without sign.
     fn scaled(&self, c: Id, b: Id) -> Id {
         if c == ONE {
             return b;
@@ -380,7 +388,7 @@ impl Graph {
                 }
             }
             Node::Div(x, y) => {
-                // Another division would cost more than a product with an inverse that is shared.
+                // Another division would cost more than a product with a shared inverse.
                 if x != ONE
                     && let Some(product) = self.fold(c, x, |c, d| c * d)
                 {
@@ -414,14 +422,15 @@ impl Graph {
         }
         let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
         let magnitude = match self.inverse(b) {
-            // A division by a constant is a product; exact for powers of two, else within half an ulp.
+            // Division by a constant becomes multiplication by its inverse. This is exact for powers of two,
+            // otherwise within half an ulp.
             Some(inverse) => self.mul(inverse, a),
             None => self.intern(Node::Div(a, b)),
         };
         self.signed(na != nb, magnitude)
     }
 
-    /// The inverse of a constant, where it is finite.
+    /// Returns the inverse of a constant if it is finite.
     fn inverse(&self, b: Id) -> Option<Id> {
         match self.node(b) {
             Node::Const(y) if y != 0.0 && (1.0 / y).is_finite() => Some(self.constant(1.0 / y)),

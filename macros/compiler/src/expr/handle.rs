@@ -1,4 +1,4 @@
-//! The handle of an expression, with the arithmetic that it writes into its graph.
+//! Handle of an expression, with arithmetic that adds nodes to its graph.
 
 use super::graph::{Graph, ZERO};
 use super::node::{Extreme, Function, Id, Node};
@@ -18,27 +18,27 @@ impl PartialEq for Expr<'_> {
 }
 
 impl<'g> Expr<'g> {
-    /// Its node's index.
+    /// Returns the index of the node.
     pub fn id(self) -> Id {
         self.id
     }
 
-    /// The graph that owns it.
+    /// Returns the graph that owns the expression.
     pub fn graph(self) -> &'g Graph {
         self.graph
     }
 
-    /// Its node.
+    /// Returns the node.
     pub fn node(self) -> Node {
         self.graph.node(self.id)
     }
 
-    /// Its value, if it is a constant.
+    /// Returns the value if the expression is a constant.
     pub fn value(self) -> Option<f64> {
         self.graph.value(self.id)
     }
 
-    /// True for a constant and for a constant times something.
+    /// Returns true for a constant, or a constant times another expression.
     pub fn is_multiple(self) -> bool {
         let (_, id) = self.graph.unsigned(self.id);
         match self.graph.node(id) {
@@ -47,42 +47,42 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// True for the constant zero.
+    /// Returns true for the constant zero.
     pub fn is_zero(self) -> bool {
         self.id == ZERO
     }
 
-    /// A number in the same graph.
+    /// Returns a constant of the same graph.
     pub fn num(self, value: f64) -> Expr<'g> {
         self.graph.num(value)
     }
 
-    /// Zero in the same graph.
+    /// Returns the constant zero of the same graph.
     pub fn zero(self) -> Expr<'g> {
         self.graph.zero()
     }
 
-    /// An elementary function of it.
+    /// Applies an elementary function.
     pub fn call(self, f: Function) -> Expr<'g> {
         self.graph.expr(self.graph.call(f, self.id))
     }
 
-    /// Sine.
+    /// Returns the sine, of an angle in rad.
     pub fn sin(self) -> Expr<'g> {
         self.call(Function::Sin)
     }
 
-    /// Cosine.
+    /// Returns the cosine, of an angle in rad.
     pub fn cos(self) -> Expr<'g> {
         self.call(Function::Cos)
     }
 
-    /// Square root.
+    /// Returns the square root.
     pub fn sqrt(self) -> Expr<'g> {
         self.call(Function::Sqrt)
     }
 
-    /// The angle of the point (`abscissa`, `self`).
+    /// Returns the angle, rad, of the point (`abscissa`, `self`).
     pub fn atan2(self, abscissa: Expr<'g>) -> Expr<'g> {
         if let (Some(y), Some(x)) = (self.value(), abscissa.value()) {
             return self.num(y.atan2(x));
@@ -90,7 +90,7 @@ impl<'g> Expr<'g> {
         self.graph.expr(self.graph.intern(Node::Atan2(self.id, abscissa.id)))
     }
 
-    /// The smaller or the larger of two.
+    /// Returns the minimum or maximum of two expressions.
     pub fn extreme(self, f: Extreme, other: Expr<'g>) -> Expr<'g> {
         match (self.value(), other.value()) {
             (Some(a), Some(b)) => self.num(f.apply(a, b)),
@@ -99,7 +99,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// A power; small whole exponents become products.
+    /// Returns a power. Integer exponents up to eight become products.
     pub fn pow(self, exponent: Expr<'g>) -> Expr<'g> {
         match (self.value(), exponent.value()) {
             (Some(x), Some(n)) if x.powf(n).is_finite() => self.num(x.powf(n)),
@@ -112,7 +112,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// Its square.
+    /// Returns the square.
     pub fn square(self) -> Expr<'g> {
         self * self
     }

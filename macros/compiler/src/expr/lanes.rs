@@ -1,33 +1,34 @@
-//! Lanes: expressions with a value for each of several alike parts of a mechanism. All operations act lane by lane; what
-//! has no lanes has the same value in each. Lanes begin with constants and inputs that differ from lane to lane, or with
-//! expressions that are put side by side, and end with a sum over the lanes or with one of them.
+//! SIMD lanes: expressions with one value for each of several identical subsystems of a mechanism, such as
+//! limbs. All operations act lane by lane; an expression without lanes has the same value in each lane. Lanes
+//! originate from constants and inputs that differ between lanes, or from joined expressions. A sum over the
+//! lanes, or the selection of one lane, ends them.
 
 use super::graph::ZERO;
 use super::node::{Id, Node, Symbol};
 use super::{Expr, Graph};
 use std::collections::BTreeMap;
 
-/// Most lanes of an expression.
+/// Maximum number of lanes of an expression.
 pub const MAX_LANES: usize = 8;
 
-/// Constants and inputs of each lane, every combination once.
+/// Interned constants and inputs of the lanes.
 #[derive(Default)]
 pub struct Tables {
     tuples: Vec<Vec<f64>>,
-    /// Index of a tuple by its bits.
+    /// Index of each tuple, keyed by the bits of its constants.
     known: BTreeMap<Vec<u64>, u32>,
     gathers: Vec<Vec<Symbol>>,
-    /// By node: how many lanes it has, one for none; as far as anybody asked.
+    /// Number of lanes of each node, one for expressions without lanes. Filled on demand.
     widths: Vec<u8>,
 }
 
 impl Graph {
-    /// A constant of each lane; of all lanes, if they are equal.
+    /// Returns a constant for each lane, or an ordinary constant if all are equal.
     pub fn lane_constants(&self, values: &[f64]) -> Expr<'_> {
         self.expr(self.lane_constant(values.to_vec()))
     }
 
-    /// An input of each lane; of all lanes, if they are the same.
+    /// Returns an input for each lane, or an ordinary input if all are equal.
     pub fn lane_symbols(&self, symbols: &[Symbol]) -> Expr<'_> {
         if let Some(first) = symbols.first().filter(|first| symbols.iter().all(|s| s == *first)) {
             return self.symbol(*first);
@@ -41,17 +42,17 @@ impl Graph {
         self.expr(self.intern(Node::Gather(k as u32)))
     }
 
-    /// The constants of a tuple.
+    /// Returns the constants of a tuple, one for each lane.
     pub fn tuple(&self, k: u32) -> Vec<f64> {
         self.lanes.borrow().tuples[k as usize].clone()
     }
 
-    /// The symbols of a gather.
+    /// Returns the symbols of a gather, one for each lane.
     pub fn gather(&self, k: u32) -> Vec<Symbol> {
         self.lanes.borrow().gathers[k as usize].clone()
     }
 
-    /// How many lanes a node has, one for none.
+    /// Returns the number of lanes of a node, one for an expression without lanes.
     fn width(&self, id: Id) -> usize {
         let (nodes, mut tables) = (self.nodes(), self.lanes.borrow_mut());
         for node in &nodes[tables.widths.len().min(id as usize + 1)..=id as usize] {
@@ -69,7 +70,7 @@ impl Graph {
         tables.widths[id as usize].into()
     }
 
-    /// So many lanes of `a`, then as many of `b`.
+    /// Returns the first `n` lanes of `a`, followed by `n` lanes of `b`.
     fn join(&self, n: usize, a: Id, b: Id) -> Id {
         if a == b && self.width(a) == 1 {
             return a;
@@ -85,7 +86,7 @@ impl Graph {
 
     fn lane_constant(&self, mut values: Vec<f64>) -> Id {
         for x in &mut values {
-            // Minus zero is zero.
+            // Minus zero becomes zero.
             *x += 0.0;
         }
         let bits: Vec<u64> = values.iter().map(|x| x.to_bits()).collect();
@@ -102,7 +103,7 @@ impl Graph {
         self.intern(Node::Tuple(k))
     }
 
-    /// A tuple with a function applied to each constant.
+    /// Applies a function to each constant of a tuple. Other nodes are returned unchanged.
     pub(super) fn map_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Id {
         match self.node(id) {
             Node::Tuple(k) => self.lane_constant(self.tuple(k).into_iter().map(f).collect()),
@@ -110,14 +111,15 @@ impl Graph {
         }
     }
 
-    /// The same, if all results are finite.
+    /// Applies a function to each constant of a tuple. `None` if a result is not finite or the node is not a
+    /// tuple.
     pub(super) fn finite_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Option<Id> {
         let Node::Tuple(k) = self.node(id) else { return None };
         let values: Vec<f64> = self.tuple(k).into_iter().map(f).collect();
         values.iter().all(|x| x.is_finite()).then(|| self.lane_constant(values))
     }
 
-    /// `f` of two constants of which one at least is a tuple.
+    /// Applies `f` to two constants, at least one of which is a tuple. `None` for other operands.
     pub(super) fn fold_lanes(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
         let values: Vec<f64> = match (self.node(a), self.node(b)) {
             (Node::Tuple(x), Node::Tuple(y)) => {
@@ -130,7 +132,8 @@ impl Graph {
         Some(self.lane_constant(values))
     }
 
-    /// True if the first constant of a tuple that is not zero is negative: of a tuple and its negative one is.
+    /// Returns true if the first nonzero constant of a tuple is negative. This holds for exactly one of a
+    /// tuple and its negative.
     pub(super) fn starts_negative(&self, k: u32) -> bool {
         let tables = self.lanes.borrow();
         tables.tuples[k as usize].iter().find(|x| **x != 0.0).is_some_and(|x| *x < 0.0)
@@ -138,7 +141,8 @@ impl Graph {
 }
 
 impl<'g> Expr<'g> {
-    /// The constants of its lanes (`n` of a constant of all lanes), if it is constant.
+    /// Returns the constants of all lanes, `n` copies for a constant without lanes. `None` if the expression
+    /// is not constant.
     pub fn lane_values(self, n: usize) -> Option<Vec<f64>> {
         match self.node() {
             Node::Const(c) => Some(vec![c; n]),
@@ -147,12 +151,13 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// True for a constant, of all lanes or of each.
+    /// Returns true for a constant, shared by all lanes or one for each.
     pub fn is_constant(self) -> bool {
         self.graph().is_constant(self.id())
     }
 
-    /// True for a constant whose size is in no lane above a bound, which is constant too.
+    /// Returns true if the expression and `bound` are constant and the magnitude of the expression is at most
+    /// the bound in every lane.
     pub fn is_within(self, bound: Expr<'g>) -> bool {
         match (self.lane_values(MAX_LANES), bound.lane_values(MAX_LANES)) {
             (Some(x), Some(bound)) => x.iter().zip(&bound).all(|(x, bound)| x.abs() <= *bound),
@@ -160,7 +165,7 @@ impl<'g> Expr<'g> {
         }
     }
 
-    /// The sum of its first `n` lanes.
+    /// Returns the sum of the first `n` lanes.
     pub fn lane_sum(self, n: usize) -> Expr<'g> {
         let g = self.graph();
         if let Some(values) = self.lane_values(n) {
@@ -170,13 +175,14 @@ impl<'g> Expr<'g> {
         g.expr(g.signed(negative, g.intern(Node::Sum(n as u8, id))))
     }
 
-    /// Its `n` lanes, then as many of another. What has no lanes has the same value in each.
+    /// Returns the `n` lanes of this expression, followed by `n` lanes of another one. An expression without
+    /// lanes has the same value in each.
     pub fn joined(self, n: usize, other: Expr<'g>) -> Expr<'g> {
         let g = self.graph();
         g.expr(g.join(n, self.id(), other.id()))
     }
 
-    /// Its value in lane `k`.
+    /// Returns the value in lane `k`.
     pub fn lane(self, k: usize) -> Expr<'g> {
         let g = self.graph();
         match self.node() {
@@ -189,7 +195,7 @@ impl<'g> Expr<'g> {
             }
             _ => {}
         }
-        // The sign stays inside: all lanes are negated at once.
+        // The sign is not lifted: one operation negates all lanes.
         g.expr(g.intern(Node::Lane(k as u8, self.id())))
     }
 }

@@ -1,63 +1,64 @@
-//! Vectors and matrices of three dimensions over expressions.
+//! Three-dimensional vectors and matrices of expressions.
 
 use super::diff::TINY;
 use super::node::Function;
 use super::{Expr, Graph};
 use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
-/// Three components.
+/// A vector of three expressions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vec3<'g>(pub [Expr<'g>; 3]);
 
 impl<'g> Vec3<'g> {
-    /// The zero vector.
+    /// Returns the zero vector.
     pub fn zero(g: &'g Graph) -> Vec3<'g> {
         Vec3([g.zero(); 3])
     }
 
-    /// The unit vector along coordinate axis `k`.
+    /// Returns the unit vector along coordinate axis `k`.
     pub fn axis(g: &'g Graph, k: usize) -> Vec3<'g> {
         Vec3(std::array::from_fn(|i| if i == k { g.one() } else { g.zero() }))
     }
 
-    /// A vector of numbers.
+    /// Returns a vector of constants.
     pub fn numbers(g: &'g Graph, v: [f64; 3]) -> Vec3<'g> {
         Vec3(v.map(|c| g.num(c)))
     }
 
-    /// All components with a function applied.
+    /// Applies a function to every component.
     pub fn map(self, f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
         Vec3(self.0.map(f))
     }
 
-    /// True if every component is the constant zero.
+    /// Returns true if every component is the constant zero.
     pub fn is_zero(self) -> bool {
         self.0.iter().all(|c| c.is_zero())
     }
 
-    /// The numbers, if every component is one.
+    /// Returns the components as numbers if all of them are constant.
     pub fn values(self) -> Option<[f64; 3]> {
         Some([self.0[0].value()?, self.0[1].value()?, self.0[2].value()?])
     }
 
-    /// Scalar product.
+    /// Returns the dot product.
     pub fn dot(self, b: Vec3<'g>) -> Expr<'g> {
         self.0[0] * b.0[0] + self.0[1] * b.0[1] + self.0[2] * b.0[2]
     }
 
-    /// Vector product.
+    /// Returns the cross product.
     pub fn cross(self, b: Vec3<'g>) -> Vec3<'g> {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, b.0);
         Vec3([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
     }
 
-    /// Length.
+    /// Returns the Euclidean norm.
     pub fn norm(self) -> Expr<'g> {
         self.dot(self).sqrt()
     }
 
-    /// Length of a vector that moves and may pass zero: its derivatives are zero there, where the direction of the zero
-    /// vector is missing, not NaN. A [`TINY`] length is added for that, below the resolution of every other.
+    /// Returns the Euclidean norm of a vector that may pass through zero. A [`TINY`] constant under the root,
+    /// below the resolution of any other length, makes its derivatives at zero vanish, where they would
+    /// otherwise be NaN.
     pub fn length(self) -> Expr<'g> {
         let mut parts = self.0.into_iter().filter(|c| !c.is_zero());
         match (parts.next(), parts.next(), self.values()) {
@@ -115,48 +116,48 @@ impl<'g> SubAssign for Vec3<'g> {
     }
 }
 
-/// A 3×3 matrix by rows.
+/// A 3×3 matrix, stored by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat3<'g>(pub [[Expr<'g>; 3]; 3]);
 
 impl<'g> Mat3<'g> {
-    /// Zero.
+    /// Returns the zero matrix.
     pub fn zero(g: &'g Graph) -> Mat3<'g> {
         Mat3([[g.zero(); 3]; 3])
     }
 
-    /// The unit matrix.
+    /// Returns the identity matrix.
     pub fn identity(g: &'g Graph) -> Mat3<'g> {
         Mat3(std::array::from_fn(|i| Vec3::axis(g, i).0))
     }
 
-    /// A matrix from its entries.
+    /// Returns the matrix with entries `f(i, j)`.
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> Expr<'g>) -> Mat3<'g> {
         Mat3(std::array::from_fn(|i| std::array::from_fn(|j| f(i, j))))
     }
 
-    /// `[a]×`, so that `[a]× b = a × b`.
+    /// Returns the cross-product matrix `[a]×`, with `[a]× b = a × b`.
     pub fn skew(a: Vec3<'g>) -> Mat3<'g> {
         let ([x, y, z], o) = (a.0, a[0].zero());
         Mat3([[o, -z, y], [z, o, -x], [-y, x, o]])
     }
 
-    /// Row `i`.
+    /// Returns row `i`.
     pub fn row(&self, i: usize) -> Vec3<'g> {
         Vec3(self.0[i])
     }
 
-    /// Column `j`.
+    /// Returns column `j`.
     pub fn column(&self, j: usize) -> Vec3<'g> {
         Vec3([self.0[0][j], self.0[1][j], self.0[2][j]])
     }
 
-    /// The transpose.
+    /// Returns the transpose.
     pub fn transpose(self) -> Mat3<'g> {
         Mat3::from_fn(|i, j| self.0[j][i])
     }
 
-    /// The numbers, if every entry is one.
+    /// Returns the entries as numbers if all of them are constant.
     pub fn values(self) -> Option<[[f64; 3]; 3]> {
         let mut out = [[0.0; 3]; 3];
         for i in 0..3 {
@@ -194,48 +195,48 @@ impl<'g> Mul<Vec3<'g>> for Mat3<'g> {
     }
 }
 
-/// A symmetric 3×3 matrix: xx, yy, zz, xy, xz, yz.
+/// A symmetric 3×3 matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sym3<'g> {
-    /// Diagonal entries.
+    /// Entries xx, yy, zz.
     pub diagonal: [Expr<'g>; 3],
     /// Entries xy, xz, yz.
     pub off: [Expr<'g>; 3],
 }
 
 impl<'g> Sym3<'g> {
-    /// Zero.
+    /// Returns the zero matrix.
     pub fn zero(g: &'g Graph) -> Sym3<'g> {
         Sym3 { diagonal: [g.zero(); 3], off: [g.zero(); 3] }
     }
 
-    /// A multiple of the unit matrix.
+    /// Returns a multiple of the identity matrix.
     pub fn scalar(s: Expr<'g>) -> Sym3<'g> {
         Sym3 { diagonal: [s; 3], off: [s.zero(); 3] }
     }
 
-    /// The symmetric matrix with the upper triangle of `m`.
+    /// Returns the symmetric matrix with the upper triangle of `m`.
     pub fn from_upper(m: &Mat3<'g>) -> Sym3<'g> {
         let m = &m.0;
         Sym3 { diagonal: [m[0][0], m[1][1], m[2][2]], off: [m[0][1], m[0][2], m[1][2]] }
     }
 
-    /// All entries with a function applied.
+    /// Applies a function to every entry.
     pub fn map(self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Sym3<'g> {
         Sym3 { diagonal: self.diagonal.map(&mut f), off: self.off.map(f) }
     }
 
-    /// Entry (i, j).
+    /// Returns entry `(i, j)`.
     pub fn at(&self, i: usize, j: usize) -> Expr<'g> {
         if i == j { self.diagonal[i] } else { self.off[i + j - 1] }
     }
 
-    /// All nine entries.
+    /// Returns the full matrix.
     pub fn full(&self) -> Mat3<'g> {
         Mat3::from_fn(|i, j| self.at(i, j))
     }
 
-    /// `s (|a|² 1 − a aᵀ)`: what a mass `s` at `a` adds to an inertia.
+    /// Returns the inertia `s (|a|² 1 − a aᵀ)` of a point mass `s` at `a`.
     pub fn point(s: Expr<'g>, a: Vec3<'g>) -> Sym3<'g> {
         let [x, y, z] = a.0;
         let (sx, sy, sz) = (s * x, s * y, s * z);

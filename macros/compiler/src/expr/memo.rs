@@ -1,26 +1,26 @@
-//! A number for some nodes of a graph, in a table that the graph keeps for the next one: what concerns few nodes does not
-//! cost a table for all of them.
+//! Map from nodes of a graph to numbers. The graph recycles the underlying tables, so that a map of few nodes
+//! does not cost the allocation of a table for all nodes.
 
 use super::Graph;
 use super::node::Id;
 
-/// Numbers of nodes. Reading and writing one takes the time of an index; a new table costs nothing, once the graph has one
-/// that is not in use.
+/// Map from node indices to `u32`. Access takes the time of an array access. A new map allocates nothing if
+/// the graph has an unused table.
 pub struct Memo<'g> {
     graph: &'g Graph,
-    /// By node: the number plus one; zero, or nothing, where there is none.
+    /// For each node, its number plus one, or zero if it has none. May be shorter than the graph.
     table: Vec<u32>,
     /// The nodes that have numbers.
     written: Vec<Id>,
 }
 
 impl<'g> Memo<'g> {
-    /// No numbers yet.
+    /// Creates an empty map.
     pub fn new(graph: &'g Graph) -> Memo<'g> {
         Memo { graph, table: graph.take_table(), written: Vec::new() }
     }
 
-    /// The number of a node.
+    /// Returns the number of a node.
     pub fn get(&self, id: Id) -> Option<u32> {
         match self.table.get(id as usize) {
             None | Some(0) => None,
@@ -28,7 +28,7 @@ impl<'g> Memo<'g> {
         }
     }
 
-    /// Gives a node a number, which is not the largest there is.
+    /// Assigns a number less than `u32::MAX` to a node.
     pub fn set(&mut self, id: Id, number: u32) {
         let place = id as usize;
         if place >= self.table.len() {

@@ -1,4 +1,4 @@
-//! The symbolic kernel: a hash-consed graph of scalar expressions that simplifies at construction, with
+//! Symbolic kernel: a hash-consed graph of scalar expressions that simplifies at construction, with
 //! differentiation and evaluation. Knows no mechanics.
 
 pub mod air;

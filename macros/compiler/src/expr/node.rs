@@ -1,15 +1,15 @@
-//! Nodes of the graph: what they are, and the elementary functions.
+//! Nodes of the expression graph, and the elementary functions.
 
 use super::air;
 
-/// A node's index.
+/// Index of a node in its graph.
 pub type Id = u32;
 
-/// An input of an expression; what it stands for is known to whoever made it.
+/// An input of an expression. Its meaning is defined by the code that creates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Symbol(pub u32);
 
-/// Elementary functions.
+/// Elementary functions of one variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "the names of the elementary functions say it all")]
 pub enum Function {
@@ -27,23 +27,24 @@ pub enum Function {
     Sqrt,
     Abs,
     Signum,
-    /// Temperature of the standard atmosphere at a geopotential height.
+    /// Temperature of the standard atmosphere at a geopotential height: K, of m.
     IsaTemperature,
-    /// Its rate of change with that height.
+    /// Derivative of the temperature of the standard atmosphere by geopotential height: K/m, of m.
     IsaLapseRate,
-    /// Pressure of the standard atmosphere at a geopotential height.
+    /// Pressure of the standard atmosphere at a geopotential height: Pa, of m.
     IsaPressure,
 }
 
 impl Function {
-    /// Those of the standard atmosphere, which the language has by other names, with those of the runtime.
+    /// Functions of the standard atmosphere, with their names in the runtime. The language names them
+    /// differently.
     const OF_AIR: [(&'static str, Function); 3] = [
         ("isa_temperature", Function::IsaTemperature),
         ("isa_lapse_rate", Function::IsaLapseRate),
         ("isa_pressure", Function::IsaPressure),
     ];
 
-    /// All elementary ones, with the names they have in the language.
+    /// All elementary functions, with their names in the language.
     pub const ALL: [(&'static str, Function); 14] = [
         ("sin", Function::Sin),
         ("cos", Function::Cos),
@@ -61,13 +62,13 @@ impl Function {
         ("signum", Function::Signum),
     ];
 
-    /// The name in the language and in generated code.
+    /// Returns the name in the language and in generated code.
     pub fn name(self) -> &'static str {
         let mut all = Function::ALL.iter().chain(&Function::OF_AIR);
         all.find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
     }
 
-    /// The value at a number.
+    /// Evaluates the function at a number.
     pub fn apply(self, x: f64) -> f64 {
         match self {
             Function::Sin => x.sin(),
@@ -90,59 +91,61 @@ impl Function {
         }
     }
 
-    /// `f(-x) = -f(x)`.
+    /// Returns true if `f(-x) = -f(x)`.
     pub fn is_odd(self) -> bool {
         use Function::{Asin, Atan, Sin, Sinh, Tan, Tanh};
         matches!(self, Sin | Tan | Asin | Atan | Sinh | Tanh)
     }
 
-    /// `f(-x) = f(x)`.
+    /// Returns true if `f(-x) = f(x)`.
     pub fn is_even(self) -> bool {
         matches!(self, Function::Cos | Function::Cosh | Function::Abs)
     }
 }
 
-/// A function that is a parameter, given by a table, or one of its derivatives: its number, how many variables it has, and
-/// how often it is differentiated by each, in a few bits.
+/// A function defined by a table, or one of its derivatives. Table index, number of variables, and order of
+/// differentiation by each variable are packed in 16 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Lookup(u16);
 
 impl Lookup {
-    /// Most tables of a mechanism.
+    /// Maximum number of tables of a mechanism.
     pub const MAX_TABLES: usize = 256;
 
-    /// The table of this number, with so many variables, one to three.
+    /// Returns the function of table `table`, with one to three variables.
     pub fn new(table: usize, variables: usize) -> Lookup {
         Lookup((table as u16) << 8 | (variables as u16 & 3) << 6)
     }
 
-    /// Its number.
+    /// Returns the index of the table.
     pub fn table(self) -> usize {
         usize::from(self.0 >> 8)
     }
 
-    /// How many variables it has.
+    /// Returns the number of variables.
     pub fn variables(self) -> usize {
         usize::from(self.0 >> 6 & 3)
     }
 
-    /// How often it is differentiated by a variable.
+    /// Returns the order of differentiation by a variable.
     pub fn order(self, variable: usize) -> usize {
         usize::from(self.0 >> (2 * variable) & 3)
     }
 
-    /// The orders by all variables.
+    /// Returns the orders of differentiation by all variables.
     pub fn orders(self) -> Vec<usize> {
         (0..self.variables()).map(|k| self.order(k)).collect()
     }
 
-    /// Differentiated by a variable once more; `None` where that is zero: tables are cubic at most.
+    /// Returns the derivative by a variable. `None` if it is zero, since tables are at most cubic in each
+    /// variable.
     pub fn slope(self, variable: usize) -> Option<Lookup> {
         (self.order(variable) < 3).then(|| Lookup(self.0 + (1 << (2 * variable))))
     }
 
-    /// The value of a function that stands for the table where its figures are not known: a product of cubics as tables are, the first
-    /// terms of waves, different for every table, with all their derivatives.
+    /// Evaluates a surrogate function, for use where the values of the table are unknown. It is a product of
+    /// cubic polynomials, like tables: truncated Taylor series of sines that differ between tables. All
+    /// derivatives are consistent.
     pub fn apply(self, x: [f64; 3]) -> f64 {
         let cubic = |(k, x): (usize, f64)| {
             let (order, pace, phase) = (self.order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table() as f64);
@@ -154,7 +157,7 @@ impl Lookup {
     }
 }
 
-/// The smaller or the larger of two.
+/// Minimum or maximum of two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "the names say it all")]
 pub enum Extreme {
@@ -163,7 +166,7 @@ pub enum Extreme {
 }
 
 impl Extreme {
-    /// The name in the language and in generated code.
+    /// Returns the name in the language and in generated code.
     pub fn name(self) -> &'static str {
         match self {
             Extreme::Min => "min",
@@ -171,7 +174,7 @@ impl Extreme {
         }
     }
 
-    /// The value for two numbers.
+    /// Evaluates the minimum or maximum of two numbers.
     pub fn apply(self, a: f64, b: f64) -> f64 {
         match self {
             Extreme::Min => a.min(b),
@@ -199,23 +202,23 @@ pub enum Node {
     Div(Id, Id),
     /// `f(a)`.
     Call(Function, Id),
-    /// The angle of the point with ordinate `a` and abscissa `b`.
+    /// `atan2(a, b)`: the angle, rad, of the point with ordinate `a` and abscissa `b`.
     Atan2(Id, Id),
     /// `a` to the power `b`.
     Pow(Id, Id),
-    /// The smaller or the larger of `a` and `b`.
+    /// The minimum or maximum of `a` and `b`.
     Extreme(Extreme, Id, Id),
-    /// A table's value or derivative at its variables; those that it does not have repeat the last.
+    /// Value or derivative of a table at its variables. Surplus operands repeat the last variable.
     Table(Lookup, Id, Id, Id),
-    /// A constant of each lane: an index of the graph's tuples.
+    /// A constant for each lane: an index of the graph's tuples.
     Tuple(u32),
-    /// An input of each lane: an index of the graph's gathers.
+    /// An input for each lane: an index of the graph's gathers.
     Gather(u32),
-    /// The sum of so many lanes of `a`.
+    /// The sum of the first `n` lanes of `a`.
     Sum(u8, Id),
     /// One lane of `a`.
     Lane(u8, Id),
-    /// So many lanes of `a`, then as many of `b`.
+    /// The first `n` lanes of `a`, followed by the first `n` lanes of `b`.
     Join(u8, Id, Id),
 }
 
@@ -269,7 +272,8 @@ impl Node {
 
     pub(super) fn same(self, other: Node) -> bool {
         match (self, other) {
-            // Bits, so that a NaN is itself; the two zeros are one, see `constant`.
+            // Compares bits, so that a NaN equals itself. Negative zero does not occur, see
+            // `Graph::constant`.
             (Node::Const(a), Node::Const(b)) => a.to_bits() == b.to_bits(),
             (a, b) => a == b,
         }

@@ -1,22 +1,23 @@
-//! Replacement of symbols by expressions.
+//! Substitution of expressions for symbols.
 
 use super::node::{Function, Id, Node, Symbol};
 use super::{Expr, Graph, Memo};
 
-/// An expression with symbols replaced where `by` says so.
+/// Substitutes `by(s)` for every symbol `s` of an expression for which it is not `None`.
 pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
     replace_all(&[e], by).pop().unwrap_or(e)
 }
 
-/// Expressions with symbols replaced where `by` says so.
+/// Substitutes `by(s)` for every symbol `s` of several expressions for which it is not `None`.
 pub fn replace_all<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
     replace_calls(e, by, &|f, x| x.call(f))
 }
 
-/// What stands for a function of an expression.
+/// Constructor of the replacement for an elementary function of an expression.
 type Call<'a, 'g> = &'a dyn Fn(Function, Expr<'g>) -> Expr<'g>;
 
-/// Expressions with symbols replaced where `by` says so, and with functions as `call` makes them.
+/// Substitutes `by(s)` for every symbol `s` of several expressions for which it is not `None`, and builds
+/// elementary functions with `call`.
 pub fn replace_calls<'g>(
     e: &[Expr<'g>],
     by: &dyn Fn(Symbol) -> Option<Expr<'g>>,
@@ -27,7 +28,7 @@ pub fn replace_calls<'g>(
     e.iter().map(|e| replace_one(*e, &mut known, by, call)).collect()
 }
 
-/// An expression in which a part of it, wherever it is a node, is another.
+/// Substitutes `by` for every occurrence of the node `part` in an expression.
 pub fn replace_part<'g>(e: Expr<'g>, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
     let mut known = Memo::new(e.graph());
     known.set(part.id(), by.id());
@@ -87,7 +88,7 @@ fn rebuilt<'g>(
         Node::Pow(a, b) => at(a).pow(at(b)),
         Node::Extreme(f, a, b) => at(a).extreme(f, at(b)),
         Node::Table(lookup, a, b, c) => {
-            // Those that the table does not have are not looked at.
+            // Variables beyond those of the table are ignored.
             let x = [a, b, c];
             let last = lookup.variables().saturating_sub(1);
             graph.lookup(lookup, std::array::from_fn(|k| at(x[k.min(last)])))

@@ -1,5 +1,5 @@
-//! Rotations as sequences of elementary steps. A joint's rotation about a coordinate axis after a constant one costs
-//! less applied step by step than as one matrix.
+//! Rotations as sequences of elementary steps. A constant rotation followed by a joint's rotation about a
+//! coordinate axis costs fewer operations when applied step by step than as one matrix.
 
 use super::matrix::{Mat3, Sym3, Vec3};
 use super::node::{Function, Node};
@@ -14,7 +14,8 @@ enum Step<'g> {
     Axis { axis: usize, sin: Expr<'g>, cos: Expr<'g> },
 }
 
-/// The orientation of a child frame in a parent frame: `v_parent = R v_child`, `R` a product of steps.
+/// The orientation of a child frame in a parent frame: `v_parent = R v_child`, where `R` is a product of
+/// steps.
 #[derive(Clone, Debug)]
 pub struct Rotation<'g> {
     steps: Vec<Step<'g>>,
@@ -22,12 +23,12 @@ pub struct Rotation<'g> {
 }
 
 impl<'g> Rotation<'g> {
-    /// No rotation.
+    /// Returns the identity.
     pub fn identity(graph: &'g Graph) -> Rotation<'g> {
         Rotation { steps: Vec::new(), graph }
     }
 
-    /// A rotation about coordinate axis `axis` by `angle`.
+    /// Returns the rotation about coordinate axis `axis` by `angle`, rad.
     pub fn about_axis(axis: usize, angle: Expr<'g>) -> Rotation<'g> {
         let graph = angle.graph();
         let step =
@@ -37,14 +38,14 @@ impl<'g> Rotation<'g> {
         rotation
     }
 
-    /// A rotation given by its matrix, whose columns are the child's axes in the parent's frame.
+    /// Returns the rotation with matrix `m`, whose columns are the child's axes in the parent frame.
     pub fn from_matrix(m: Mat3<'g>) -> Rotation<'g> {
         let mut rotation = Rotation::identity(m.0[0][0].graph());
         rotation.push(Step::Matrix(m));
         rotation
     }
 
-    /// A rotation by `angle` about the unit vector `n` (Rodrigues's formula).
+    /// Returns the rotation by `angle`, rad, about the unit vector `n` (Rodrigues's formula).
     pub fn eigenaxis(n: Vec3<'g>, angle: Expr<'g>) -> Rotation<'g> {
         for k in 0..3 {
             let others_zero = n[(k + 1) % 3].is_zero() && n[(k + 2) % 3].is_zero();
@@ -63,7 +64,7 @@ impl<'g> Rotation<'g> {
         }))
     }
 
-    /// The rotation of a unit quaternion x y z w.
+    /// Returns the rotation of a unit quaternion with components x, y, z, w.
     pub fn quaternion(q: [Expr<'g>; 4]) -> Rotation<'g> {
         let [x, y, z, w] = q;
         let (x2, y2, z2) = (x + x, y + y, z + z);
@@ -78,7 +79,7 @@ impl<'g> Rotation<'g> {
         ]))
     }
 
-    /// This rotation, then `next` in the rotated frame.
+    /// Returns this rotation followed by `next`, which is given in the rotated frame.
     pub fn then(mut self, next: &Rotation<'g>) -> Rotation<'g> {
         for step in &next.steps {
             self.push(*step);
@@ -86,13 +87,14 @@ impl<'g> Rotation<'g> {
         self
     }
 
-    /// The inverse rotation.
+    /// Returns the inverse rotation.
     pub fn inverse(&self) -> Rotation<'g> {
         let steps = self.steps.iter().rev().map(|s| s.inverse()).collect();
         Rotation { steps, graph: self.graph }
     }
 
-    /// Appends a step; constant neighbours become one rotation, in as few steps as it takes.
+    /// Appends a step. Adjacent constant steps are combined into one rotation with the minimum number of
+    /// steps.
     fn push(&mut self, step: Step<'g>) {
         let Some(mut product) = step.constant() else {
             self.steps.push(step);
@@ -108,32 +110,32 @@ impl<'g> Rotation<'g> {
         }
     }
 
-    /// True if it is known not to rotate.
+    /// Returns true if the rotation is structurally the identity.
     pub fn is_identity(&self) -> bool {
         self.steps.is_empty()
     }
 
-    /// Components in the parent's frame of a vector given in the child's.
+    /// Transforms a vector from the child to the parent frame.
     pub fn to_parent(&self, v: Vec3<'g>) -> Vec3<'g> {
         self.steps.iter().rev().fold(v, |v, step| step.apply(v))
     }
 
-    /// Components in the child's frame of a vector given in the parent's.
+    /// Transforms a vector from the parent to the child frame.
     pub fn to_child(&self, v: Vec3<'g>) -> Vec3<'g> {
         self.steps.iter().fold(v, |v, step| step.inverse().apply(v))
     }
 
-    /// `R X Rᵀ`: a symmetric tensor of the child's frame in the parent's.
+    /// Transforms a symmetric tensor from the child to the parent frame: `R X Rᵀ`.
     pub fn sym_to_parent(&self, x: Sym3<'g>) -> Sym3<'g> {
         self.steps.iter().rev().fold(x, |x, step| step.apply_sym(x))
     }
 
-    /// `R X Rᵀ`: a tensor of the child's frame in the parent's.
+    /// Transforms a tensor from the child to the parent frame: `R X Rᵀ`.
     pub fn mat_to_parent(&self, x: Mat3<'g>) -> Mat3<'g> {
         self.steps.iter().rev().fold(x, |x, step| step.apply_mat(x))
     }
 
-    /// It with a function applied to all expressions.
+    /// Applies a function to all expressions of the rotation.
     pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Rotation<'g> {
         let step = |step: &Step<'g>| match *step {
             Step::Matrix(m) => Step::Matrix(Mat3::from_fn(|i, j| f(m.0[i][j]))),
@@ -142,14 +144,16 @@ impl<'g> Rotation<'g> {
         Rotation { steps: self.steps.iter().map(step).collect(), graph: self.graph }
     }
 
-    /// Rotations as the lanes of one, given what makes one expression of those of the lanes. `None` if it cannot.
+    /// Combines one rotation per lane into a rotation with lanes. `merge` combines one expression per lane;
+    /// the result is `None` if it fails.
     pub fn side_by_side(
         lanes: &[&Rotation<'g>],
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
     ) -> Option<Rotation<'g>> {
         let first = lanes.first()?;
         let mut rotation = Rotation::identity(first.graph);
-        // As many steps as are of one kind in all lanes, from the last; what is before them becomes one matrix.
+        // The trailing steps that are of the same kind in all lanes are combined one by one. The steps before
+        // them become one matrix.
         let from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
         let alike = |k: &usize| {
             let all = lanes.iter().map(|r| from_end(r, *k).map(|step| step.kind()));
@@ -173,14 +177,15 @@ impl<'g> Rotation<'g> {
         Some(rotation)
     }
 
-    /// The whole matrix: columns are the child's axes in the parent's frame.
+    /// Returns the rotation matrix, whose columns are the child's axes in the parent frame.
     pub fn matrix(&self) -> Mat3<'g> {
         let columns: [Vec3<'g>; 3] = std::array::from_fn(|k| self.to_parent(Vec3::axis(self.graph, k)));
         Mat3::from_fn(|i, j| columns[j][i])
     }
 }
 
-/// The sine of π and the cosine of π / 2 are not zero in floating point, but zero is what is meant.
+/// Replaces a constant of the magnitude of rounding error by zero: in floating point, the sine of π and the
+/// cosine of π/2 are not exactly zero.
 fn without_rounding(e: Expr<'_>) -> Expr<'_> {
     match e.value() {
         Some(x) if x.abs() <= 4.0 * f64::EPSILON => e.zero(),
@@ -201,12 +206,14 @@ fn merged_matrix<'g>(
     Some(matrix)
 }
 
-/// A constant rotation as one by right angles and up to two about coordinate axes, if it has a zero entry.
+/// Factors a constant rotation matrix with a zero entry into a rotation by right angles and at most two
+/// rotations about coordinate axes. `None` if no entry is zero.
 fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
     let g = m.0[0][0].graph();
     let steps = axis_steps(m).or_else(|| {
         let (r, c) = (0..9).map(|k| (k / 3, k % 3)).find(|(r, c)| m.0[*r][*c].is_zero())?;
-        // Column c is normal to axis r: what is left after a rotation about r has a coordinate axis as column c.
+        // Column c is normal to axis r. After a rotation about r, column c of the remainder is a coordinate
+        // axis.
         let (s, t) = ((r + 1) % 3, (r + 2) % 3);
         let first = Step::Axis { axis: r, sin: m.0[t][c], cos: m.0[s][c] };
         let mut rest = first.inverse().matrix() * *m;
@@ -215,13 +222,14 @@ fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
         rest.0[s][(c + 2) % 3] = g.zero();
         Some([vec![first], axis_steps(&rest)?].concat())
     })?;
-    // What was not a rotation but for rounding stays as it was given.
+    // A matrix that is not a rotation within rounding error is not factored.
     let product = steps.iter().fold(Mat3::identity(g), |p, step| p * step.matrix());
     let error = (product - *m).values()?.as_flattened().iter().fold(0.0_f64, |e, x| e.max(x.abs()));
     (error <= 8.0 * f64::EPSILON).then_some(steps)
 }
 
-/// A constant rotation with a coordinate axis for a column.
+/// Factors a constant rotation matrix, one of whose columns is a coordinate axis, into a rotation by right
+/// angles and a rotation about that axis. `None` for other matrices.
 fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
     let g = m.0[0][0].graph();
     let values = m.values()?;
@@ -234,7 +242,7 @@ fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
     let i = (b + 1) % 3;
     let x = column(i);
     let r = (0..3).max_by(|p, q| x[*p].abs().total_cmp(&x[*q].abs()))?;
-    // The nearest rotation by right angles.
+    // Nearest rotation by right angles.
     let along = m.column(b);
     let mut near = Vec3::zero(g);
     near.0[r] = g.num(x[r].signum());
@@ -255,8 +263,9 @@ fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
 }
 
 impl<'g> Rotation<'g> {
-    /// Angular velocity in the child's axes, given the rate of every expression: `Rᵀ Ṙ = [ω]×`. Step by step, so that
-    /// a rotation about an axis gives the rate of its angle and not that times `sin² + cos²`.
+    /// Returns the angular velocity in the child's axes, `[ω]× = Rᵀ Ṙ`, given the rate of every expression.
+    /// Computed step by step, so that a rotation about an axis gives the rate of its angle without a factor
+    /// `sin² + cos²`.
     pub fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
         self.steps.iter().fold(Vec3::zero(self.graph), |carried, step| {
             step.inverse().apply(carried) + step.angular_velocity(rate)
@@ -265,7 +274,7 @@ impl<'g> Rotation<'g> {
 }
 
 impl<'g> Step<'g> {
-    /// The axis; 3 for a matrix.
+    /// Returns the coordinate axis of the rotation, or 3 for a matrix.
     fn kind(&self) -> usize {
         match self {
             Step::Axis { axis, .. } => *axis,
@@ -273,7 +282,7 @@ impl<'g> Step<'g> {
         }
     }
 
-    /// Steps of one kind as the lanes of one.
+    /// Combines steps of one kind, one per lane, into a step with lanes.
     fn side_by_side(
         lanes: &[Step<'g>],
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
@@ -312,7 +321,7 @@ impl<'g> Step<'g> {
         }
     }
 
-    /// The matrix, if every entry is a number.
+    /// Returns the matrix if every entry is constant.
     fn constant(&self) -> Option<Mat3<'g>> {
         let matrix = self.matrix();
         matrix.values().map(|_| matrix)
@@ -380,7 +389,8 @@ impl<'g> Step<'g> {
             }
             Step::Axis { axis: k, sin, cos } => {
                 let (i, j, k) = ((k + 1) % 3, (k + 2) % 3, *k);
-                // As for any matrix; twice the sine serves several tensors, twice a multiple is another multiple.
+                // Same formula as in `apply_mat`. Twice the sine can be shared between several tensors, but
+                // if `xy` is a multiple, doubling its coefficient costs nothing.
                 let xy = x.at(i, j);
                 let twice = if xy.is_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
                 let u = *cos * (x.at(i, i) - x.at(j, j)) - twice;
@@ -401,7 +411,7 @@ impl<'g> Step<'g> {
     }
 }
 
-/// The angle that an expression is the sine of.
+/// Returns the angle of an expression that is a sine, or the negative of one.
 fn angle_of(sin: Expr<'_>) -> Option<Expr<'_>> {
     let graph = sin.graph();
     match sin.node() {

@@ -1,12 +1,13 @@
-//! Numbers for symbols, by which is seen what holds for all values.
+//! Random values of symbols, to test identities numerically.
 
 use super::eval::eval_one;
 use super::{Expr, Symbol};
 
-/// How far from its value an expression may be.
+/// Tolerance of the comparison.
 const TOLERANCE: f64 = 1e-9;
 
-/// Values for the parameters that are unlikely to meet a special case, one set for every `seed`.
+/// Returns a reproducible value in [0.5, 1.5) for a symbol, one set of values for each `seed`. Special cases
+/// are unlikely.
 pub fn sample(symbol: Symbol, seed: u64) -> f64 {
     let mut h = (u64::from(symbol.0) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
         ^ (seed + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
@@ -16,7 +17,7 @@ pub fn sample(symbol: Symbol, seed: u64) -> f64 {
     0.5 + (h >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// True if an expression has a value at all samples (within the tolerance).
+/// Returns true if an expression equals `value`, within the tolerance, at three samples.
 pub fn always(e: Expr<'_>, value: f64) -> bool {
     (0..3).all(|seed| (eval_one(e, &|s| sample(s, seed)) - value).abs() <= TOLERANCE)
 }
