@@ -1,9 +1,9 @@
-//! Associated constants.
+//! Associated constants of generated types.
 
 use super::facts::{Facts, Need};
 use crate::syntax::Word;
 
-/// Constants of mechanisms, with what each needs.
+/// Constants of mechanisms, with the needs of each.
 const CONSTANTS: [(&str, &[Need]); 28] = [
     ("BASE_PARAMETERS", &[Need::Inertia, Need::Asks(Word::Regressor)]),
     ("BODIES", &[Need::Inertia, Need::Asks(Word::Regressor)]),
@@ -35,12 +35,12 @@ const CONSTANTS: [(&str, &[Need]); 28] = [
     ("VELOCITIES", &[]),
 ];
 
-/// True for the name of a constant that mechanisms may have.
+/// Returns true for the name of a constant that a mechanism may have.
 pub fn is_constant(name: &str) -> bool {
     CONSTANTS.iter().any(|(known, _)| *known == name)
 }
 
-/// The constants that a mechanism with these facts lacks because of this.
+/// Returns the constants that a mechanism with these facts lacks because of a need.
 pub fn absent_constants(need: Need, facts: &Facts) -> Vec<&'static str> {
     let first = |needs: &[Need]| needs.iter().copied().find(|need| !facts.meet(*need));
     CONSTANTS.iter().filter(|(_, needs)| first(needs) == Some(need)).map(|(name, _)| *name).collect()

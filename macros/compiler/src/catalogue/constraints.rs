@@ -1,4 +1,4 @@
-//! What constraints say of a state, and the eliminations that constrained dynamics is made of.
+//! Residuals, rates and Jacobians of the constraints, and the eliminations for constrained dynamics.
 
 use super::facts::{ConstraintFacts, Facts, Need};
 use super::row::{Declaration, Id, Row};
@@ -7,7 +7,7 @@ use super::shape::{Argument, Record, Shape};
 
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
-/// Functions of mechanisms with constraints that follow from equations.
+/// Functions of mechanisms with constraints that are derived from equations.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q],
@@ -70,14 +70,15 @@ fn bias(f: &Facts) -> Argument {
     Argument::Given("bias", f.nv, of(f).all)
 }
 
-/// Signs of the normal forces of contacts that slip.
+/// Returns the argument with the signs of the normal forces of sliding contacts, empty without such
+/// constraints.
 fn sides(f: &Facts) -> Vec<Argument> {
     let ConstraintFacts { all, slipping, .. } = of(f);
     if slipping > 0 { vec![Argument::Given("sides", f.nv + all, slipping)] } else { Vec::new() }
 }
 
-/// Accelerations and multipliers with what tells whether they can be trusted; of an overdetermined mechanism what they follow
-/// from.
+/// Returns the shape of the constrained dynamics: accelerations and multipliers with measures of their
+/// reliability, or for redundant constraints the quantities from which the runtime solves for them.
 fn solution(f: &Facts) -> Shape {
     let (nv, nc) = (f.nv, of(f).all);
     Shape::Record(match of(f).overdetermined {

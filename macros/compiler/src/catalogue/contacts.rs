@@ -1,4 +1,4 @@
-//! Distances of surfaces that may touch, and how fast they approach and slip.
+//! Gap functions of contacts, and their normal and slip velocities.
 
 use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};
@@ -72,7 +72,7 @@ pub const ROWS: &[Row] = &[
     .alone(),
 ];
 
-/// The forces at all contacts, which are given.
+/// Returns the argument with the forces of all contacts.
 pub(super) fn contact_forces(f: &Facts) -> Argument {
     Argument::Given(CONTACT_FORCES, 0, f.contacts.rates)
 }

@@ -1,4 +1,4 @@
-//! The functions of the word `derivatives`.
+//! Functions of the option `derivatives`.
 
 use super::facts::{Facts, Need};
 use super::row::{Declaration, Id, Row};

@@ -8,7 +8,7 @@ use crate::syntax::Word;
 
 const INERTIA: &[Need] = &[Need::Inertia];
 
-/// Equations of motion, energies and powers, and the mechanism as one body.
+/// Equations of motion, energies and powers, and total mass, centre of mass and momentum.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::Neutral, "neutral", &[], |f| Declaration {
         timeless: true,

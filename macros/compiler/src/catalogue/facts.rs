@@ -1,53 +1,54 @@
-//! What signatures depend on.
+//! Facts about a mechanism on which its generated functions and their signatures depend.
 
 use crate::mechanism::Model;
 use crate::syntax::{Requests, Word};
 
-/// What a function needs of a mechanism.
+/// A requirement of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     /// Masses and inertias.
     Inertia,
     /// Loops, rolling or other constraints.
     Constraints,
-    /// None of those.
+    /// No constraints.
     NoConstraints,
-    /// A word of the attribute.
+    /// An option of the `#[mechanism]` attribute.
     Asks(Word),
-    /// A mass matrix that can be inverted: constraints determine no coordinates without inertia.
+    /// An invertible mass matrix: no constraint determines a coordinate without inertia.
     RegularMass,
-    /// Contacts that slip.
+    /// Constraints of sliding contacts with friction.
     Slipping,
-    /// None of those.
+    /// No constraints of sliding contacts.
     NoSlipping,
-    /// Contacts that open and close.
+    /// Unilateral contacts.
     Contacts,
     /// Parameters.
     Parameters,
-    /// Figures of a file that are parameters.
+    /// Inertial parameters of a file that are parameters of the struct.
     FileParameters,
-    /// Mass properties of links among them.
+    /// Mass properties of links of a file that are parameters of the struct.
     FileInertials,
     /// Declared equilibria.
     Equilibria,
     /// Limits of coordinates.
     Limits,
-    /// Ground whose height is an expression.
+    /// Ground with an expression for its height.
     Terrain,
-    /// Derivatives of forward dynamics by calls of other functions.
+    /// Derivatives of forward dynamics that call other generated functions.
     Calls,
-    /// Passive forces that the other functions call.
+    /// Passive forces in a function of their own that other functions call.
     PassiveCalls,
-    /// Declared speeds.
+    /// Declared generalized speeds.
     Speeds,
-    /// None of those.
+    /// No declared generalized speeds.
     NoSpeeds,
-    /// Contacts of a tree, few enough for a function of how the mechanism answers to them.
+    /// Unilateral contacts of a mechanism without constraints, few enough for a generated function of their
+    /// Delassus matrix.
     FewContacts,
 }
 
 impl Need {
-    /// All of them, those first that come before others as a reason.
+    /// Returns all needs, in the order in which they are reported as reasons.
     pub fn all() -> impl Iterator<Item = Need> {
         let rest = [
             Need::NoConstraints,
@@ -71,7 +72,8 @@ impl Need {
         [Need::Inertia].into_iter().chain(Word::ALL.map(Need::Asks)).chain(rest)
     }
 
-    /// The trait of the runtime that says so. None for what only others call.
+    /// Returns the name of the runtime's trait that expresses the need in error messages, `None` for needs of
+    /// hidden functions.
     pub fn reason(self) -> Option<&'static str> {
         Some(match self {
             Need::Inertia => "HasInertia",
@@ -95,90 +97,92 @@ impl Need {
     }
 }
 
-/// The most rates of contacts for which all that impulses do is written out: what is written grows with their square.
+/// Maximum number of contact velocities for which the Delassus matrix is generated: the length of its code is
+/// proportional to their square.
 const FEW_CONTACT_RATES: usize = 36;
 
-/// What signatures of a mechanism depend on.
+/// Facts about a mechanism on which the signatures of its functions depend.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
-    /// `NQ`.
+    /// Number of configuration coordinates, `NQ`.
     pub nq: usize,
-    /// `NV`.
+    /// Number of velocities, `NV`.
     pub nv: usize,
-    /// `NU`.
+    /// Number of inputs, `NU`.
     pub nu: usize,
-    /// Functions take time first.
+    /// True if functions take time as their first argument.
     pub time: bool,
-    /// Inputs act by way of the velocity.
+    /// True if inputs act through the velocity.
     pub velocity_inputs: bool,
-    /// Forces depend on accelerations.
+    /// True if forces depend on accelerations.
     pub acceleration_forces: bool,
-    /// There are no dynamics.
+    /// True if the mechanism has no dynamics.
     pub kinematic: bool,
-    /// Speeds were declared.
+    /// True if generalized speeds are declared.
     pub speeds: bool,
-    /// The words of the attribute.
+    /// Options of the `#[mechanism]` attribute.
     pub requests: Requests,
-    /// Its constraints, if there are any.
+    /// Facts about the constraints, if any.
     pub constraints: Option<ConstraintFacts>,
-    /// The derivatives of forward dynamics call other functions.
+    /// True if the derivatives of forward dynamics call other functions.
     pub calls: bool,
-    /// The linear system is made of them.
+    /// True if the linear system is assembled from the derivatives of forward dynamics.
     pub calls_linear: bool,
-    /// Where the passive forces are long enough for a function of their own: how many derivatives of theirs there are.
+    /// Number of derivatives of the passive forces, if these are long enough for a function of their own.
     pub passive: Option<usize>,
-    /// How many bodies have standard parameters.
+    /// Number of bodies with standard inertial parameters.
     pub bodies: usize,
-    /// How many base parameters there are.
+    /// Number of base parameters.
     pub base: usize,
-    /// How many equilibria are declared.
+    /// Number of declared equilibria.
     pub equilibria: usize,
-    /// How many coordinates are cyclic, of those that the word `routh` eliminates.
+    /// Number of cyclic coordinates that the option `routh` eliminates.
     pub cyclic: usize,
-    /// How many quantities are conserved.
+    /// Number of conserved quantities.
     pub conserved: usize,
-    /// The contacts that open and close.
+    /// Numbers of unilateral contacts and contact velocities.
     pub contacts: ContactSizes,
-    /// How many bounds limits have.
+    /// Number of bounds of the limits.
     pub limits: usize,
-    /// How many numbers the drawing has.
+    /// Number of values in the drawing.
     pub drawing: usize,
-    /// How many terrains the drawing has.
+    /// Number of terrains in the drawing.
     pub heights: usize,
-    /// How many figures follow from parameters and fulfil conditions.
+    /// Number of values derived from parameters that must satisfy conditions.
     pub figures: usize,
-    /// How many parameters the struct has.
+    /// Number of parameters of the struct.
     pub parameters: usize,
-    /// Row and column of the entries of the mass matrix in its lower triangle that are not always zero, column by column.
+    /// Row and column of the structurally nonzero entries in the lower triangle of the mass matrix, column by
+    /// column.
     pub entries: Vec<(usize, usize)>,
 }
 
-/// The contacts that open and close.
+/// Numbers of unilateral contacts and contact velocities.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ContactSizes {
-    /// `NK`.
+    /// Number of contacts, `NK`.
     pub count: usize,
-    /// `NR`.
+    /// Number of contact velocities, `NR`.
     pub rates: usize,
 }
 
-/// What they depend on where there are constraints.
+/// Facts about the constraints of a mechanism.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConstraintFacts {
-    /// `NC`.
+    /// Number of constraints, `NC`.
     pub all: usize,
-    /// `NH`: how many are on configurations.
+    /// Number of holonomic constraints, `NH`.
     pub holonomic: usize,
-    /// How many belong to contacts that slip.
+    /// Number of constraints of sliding contacts with friction.
     pub slipping: usize,
-    /// Some follow from others everywhere.
+    /// True if some constraints are redundant in every configuration.
     pub overdetermined: bool,
-    /// Some determine coordinates without inertia.
+    /// True if some constraints determine coordinates without inertia.
     pub determining: bool,
 }
 
 impl Facts {
-    /// What a model says; counts that only the equations tell are left at zero.
+    /// Returns the facts that follow from a model. Counts that only follow from the equations are zero.
     pub fn of(model: &Model<'_>, requests: Requests) -> Facts {
         let constraints = (!model.constraints.is_empty()).then(|| ConstraintFacts {
             all: model.constraints.len(),
@@ -209,7 +213,7 @@ impl Facts {
         }
     }
 
-    /// True if the mechanism has what is needed.
+    /// Returns true if the mechanism meets a need.
     pub fn meet(&self, need: Need) -> bool {
         match need {
             Need::Inertia => !self.kinematic,

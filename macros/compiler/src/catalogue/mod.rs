@@ -1,7 +1,8 @@
-//! Everything that can be generated for a mechanism, a row for each function: its name, arguments, result and documentation,
-//! what it needs, and whether it belongs to the trait. What is generated, what is missing and why, which names are taken
-//! and what stands in for the functions of a mechanism with a mistake all follow from these rows. `derive` has the equations
-//! of each by its [`Id`], without an arm for the rest: a row without equations does not compile.
+//! Catalogue of everything that can be generated for a mechanism, with one row per function: name, arguments,
+//! result, documentation, requirements, and whether it belongs to the trait. The rows determine which
+//! functions are generated, which are absent and why, which names are reserved, and the placeholders that are
+//! generated for a mechanism with an error. `derive` has the equations of each row by its [`Id`], without a
+//! default arm: a row without equations does not compile.
 
 mod constants;
 mod constraints;
@@ -22,7 +23,8 @@ pub use outputs::{BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, outpu
 pub use row::{Declaration, Declared, Id, Made, Row};
 pub use shape::{Argument, CONTACT_FORCES, Called, InverseForm, Record, RecordField, Shape, Structure};
 
-/// The rows in the order in which functions are generated: outputs come between both lists.
+/// The rows, in the order in which functions are generated. The functions of the outputs are generated after
+/// the first [`BEFORE_OUTPUTS`] tables.
 const TABLES: [&[Row]; 13] = [
     dynamics::ROWS,
     speeds::ROWS,
@@ -39,10 +41,10 @@ const TABLES: [&[Row]; 13] = [
     written::ROWS,
 ];
 
-/// How many of the tables stand before the outputs.
+/// Number of tables whose functions are generated before the outputs.
 const BEFORE_OUTPUTS: usize = 5;
 
-/// All rows.
+/// Returns all rows.
 pub fn rows() -> impl Iterator<Item = &'static Row> {
     TABLES.into_iter().flatten()
 }
@@ -56,25 +58,26 @@ fn declared(tables: &[&'static [Row]], facts: &Facts) -> Vec<Declared> {
     derived.collect()
 }
 
-/// The functions of a mechanism whose bodies follow from equations: those that stand before its outputs.
+/// Returns the functions of a mechanism that are derived from equations and generated before its outputs.
 pub fn before_outputs(facts: &Facts) -> Vec<Declared> {
     declared(&TABLES[..BEFORE_OUTPUTS], facts)
 }
 
-/// The functions of a mechanism whose bodies follow from equations: those that stand after its outputs.
+/// Returns the functions of a mechanism that are derived from equations and generated after its outputs.
 pub fn after_outputs(facts: &Facts) -> Vec<Declared> {
     declared(&TABLES[BEFORE_OUTPUTS..], facts)
 }
 
-/// The functions of the runtime's trait of mechanisms that depend on the state, with their arguments there and their results.
+/// Returns the state-dependent functions of the runtime's mechanism trait, with their arguments in the trait.
 pub fn of_trait() -> impl Iterator<Item = (&'static Row, &'static [Argument])> {
     dynamics::ROWS.iter().filter_map(|row| Some((row, row.in_trait?)))
 }
 
-/// What a mechanism with these facts lacks, by what it would need for it, in the order of the needs.
+/// Returns the functions that a mechanism with these facts lacks, grouped by the first need that is not met,
+/// in the order of the needs.
 pub fn absent(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
     let of = |need: Need| {
-        // Another row may have the function after all.
+        // Another row of the same name may be present.
         let is_there = |row: &Row| rows().any(|r| r.name == row.name && r.lacks(facts).is_none());
         let all = rows().filter(|row| !row.is_hidden() && row.lacks(facts) == Some(need) && !is_there(row));
         let mut found: Vec<&'static Row> = Vec::new();
@@ -88,13 +91,13 @@ pub fn absent(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
     Need::all().map(of).collect()
 }
 
-/// The functions that are written for several states, too.
+/// Returns the names of the functions with handwritten bodies that also have a batched variant.
 pub fn written_in_lanes(facts: &Facts) -> impl Iterator<Item = &'static str> {
     let written = rows().filter(|row| row.batched && matches!(row.made, Made::Written));
     written.filter(|row| row.lacks(facts).is_none()).map(|row| row.name)
 }
 
-/// True if a mechanism with these facts has a function of this name beside its outputs.
+/// Returns true if a mechanism with these facts has a function of this name that is not an output.
 pub fn has(name: &str, facts: &Facts) -> bool {
     let mut present = rows().filter(|row| row.lacks(facts).is_none());
     let one = name.strip_suffix("_lanes").filter(|_| facts.requests.batch);

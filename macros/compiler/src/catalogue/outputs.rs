@@ -7,21 +7,21 @@ use super::shape::Argument::{A, Q, T, U, V};
 use super::shape::{Argument, Shape};
 use crate::mechanism::Uses;
 
-/// What the hidden function of a reaction's output is called, after which the output is.
+/// Prefix of the hidden function of an output that contains reactions.
 pub const REACTION: &str = "__reaction_";
-/// Before the name of an output that names forces at contacts: the function of these.
+/// Prefix of the hidden function of an output that contains contact forces.
 pub const TOUCHED: &str = "__touched_";
 
-/// What stands after an output's name in that of its Jacobian.
+/// Suffix of the Jacobian of an output.
 pub const JACOBIAN: &str = "_jacobian";
 
-/// What stands after an output's name in that of its derivatives.
+/// Suffix of the derivatives of an output.
 pub const DERIVATIVES: &str = "_derivatives";
 
-/// What stands after an output's name in that of its derivatives by the parameters.
+/// Suffix of the parameter derivatives of an output.
 pub const BY_PARAMETERS: &str = "_by_parameters";
 
-/// Entries of a matrix.
+/// Number of entries of a rotation matrix.
 const MATRIX: usize = 9;
 
 fn of_size(size: usize) -> Shape {
@@ -44,8 +44,9 @@ fn declared(
     Declared { id, name, docs, arguments, shape }
 }
 
-/// The function of an output, its Jacobian unless it depends on accelerations, and the derivatives that are asked for. Matrices
-/// have the function alone: what changes with them is measured by products with vectors.
+/// Returns the functions of an output: its value, its Jacobian unless it depends on accelerations, and the
+/// requested derivatives. A matrix output has its value alone, since the derivatives of products with vectors
+/// serve the same purpose.
 pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     let mut arguments = vec![Q];
     arguments.extend((uses.velocities || uses.accelerations).then_some(V));
@@ -93,8 +94,8 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     functions
 }
 
-/// The hidden function of an output that names reactions: of the motion, its accelerations and its multipliers, and of a free-body
-/// diagram the forces at contacts.
+/// Returns the hidden function of an output that contains reactions. It takes the state, accelerations and
+/// multipliers of the motion, and for a free-body diagram also the contact forces.
 pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V, A];
     arguments.extend((f.nu > 0).then_some(U));
@@ -104,7 +105,8 @@ pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declare
     declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
 }
 
-/// The hidden function of an output that names forces at contacts: of the state, the inputs and the forces at all contacts.
+/// Returns the hidden function of an output that contains contact forces. It takes the state, the inputs and
+/// the forces of all contacts.
 pub fn touched(name: &str, size: usize, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));

@@ -1,4 +1,5 @@
-//! The functions of the words `centroidal`, `hamilton`, `conserved`, `regressor`, `sensitivities` and `packed`.
+//! Functions of the options `centroidal`, `hamilton`, `routh`, `conserved`, `regressor`, `sensitivities` and
+//! `packed`.
 
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};
@@ -6,7 +7,7 @@ use super::shape::Argument::{A, Q, Tau, V};
 use super::shape::{Argument, Shape};
 use crate::syntax::Word;
 
-/// How many numbers the mass properties of a body are.
+/// Number of standard inertial parameters of a body.
 const STANDARD: usize = 10;
 
 const CENTROIDAL_ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Centroidal)];
@@ -16,7 +17,7 @@ const CONSERVED: &[Need] = &[Need::Inertia, Need::Asks(Word::Conserved)];
 const REGRESSOR: &[Need] = &[Need::Inertia, Need::Asks(Word::Regressor)];
 const PACKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Packed)];
 
-/// The functions of the word `centroidal`.
+/// Functions of the option `centroidal`.
 pub const CENTROIDAL: &[Row] = &[
     Row::derived(Id::CentroidalMomentumMatrix, "centroidal_momentum_matrix", CENTROIDAL_ASKED, |f| {
         Declaration {
@@ -39,7 +40,7 @@ pub const CENTROIDAL: &[Row] = &[
     }),
 ];
 
-/// The functions of the words `hamilton` and `conserved`.
+/// Functions of the options `hamilton`, `routh` and `conserved`.
 pub const CANONICAL: &[Row] = &[
     Row::derived(Id::Hamiltonian, "hamiltonian", HAMILTON, |f| Declaration {
         arguments: vec![Q, Argument::Momenta(f.nv)],
@@ -105,7 +106,7 @@ pub const CANONICAL: &[Row] = &[
     }),
 ];
 
-/// The functions of the words `regressor`, `sensitivities` and `packed`, and what is checked of parameters.
+/// Functions of the options `regressor`, `sensitivities` and `packed`, and the checks of parameters.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],

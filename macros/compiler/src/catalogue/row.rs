@@ -3,7 +3,7 @@
 use super::facts::{Facts, Need};
 use super::shape::{Argument, Shape};
 
-/// Names every function whose body follows from equations.
+/// Identifiers of all functions that are derived from equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the rows say what each is")]
 pub enum Id {
@@ -89,66 +89,68 @@ pub enum Id {
     Turning,
     PassiveForces,
     PassiveDerivatives,
-    /// A step from a link or frame to the next, or the numbers of a prepared mechanism: private parts of what is written.
+    /// A private helper of handwritten functions: a step from a link or frame to the next, or the constants
+    /// of a prepared mechanism.
     Part,
 }
 
-/// How a function comes about.
+/// Origin of the body of a function.
 #[derive(Clone, Copy)]
 pub enum Made {
-    /// From equations.
+    /// Derived from equations.
     Derived(Id),
-    /// By a body that calls others and the runtime, written as it is.
+    /// Handwritten: calls other functions and the runtime.
     Written,
 }
 
 /// A function that can be generated.
 #[derive(Clone, Copy)]
 pub struct Row {
-    /// Its name.
+    /// Name of the function.
     pub name: &'static str,
-    /// How it comes about.
+    /// Origin of the body.
     pub made: Made,
-    /// What it needs; the first of these that is missing is the reason why it is.
+    /// Requirements. The first one that is not met is reported as the reason for the absence of the function.
     pub needs: &'static [Need],
-    /// What it is for a mechanism with these facts.
+    /// Returns arguments, result and documentation for a mechanism with these facts.
     pub declare: fn(&Facts) -> Declaration,
-    /// Its arguments in the runtime's trait of mechanisms, if it belongs to it: the inherent function takes what it needs.
+    /// Arguments in the runtime's mechanism trait, if the function belongs to it. The inherent function takes
+    /// only the arguments that it needs.
     pub in_trait: Option<&'static [Argument]>,
-    /// The word `batch` has it for several states.
+    /// True if the option `batch` adds a variant for several states.
     pub batched: bool,
 }
 
 /// Arguments, result and documentation of a function.
 #[derive(Default)]
 pub struct Declaration {
-    /// Arguments after time, which functions of a mechanism that is driven in time take first.
+    /// Arguments. For mechanisms that are driven in time, time is prepended.
     pub arguments: Vec<Argument>,
-    /// It depends on the parameters alone: there is no time among its arguments.
+    /// True if the function depends on the parameters alone, and never takes time.
     pub timeless: bool,
-    /// Result.
+    /// Shape of the result.
     pub shape: Shape,
-    /// Documentation, a paragraph each; none for a hidden function.
+    /// Documentation, one entry per paragraph. Empty for a hidden function.
     pub docs: Vec<&'static str>,
 }
 
-/// A function with its signature.
+/// A function of a mechanism with its signature.
 #[derive(Clone, Debug)]
 pub struct Declared {
-    /// Which it is.
+    /// Identifier of the function.
     pub id: Id,
-    /// Its name.
+    /// Name of the function.
     pub name: String,
-    /// Documentation, a paragraph each; none for a hidden function.
+    /// Documentation, one entry per paragraph. Empty for a hidden function.
     pub docs: Vec<String>,
     /// Arguments after `&self`.
     pub arguments: Vec<Argument>,
-    /// Result.
+    /// Shape of the result.
     pub shape: Shape,
 }
 
 impl Row {
-    /// A function of equations that several states have as well.
+    /// Creates a row of a function that is derived from equations and has a batched variant.
     pub const fn derived(
         id: Id,
         name: &'static str,
@@ -158,38 +160,38 @@ impl Row {
         Row { name, made: Made::Derived(id), needs, declare, in_trait: None, batched: true }
     }
 
-    /// A function that is written as it is.
+    /// Creates a row of a handwritten function.
     pub const fn written(name: &'static str, needs: &'static [Need]) -> Row {
         let declare = |_: &Facts| Declaration::default();
         Row { name, made: Made::Written, needs, declare, in_trait: None, batched: false }
     }
 
-    /// One of the runtime's trait of mechanisms, with these arguments there.
+    /// Adds the function to the runtime's mechanism trait, with these arguments there.
     pub const fn of_trait(self, arguments: &'static [Argument]) -> Row {
         Row { in_trait: Some(arguments), ..self }
     }
 
-    /// One that depends on no state, or only serves others.
+    /// Removes the batched variant: the function depends on no state, or is a helper.
     pub const fn alone(self) -> Row {
         Row { batched: false, ..self }
     }
 
-    /// One for several states, too.
+    /// Adds a batched variant.
     pub const fn and_batched(self) -> Row {
         Row { batched: true, ..self }
     }
 
-    /// What is missing for it first; `None` if it is there.
+    /// Returns the first need that a mechanism does not meet, `None` if it has the function.
     pub fn lacks(&self, facts: &Facts) -> Option<Need> {
         self.needs.iter().copied().find(|need| !facts.meet(*need))
     }
 
-    /// True for a function that only others call.
+    /// Returns true for a function that only generated code calls.
     pub fn is_hidden(&self) -> bool {
         self.name.starts_with("__")
     }
 
-    /// The function for a mechanism with these facts.
+    /// Returns the function for a mechanism with these facts.
     pub fn declared(&self, id: Id, facts: &Facts) -> Declared {
         let Declaration { arguments, timeless, shape, docs } = (self.declare)(facts);
         let time = (facts.time && !timeless).then_some(Argument::T);

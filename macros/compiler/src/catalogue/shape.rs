@@ -1,14 +1,14 @@
-//! Arguments and results.
+//! Arguments and results of generated functions.
 
 use crate::mechanism::Quantity;
 
-/// The argument that has the forces at all contacts.
+/// Name of the argument with the forces of all contacts.
 pub const CONTACT_FORCES: &str = "forces";
 
 /// An argument of a generated function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
-    /// Time `t`.
+    /// Time `t`, s.
     T,
     /// Configuration `q`.
     Q,
@@ -20,34 +20,34 @@ pub enum Argument {
     Tau,
     /// Inputs `u`.
     U,
-    /// Given numbers: name of the argument, index of the first, how many.
+    /// A vector of program inputs: name of the argument, index of the first input, and their number.
     Given(&'static str, usize, usize),
-    /// Parameters of mass properties, so many given numbers in a vector.
+    /// A vector of standard inertial parameters, with its length.
     Standard(usize),
-    /// A square matrix of so many rows that a result goes into.
+    /// A square matrix to which the result is written: name of the argument and number of rows.
     Into(&'static str, usize),
-    /// Factors `lambda`, one for each velocity, by which forces or accelerations are multiplied.
+    /// Factors `lambda`, one for each velocity, that forces or accelerations are multiplied by.
     Factors(usize),
     /// Generalized momenta `p`, one for each velocity.
     Momenta(usize),
-    /// The results of another function, which a body calls: in no signature.
+    /// Results of another function that the body calls first. Does not occur in the signature.
     Called(Called),
 }
 
-/// A function of configuration and velocity whose results bodies of others begin with.
+/// A function of configuration and velocity that other functions call first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Called {
-    /// The one for passive forces.
+    /// The function for passive forces.
     PassiveForces,
-    /// The one for their derivatives.
+    /// The function for the derivatives of passive forces.
     PassiveDerivatives,
 }
 
 impl Called {
-    /// All of them.
+    /// All such functions.
     pub const ALL: [Called; 2] = [Called::PassiveForces, Called::PassiveDerivatives];
 
-    /// The function's name.
+    /// Returns the name of the function.
     pub const fn function(self) -> &'static str {
         match self {
             Called::PassiveForces => "__passive_forces",
@@ -57,7 +57,7 @@ impl Called {
 }
 
 impl Argument {
-    /// The name in the signature.
+    /// Returns the name of the argument in the signature.
     pub fn name(self) -> &'static str {
         match self {
             Argument::T => "t",
@@ -75,7 +75,8 @@ impl Argument {
         }
     }
 
-    /// The index in it of what a symbol stands for.
+    /// Returns the index in the argument of the quantity of a symbol, `None` if the argument does not contain
+    /// it.
     pub fn index(self, quantity: Quantity) -> Option<usize> {
         match (self, quantity) {
             (Argument::Q, Quantity::Configuration(k))
@@ -95,7 +96,7 @@ impl Argument {
     }
 }
 
-/// The result of a generated function, and how it is put together.
+/// Result of a generated function, and how it is assembled from the outputs of its program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shape {
     /// A number.
@@ -103,51 +104,57 @@ pub enum Shape {
     Scalar,
     /// A column vector.
     Vector(usize),
-    /// A square matrix; the outputs are its columns one after another.
+    /// A square matrix. The outputs are its columns one after another.
     Square(usize),
-    /// A matrix; the outputs are its columns one after another.
+    /// A matrix. The outputs are its columns one after another.
     Matrix(usize, usize),
     /// Two square matrices.
     Pair(usize),
-    /// Second derivatives by configuration twice, configuration and velocity, velocity twice, and configuration and acceleration:
-    /// four square matrices.
+    /// Four square matrices of second derivatives: by configuration twice, by configuration and velocity, by
+    /// velocity twice, and by configuration and acceleration.
     Hessian(usize),
-    /// Second derivatives of forces of inputs by configuration twice, configuration and velocity, velocity twice, configuration
-    /// and input, velocity and input, input twice.
+    /// Second derivatives of the forces of inputs: by configuration twice, by configuration and velocity, by
+    /// velocity twice, by configuration and input, by velocity and input, and by input twice.
     InputHessian(usize, usize),
-    /// Derivatives of an output of so many rows by configuration, velocity, acceleration and input.
+    /// Derivatives of an output by configuration, velocity, acceleration and input. The sizes are the numbers
+    /// of output rows, velocities and inputs.
     Jacobians(usize, usize, usize),
-    /// `M⁻¹`. The outputs are what [`InverseForm`] says.
+    /// The inverse mass matrix `M⁻¹`. [`InverseForm`] describes the outputs.
     Inverse(usize),
-    /// Derivatives of forward dynamics; the outputs are those of the forces by `q` and `v`, or what is known of the derivatives
-    /// themselves, those of `Inverse`, and the accelerations, which are returned where the derivatives go into given matrices.
+    /// Derivatives of forward dynamics. The outputs are the derivatives of the forces by `q` and `v`, or
+    /// those columns of the derivatives of the accelerations that are already computed, followed by the
+    /// outputs of `Inverse` and the accelerations. The latter are returned if the derivatives are written to
+    /// matrix arguments.
     Forward(usize),
-    /// A linear system in `q` and `v` with inputs; after derivatives of forces and the whole inverse come the derivatives by the
-    /// inputs, and what turns displacements.
+    /// A linear system in `q` and `v` with inputs. The outputs are derivatives of forces, the full inverse,
+    /// the derivatives by the inputs, and the matrix `T` in the rate `ξ̇ = δv + T ξ` of displacements `ξ`.
     Linear(usize, usize),
-    /// Accelerations, with `M⁻¹` into a given matrix; the outputs are the accelerations, or `M` times them
-    /// where the inverse is divided, and those of `Inverse`.
+    /// Accelerations, with `M⁻¹` written to a matrix argument. The outputs are the accelerations, or `M`
+    /// times the accelerations if the inverse is factored, followed by the outputs of `Inverse`.
     Accelerated(usize),
-    /// Derivatives of forward dynamics by calls of other functions; the outputs are the columns that are known.
+    /// Derivatives of forward dynamics that call other functions. The outputs are the columns that are
+    /// already computed.
     CalledForward(usize),
-    /// A linear system from the derivatives of forward dynamics; the outputs are the forces of the inputs, their
-    /// derivatives by `q`, `v` and the inputs, and what turns displacements.
+    /// A linear system assembled from the derivatives of forward dynamics. The outputs are the forces of the
+    /// inputs, their derivatives by `q`, `v` and the inputs, and the matrix `T` in the rate `ξ̇ = δv + T ξ`
+    /// of displacements `ξ`.
     CalledLinear(usize, usize),
     /// A plain array.
     Array(usize),
     /// A struct of the runtime.
     Record(Record),
-    /// A square matrix of so many rows that is given: the outputs go to both sides of its diagonal.
+    /// A symmetric matrix written to a matrix argument, with its number of rows. Each output is written to
+    /// both sides of the diagonal.
     Symmetric(usize),
 }
 
 impl Shape {
-    /// True for what is composed of other functions' results.
+    /// Returns true for a result that is assembled from results of other functions.
     pub fn calls(self) -> bool {
         matches!(self, Shape::CalledForward(_) | Shape::CalledLinear(..))
     }
 
-    /// How many outputs a program must have for this result.
+    /// Returns the number of outputs of a program for this result.
     pub fn outputs(self, structure: &Structure) -> usize {
         let parts = |n: usize| n * structure.inverse.width();
         match self {
@@ -171,43 +178,47 @@ impl Shape {
     }
 }
 
-/// What generated functions hand to the runtime: a struct of the runtime, whose fields are the outputs in their order.
+/// A struct of the runtime that a generated function returns. The outputs are its fields in order. The sizes
+/// in each variant are given in its description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Record {
-    /// What elimination finds, of so many velocities and constraints.
+    /// Result of the elimination of constraints. Sizes: velocities, constraints.
     Elimination(usize, usize),
-    /// What accelerations and multipliers follow from where constraints are redundant, of so many velocities and constraints.
+    /// Quantities from which the runtime solves for accelerations and multipliers of redundant constraints.
+    /// Sizes: velocities, constraints.
     Responses(usize, usize),
-    /// Derivatives at given accelerations and multipliers, of so many velocities and constraints.
+    /// Derivatives at given accelerations and multipliers. Sizes: velocities, constraints.
     MotionDerivatives(usize, usize),
-    /// Forces of the inputs and their derivatives, of so many velocities and inputs.
+    /// Forces of the inputs and their derivatives. Sizes: velocities, inputs.
     InputDerivatives(usize, usize),
-    /// Derivatives of what contacts do at given accelerations and forces, of so many velocities and rates.
+    /// Derivatives of contact forces and accelerations, at given generalized accelerations and contact
+    /// forces. Sizes: velocities, contact velocities.
     ContactDerivatives(usize, usize),
-    /// Second derivatives of what constraints add to the equations, contracted, of so many velocities and constraints.
+    /// Second derivatives of the constraint terms of the equations, contracted with given factors. Sizes:
+    /// velocities, constraints.
     ConstraintCurvature(usize, usize),
 }
 
-/// A field of a record: an array, or a list of so many.
+/// A field of a record: an array, or a list of arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordField {
-    /// Its name.
+    /// Name of the field.
     pub name: &'static str,
-    /// Length of an array.
+    /// Length of each array.
     pub rows: usize,
-    /// How many there are, of a list.
+    /// Number of arrays in a list, `None` for a single array.
     pub columns: Option<usize>,
 }
 
 impl RecordField {
-    /// How many numbers it holds.
+    /// Returns the number of values in the field.
     pub fn length(&self) -> usize {
         self.rows * self.columns.unwrap_or(1)
     }
 }
 
 impl Record {
-    /// The struct's name, and its two sizes.
+    /// Returns the name of the struct and its two sizes.
     pub fn name(self) -> (&'static str, [usize; 2]) {
         match self {
             Record::Elimination(nv, nc) => ("Elimination", [nv, nc]),
@@ -219,7 +230,7 @@ impl Record {
         }
     }
 
-    /// The fields in the order of the outputs.
+    /// Returns the fields in the order of the outputs.
     pub fn fields(self) -> Vec<RecordField> {
         let array = |name, rows| RecordField { name, rows, columns: None };
         let list = |name, rows, columns| RecordField { name, rows, columns: Some(columns) };
@@ -258,27 +269,27 @@ impl Record {
     }
 }
 
-/// How the outputs make the inverse of a mass matrix.
+/// Representation of the inverse mass matrix by the outputs of a program.
 #[derive(Clone, Debug, Default)]
 pub enum InverseForm {
-    /// They are its columns.
+    /// The columns of the inverse.
     #[default]
     Explicit,
-    /// After the columns comes for each velocity a row of factors, in the order of these velocities of the trunk, whose product
-    /// with their columns is added.
+    /// Columns, followed by a row of factors for each velocity, in the order of the given trunk velocities.
+    /// The product of these factors with the columns of the trunk velocities is added to the columns.
     LowRankUpdate(Vec<usize>),
-    /// After columns, of which those of limbs are the inverses of their blocks, comes for each velocity a row with its entries of
-    /// the mass matrix in the rows of the trunk.
+    /// Columns, of which those of limbs are the inverses of their blocks, followed by a row for each
+    /// velocity: its entries of the mass matrix in the rows of the trunk.
     BlockArrow {
         /// Velocities of the trunk, in the order of the entries.
         trunk: Vec<usize>,
-        /// Velocities of each limb, in their order.
+        /// Velocities of each limb, in order.
         limbs: Vec<Vec<usize>>,
     },
 }
 
 impl InverseForm {
-    /// How many numbers come for each velocity after the columns.
+    /// Returns the number of additional values per velocity that follow the columns.
     fn width(&self) -> usize {
         match self {
             InverseForm::Explicit => 0,
@@ -287,15 +298,17 @@ impl InverseForm {
     }
 }
 
-/// What is known of the matrices of a function.
+/// Structure of the matrices of a function.
 #[derive(Clone, Debug, Default)]
 pub struct Structure {
-    /// In which parts the inverse of the mass matrix is.
+    /// Representation of the inverse mass matrix.
     pub inverse: InverseForm,
-    /// Row and column of the outputs that go into a matrix, none of them above its diagonal.
+    /// Row and column of the outputs that are entries of a matrix, none of them above the diagonal.
     pub entries: Vec<(usize, usize)>,
-    /// By entry of `∂τ/∂q`, then of `∂τ/∂v`, column by column: whether it is always zero. Empty if nothing is known.
+    /// For each entry of `∂τ/∂q` and then of `∂τ/∂v`, column by column: whether it is structurally zero.
+    /// Empty if unknown.
     pub zeros: Vec<bool>,
-    /// The columns of `∂v̇/∂q` and of `∂v̇/∂v` that are outputs themselves, not those of forces.
+    /// Columns of `∂v̇/∂q` and of `∂v̇/∂v` that are outputs themselves, instead of columns of derivatives of
+    /// forces.
     pub known: [Vec<usize>; 2],
 }

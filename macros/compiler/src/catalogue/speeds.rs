@@ -1,4 +1,5 @@
-//! Functions of mechanisms with declared speeds: what leads from these to the velocities of the joints and back.
+//! Functions of mechanisms with declared generalized speeds: conversion between these and the joint
+//! velocities.
 
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};
@@ -8,7 +9,7 @@ use crate::syntax::Word;
 
 const SPEEDS: &[Need] = &[Need::Speeds];
 
-/// The rows.
+/// Conversion between generalized speeds and joint velocities.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::RatesOfSpeeds, "rates_of_speeds", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
@@ -57,7 +58,7 @@ pub const ROWS: &[Row] = &[
     .alone(),
 ];
 
-/// Those of the word `derivatives`.
+/// Functions of the option `derivatives`.
 pub const DERIVATIVES: &[Row] = &[Row::derived(
     Id::Turning,
     "__turning",

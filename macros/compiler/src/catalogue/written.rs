@@ -1,4 +1,4 @@
-//! Functions that are written as they are: they call others and the runtime.
+//! Handwritten functions, which call other generated functions and the runtime.
 
 use super::facts::Need;
 use super::row::Row;
