@@ -1,4 +1,4 @@
-//! Hamilton's form, printed: the Hamiltonian, and the rates of coordinates and momenta.
+//! Printed form of Hamilton's equations: the Hamiltonian, and the rates of coordinates and momenta.
 
 use super::{Limits, Short, quaternions, rank};
 use crate::algebra::normal::Normal;
@@ -11,29 +11,31 @@ use crate::mechanics::crba::Matrix;
 use crate::mechanics::{energy, forces, momentum};
 use crate::mechanism::{Model, Quantity};
 
-/// The canonical equations as polynomials of one ring; momenta are given numbers.
+/// The canonical equations as polynomials of one ring. The momenta are program inputs.
 pub struct Canonical {
-    /// The atoms.
+    /// Ring of all polynomials.
     pub ring: Ring,
-    /// `H`.
+    /// Hamiltonian `H`.
     pub hamiltonian: Polynomial,
-    /// Velocities.
+    /// Velocities in terms of the momenta.
     pub velocity: Vec<Polynomial>,
-    /// Rates of the momenta, inputs included.
+    /// Rates of the momenta, forces of inputs included.
     pub momentum_rate: Vec<Polynomial>,
-    /// Determinants of the inertia of coupled coordinates, and inertias that are sums, which have symbols of their own.
+    /// Inertias that have symbols of their own: determinants of the inertia of coupled coordinates, and
+    /// inertias that are sums.
     pub determinants: Vec<Polynomial>,
 }
 
-/// The symbol of a determinant.
+/// Returns the symbol of a determinant.
 pub fn determinant(k: usize) -> Quantity {
     Quantity::Prepared(k)
 }
 
-/// Most momenta that are coupled with each other: the inverse of their inertia is written by cofactors.
+/// Maximum number of momenta that are coupled with each other, since the inverse of their inertia is
+/// expressed by cofactors.
 const COUPLED: usize = 3;
 
-/// The canonical equations of a mechanism without constraints; `None` where they would be too long.
+/// Derives the canonical equations of a mechanism without constraints. `None` if they would be too long.
 pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Canonical> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
@@ -72,7 +74,8 @@ fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     })
 }
 
-/// `M⁻¹ p`, group by group of coordinates that are coupled, and the determinants of the groups.
+/// Returns `M⁻¹ p`, computed for each group of coupled coordinates, and the determinants of the groups.
+/// `None` if a group is too large.
 pub(super) fn velocities_of<'g>(
     mass: &Matrix<'g>,
     p: &[Expr<'g>],
@@ -85,7 +88,7 @@ pub(super) fn velocities_of<'g>(
         let mut k = 0;
         while k < group.len() {
             let row = &mass[group[k]];
-            // Some entries are zero after sines and cosines have met.
+            // Some entries are zero only by trigonometric identities.
             let more: Vec<usize> =
                 (0..p.len()).filter(|j| !always(row[*j], 0.0) && !group.contains(j)).collect();
             group.extend(more);
@@ -100,7 +103,7 @@ pub(super) fn velocities_of<'g>(
         let n = group.len();
         let cofactors: Matrix<'g> = (0..n).map(|i| (0..n).map(|j| cofactor(&own, i, j)).collect()).collect();
         let mut divisor = (0..n).map(|j| own[0][j] * cofactors[0][j]).reduce(|a, b| a + b)?;
-        // A sum of waves would not be shortened in a denominator.
+        // A sum of sines and cosines in a denominator would not be simplified.
         let moves = |s: &Symbol| matches!(Quantity::of(*s), Quantity::Configuration(_));
         if n > 1 || (symbols_in(&[divisor]).iter().any(moves) && normal.of(divisor)?.terms.len() > 1) {
             determinants.push(divisor);
@@ -114,10 +117,10 @@ pub(super) fn velocities_of<'g>(
     Some((out, determinants))
 }
 
-/// The cofactor of an entry of a matrix of at most three rows.
+/// Returns the cofactor of an entry of a matrix with at most three rows.
 fn cofactor<'g>(m: &Matrix<'g>, i: usize, j: usize) -> Expr<'g> {
     let n = m.len();
-    // Cyclic indices have the sign already.
+    // With cyclic indices no sign is needed.
     let at = |a: usize, b: usize| m[(i + a) % n][(j + b) % n];
     match n {
         1 => m[0][0].num(1.0),

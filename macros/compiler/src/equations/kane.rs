@@ -1,11 +1,13 @@
-//! Kane's equations of mechanisms with constraints, printed: in independent speeds, so that no multipliers occur. With dependent
-//! velocities `w_D = A s + b` by the constraints, and their partial derivatives `Z` by the independent ones `s`,
+//! Printed form of Kane's equations of mechanisms with constraints, in independent velocities and therefore
+//! without multipliers. The constraints give the dependent velocities `w_D = A s + b`. With the partial
+//! derivatives `Z` of all velocities by the independent ones `s`, the equations are
 //!
 //! ```text
 //! Zᵀ (M ẇ + h − τ) = 0,   w_D = A s + b
 //! ```
 //!
-//! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 6; the equations of Gibbs and Appell in quasi-velocities).
+//! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 6; the Gibbs-Appell equations in
+//! quasi-velocities).
 
 use super::written::{filled, name, names_with, rate_name, rates};
 use super::{Limits, Short, quaternions, rank};
@@ -28,45 +30,47 @@ use crate::mechanics::speeds::InSpeeds;
 use crate::mechanics::{accelerations, constraints, forces, rnea, velocities};
 use crate::mechanism::{Model, Quantity};
 
-/// Columns of text.
+/// Maximum number of columns of the text.
 const WIDTH: usize = 100;
-/// Most choices of dependent velocities that are looked at.
+/// Maximum number of choices of dependent velocities that are compared.
 const CHOICES: usize = 20_000;
-/// In how many configurations.
+/// Number of random configurations in which choices are compared.
 const SAMPLES: u64 = 4;
-/// Determinants that differ by less are the same everywhere.
+/// Relative difference below which determinants count as constant.
 const SAME: f64 = 1e-9;
-/// What is left of a row beside others, as a part of it, where it does not follow from them.
+/// Relative magnitude above which the remainder of a row, after projection off the other rows, counts as
+/// linearly independent.
 const INDEPENDENT: f64 = 1e-7;
 
 /// Kane's equations as polynomials of one ring.
 pub struct Kane {
-    /// The atoms.
+    /// Ring of all polynomials.
     pub ring: Ring,
-    /// The independent velocities, by index.
+    /// Indices of the independent velocities.
     pub independent: Vec<usize>,
-    /// Accelerations and biases, by independent velocity.
+    /// Left sides of the equations of motion, with inertial and bias terms, for each independent velocity.
     pub motion: Vec<Polynomial>,
-    /// What inputs contribute to them.
+    /// Right sides of the equations of motion: forces of inputs.
     pub forces: Vec<Polynomial>,
-    /// The dependent velocities, by index.
+    /// Dependent velocities, with their indices.
     pub dependent: Vec<(usize, Polynomial)>,
-    /// The velocities of joints that declared speeds replace, by index.
+    /// Joint velocities that declared generalized speeds replace, with their indices.
     pub rates: Vec<(usize, Polynomial)>,
-    /// What holds configurations.
+    /// Residuals of the holonomic constraints.
     pub residuals: Vec<Polynomial>,
 }
 
-/// Why there are no equations in independent speeds.
+/// Reason for the absence of equations in independent velocities.
 pub enum Without {
-    /// No velocities could be told from the others.
+    /// No choice of dependent velocities was found.
     Choice,
-    /// They would be too long.
+    /// The equations would be too long.
     Length,
 }
 
-/// Kane's equations of a mechanism with constraints. The independent velocities are those of the joints that the user named, else
-/// those from which the others follow with a determinant that is constant, or varies least.
+/// Derives Kane's equations of a mechanism with constraints. The independent velocities are those of the
+/// joints that the user named. Otherwise the dependent velocities are those whose determinant in the
+/// constraints is constant, or varies the least.
 pub fn kane<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -106,7 +110,7 @@ pub fn kane<'g>(
     })
 }
 
-/// Lists of expressions as short polynomials of one ring; `None` where they are too long.
+/// Converts lists of expressions to simplified polynomials of one ring. `None` if they are too long.
 fn polynomials<'g, const N: usize>(
     model: &Model<'g>,
     lists: &[Vec<Expr<'g>>; N],
@@ -124,9 +128,12 @@ fn polynomials<'g, const N: usize>(
     Some((short.ring, lists))
 }
 
-/// The dependent velocities that constraints are solved for: those whose determinant has one value in all configurations, or
-/// varies least, and which the constraints leave regular where they hold: the coupler of a parallelogram keeps its direction, so that the
-/// others do not follow from its rate. `None` if the constraints depend on each other there. The rows are those of the constraints for the velocities of `own`, which may be declared ones.
+/// Chooses the dependent velocities that the constraints are solved for: those whose determinant is the same
+/// in all configurations, or varies the least. The constraints must also determine them in configurations
+/// that satisfy the constraints. For example, the coupler of a parallelogram does not rotate, so that its
+/// angular velocity does not determine the other velocities. `None` if the constraints are linearly dependent
+/// there. `rows` is the constraint Jacobian in the velocities of `own`, which may be declared generalized
+/// speeds.
 fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
     let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::of(&rows.concat());
@@ -158,7 +165,7 @@ fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<V
         if even > SAME && better && is_regular(&columns) {
             best = Some(((even, filled), columns.clone()));
         }
-        // The next choice in the order of a dictionary.
+        // Next choice in lexicographic order.
         let Some(k) = (0..nc).rev().find(|k| columns[*k] < nv - nc + k) else { break };
         columns[k] += 1;
         for j in k + 1..nc {
@@ -168,7 +175,7 @@ fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<V
     best.map(|(_, columns)| columns)
 }
 
-/// The determinant of some columns, by elimination with pivots.
+/// Returns the determinant of a choice of columns, by elimination with pivoting.
 fn determinant(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
     let mut m: Vec<Vec<f64>> = rows.iter().map(|row| columns.iter().map(|k| row[*k]).collect()).collect();
     let (n, mut product) = (m.len(), 1.0);
@@ -188,15 +195,15 @@ fn determinant(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
     product
 }
 
-/// Velocities by the independent ones.
+/// All velocities and accelerations in terms of the independent velocities.
 struct Solved<'g> {
     independent: Vec<usize>,
     dependent: Vec<usize>,
     /// Dependent velocities.
     values: Vec<Expr<'g>>,
-    /// Their rates.
+    /// Time derivatives of the dependent velocities.
     changes: Vec<Expr<'g>>,
-    /// How they change with the independent ones: a row for each.
+    /// Partial derivatives of the dependent velocities, one row each, by the independent velocities.
     partial: Matrix<'g>,
 }
 
@@ -217,7 +224,7 @@ impl<'g> Solved<'g> {
         let still = |e: Expr<'g>| {
             replace_all(&[e], &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| g.zero()))[0]
         };
-        // What is driven in time moves dependent velocities, too.
+        // Motion that is driven in time also moves dependent velocities.
         let drift: Vec<Expr<'g>> = model.constraints.iter().map(|c| still(c.rate)).collect();
         let mut values = times(&|i| drift[i]);
         let mut partial: Matrix<'g> = vec![Vec::new(); dependent.len()];
@@ -239,7 +246,7 @@ impl<'g> Solved<'g> {
         Some(found)
     }
 
-    /// Expressions of all velocities and accelerations in the independent ones.
+    /// Expresses all velocities and accelerations in the independent ones.
     fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let place = |k: usize| self.dependent.iter().position(|d| *d == k);
         replace_all(e, &|s| match Quantity::of(s) {
@@ -249,7 +256,7 @@ impl<'g> Solved<'g> {
         })
     }
 
-    /// `Zᵀ` times forces.
+    /// Projects forces onto the independent velocities: `Zᵀ f`.
     fn projected(&self, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let one = |(n, k): (usize, &usize)| {
             let carried = self.dependent.iter().zip(&self.partial);
@@ -259,7 +266,7 @@ impl<'g> Solved<'g> {
     }
 }
 
-/// Kane's equations in all ways of writing.
+/// Formats Kane's equations as plain text, LaTeX and MathML.
 pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     let rates = rates(model);
     let names = names_with(model, &[]);
@@ -291,11 +298,11 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     }
 }
 
-/// What is written, an equation each.
+/// Printed equations, one per string.
 struct Lines {
-    /// Velocities that follow from the independent ones.
+    /// Equations for the dependent velocities and for joint velocities that speeds replace.
     velocities: Vec<String>,
-    /// The equations of motion, and what holds configurations.
+    /// Equations of motion, followed by the holonomic constraints.
     motion: Vec<String>,
 }
 
@@ -313,7 +320,7 @@ impl Lines {
     }
 }
 
-/// What the equations are, in sentences.
+/// Returns sentences that explain the equations.
 fn legend(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> String) -> String {
     let independent: Vec<String> =
         kane.independent.iter().map(|k| marked(Quantity::Velocity(*k).symbol())).collect();

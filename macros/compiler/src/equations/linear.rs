@@ -1,10 +1,11 @@
-//! The equations of motion to first order about a declared equilibrium, in the user's parameters. Deviations are those of
-//! plain coordinates, and for ball and free joints small rotations and displacements in body axes, whose rates are the
-//! velocities; constraints stand beside the equations with the deviations of their multipliers, states of first order
-//! with their rates.
+//! Equations of motion to first order about a declared equilibrium, in the user's parameters. The unknowns
+//! are deviations of plain coordinates; for ball and free joints, small rotations and displacements in body
+//! axes, whose rates are the velocities. Constraints are additional equations, with deviations of their
+//! multipliers, and so are the rates of first-order states.
 //!
-//! With the force balance `f(q, v, u, λ) = h − τ − Jᵀ λ` the equations are `M ξ̈ + f_v ξ̇ + f_q ξ + f_u u = Jᵀ λ`, where all
-//! coefficients are taken at rest: what `f_q` has of the multipliers is their geometric stiffness.
+//! With the force balance `f(q, v, u, λ) = h − τ − Jᵀ λ` the equations are
+//! `M ξ̈ + f_v ξ̇ + f_q ξ + f_u u = Jᵀ λ`, with all coefficients evaluated at rest. The contribution of the
+//! multipliers to `f_q` is their geometric stiffness.
 
 use super::{Limits, Short, right_sides};
 use crate::algebra::normal::Normal;
@@ -33,19 +34,20 @@ pub use written::written_linear;
 
 /// The linear equations about an equilibrium as polynomials of one ring.
 pub struct Linear {
-    /// The atoms.
+    /// Ring of all polynomials.
     pub ring: Ring,
-    /// What the deviations contribute: a row for each velocity, each constraint and each state.
+    /// Left sides, with the deviations: a row for each velocity, each constraint and each state.
     pub motion: Vec<Polynomial>,
-    /// What inputs and multipliers contribute.
+    /// Right sides: contributions of inputs and multipliers.
     pub forces: Vec<Polynomial>,
-    /// What is not zero at rest: coordinates, inputs, states, multipliers, with their values.
+    /// Coordinates, inputs, states and multipliers that are not zero at rest, with their values.
     pub values: Vec<(Quantity, Polynomial)>,
-    /// The characteristic polynomial of few velocities, and what it says.
+    /// The characteristic polynomial and its stability analysis, for mechanisms with few velocities.
     pub stability: Option<Stability>,
 }
 
-/// The linear equations about an equilibrium; `None` where it is none, or where they cannot be written, with the reason in `cx`.
+/// Derives the linear equations about an equilibrium. `None` with an error in `cx` if the state is not an
+/// equilibrium or the equations cannot be printed.
 pub fn linear<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -80,7 +82,7 @@ pub fn linear<'g>(
     Some(found.with_stability(model, &all))
 }
 
-/// `h − τ − Jᵀ λ` by velocity, with symbols for the multipliers.
+/// Returns the force balance `h − τ − Jᵀ λ` for each velocity, with symbols for the multipliers.
 fn balance<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
     bias.into_iter().zip(right_sides(model, joints)).map(|(bias, right)| bias - right).collect()
@@ -123,7 +125,7 @@ fn coefficients<'g>(
     }
 }
 
-/// All rows as polynomials.
+/// Converts all rows to simplified polynomials. `None` if they are too long.
 fn written_out<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
@@ -135,7 +137,7 @@ fn written_out<'g>(
     let (mut motion, mut forces) = (Vec::new(), Vec::new());
     for k in 0..all.inputs.len() {
         let mut left = Polynomial::default();
-        // Highest derivatives first: atoms are read in the order in which they come.
+        // Highest derivatives first: atoms are printed in the order in which they are added.
         for (symbol, coefficients) in symbols.iter().zip(&all.orders).rev() {
             add_products(&mut left, &coefficients[k], *symbol, 1.0, &mut normal)?;
         }
@@ -156,7 +158,7 @@ fn written_out<'g>(
     Some(Linear { ring: short.ring, motion, forces, values, stability: None })
 }
 
-/// Adds coefficients times symbols.
+/// Adds products of coefficients and symbols to a sum.
 fn add_products<'g>(
     sum: &mut Polynomial,
     coefficients: &[Expr<'g>],
@@ -174,7 +176,7 @@ fn add_products<'g>(
 }
 
 impl Linear {
-    /// Whether a coefficient changes in time.
+    /// Whether a coefficient varies in time.
     fn changes(&self) -> bool {
         let time = self.ring.mask(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
         let time = self.with_time(time);
@@ -183,7 +185,7 @@ impl Linear {
         all.any(|p| p.terms.iter().any(|t| t.monomial.meets(time)))
     }
 
-    /// The atoms that contain time.
+    /// Returns the mask of the atoms that depend on time, given the mask of time itself.
     fn with_time(&self, time: Monomial) -> Monomial {
         let mut found = time;
         for (k, atom) in self.ring.atoms.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! The equations of motion of small mechanisms in normal form, and as text in the user's own names. They are the
-//! recursive algorithms' mass matrix and bias, which hold for ball and free joints as they are and are there already;
-//! Lagrange's equations are the same polynomials, as a test shows.
+//! Equations of motion of small mechanisms in normal form, and as text with the user's names. They consist of
+//! the mass matrix and bias forces of the recursive algorithms, which are already computed and need no
+//! adaptation for ball and free joints. A test shows that Lagrange's equations are the same polynomials.
 
 use crate::algebra::factor::without_noise;
 use crate::algebra::normal::Normal;
@@ -29,49 +29,55 @@ pub use canonical::{Canonical, canonical, determinant};
 pub use print::Written;
 pub use written::{written, written_canonical};
 
-/// How much is multiplied out and written.
+/// Limits on the length of equations.
 pub struct Limits {
-    /// Most operations of the mass matrix, and of all equations, that are multiplied out: a look at them is cheap, and what takes
-    /// more would be too long.
+    /// Maximum number of operations of the mass matrix, and of all equations, that are expanded to
+    /// polynomials. Counting operations is cheap, and the polynomials of longer expressions would be too
+    /// long.
     operations: [usize; 2],
-    /// Most terms, of all equations together.
+    /// Maximum number of terms of all equations together.
     terms: usize,
-    /// Most terms before they are shortened.
+    /// Maximum number of terms before simplification.
     long: usize,
 }
 
-/// Maximum number of written terms, those in arguments of functions and in divisors included, relative to the maximum number
-/// of terms alone. An argument that itself has functions of functions is written out wherever it occurs.
+/// Maximum number of printed terms, including those in arguments of functions and in divisors, relative to
+/// the maximum number of terms alone. An argument that contains nested functions is printed at each of its
+/// occurrences.
 const NESTED_TERMS: usize = 20;
 
 impl Limits {
-    /// What anybody would read.
+    /// Limits of a readable text.
     pub const READABLE: Limits = Limits { operations: [200, 500], terms: 150, long: 400 };
-    /// What is written for those who ask.
+    /// Limits for equations that the user requests.
     pub const ASKED: Limits = Limits { operations: [2000, 5000], terms: 3000, long: 8000 };
-    /// What anybody would read, in declared speeds: most of what is multiplied out cancels.
+    /// Limits of a readable text in generalized speeds: most of the expanded terms cancel.
     pub const READABLE_IN_SPEEDS: Limits = Limits { operations: [2000, 5000], terms: 150, long: 8000 };
 }
 
-/// The equations of a mechanism as polynomials of one ring.
+/// Equations of motion of a mechanism as polynomials of one ring.
 pub struct Equations {
-    /// The atoms.
+    /// Ring of all polynomials.
     pub ring: Ring,
-    /// `L = T − U`.
+    /// Lagrangian `L = T − U`.
     pub lagrangian: Polynomial,
-    /// `M v̇ + h`, by velocity; then what the constraints keep at zero.
+    /// Left sides of the equations of motion: `M v̇ + h` for each velocity, then the residual or rate of each
+    /// constraint.
     pub motion: Vec<Polynomial>,
-    /// What the inputs and the multipliers contribute, by velocity; then zeros.
+    /// Right sides of the equations of motion: forces of inputs and multipliers for each velocity, then zeros
+    /// for the constraints.
     pub forces: Vec<Polynomial>,
-    /// With declared speeds: the velocities of joints that they replace, by index, as they follow from the speeds.
+    /// Joint velocities that generalized speeds replace, with their indices, in terms of the speeds.
     pub rates: Vec<(usize, Polynomial)>,
-    /// Forces stand as a name for each velocity, and the Lagrangian is the kinetic energy alone.
+    /// True if forces are symbols, one for each velocity, and `lagrangian` is the kinetic energy alone.
     pub without_forces: bool,
 }
 
-/// The equations of a mechanism; `None` where they would be longer than the limits. Their length decides, as soon as it is known.
+/// Derives the equations of motion of a mechanism. `None` if they exceed the limits, which are checked as
+/// early as possible.
 ///
-/// With declared speeds they are Kane's: those of the joints' velocities, exchanged.
+/// With declared generalized speeds these are Kane's equations: the equations in joint velocities,
+/// transformed.
 pub fn derive<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -100,7 +106,7 @@ pub fn derive<'g>(
     if limits.long > Limits::READABLE.long {
         normal.ring.allow_more();
     }
-    // Angles in the order of `q`, so that sums of them are read in this order.
+    // Angles in the order of `q`, so that sums of angles are printed in this order.
     for angle in angles(model) {
         normal.of(angle.sin())?;
     }
@@ -133,8 +139,9 @@ pub fn derive<'g>(
     shortened(Short::new(normal.ring, quaternions(model), limits), found)
 }
 
-/// The equations of a mechanism without constraints whose forces are too long to be read: inertia alone, of a body in space
-/// Euler's equations. `None` where that is too long as well.
+/// Derives the equations of a mechanism without constraints whose forces are too long to be readable: only
+/// the inertial terms, which for a free body are Euler's equations, with a symbol for each force. `None` if
+/// these are too long as well.
 pub fn derive_inertia<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -167,7 +174,7 @@ pub fn derive_inertia<'g>(
     Some(found)
 }
 
-/// `h`, or what stands for it with declared speeds.
+/// Returns the bias forces `h`, or the terms without accelerations of the equations in generalized speeds.
 fn bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], speeds: Option<&InSpeeds<'g>>) -> Vec<Expr<'g>> {
     let v = velocities(model);
     let Some(speeds) = speeds else { return rnea::inverse_dynamics(model, joints, &v, None) };
@@ -175,14 +182,14 @@ fn bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], speeds: Option<&InSpeeds<'g
     speeds.without_accelerations(&speeds.forces(&all))
 }
 
-/// What the inputs and the multipliers contribute, by velocity.
+/// Returns the generalized forces of inputs and multipliers.
 fn right_sides<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let held = constraints::forces(model, &constraints::multipliers(model));
     let forces = forces::generalized_forces(model, joints);
     forces.into_iter().zip(held).map(|(force, held)| force + held).collect()
 }
 
-/// The coordinates of which sines or cosines are taken somewhere.
+/// Returns the coordinates whose sine or cosine occurs in the graph.
 fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let nodes = model.graph.nodes();
     let mut angle = vec![false; model.nq()];
@@ -200,7 +207,7 @@ fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     of_angles.map(|k| Quantity::Configuration(k).expr(model.graph)).collect()
 }
 
-/// Kinetic energy: `½ vᵀ M v`, which is there already, unless something is driven in time.
+/// Returns the kinetic energy: `½ vᵀ M v` from the given mass matrix, unless the mechanism is driven in time.
 fn kinetic<'g>(
     (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
@@ -225,14 +232,14 @@ fn normals<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynom
     list.iter().map(|e| normal.of(*e)).collect()
 }
 
-/// Shortens polynomials, as long as there are few enough terms.
+/// Simplifies polynomials within a maximum total number of terms.
 struct Short {
     ring: Ring,
     quaternions: Vec<[Symbol; 4]>,
     long: usize,
-    /// Terms that may still be added.
+    /// Remaining number of terms.
     left: usize,
-    /// Written terms that may still be added.
+    /// Remaining number of printed terms.
     written_left: usize,
 }
 
@@ -254,7 +261,7 @@ impl Short {
     }
 }
 
-/// Shortened, and few enough terms.
+/// Simplifies all equations. `None` if they are too long.
 fn shortened(mut short: Short, found: Equations) -> Option<Equations> {
     let Equations { lagrangian, motion, forces, rates, without_forces, .. } = found;
     let all = || motion.iter().chain(&forces).chain([&lagrangian]);

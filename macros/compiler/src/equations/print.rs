@@ -1,4 +1,4 @@
-//! Expressions and polynomials as text, plain or typeset.
+//! Formatting of expressions and polynomials, as plain text or typeset.
 
 use crate::algebra::common::Among;
 use crate::algebra::factor::items;
@@ -28,13 +28,14 @@ impl fmt::Debug for Expr<'_> {
     }
 }
 
-/// An expression in one line, with names for its symbols. For small expressions: what is shared is written out, up to
-/// a limit of depth.
+/// Formats a small expression in one line, with names for its symbols. Shared subexpressions are expanded, up
+/// to a maximum depth.
 pub fn plain(e: Expr<'_>, name: &dyn Fn(Symbol) -> String) -> String {
     term(e, name, 0, 24)
 }
 
-/// Text of a node; parentheses where its operator binds less than `level` (1 for sums, 2 for products, 3 for powers).
+/// Formats a node, in parentheses if its operator has a precedence below `level` (1 for sums, 2 for products,
+/// 3 for powers).
 fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> String {
     if depth == 0 {
         return "…".to_string();
@@ -69,8 +70,8 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
     if own < level { format!("({text})") } else { text }
 }
 
-/// Writes polynomials the way a person does: `1/3 m l² cos(theta)`. What is read in which order is decided here, how it
-/// looks by the style.
+/// Formatter of polynomials as in textbooks: `1/3 m l² cos(theta)`. The writer decides the order of terms and
+/// factors; the style decides their appearance.
 pub struct Writer<'a, S = Plain<'a>> {
     ring: &'a Ring,
     order: Order,
@@ -78,29 +79,29 @@ pub struct Writer<'a, S = Plain<'a>> {
 }
 
 impl<'a> Writer<'a> {
-    /// For the polynomials of a ring as plain text, with names for its symbols.
+    /// Creates a writer of plain text for the polynomials of a ring, with names for its symbols.
     pub fn new(ring: &'a Ring, name: &'a dyn Fn(Symbol) -> String) -> Writer<'a> {
         Writer::styled(ring, Plain { name })
     }
 }
 
 impl<'a, S: Style> Writer<'a, S> {
-    /// For the polynomials of a ring in some style.
+    /// Creates a writer for the polynomials of a ring in the given style.
     pub fn styled(ring: &'a Ring, style: S) -> Writer<'a, S> {
         Writer { ring, order: Order::of(ring), style }
     }
 
-    /// A polynomial, grouped, common factors taken out.
+    /// Formats a polynomial with grouped terms and extracted common factors.
     pub fn polynomial(&self, p: &Polynomial) -> String {
         self.sum(&items(self.ring, &self.order, p, Among::All))
     }
 
-    /// An energy: what has different numbers of rates stays apart.
+    /// Formats an energy. Terms of different degree in rates are not factored together.
     pub fn energy(&self, p: &Polynomial) -> String {
         self.sum(&items(self.ring, &self.order, p, Among::Kinds))
     }
 
-    /// A linear form: its coefficients stay apart.
+    /// Formats a linear form. Its coefficients are not factored together.
     pub fn linear(&self, p: &Polynomial) -> String {
         self.sum(&items(self.ring, &self.order, p, Among::None))
     }
@@ -109,7 +110,7 @@ impl<'a, S: Style> Writer<'a, S> {
         self.joined(items.iter().map(|item| (item.coefficient < 0.0, self.item(item))))
     }
 
-    /// A sum of texts with their signs.
+    /// Joins terms, given as sign (true if negative) and text, to a sum.
     fn joined(&self, parts: impl Iterator<Item = (bool, String)>) -> String {
         let mut out = String::new();
         for (negative, text) in parts {
@@ -125,12 +126,13 @@ impl<'a, S: Style> Writer<'a, S> {
         self.product(item.coefficient, item.factor, sums.collect(), constant)
     }
 
-    /// A sum as a factor.
+    /// Returns a sum as a factor.
     fn bracketed(&self, sum: String, power: u8) -> Factor {
         if power == 1 { Factor::Sum(sum) } else { Factor::Single(self.style.power(&sum, power)) }
     }
 
-    /// Number, parameters, positions before sums of variables, sums, all else; then what it is divided by. Without the sign.
+    /// Formats a product without its sign. The order is: number, parameters, positions (before sums that are
+    /// not constant), sums, all other factors, divisors.
     fn product(&self, coefficient: f64, m: Monomial, sums: Vec<Factor>, constant: bool) -> String {
         let positions = if constant { Monomial::ONE } else { m.only(self.order.positions) };
         let front = self.order.parameters(m).or(positions);
@@ -183,7 +185,7 @@ impl<'a, S: Style> Writer<'a, S> {
         Argument { text: self.polynomial(p), lone }
     }
 
-    /// The argument of a wave, in the order of its angles.
+    /// Formats the argument of a wave, with its angles in the order of the ring.
     fn angle(&self, wave: &Wave) -> Argument {
         let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
         let parts: Vec<(f64, Monomial)> =
@@ -201,8 +203,8 @@ impl<'a, S: Style> Writer<'a, S> {
     }
 }
 
-/// Text in lines of up to `width` characters, broken before the signs of a sum, outermost ones first; further lines
-/// are indented.
+/// Breaks text into lines of at most `width` characters, before the signs of a sum and at the outermost
+/// parentheses first. Further lines are indented.
 pub fn wrapped(text: &str, width: usize, indent: &str) -> String {
     let (mut out, mut rest, mut first) = (String::new(), text, true);
     loop {
@@ -221,17 +223,18 @@ pub fn wrapped(text: &str, width: usize, indent: &str) -> String {
     }
 }
 
-/// A side of an equation that is not put on a line of its own.
+/// Sides of equations up to this number of characters get no line of their own.
 const SHORT: usize = 24;
 
-/// Where to break: the last sign of the least depth within `room` characters; the next one after it if there is none.
+/// Returns the position of the line break: the last sign of minimum nesting depth within `room` characters,
+/// or the next sign after them.
 fn break_at(text: &str, room: usize) -> Option<usize> {
     let (mut depth, mut best) = (0_usize, None::<(usize, usize)>);
     let mut previous = ' ';
     for (column, (at, c)) in text.char_indices().enumerate() {
         let sign = match c {
             '+' | '-' => true,
-            // A short side is not worth a line.
+            // A short side gets no line of its own.
             '=' => at > SHORT && text.len() - at > SHORT,
             _ => false,
         };

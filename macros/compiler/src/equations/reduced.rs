@@ -1,5 +1,5 @@
-//! Routh's equations, printed: the Routhian, the equations of the coordinates that are not cyclic, and the velocities of those
-//! that are, by their momenta.
+//! Printed form of Routh's equations: the Routhian, the equations of the noncyclic coordinates, and the
+//! velocities of the cyclic coordinates in terms of their momenta.
 
 use super::canonical::{determinant, velocities_of};
 use super::written::{about_inertias, determinants, filled, name, names_with, rates};
@@ -18,30 +18,30 @@ use crate::mechanics::routh::{Solved, part, solved, with, with_velocities};
 use crate::mechanics::{accelerations, forces, rnea, velocities};
 use crate::mechanism::{Model, Quantity};
 
-/// Columns of text.
+/// Maximum number of columns of the text.
 const WIDTH: usize = 100;
 
-/// Routh's equations as polynomials of one ring; momenta are given numbers.
+/// Routh's equations as polynomials of one ring. The momenta are program inputs.
 pub struct Reduced {
-    /// The atoms.
+    /// Ring of all polynomials.
     pub ring: Ring,
-    /// The cyclic coordinates: indices of their velocities.
+    /// Indices of the velocities of the cyclic coordinates.
     pub cyclic: Vec<usize>,
-    /// `R`.
+    /// Routhian `R`.
     pub routhian: Polynomial,
-    /// Accelerations and biases of the other coordinates.
+    /// Left sides of the equations of the noncyclic coordinates, with inertial and bias terms.
     pub motion: Vec<Polynomial>,
-    /// What inputs contribute to them.
+    /// Right sides of the equations of the noncyclic coordinates: forces of inputs.
     pub forces: Vec<Polynomial>,
     /// Velocities of the cyclic coordinates.
     pub velocity: Vec<Polynomial>,
-    /// Rates of their momenta: inputs.
+    /// Rates of the momenta of the cyclic coordinates: forces of inputs.
     pub momentum_rate: Vec<Polynomial>,
-    /// Inertias that have symbols of their own, of coupled coordinates their determinants.
+    /// Inertias that have symbols of their own; for coupled coordinates their determinants.
     pub determinants: Vec<Polynomial>,
 }
 
-/// Routh's equations of a mechanism without constraints; `None` where they would be too long.
+/// Derives Routh's equations of a mechanism without constraints. `None` if they would be too long.
 pub fn reduced<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -66,7 +66,7 @@ pub fn reduced<'g>(
     let dot = |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
     let of = |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
     let a = of(&others, &a);
-    // What the cyclic coordinates accelerate by without and with inputs.
+    // Accelerations of the cyclic coordinates without inputs, and due to inputs.
     let across = part(mass, &cyclic, &others);
     let carried = across.iter().zip(of(&cyclic, &bias)).map(|(row, bias)| -(dot(row, &a) + bias));
     let carried: Vec<Expr<'g>> = carried.collect();
@@ -103,7 +103,7 @@ pub fn reduced<'g>(
     })
 }
 
-/// Routh's equations in all ways of writing.
+/// Formats Routh's equations as plain text, LaTeX and MathML.
 pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     let rates = rates(model);
     let momenta: Vec<String> =
@@ -111,7 +111,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     let inertias = determinants(model, reduced.determinants.len());
     let all = names_with(model, &[momenta.clone(), inertias.clone()].concat());
     let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
-    // Accelerations of cyclic coordinates do not occur: their symbols stand for the rates of the momenta.
+    // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
     let name = |symbol: Symbol| match Quantity::of(symbol) {
         Quantity::Given(c) => (momenta[c].clone(), 0),
         Quantity::Acceleration(k) if is_cyclic(k).is_some() => {
@@ -152,7 +152,8 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     Written { plain, latex, mathml: page(&lines) }
 }
 
-/// The Routhian; then the equations of motion, the velocities of cyclic coordinates, their momenta and inertias.
+/// Returns the right side of the Routhian, then the equations of motion, the velocities of cyclic
+/// coordinates, their momenta and inertias.
 fn lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
     let writer = Writer::styled(&reduced.ring, style);
     let mut lines = vec![writer.energy(&reduced.routhian)];

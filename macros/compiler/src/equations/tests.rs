@@ -1,4 +1,5 @@
-//! The printed equations, and the polynomials behind them against both derivations at random states.
+//! Compares the printed equations, and the polynomials behind them, with two other derivations at random
+//! states.
 
 use super::*;
 use crate::algebra::polynomial::tests::Random;
@@ -36,7 +37,7 @@ fn equations_of(gravity: &str, item: &str) -> String {
     with_model(gravity, item, |model| crate::equations(&model))
 }
 
-/// A number for every symbol; quaternions are unit.
+/// Returns a function that assigns a random number to every symbol. Quaternions have unit length.
 fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
     let mut r = Random(seed * 2 + 1);
     let mut numbers =
@@ -69,7 +70,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
     assert!(near, "{what}: {a:?} instead of {b:?}");
 }
 
-/// The values of the symbols of a mechanism by the names that are printed.
+/// Returns the values of the symbols of a mechanism by their printed names.
 fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
     let rates = written::rates(model);
     let all = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
@@ -93,7 +94,7 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
     }
 }
 
-/// The equations of a printed text, before what the names mean: both sides of each.
+/// Returns both sides of each equation of a printed text, without the legend.
 fn printed(text: &str) -> Vec<(String, String)> {
     let (text, _) = text.trim_end().rsplit_once("\n\n").expect("a legend");
     let joined = text.replace("\n    ", " ");
@@ -101,7 +102,7 @@ fn printed(text: &str) -> Vec<(String, String)> {
     lines.map(|(left, right)| (left.to_string(), right.to_string())).collect()
 }
 
-/// The printed text says what the polynomials are.
+/// Checks that the values of the printed equations are those of the polynomials.
 fn check_text(model: &Model<'_>, e: &Equations) {
     let text = written(model, e).plain;
     let lines = printed(&text);
@@ -116,14 +117,14 @@ fn check_text(model: &Model<'_>, e: &Equations) {
             [&e.lagrangian].into_iter().chain(sides).map(|p| e.ring.evaluate(p, &symbol)).collect();
         let size = sides.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
         for ((read, expected), k) in read.iter().zip(&sides).zip(0..) {
-            // Numbers are written with six digits.
+            // Numbers are printed with six digits.
             assert!((read - expected).abs() < 1e-5 * size, "{k}: {read}, {expected}: {text}");
         }
     }
 }
 
-/// Motion, forces, constraints and Lagrangian against the recursive algorithms as lowered for generation, and motion against
-/// Lagrange's equations.
+/// Compares motion, forces, constraints and Lagrangian with the lowered programs of the recursive algorithms,
+/// and the motion with Lagrange's equations.
 fn check(model: &Model<'_>) {
     let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
@@ -162,14 +163,14 @@ fn normal_forms_are_what_is_generated() {
     }
 }
 
-/// Puts the tip of a link at `place`, turned by `angle` about z.
+/// Places the tip of a link at `place`, rotated by `angle` about z.
 fn put<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
     model.links[link].motion = Motion::Placed;
     model.links[link].parent = None;
     model.links[link].placement = Pose { rotation: Rotation::about_axis(2, angle), translation: Vec3(place) };
 }
 
-/// Each rod of a double pendulum by its angle from the vertical.
+/// Describes each rod of a double pendulum by its angle from the vertical.
 #[test]
 fn absolute_angles() {
     let text = with_model("-g * y", DOUBLE_PENDULUM, |mut model| {
@@ -187,7 +188,7 @@ fn absolute_angles() {
     assert!(text.contains(first), "{text}");
 }
 
-/// A bead on a hoop that is turned about the vertical at a given speed.
+/// A bead on a hoop that rotates about the vertical at a prescribed speed.
 #[test]
 fn driven_in_time() {
     let text = with_model("-g * z", HOOP, |mut model| {
@@ -208,7 +209,7 @@ m radius (radius theta'' + (g - radius speed² cos(theta)) sin(theta)) = 0
     assert!(text.starts_with(expected), "{text}");
 }
 
-/// How many velocities there are does not matter, if what they do can be said in few words.
+/// The length of the equations decides whether they are printed, not the number of velocities.
 #[test]
 fn length_decides() {
     let text = equations_of("-g * z", &masses(5));
@@ -226,7 +227,7 @@ fn length_decides() {
     }
 }
 
-/// All multipliers are explained, each by its constraint.
+/// The legend explains each multiplier by its constraint.
 #[test]
 fn multipliers_are_named() {
     let text = equations_of("-g * z", SPHERE);
@@ -237,7 +238,8 @@ contact.x and contact.y, in this order.
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
 }
 
-/// The axle keeps the wheel's height, which constrains nothing: the row is zero up to rounding, and dropped.
+/// The axle fixes the wheel's height, so that the normal constraint is trivial. Its row is zero up to
+/// rounding and is dropped.
 #[test]
 fn a_condition_that_always_holds_is_dropped() {
     let text = equations_of("-9.81 * z", CASTOR);
@@ -247,7 +249,7 @@ fn a_condition_that_always_holds_is_dropped() {
     );
     let arguments = || "gravity = -9.81 * z, formulation = speeds, derivatives".parse().unwrap();
     assert_eq!(crate::check(arguments(), CASTOR.parse().unwrap(), Path::new("")), [""; 0]);
-    // What never touches is told, however small its row is.
+    // A contact that can never close is reported, however small its row is.
     let hovering = CASTOR.replace("0.3 * z", "0.4 * z");
     let messages = crate::check(arguments(), hovering.parse().unwrap(), Path::new(""));
     assert!(messages.len() == 1 && messages[0].contains("`contact.normal` can never hold"), "{messages:?}");
@@ -321,7 +323,7 @@ axial (cos(nutation) precession'' + spin'' - sin(nutation) precession' nutation'
     assert!(text.contains(expected), "{text}");
 }
 
-/// Quaternion components, and angular velocities that are not rates of them.
+/// Quaternion components and angular velocities, which are not their rates.
 #[test]
 fn top_as_text() {
     let expected = "\
@@ -335,7 +337,7 @@ L is kinetic less potential energy; tip.wx' is the rate of tip.wx.
     assert!(text.ends_with(expected), "{text}");
 }
 
-/// Hamilton's form against velocities, energies and rates of the recursive algorithms.
+/// Compares Hamilton's equations with velocities, energies and rates of the recursive algorithms.
 fn check_canonical(model: &Model<'_>) -> String {
     let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
@@ -352,7 +354,7 @@ fn check_canonical(model: &Model<'_>) -> String {
     for seed in 1..10 {
         let symbol = state(model, seed);
         let p = eval(&momenta, &symbol);
-        // In those themselves no other stands; the ring evaluates its atoms all the same.
+        // Determinants contain no other determinants, but the ring evaluates all of its atoms.
         let one = |s: Symbol| match Quantity::of(s) {
             Quantity::Given(_) | Quantity::Prepared(_) => 1.0,
             _ => symbol(s),
@@ -417,7 +419,7 @@ fn forms_that_there_are_not_are_refused() {
     }
 }
 
-/// What is too long to be read is written for those who ask, and is as right.
+/// Equations beyond the readable limits are printed on request, and are correct.
 #[test]
 fn long_equations_are_written_on_request() {
     let arm = "pub struct Arm { g: f64, m: f64,

@@ -1,4 +1,4 @@
-//! Equations of motion as text, plain and typeset, in the user's own names.
+//! Formats equations of motion as plain text, LaTeX and MathML, with the user's names.
 
 use super::{Canonical, Equations, determinant};
 use crate::diag::all_of;
@@ -9,21 +9,21 @@ use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Model, Quantity};
 
-/// Columns of text.
+/// Maximum number of columns of equations in the text.
 const WIDTH: usize = 100;
-/// Columns that rustdoc's pages have room for.
+/// Maximum number of columns of sentences: the width of rustdoc's pages.
 const PAGE: usize = 92;
 
-/// Equations in all ways of writing.
+/// Formats equations of motion as plain text, LaTeX and MathML.
 pub fn written(model: &Model<'_>, equations: &Equations) -> Written {
     let rates = rates(model);
     let (latex, mathml) = typeset(model, equations, &rates);
     Written { plain: plain(model, equations, &rates), latex, mathml }
 }
 
-/// The Lagrangian, and both sides of the equation of every velocity.
+/// The printed Lagrangian, and both sides of the equation of every velocity.
 struct Lines {
-    /// Velocities of joints, by index, in declared speeds.
+    /// Joint velocities in terms of declared generalized speeds, with their indices.
     rates: Vec<(usize, String)>,
     lagrangian: String,
     motion: Vec<(String, String)>,
@@ -40,7 +40,8 @@ impl Lines {
         }
     }
 
-    /// A line for each, with the sign of the Lagrangian and those of velocities that follow from speeds.
+    /// Returns one line per equation, given the symbol of the Lagrangian and those of the joint velocities
+    /// that speeds replace.
     fn equations(&self, lagrangian: &str, left: &dyn Fn(usize) -> String) -> Vec<String> {
         let mut all = vec![format!("{lagrangian} = {}", self.lagrangian)];
         all.extend(self.rates.iter().map(|(k, rate)| format!("{} = {rate}", left(*k))));
@@ -49,7 +50,7 @@ impl Lines {
     }
 }
 
-/// The Lagrangian, an equation for every velocity, and what primes mean.
+/// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
 fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
     let name = |symbol| primed(name(model, rates, symbol));
     let lines = Lines::of(equations, Plain { name: &name });
@@ -70,14 +71,14 @@ fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
         .fold(out, |out, sentence| out + &filled(sentence) + "\n")
 }
 
-/// The canonical equations in all ways of writing.
+/// Formats the canonical equations as plain text, LaTeX and MathML.
 pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let rates = rates(model);
     let momentum = |k: usize| format!("p_{}", model.velocities[k].0);
     let momenta: Vec<String> = (0..model.nv()).map(momentum).collect();
     let determinants = determinants(model, canonical.determinants.len());
     let all = names_with(model, &[momenta.clone(), determinants.clone()].concat());
-    // Accelerations do not occur: their symbols stand for the rates of the momenta.
+    // Accelerations do not occur: their symbols represent the rates of the momenta.
     let name = |symbol| match Quantity::of(symbol) {
         Quantity::Given(k) => (momenta[k].clone(), 0),
         Quantity::Acceleration(k) => (momenta[k].clone(), 1),
@@ -104,12 +105,12 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     Written { plain, latex, mathml: page(&lines) }
 }
 
-/// The name of a generalized force, which nothing else has.
+/// Returns an unused name for a generalized force.
 fn force_name(model: &Model<'_>, k: usize) -> String {
     format!("{}{}", free_letter(model, 'Q'), k + 1)
 }
 
-/// A letter, repeated until no parameter and no coordinate begins with it.
+/// Returns a letter, repeated until no name of a parameter or coordinate begins with it.
 fn free_letter(model: &Model<'_>, letter: char) -> String {
     let mut found = letter.to_string();
     while model.parameters.iter().chain(&model.configuration).any(|name| name.starts_with(&found)) {
@@ -118,13 +119,13 @@ fn free_letter(model: &Model<'_>, letter: char) -> String {
     found
 }
 
-/// Names of determinants that nothing else has.
+/// Returns unused names for determinants.
 pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
     let letter = free_letter(model, 'D');
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
 }
 
-/// A sentence that says what determinants are, if there are any.
+/// Returns a sentence that explains the determinants, empty if there are none.
 pub(super) fn about_inertias(determinants: &[String]) -> String {
     match determinants {
         [] => String::new(),
@@ -133,7 +134,8 @@ pub(super) fn about_inertias(determinants: &[String]) -> String {
     }
 }
 
-/// The Hamiltonian; then equations for the rates of coordinates and of momenta.
+/// Returns the right side of the Hamiltonian, then equations for the rates of coordinates and of momenta,
+/// then for determinants.
 fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<String> {
     let writer = Writer::styled(&canonical.ring, style);
     let mut lines = vec![writer.energy(&canonical.hamiltonian)];
@@ -146,7 +148,7 @@ fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<Stri
     lines
 }
 
-/// Words in lines that a page has room for.
+/// Wraps sentences at the width of a page.
 pub(super) fn filled(text: &str) -> String {
     let (mut out, mut room) = (String::new(), 0);
     for word in text.split(' ') {
@@ -164,7 +166,7 @@ pub(super) fn filled(text: &str) -> String {
     out
 }
 
-/// The Lagrangian and an equation for every velocity, as LaTeX and as HTML.
+/// Returns the Lagrangian and an equation for every velocity, as LaTeX and as HTML.
 fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String, String) {
     let names = names(model);
     let name = |symbol| {
@@ -186,12 +188,12 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
     (aligned(&latex), page(&mathml))
 }
 
-/// All names, so that no two look alike.
+/// Returns the typeset names of all symbols of a mechanism, which are unambiguous.
 fn names(model: &Model<'_>) -> Names {
     names_with(model, &[])
 }
 
-/// The same with others.
+/// Returns the typeset names of all symbols of a mechanism and of other names, which are unambiguous.
 pub(super) fn names_with(model: &Model<'_>, others: &[String]) -> Names {
     let velocities =
         model.velocities.iter().chain(model.speeds.iter().flat_map(|s| &s.velocities)).map(|(name, _)| name);
@@ -201,7 +203,7 @@ pub(super) fn names_with(model: &Model<'_>, others: &[String]) -> Names {
     Names::new(names.chain(&multipliers).chain(others).map(String::as_str))
 }
 
-/// By velocity, whether it is the rate of a coordinate that has its name.
+/// Returns for each velocity whether it is the rate of a coordinate of the same name.
 pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
     let mut rates = vec![false; model.nv()];
     for chart in &model.charts {
@@ -212,7 +214,7 @@ pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
     rates
 }
 
-/// The name of a velocity that a joint has, or of the coordinate whose rate it is, and the rate of that.
+/// Returns the name of a joint velocity and zero, or the name of the coordinate whose rate it is and one.
 pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
     let name = model.speeds.as_ref().map_or("", |speeds| &speeds.velocities[k].0);
     let is_rate = model.charts.iter().any(|chart| match chart {
@@ -222,7 +224,7 @@ pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
     (name.to_string(), u8::from(is_rate))
 }
 
-/// The name of a symbol, and the rate of what it is.
+/// Returns the name of a symbol, and how often the quantity of this name is differentiated.
 pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
     match Quantity::of(symbol) {
         Quantity::Parameter(k) => (model.parameters[k].clone(), 0),
@@ -239,7 +241,7 @@ pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String
     }
 }
 
-/// What the marks mean, in sentences.
+/// Returns sentences that explain the notation.
 fn legend(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String> {
     let energy = if without_forces { "T is kinetic energy" } else { "L is kinetic less potential energy" };
     let rates = match rates.iter().position(|is_rate| *is_rate) {

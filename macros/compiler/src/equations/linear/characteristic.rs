@@ -1,5 +1,5 @@
-//! The characteristic polynomial of linear equations: the determinant of `M s² + C s + K`, bordered by the constraints,
-//! expanded by minors.
+//! Characteristic polynomial of linear equations: the determinant of `M s² + C s + K`, bordered by the
+//! constraints, expanded by minors.
 
 use super::parts::{Coefficients, rank};
 use super::rest::vanishes;
@@ -11,29 +11,30 @@ use crate::expr::{Expr, Node, Symbol};
 use crate::mechanism::{Model, Rule};
 use std::collections::BTreeMap;
 
-/// Most velocities whose polynomial is written.
+/// Maximum number of velocities of mechanisms whose polynomial is printed.
 const VELOCITIES: usize = 3;
-/// Most rows, with constraints and states.
+/// Maximum number of rows, including constraints and states.
 const ROWS: usize = 6;
-/// Most terms of all coefficients.
+/// Maximum number of terms of all coefficients.
 const TERMS: usize = 120;
 
 /// A characteristic polynomial.
 pub struct Characteristic {
-    /// The atoms.
+    /// Ring of all polynomials.
     pub ring: Ring,
-    /// Coefficients by power, the last not zero.
+    /// Coefficients in ascending powers of the root. The last one is not zero.
     pub coefficients: Vec<Polynomial>,
-    /// The forces are those of a potential: its roots are squares of real and of imaginary numbers.
+    /// True if the forces derive from a potential. The squares of the roots are then real.
     pub conservative: bool,
-    /// Parameters that are masses, or otherwise positive.
+    /// Parameters that are masses or otherwise required to be positive.
     pub positive: Vec<Symbol>,
 }
 
-/// A polynomial of the root, by power.
+/// A polynomial in the root: its coefficients in ascending powers.
 type OfRoot = Vec<Polynomial>;
 
-/// The polynomial of few velocities; `None` of more, and where it is too long.
+/// Returns the characteristic polynomial. `None` if the mechanism has too many velocities or the polynomial
+/// is too long.
 pub fn of<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristic> {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let rows = all.inputs.len();
@@ -75,7 +76,7 @@ pub fn of<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristi
     })
 }
 
-/// Parameters that are masses or must be positive otherwise.
+/// Returns the parameters that are masses or otherwise required to be positive.
 fn positive(model: &Model<'_>) -> Vec<Symbol> {
     let mut found = Vec::new();
     for requirement in &model.requirements {
@@ -88,7 +89,7 @@ fn positive(model: &Model<'_>) -> Vec<Symbol> {
     found
 }
 
-/// Nothing is damped, and the stiffness is symmetric.
+/// Returns true if there is no damping and the stiffness is symmetric. `None` beyond the limits of the ring.
 fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut Normal<'g>) -> Option<bool> {
     let nv = model.nv();
     let [stiffness, damping, _] = &all.orders;
@@ -111,7 +112,7 @@ fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut N
     Some(true)
 }
 
-/// The determinant, from the minors of the last rows.
+/// Returns the determinant of a matrix of polynomials, built up from minors of its last rows.
 fn determinant(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
     let n = matrix.len();
     let mut minors: BTreeMap<u32, OfRoot> = BTreeMap::from([(0, vec![Polynomial::number(1.0)])]);
@@ -122,7 +123,7 @@ fn determinant(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
                 if entry.iter().all(|p| p.terms.is_empty()) {
                     continue;
                 }
-                // How many of the other columns stand before this one.
+                // Number of the other columns before this one.
                 let before = (columns & ((1 << c) - 1)).count_ones();
                 let sign = if before % 2 == 0 { 1.0 } else { -1.0 };
                 let sum = next.entry(columns | (1 << c)).or_default();

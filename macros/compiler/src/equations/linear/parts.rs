@@ -1,40 +1,42 @@
-//! What all parts of linear equations go by: which symbols stand for what, their rows, and their coefficients.
+//! Symbols, rows and coefficients of linear equations.
 
 use crate::algebra::polynomial::Rank;
 use crate::expr::{Expr, Symbol};
 use crate::mechanics::crba::Matrix;
 use crate::mechanism::{Equilibrium, Model, Quantity};
 
-/// The deviation of what a velocity is the rate of; after those of all velocities those of states.
+/// Returns the symbol of a deviation: of the coordinate whose rate is velocity `k`; after these, of the
+/// states.
 pub fn deviation(k: usize) -> Quantity {
     Quantity::Given(k)
 }
 
-/// The multiplier of a constraint, at rest or its deviation.
+/// Returns the symbol of the multiplier of a constraint, at rest or as a deviation.
 pub fn multiplier(k: usize) -> Quantity {
     Quantity::Force(k)
 }
 
-/// What the roots of the characteristic polynomial are called.
+/// Symbol of the roots of the characteristic polynomial.
 pub const ROOT: Quantity = Quantity::Time;
 
-/// Coefficients of the linear equations, at rest.
+/// Coefficients of the linear equations, evaluated at rest.
 pub struct Coefficients<'g> {
-    /// By row: of the deviations, of their rates, and of the rates of these.
+    /// Coefficients of the deviations, of their first and of their second derivatives, by row.
     pub orders: [Matrix<'g>; 3],
-    /// By row, of the inputs.
+    /// Coefficients of the inputs, by row.
     pub inputs: Matrix<'g>,
-    /// By row, of the multipliers.
+    /// Coefficients of the multipliers, by row.
     pub multipliers: Matrix<'g>,
 }
 
-/// By row of the linear equations, what is zero or balanced in every motion.
+/// Returns the expression behind each row of the linear equations: force balances, residuals or rates of the
+/// constraints, and negative rates of the states.
 pub fn rows<'g>(model: &Model<'g>, balance: &[Expr<'g>], at: &Equilibrium<'g>) -> Vec<Expr<'g>> {
     let kept = model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate));
     balance.iter().copied().chain(kept).chain(at.states.iter().map(|state| -state.rate)).collect()
 }
 
-/// Where the symbols of linear equations stand in a product.
+/// Returns the rank of a symbol of the linear equations, which determines its position in a printed product.
 pub fn rank(symbol: Symbol) -> Rank {
     match Quantity::of(symbol) {
         Quantity::Given(_) => Rank::Position,

@@ -1,5 +1,6 @@
-//! Whether a declared equilibrium is one: constraints are fulfilled, states do not change, the multipliers balance what they
-//! can, and no force is left. What is left is proven to be zero as a polynomial, or tried in numbers for the parameters.
+//! Checks that a declared state is an equilibrium: constraints are satisfied, states are constant, and with
+//! suitable multipliers the forces balance. Residuals are proven to be zero as polynomials, or tested
+//! numerically at random parameters.
 
 use super::parts::{Coefficients, deviation, multiplier, rows as linear_rows};
 use crate::algebra::factor::without_noise;
@@ -15,14 +16,14 @@ use crate::expr::sample::sample;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity};
 
-/// Random parameters that are tried, until there are enough for which everything is finite.
+/// Maximum number of random parameter sets that are tried.
 const TRIALS: u64 = 400;
-/// How many are enough.
+/// Required number of parameter sets for which all values are finite.
 const ENOUGH: usize = 6;
-/// What is left of terms that cancel.
+/// Relative magnitude below which the sum of cancelling terms counts as rounding error.
 const ROUNDING: f64 = 1e-10;
 
-/// Characters of a message that print a force; more are cut off.
+/// Maximum number of characters of a force in an error message. Longer texts are cut off.
 const MAX_FORCE_CHARACTERS: usize = 100;
 
 /// The state at rest.
@@ -43,7 +44,7 @@ impl<'g> Rest<'g> {
         }
     }
 
-    /// Expressions at rest.
+    /// Evaluates expressions at rest.
     pub fn of(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero = |e: &Expr<'g>| Some(e.zero());
         let first = e.first();
@@ -60,10 +61,11 @@ impl<'g> Rest<'g> {
         })
     }
 
-    /// Everything that may differ from zero.
+    /// Returns the coordinates, inputs, states and multipliers that may differ from zero, with their values
+    /// at rest.
     pub fn values(&self, model: &Model<'g>, at: &Equilibrium<'g>) -> Vec<(Quantity, Expr<'g>)> {
         let nv = model.nv();
-        // Of orientations along the axes nothing is said.
+        // Identity orientations are not printed.
         let lasts: Vec<usize> = quaternions(model).map(|first| first + 3).collect();
         let is_plain = |k: &usize| !lasts.contains(k) || self.configuration[*k].value() != Some(1.0);
         let all = (0..self.configuration.len()).filter(is_plain);
@@ -78,10 +80,10 @@ impl<'g> Rest<'g> {
     }
 }
 
-/// What is wrong, and what to do about it.
+/// Error message and advice.
 type Refusal = (String, &'static str);
 
-/// Checks an equilibrium, and finds its multipliers. `None` with the reason in `cx`.
+/// Checks an equilibrium and determines its multipliers. `None` with an error in `cx` if it is not one.
 pub fn check<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
@@ -145,7 +147,7 @@ fn checked<'g>(
     Ok(rest)
 }
 
-/// Constraints are fulfilled and stay so at rest, and states do not change.
+/// Checks that the constraints are satisfied and remain so at rest, and that the states are constant.
 fn check_kept<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
@@ -182,7 +184,7 @@ fn check_kept<'g>(
     Ok(())
 }
 
-/// The first component of a quaternion that is none of a unit.
+/// Returns the index of the first component of a quaternion whose length is not one, if any.
 fn not_unit<'g>(model: &Model<'g>, rest: &Rest<'g>, normal: &mut Normal<'g>) -> Option<usize> {
     quaternions(model).find(|q| {
         let components = &rest.configuration[*q..q + 4];
@@ -191,12 +193,12 @@ fn not_unit<'g>(model: &Model<'g>, rest: &Rest<'g>, normal: &mut Normal<'g>) -> 
     })
 }
 
-/// The first components of all quaternions.
+/// Returns the indices of the first components of all quaternions.
 fn quaternions(model: &Model<'_>) -> impl Iterator<Item = usize> {
     model.charts.iter().filter_map(Chart::quaternion).map(|first| first.0)
 }
 
-/// Whether an expression of the parameters is always zero; otherwise what is left, as text.
+/// Checks that an expression of the parameters is always zero. The error is the nonzero remainder as text.
 fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Result<(), String> {
     let p = normal.of(e).map(|p| without_noise(&normal.ring, &p));
     let Some(p) = p.and_then(|p| simplified(&mut normal.ring, &p)) else {
@@ -216,7 +218,7 @@ fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Resul
     })
 }
 
-/// Whether a polynomial is zero for all parameters: its terms are gone, or cancel in numbers.
+/// Whether a polynomial is zero for all parameters: it has no terms, or its terms cancel numerically.
 pub fn vanishes(ring: &Ring, p: &Polynomial) -> bool {
     let parts: Vec<Polynomial> = p.terms.iter().map(|t| Polynomial { terms: vec![*t] }).collect();
     let relative = |seed: u64| {
@@ -232,17 +234,18 @@ pub fn vanishes(ring: &Ring, p: &Polynomial) -> bool {
     found.len() >= ENOUGH && found.iter().all(|part| part.abs() < ROUNDING)
 }
 
-/// Finite values at random parameters, as many as are enough.
+/// Returns the first [`ENOUGH`] finite values at random parameters, or fewer if not enough are finite.
 pub fn trials(value: impl Fn(u64) -> Option<f64>) -> Vec<f64> {
     (0..TRIALS).filter_map(value).filter(|value| value.is_finite()).take(ENOUGH).collect()
 }
 
-/// A positive number for a parameter; later ones are further from one.
+/// Returns a random positive value for a parameter. Values of later seeds deviate further from one.
 pub fn parameter(s: Symbol, seed: u64) -> f64 {
     sample(s, seed).powi(1 + (seed / 20).min(6) as i32)
 }
 
-/// A function with a corner or a jump, or one whose derivative is not finite, at its argument at rest.
+/// Returns the name of a function whose argument at rest is at a kink, a jump, or a point with an infinite
+/// derivative.
 fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     let graph = e.first()?.graph();
     let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
@@ -276,7 +279,8 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     suspects.iter().zip(&values).find(|(_, value)| touches(value)).map(|((name, _), _)| *name)
 }
 
-/// The multipliers, and the balance of forces with them. `None` where constraints depend on each other.
+/// Returns the multipliers, and the residuals of the force balance with them. `None` if constraints are
+/// linearly dependent.
 fn solved<'g>(
     model: &Model<'g>,
     rest: &Rest<'g>,
@@ -293,7 +297,7 @@ fn solved<'g>(
     let right = without.of(balance);
     let jacobian: Vec<Vec<Expr<'g>>> =
         crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.of(row)).collect();
-    // Rows: Jᵀ λ = what is to be balanced.
+    // Rows: Jᵀ λ = force to be balanced.
     let mut rows: Vec<Vec<Expr<'g>>> =
         (0..model.nv()).map(|k| jacobian.iter().map(|row| row[k]).chain([right[k]]).collect()).collect();
     let mut left: Vec<usize> = (0..rows.len()).collect();
@@ -320,7 +324,7 @@ fn solved<'g>(
     Some((multipliers, left.iter().map(|row| rows[*row][count]).collect()))
 }
 
-/// The least size of an expression of the parameters at a few of their values.
+/// Returns the minimum magnitude of an expression over several random values of the parameters.
 fn size(e: Expr<'_>) -> f64 {
     let tape = Tape::of(&[e]);
     trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]))
@@ -329,9 +333,9 @@ fn size(e: Expr<'_>) -> f64 {
         .fold(f64::MAX, f64::min)
 }
 
-/// Why coefficients are not finite numbers.
+/// Returns a reason why coefficients are not finite, `None` if they are.
 pub fn unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
-    /// What is divided by nothing but what keeps it from being infinite.
+    /// Larger values result from a division by [`TINY`] alone.
     const HUGE: f64 = 1e-6 / TINY;
     let entries: Vec<Expr<'_>> =
         all.orders.iter().chain([&all.inputs, &all.multipliers]).flatten().flatten().copied().collect();

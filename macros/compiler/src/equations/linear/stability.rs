@@ -1,8 +1,9 @@
-//! What a characteristic polynomial says: roots that are zero, the frequency of a single oscillation, and the conditions under
-//! which deviations stay small. With odd powers the conditions are those of Routh and Hurwitz in the form of Liénard and
-//! Chipart (Gantmacher, *The Theory of Matrices*, vol. 2, 1959, ch. XV, § 13), without odd powers that the squares of the
-//! roots are real, negative and distinct: positive coefficients and a positive discriminant. Where forces have a potential
-//! those squares are real, and need not be distinct (Lagrange and Dirichlet).
+//! Stability analysis from the characteristic polynomial: zero roots, the frequency of a single oscillation,
+//! and the conditions for bounded deviations. With odd powers, the conditions are those of Routh and Hurwitz
+//! in the form of Liénard and Chipart (Gantmacher, *The Theory of Matrices*, vol. 2, 1959, ch. XV, § 13).
+//! Without odd powers, the squares of the roots must be real, negative and distinct, for which the
+//! coefficients and the discriminant must be positive. If the forces have a potential, these squares are
+//! always real and need not be distinct (Lagrange and Dirichlet).
 
 use super::characteristic::Characteristic;
 use super::parts::ROOT;
@@ -11,43 +12,43 @@ use crate::algebra::normal::inverse;
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
 use crate::expr::{Function, Symbol};
 
-/// What a characteristic polynomial says.
+/// Stability properties of an equilibrium.
 pub struct Stability {
-    /// The atoms.
+    /// Ring of all polynomials.
     pub ring: Ring,
-    /// The polynomial by power, without common factors of its coefficients.
+    /// Coefficients of the characteristic polynomial in ascending powers, without common factors.
     pub coefficients: Vec<Polynomial>,
-    /// Parameters that it was divided by: they are taken to be positive.
+    /// Parameters that the polynomial was divided by, which are assumed to be positive.
     pub divided: Vec<Symbol>,
-    /// How often zero is a root.
+    /// Multiplicity of the root zero.
     pub zeros: usize,
-    /// The frequency, if there is one oscillation and nothing else.
+    /// The frequency, rad/s, if all nonzero roots belong to one undamped oscillation.
     pub frequency: Option<Polynomial>,
-    /// Whether deviations stay small, beside the roots that are zero.
+    /// Stability with respect to the nonzero roots.
     pub verdict: Verdict,
 }
 
-/// Whether deviations stay small.
+/// Stability with respect to the nonzero roots of the characteristic polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// They die away where all of these are positive.
+    /// Asymptotically stable if all of these polynomials are positive.
     Asymptotic(Vec<Polynomial>),
-    /// They oscillate and stay small where all of these are positive.
+    /// Stable if all of these polynomials are positive: deviations oscillate and remain bounded.
     Oscillation(Vec<Polynomial>),
-    /// Some do not die away, whatever the parameters are.
+    /// Not asymptotically stable for any parameters.
     NotAsymptotic,
-    /// Some grow, whatever the parameters are.
+    /// Unstable for any parameters.
     Unstable,
-    /// All other roots are zero.
+    /// There are no nonzero roots.
     Nothing,
     /// The conditions are too long.
     Long,
 }
 
-/// Most terms of all conditions.
+/// Maximum number of terms of all conditions.
 const TERMS: usize = 120;
 
-/// What a polynomial says; `None` where the sign of its first coefficient depends on the parameters.
+/// Analyses the stability. `None` if the sign of the leading coefficient depends on the parameters.
 pub fn of(c: Characteristic) -> Option<Stability> {
     let Characteristic { mut ring, mut coefficients, conservative, positive: known } = c;
     let mut positive = known.clone();
@@ -78,7 +79,8 @@ pub fn of(c: Characteristic) -> Option<Stability> {
     Some(Stability { ring, coefficients, divided, zeros, frequency, verdict })
 }
 
-/// Divides by what all coefficients have in common, and by a sign: even powers, and parameters that are returned.
+/// Divides all coefficients by their common monomial and by a sign. Returns the parameters that the common
+/// monomial contains to an odd power, which are assumed to be positive.
 fn divide(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol> {
     let sign = sign / whole(coefficients.iter());
     let mut terms = coefficients.iter().flat_map(|p| &p.terms).map(|t| t.monomial);
@@ -101,7 +103,7 @@ fn divide(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol
     odd
 }
 
-/// `sqrt(last / first)`.
+/// Returns the frequency `sqrt(last / first)`.
 fn frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> Option<Polynomial> {
     let inverse = inverse(ring, first)?;
     let square = ring.times(last, &inverse)?;
@@ -111,11 +113,12 @@ fn frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> Option<P
     Some(Polynomial::single(ring.atom(Atom::Call(Function::Sqrt, square))?, 1.0))
 }
 
-/// Liénard and Chipart: every other coefficient, and every other of Hurwitz's determinants.
+/// Returns the conditions of Liénard and Chipart: every other coefficient and every other Hurwitz determinant
+/// is positive.
 fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verdict {
     let n = rest.len() - 1;
     let mut conditions: Vec<Polynomial> = rest.iter().step_by(2).take(n.div_ceil(2)).cloned().collect();
-    // The determinants of the orders n − 1, n − 3, …
+    // Determinants of orders n − 1, n − 3, …
     let mut orders: Vec<usize> = (1..n).rev().step_by(2).collect();
     orders.reverse();
     if n == 1 {
@@ -130,10 +133,10 @@ fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verd
     settled(conditions, Verdict::Asymptotic, ring, positive)
 }
 
-/// Hurwitz's determinant of an order.
+/// Returns the Hurwitz determinant of an order. `None` beyond the limits of the ring.
 fn hurwitz(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Option<Polynomial> {
     let n = rest.len() - 1;
-    // Row i, column j, from one: the coefficient of s^(n − (2 i − j)).
+    // Row i, column j, counted from one: the coefficient of s^(n − (2 i − j)).
     let entry = |i: usize, j: usize| (2 * i).checked_sub(j).and_then(|k| n.checked_sub(k));
     let rows: Vec<Vec<Polynomial>> = (1..=order)
         .map(|i| {
@@ -143,7 +146,7 @@ fn hurwitz(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Option<Polynom
     minor(&rows, ring)
 }
 
-/// A determinant, by its first row.
+/// Returns a determinant, expanded along its first row.
 fn minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
     let Some((first, others)) = rows.split_first() else { return Some(Polynomial::number(1.0)) };
     let mut sum = Polynomial::default();
@@ -159,7 +162,7 @@ fn minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
     Some(sum)
 }
 
-/// The squares of the roots are real, negative and distinct.
+/// Returns the conditions that the squares of the roots are real, negative and distinct.
 fn oscillation(rest: &[Polynomial], conservative: bool, ring: &mut Ring, positive: &[Symbol]) -> Verdict {
     let squares: Vec<Polynomial> = rest.iter().step_by(2).cloned().collect();
     let mut conditions = squares[..squares.len() - 1].to_vec();
@@ -172,7 +175,7 @@ fn oscillation(rest: &[Polynomial], conservative: bool, ring: &mut Ring, positiv
     settled(conditions, Verdict::Oscillation, ring, positive)
 }
 
-/// The discriminant of a polynomial of the second or third degree.
+/// Returns the discriminant of a quadratic or cubic polynomial, `None` for other degrees.
 fn discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
     let mut product = |factor: f64, parts: &[usize]| {
         let one = Polynomial::number(factor);
@@ -196,7 +199,7 @@ fn discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
     Some(sum)
 }
 
-/// Conditions without those that always hold; another verdict where one never does.
+/// Removes conditions that always hold. Returns another verdict if a condition never holds.
 fn settled(
     conditions: Vec<Polynomial>,
     verdict: fn(Vec<Polynomial>) -> Verdict,
@@ -225,7 +228,7 @@ fn settled(
     }
 }
 
-/// True for a sum of positive terms.
+/// Returns true if all terms of a polynomial are positive.
 fn is_positive(p: &Polynomial, ring: &Ring, positive: &[Symbol]) -> bool {
     let good = |(atom, power): (usize, u8)| power % 2 == 0 || is_positive_atom(ring, atom, positive);
     !p.terms.is_empty() && p.terms.iter().all(|t| t.coefficient > 0.0 && t.monomial.factors().all(good))
@@ -240,7 +243,8 @@ fn is_positive_atom(ring: &Ring, atom: usize, positive: &[Symbol]) -> bool {
     }
 }
 
-/// A condition without positive factors: of what is left as a product with a sum that has one sign, the sign alone stays.
+/// Removes positive factors from a condition. If the remaining sum has a definite sign and other factors
+/// remain, only the sign is retained.
 fn reduced(p: &Polynomial, ring: &mut Ring, positive: &[Symbol]) -> Option<Polynomial> {
     let p = without_even_divisors(std::slice::from_ref(p), ring)?.pop()?;
     let Some(common) = common(&p) else { return Some(p) };
@@ -258,19 +262,20 @@ fn reduced(p: &Polynomial, ring: &mut Ring, positive: &[Symbol]) -> Option<Polyn
     Some(scaled_to_whole(&over(&p, divisor), 1.0 / whole([&p])))
 }
 
-/// The monomial that all terms have in common.
+/// Returns the common monomial of all terms, `None` for zero.
 fn common(p: &Polynomial) -> Option<Monomial> {
     let first = p.terms.first()?;
     Some(p.terms.iter().fold(first.monomial, |m, t| m.common(t.monomial)))
 }
 
-/// A quotient.
+/// Divides a polynomial by a monomial.
 fn over(p: &Polynomial, divisor: Monomial) -> Polynomial {
     let divided = |t: &Term| Term { monomial: t.monomial.over(divisor), ..*t };
     Polynomial::sum(p.terms.iter().map(divided).collect())
 }
 
-/// The size of the least coefficient if all others are whole multiples of it; otherwise one.
+/// Returns the minimum magnitude of the coefficients if all of them are integer multiples of it, otherwise
+/// one.
 fn whole<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
     let sizes: Vec<f64> = all.into_iter().flat_map(|p| &p.terms).map(|t| t.coefficient.abs()).collect();
     let least = sizes.iter().copied().fold(f64::MAX, f64::min);
@@ -278,7 +283,7 @@ fn whole<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
     if sizes.iter().all(is_whole) { least } else { 1.0 }
 }
 
-/// Multiplied by a number; whole numbers are rounded to such.
+/// Multiplies a polynomial by a number, and rounds coefficients that are integers up to rounding error.
 fn scaled_to_whole(p: &Polynomial, factor: f64) -> Polynomial {
     let scale = |t: &Term| {
         let coefficient = t.coefficient * factor;
@@ -289,7 +294,7 @@ fn scaled_to_whole(p: &Polynomial, factor: f64) -> Polynomial {
     Polynomial { terms: p.terms.iter().map(scale).collect() }
 }
 
-/// All multiplied by the even powers of atoms that some of them are divided by.
+/// Multiplies all polynomials by the even powers of atoms that occur in their denominators.
 fn without_even_divisors(all: &[Polynomial], ring: &mut Ring) -> Option<Vec<Polynomial>> {
     let mut out = all.to_vec();
     for k in 0..ring.atoms.len() {

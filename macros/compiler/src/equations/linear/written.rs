@@ -1,4 +1,4 @@
-//! Linear equations as text, plain and typeset, in the user's own names.
+//! Formats linear equations as plain text, LaTeX and MathML, with the user's names.
 
 use super::super::written::{filled, name as name_of, names_with, rates};
 use super::Linear;
@@ -13,18 +13,18 @@ use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
 
-/// Columns of text.
+/// Maximum number of columns of equations in the text.
 const WIDTH: usize = 100;
-/// What the roots are called, in this order of preference.
+/// Names of the roots, in order of preference.
 const ROOTS: [&str; 4] = ["s", "r", "sigma", "root"];
-/// What the frequency is called.
+/// Names of the natural frequency, in order of preference.
 const FREQUENCIES: [&str; 3] = ["omega", "omega_n", "frequency"];
 
-/// Names of everything that linear equations contain.
+/// Names of all symbols of linear equations.
 struct Words<'a, 'g> {
     model: &'a Model<'g>,
     at: &'a Equilibrium<'g>,
-    /// By velocity.
+    /// Name of the deviation that belongs to each velocity.
     deviations: Vec<String>,
     root: String,
     frequency: String,
@@ -46,7 +46,7 @@ impl<'a, 'g> Words<'a, 'g> {
         Words { model, at, deviations: deviations(model), root: free(&ROOTS), frequency: free(&FREQUENCIES) }
     }
 
-    /// The name of a symbol, and the rate of what it is.
+    /// Returns the name of a symbol, and how often the quantity of this name is differentiated.
     fn name(&self, symbol: Symbol) -> (String, u8) {
         let nv = self.deviations.len();
         let state = |k: usize| {
@@ -66,8 +66,8 @@ impl<'a, 'g> Words<'a, 'g> {
     }
 }
 
-/// By velocity, the name of the deviation of what it is the rate of: that of the coordinate, or those of a small
-/// displacement and a small rotation in body axes.
+/// Returns for each velocity the name of the deviation whose rate it is: the name of the coordinate, or names
+/// for a small displacement and a small rotation in body axes.
 fn deviations(model: &Model<'_>) -> Vec<String> {
     let mut names: Vec<String> = model.velocities.iter().map(|(name, _)| name.clone()).collect();
     let joint = |name: &str| name.rsplit_once('.').map_or(String::new(), |(joint, _)| format!("{joint}."));
@@ -88,7 +88,7 @@ fn deviations(model: &Model<'_>) -> Vec<String> {
     names
 }
 
-/// What is written of linear equations, in one style.
+/// Printed linear equations in one style.
 struct Lines {
     /// Both sides of every equation.
     equations: Vec<(String, String)>,
@@ -127,7 +127,7 @@ impl Lines {
     }
 }
 
-/// The characteristic polynomial as one of its root.
+/// Returns the characteristic polynomial as one polynomial in its root.
 fn in_one(stability: &Stability) -> Polynomial {
     let root = stability.ring.atoms.iter().position(|atom| *atom == Atom::Symbol(ROOT.symbol()));
     let root = root.map_or(Monomial::ONE, Monomial::atom);
@@ -141,7 +141,7 @@ fn in_one(stability: &Stability) -> Polynomial {
     Polynomial::sum(terms)
 }
 
-/// Linear equations in all ways of writing.
+/// Formats linear equations as plain text, LaTeX and MathML.
 pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
     let words = Words::new(model, at);
     let marked = |symbol| primed(words.name(symbol));
@@ -187,7 +187,7 @@ fn plain(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
     out + &legend(words) + "\n"
 }
 
-/// What stands before the characteristic equation.
+/// Returns the sentence before the characteristic equation.
 fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
     let root = &words.root;
     let divided: Vec<String> = stability.divided.iter().map(|s| words.name(*s).0).collect();
@@ -202,7 +202,7 @@ fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
     }
 }
 
-/// What stands before the conditions.
+/// Returns the sentence before the stability conditions.
 fn verdict(stability: &Stability) -> &'static str {
     match &stability.verdict {
         Verdict::Asymptotic(all) if all.is_empty() => "Asymptotically stable: all deviations die away.",
@@ -216,7 +216,7 @@ fn verdict(stability: &Stability) -> &'static str {
     }
 }
 
-/// What is said of roots that are zero.
+/// Returns the sentence about zero roots.
 fn about_zeros(words: &Words<'_, '_>, stability: &Stability) -> String {
     let root = &words.root;
     match stability.zeros {
@@ -227,7 +227,7 @@ fn about_zeros(words: &Words<'_, '_>, stability: &Stability) -> String {
     }
 }
 
-/// What the names mean.
+/// Returns sentences that explain the notation.
 fn legend(words: &Words<'_, '_>) -> String {
     let model = words.model;
     let primes = rates(model).iter().any(|plain| *plain);
@@ -270,7 +270,7 @@ fn legend(words: &Words<'_, '_>) -> String {
     filled(&sentences.join(" "))
 }
 
-/// What is written, a line each.
+/// Returns all printed equations and conditions, one per string.
 fn equations(lines: &Lines, frequency: &str) -> Vec<String> {
     let mut all: Vec<String> =
         lines.equations.iter().map(|(motion, force)| format!("{motion} = {force}")).collect();

@@ -1,21 +1,23 @@
-//! LaTeX in lines that fit a page: equations one below the other, broken before the signs of their outermost sums.
+//! Line breaking of LaTeX: equations in lines that fit a page, broken before the signs of their outermost
+//! sums.
 
 use std::iter::Peekable;
 use std::str::Chars;
 
-/// Room of a line, in tenths of a character: about the width of a page of letters.
+/// Width of a line, in tenths of a character: about the width of letter paper.
 const ROOM: usize = 1000;
-/// A side of an equation that is not put on a line of its own.
+/// Sides of equations up to this width get no line of their own.
 const SHORT: usize = 240;
-/// What continues a line.
+/// Start of a continuation line.
 const INDENT: &str = "\\quad {} ";
-/// Its width.
+/// Width of [`INDENT`].
 const INDENTED: usize = 30;
 
-/// Equations as an `aligned` environment of `amsmath`, a line each or several, from the left: aligned at their signs of equality,
-/// the long side of one would begin where that of another ends.
+/// Formats equations as an `aligned` environment of `amsmath`, one or several lines each. The lines are
+/// aligned at the left: with alignment at the equals signs, the long side of one equation would begin where
+/// that of another ends.
 pub fn aligned(lines: &[String]) -> String {
-    // At the start of a column a sign would be that of a difference.
+    // At the start of a column a minus sign would be typeset as a binary operator.
     let first = |text: &str| text.strip_prefix('-').map_or(text.to_string(), |rest| format!("{{-}}{rest}"));
     let broken = |line: &String| {
         let parts = broken(line);
@@ -29,14 +31,14 @@ pub fn aligned(lines: &[String]) -> String {
 
 /// A part of a line that begins at a sign.
 struct Part {
-    /// Its end in the line.
+    /// End of the part in the line.
     end: usize,
-    /// How many parentheses its first sign stands in.
+    /// Nesting depth of parentheses at its first sign.
     depth: usize,
     width: usize,
 }
 
-/// A line in parts that have room on a page.
+/// Breaks an equation into lines that fit the page.
 fn broken(line: &str) -> Vec<&str> {
     let parts = parts(line);
     let total: usize = parts.iter().map(|part| part.width).sum();
@@ -57,11 +59,12 @@ fn broken(line: &str) -> Vec<&str> {
     lines
 }
 
-/// The part to begin a line with: the last one of the least depth within the room, the next one if there is none.
+/// Returns the index of the part that begins the next line: the last one of minimum depth that fits, or the
+/// next one if none fits.
 fn break_before(parts: &[Part], from: usize, room: usize, left: usize) -> Option<usize> {
     let (mut taken, mut best) = (0, None::<usize>);
     for (k, part) in parts.iter().enumerate().skip(from) {
-        // A short side is not worth a line.
+        // A short side gets no line of its own.
         let near = taken <= SHORT || left - taken <= SHORT;
         if k > from && !near && best.is_none_or(|b| part.depth <= parts[b].depth) {
             best = Some(k);
@@ -74,7 +77,7 @@ fn break_before(parts: &[Part], from: usize, room: usize, left: usize) -> Option
     best
 }
 
-/// The parts of a line between signs outside of braces and of parentheses that grow.
+/// Splits a line before signs that are outside of braces and of `\left` … `\right`.
 fn parts(line: &str) -> Vec<Part> {
     let mut parts = Vec::new();
     let (mut braces, mut grown, mut depth, mut start, mut at_depth) = (0_usize, 0_usize, 0_usize, 0, 0);
@@ -104,7 +107,7 @@ fn parts(line: &str) -> Vec<Part> {
     parts
 }
 
-/// About the width of a formula, in tenths of a character.
+/// Estimates the width of a formula, in tenths of a character.
 fn width(text: &str) -> usize {
     let mut chars = text.chars().peekable();
     let mut sum = 0;
@@ -114,7 +117,7 @@ fn width(text: &str) -> usize {
     sum
 }
 
-/// What stands up to a closing brace.
+/// Returns the width of the characters up to the closing brace.
 fn group(chars: &mut Peekable<Chars<'_>>) -> usize {
     let mut sum = 0;
     while let Some(c) = chars.next() {
@@ -131,7 +134,7 @@ fn group(chars: &mut Peekable<Chars<'_>>) -> usize {
     sum
 }
 
-/// A group in braces, or one character.
+/// Returns the width of a group in braces or of a single character.
 fn script(chars: &mut Peekable<Chars<'_>>) -> usize {
     match chars.next() {
         Some('{') => group(chars),
@@ -179,7 +182,7 @@ mod tests {
         assert!(lines.len() > 1 && lines.concat().replace(' ', "") == long.replace(' ', ""), "{lines:?}");
         assert!(lines.iter().all(|line| width(line) <= 1000), "{lines:?}");
         assert!(lines[1..].iter().all(|line| line.starts_with("+ a") || line.starts_with("= ")), "{lines:?}");
-        // Within parentheses that do not grow only where nothing else is left.
+        // Breaks within parentheses of fixed size occur only if there are no outer signs.
         let inner = format!("m\\,({}) = 0", ["x\\,y\\,z"; 40].join(" - "));
         assert!(broken(&inner).len() > 1);
         assert_eq!(parts("a + (b - c) = d").iter().map(|p| p.depth).collect::<Vec<_>>(), [0, 0, 1, 0]);

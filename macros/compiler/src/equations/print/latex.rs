@@ -1,17 +1,17 @@
-//! LaTeX, for its math mode with `amsmath`.
+//! LaTeX output for math mode with `amsmath`.
 
 use super::names::{Glyph, Name};
 use super::style::{Argument, Factor, Number, Style};
 use crate::expr::node::Symbol;
 
-/// LaTeX, with names for symbols and how many dots stand above them: `\tfrac{1}{3}\,m\,l^{2}\,\cos\theta`.
+/// LaTeX style, with names and dots for symbols: `\tfrac{1}{3}\,m\,l^{2}\,\cos\theta`.
 #[derive(Clone, Copy)]
 pub struct Latex<'a> {
-    /// Name of a symbol, and its dots.
+    /// Returns the name of a symbol and its number of dots.
     pub name: &'a dyn Fn(Symbol) -> (Name, u8),
 }
 
-/// The space between factors.
+/// Space between factors.
 const SPACE: &str = "\\,";
 
 impl Style for Latex<'_> {
@@ -64,7 +64,7 @@ impl Style for Latex<'_> {
             ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "exp" | "ln", _) => format!("\\{function}"),
             _ => format!("\\operatorname{{{function}}}"),
         };
-        // A word alone would run together with the next one.
+        // A word gets parentheses: without them it would run into the next word.
         if let [Argument { text, lone: true }] = arguments
             && !["\\mathrm", "\\dot{\\mathrm"].iter().any(|word| text.starts_with(word))
         {
@@ -74,7 +74,7 @@ impl Style for Latex<'_> {
         }
         let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
         let arguments = fenced(&arguments.join(", "));
-        // `\left` would stand off like a factor.
+        // Without the negative space, `\left` would be spaced like a factor.
         let gap = if arguments.starts_with("\\left") { "\\!" } else { "" };
         format!("{head}{power}{gap}{arguments}")
     }
@@ -84,7 +84,7 @@ impl Style for Latex<'_> {
             let number = number.map(|n| self.number(&n));
             return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(SPACE);
         }
-        // A fraction is not put on another one.
+        // A fraction is not placed in the numerator of another one.
         let small = matches!(&number, Some(Number::Fraction(_, q) | Number::Root(_, q, _)) if *q != 1)
             || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
         let number = number.map(|n| self.number(&n));
@@ -95,7 +95,7 @@ impl Style for Latex<'_> {
     }
 }
 
-/// One side of a fraction.
+/// Formats the numerator or denominator of a fraction.
 fn over(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
     let first: Vec<String> = first.collect();
     match (first.as_slice(), factors) {
@@ -112,7 +112,8 @@ fn factor(factor: &Factor) -> String {
     }
 }
 
-/// In parentheses as high as what is in them. `\left` is the last resort, since it stands off from its neighbours.
+/// Puts a text in parentheses of matching height. `\left` is only used for the tallest texts, since it adds
+/// space around the parentheses.
 fn fenced(text: &str) -> String {
     let has = |parts: &[&str]| parts.iter().any(|part| text.contains(part));
     if has(&["\\frac", "\\left", "\\sqrt", "\\bigl"]) {
@@ -128,7 +129,7 @@ fn exponent(power: u8) -> String {
     if power == 1 { String::new() } else { format!("^{{{power}}}") }
 }
 
-/// A name with dots above it.
+/// Formats a name with dots above it.
 pub fn spelled(name: &Name, dots: u8) -> String {
     let base = glyph(&name.base);
     let base = match dots {

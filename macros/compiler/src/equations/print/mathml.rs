@@ -1,27 +1,29 @@
-//! Presentation MathML, which browsers set without scripts. Browsers do not break formulas: every term of a sum is one of its
-//! own, so that lines are broken between them.
+//! Presentation MathML, which browsers render without scripts. Browsers do not break formulas. Every term of
+//! a sum is therefore a formula of its own, with line breaks between them.
 
 use super::names::{Glyph, Name};
 use super::style::{Argument, Factor, Number, Style};
 use crate::expr::node::Symbol;
 
-/// MathML, with names for symbols and how many dots stand above them.
+/// MathML style, with names and dots for symbols.
 #[derive(Clone, Copy)]
 pub struct MathMl<'a> {
-    /// Name of a symbol, and its dots.
+    /// Returns the name of a symbol and its number of dots.
     pub name: &'a dyn Fn(Symbol) -> (Name, u8),
 }
 
-/// Places before signs where a line may be broken: in no parentheses, in one pair of them, in two.
+/// Marks of possible line breaks before signs: outside of parentheses, in one pair of parentheses, in two
+/// pairs.
 const BREAKS: [char; 3] = ['\u{1}', '\u{2}', '\u{3}'];
-/// What is wider than so many characters is broken within parentheses as well.
+/// Formulas of more than this number of characters are also broken within parentheses.
 const WIDE: usize = 36;
-/// The product of two factors.
+/// Operator between two factors.
 const TIMES: &str = "<mo rspace=\".17em\">\u{2062}</mo>";
-/// A function of an argument without parentheses.
+/// Operator between a function and an argument without parentheses.
 const OF: &str = "<mo rspace=\".17em\">\u{2061}</mo>";
 
-/// Equations as HTML in one line, each a paragraph whose further lines are indented. Sides stand around ` = ` or ` > `.
+/// Formats equations and inequalities as HTML in one line of source, a paragraph each with indented
+/// continuation lines. Their sides are separated by ` = ` or ` > `.
 pub fn page(lines: &[String]) -> String {
     let mut out = String::from("<div>");
     for line in lines {
@@ -36,7 +38,8 @@ pub fn page(lines: &[String]) -> String {
     out + "</div>"
 }
 
-/// Pieces between which lines may be broken: at outer signs, at inner ones where a piece is wide all the same.
+/// Splits a line into pieces between which it may be broken: at outer signs, and at inner signs if a piece is
+/// still too wide.
 fn pieces(line: &str, breaks: &[char]) -> Vec<String> {
     let Some((outer, inner)) = breaks.split_first() else { return vec![whole(line)] };
     if width(line) <= WIDE {
@@ -45,12 +48,12 @@ fn pieces(line: &str, breaks: &[char]) -> Vec<String> {
     line.split(*outer).flat_map(|piece| pieces(piece, inner)).collect()
 }
 
-/// Without places to break at.
+/// Removes the marks of possible line breaks.
 fn whole(text: &str) -> String {
     text.replace(BREAKS, "")
 }
 
-/// The characters that are seen, about.
+/// Estimates the number of visible characters.
 fn width(text: &str) -> usize {
     let (mut inside, mut count) = (false, 0);
     for c in text.chars() {
@@ -64,7 +67,7 @@ fn width(text: &str) -> usize {
     count
 }
 
-/// One element, whatever it is made of.
+/// Wraps a text in a single element.
 fn row(text: &str) -> String {
     format!("<mrow>{}</mrow>", whole(text))
 }
@@ -73,7 +76,8 @@ fn to_power(base: &str, power: u8) -> String {
     if power == 1 { base.to_string() } else { format!("<msup>{base}<mn>{power}</mn></msup>") }
 }
 
-/// In parentheses: as high as what is in them where that is short, else with places to break at.
+/// Puts a text in parentheses: stretched if it is short, otherwise of fixed size with marks of possible line
+/// breaks.
 fn fenced(text: &str) -> String {
     if width(text) <= WIDE {
         return format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", whole(text));
@@ -164,14 +168,14 @@ impl Style for MathMl<'_> {
         if divisors.is_empty() {
             return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(TIMES);
         }
-        // A fraction is not put on another one.
+        // A fraction is not placed in the numerator of another one.
         let (before, above) = if small { (number, None) } else { (None, number) };
         let fraction = fraction(&side(above.into_iter(), factors), &side(std::iter::empty(), divisors));
         before.map_or(fraction.clone(), |number| format!("{number}{TIMES}{fraction}"))
     }
 }
 
-/// One side of a fraction.
+/// Formats the numerator or denominator of a fraction.
 fn side(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
     let first: Vec<String> = first.collect();
     match (first.as_slice(), factors) {
@@ -188,7 +192,7 @@ fn factor(factor: &Factor) -> String {
     }
 }
 
-/// A name with dots above it, to a power.
+/// Formats a name with dots above it, raised to a power.
 pub fn spelled(name: &Name, dots: u8, power: u8) -> String {
     let base = glyph(&name.base);
     let base = match dots {
@@ -216,7 +220,7 @@ fn glyph(glyph: &Glyph) -> String {
     }
 }
 
-/// Text within elements.
+/// Escapes text for XML.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
@@ -235,7 +239,7 @@ mod tests {
         let product = format!("<mi>m</mi>{}", fenced(&sum));
         assert_eq!(parts(&product).len(), 8);
         assert!(parts(&product)[0].starts_with("<mi>m</mi><mo stretchy=\"false\">(</mo>"));
-        // Short parentheses stay in one piece, and so do fractions.
+        // Short parentheses remain in one piece, and so do fractions.
         let short = [term; 2].join(style.sign(false, true));
         assert_eq!(parts(&format!("{}{}", fenced(&short), fraction(&sum, &sum))).len(), 1);
         assert!(!page(&[sum]).contains(BREAKS));

@@ -1,26 +1,27 @@
-//! Names taken apart for typesetting: `theta2` is θ with an index, `k_spring` a k with a word below it.
+//! Splitting of names for typesetting: `theta2` becomes θ with an index, `k_spring` becomes k with a word as
+//! subscript.
 
-/// A name: what stands on the line, and what stands below it.
+/// A name, split into base and subscripts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
-    /// On the line.
+    /// Base.
     pub base: Glyph,
-    /// Indices.
+    /// Subscripts.
     pub indices: Vec<Glyph>,
 }
 
-/// What is set as one.
+/// An indivisible part of a name.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it all")]
 pub enum Glyph {
     Letter(char),
-    /// Its name, and the letter.
+    /// English name and letter.
     Greek(&'static str, char),
     Digits(String),
     Word(String),
 }
 
-/// Greek letters that have a shape of their own. Not π, which would be taken for the number.
+/// Greek letters that differ from Latin ones. Without π, which would be read as the number.
 const GREEK: [(&str, char); 34] = [
     ("alpha", 'α'),
     ("beta", 'β'),
@@ -73,12 +74,12 @@ impl Glyph {
 }
 
 impl Name {
-    /// A name as one word.
+    /// Returns a name as a single word.
     pub fn verbatim(text: &str) -> Name {
         Name { base: Glyph::Word(text.to_string()), indices: Vec::new() }
     }
 
-    /// A name taken apart.
+    /// Splits a name into base and subscripts.
     pub fn of(text: &str) -> Name {
         if let Some((joint, member)) = text.split_once('.') {
             return Name::of_member(joint, member);
@@ -99,7 +100,8 @@ impl Name {
         Name { base: Glyph::Word(stem.to_string()), indices: index(digits).into_iter().collect() }
     }
 
-    /// A coordinate of a joint with several: angular velocities, velocities and quaternions have an axis besides.
+    /// Splits the name of a coordinate of a joint with several coordinates. Angular velocities, velocities
+    /// and quaternions have an axis as second subscript.
     fn of_member(joint: &str, member: &str) -> Name {
         let joint = Glyph::of(joint);
         let mut letters = member.chars();
@@ -113,21 +115,21 @@ impl Name {
     }
 }
 
-/// A name without the digits at its end, and these.
+/// Splits a name before its trailing digits.
 fn numbered(text: &str) -> (&str, &str) {
     text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len())
 }
 
-/// A name in plain text, with a prime for each time that it is differentiated.
+/// Returns a name in plain text, with a prime for each differentiation.
 pub fn primed((name, dots): (String, u8)) -> String {
     name + &"'".repeat(usize::from(dots))
 }
 
-/// Names for typesetting: those that would look like another one are left whole.
+/// Names for typesetting. Names that would be indistinguishable after splitting are left whole.
 pub struct Names(Vec<(String, Name)>);
 
 impl Names {
-    /// For all names that occur.
+    /// Creates the table for all names that occur.
     pub fn new<'a>(texts: impl Iterator<Item = &'a str>) -> Names {
         let mut names: Vec<(String, Name)> = Vec::new();
         for text in texts {
@@ -143,7 +145,7 @@ impl Names {
         Names(names)
     }
 
-    /// The name that stands for a text.
+    /// Returns the typeset form of a name.
     pub fn get(&self, text: &str) -> Name {
         self.0
             .iter()

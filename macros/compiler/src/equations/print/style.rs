@@ -1,11 +1,11 @@
-//! How the parts of a polynomial look; and plain text.
+//! Styles that format the components of a polynomial, and the plain text style.
 
 use crate::algebra::item::{fraction, gcd};
 use crate::expr::node::Symbol;
 use std::f64::consts::PI;
 use std::fmt;
 
-/// A text in all ways of writing; empty where there is nothing that could be read.
+/// A text in all output formats. Empty if there are no equations.
 #[derive(Clone, Debug, Default)]
 pub struct Written {
     /// Plain text.
@@ -16,17 +16,17 @@ pub struct Written {
     pub mathml: String,
 }
 
-/// A way of writing.
+/// An output format of polynomials.
 pub trait Style {
-    /// A symbol to a power.
+    /// Formats a symbol raised to a power.
     fn symbol(&self, symbol: Symbol, power: u8) -> String;
 
-    /// A number without sign.
+    /// Formats a number without sign.
     fn number(&self, number: &Number) -> String {
         number.to_string()
     }
 
-    /// What stands before a term of a sum.
+    /// Returns the sign before a term of a sum, empty for a positive first term.
     fn sign(&self, first: bool, negative: bool) -> &'static str {
         match (first, negative) {
             (true, false) => "",
@@ -36,55 +36,58 @@ pub trait Style {
         }
     }
 
-    /// A sum in parentheses to a power.
+    /// Formats a sum in parentheses, raised to a power.
     fn power(&self, sum: &str, power: u8) -> String;
 
-    /// A function to a power, by its name in the language.
+    /// Formats a function raised to a power, given its name in the language.
     fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String;
 
-    /// Number and factors divided by other factors. There is something to write before the divisors.
+    /// Formats the product of a number and factors, divided by `divisors`. `number` is `None` only if there
+    /// are factors.
     fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String;
 }
 
-/// A factor of a product.
+/// A formatted factor of a product.
 pub enum Factor {
-    /// Holds together as it is.
+    /// A factor that needs no parentheses.
     Single(String),
-    /// A sum, still without parentheses.
+    /// A sum that needs parentheses, still without them.
     Sum(String),
 }
 
-/// An argument of a function.
+/// A formatted argument of a function.
 pub struct Argument {
-    /// How it is written.
+    /// Text of the argument.
     pub text: String,
-    /// A symbol alone.
+    /// True if the argument is a single symbol.
     pub lone: bool,
 }
 
-/// A number for reading, without sign. One rule for all of them: fractions of halves and thirds are fractions, simple
-/// multiples of π, of its square and of the roots of 2 and 3 are such, everything else has digits.
+/// A number for printing, without sign. Fractions with denominators of factors two and three are printed as
+/// fractions. Simple multiples of powers of π and of the roots of 2 and 3 are printed as such. All other
+/// numbers are printed as decimals.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
     /// Numerator and denominator.
     Fraction(u32, u32),
-    /// Numerator and denominator of the factor of a power of π.
+    /// Numerator and denominator of the coefficient of a power of π, and that power: 1, 2, −1 or −2.
     Pi(u32, u32, i8),
-    /// Numerator and denominator of the factor of the root of 2 or 3.
+    /// Numerator and denominator of the coefficient of the square root of 2 or 3, and 2 or 3.
     Root(u32, u32, u32),
-    /// Digits, with a point or without.
+    /// Decimal digits, with or without a decimal point.
     Decimal(String),
-    /// Digits, and the exponent of ten.
+    /// Digits and the exponent of ten.
     Scientific(String, String),
 }
 
 impl Number {
-    /// Nothing.
+    /// Zero.
     pub const ZERO: Number = Number::Fraction(0, 1);
     /// One.
     pub const ONE: Number = Number::Fraction(1, 1);
 
-    /// A positive number: a fraction or a multiple of π or of a root where it is one of small numbers, else up to six significant digits.
+    /// Classifies a positive number: a fraction, multiple of π or multiple of a root if the integers involved
+    /// are small, otherwise up to six significant digits.
     pub fn of(value: f64) -> Number {
         if let Some((p, q)) = fraction(value) {
             return Number::Fraction(p, q);
@@ -106,10 +109,11 @@ impl Number {
     }
 }
 
-/// Most of a numerator of the factor of an irrational number: larger ones are met by chance.
+/// Maximum numerator of the coefficient of an irrational number: larger numerators match by chance.
 const SIMPLE: u32 = 48;
 
-/// Numerator and denominator of the factor of the root of 2 or 3, as sines of 45° and 60° are.
+/// Returns numerator and denominator of the coefficient of the square root of 2 or 3, which occur in sines of
+/// 45° and 60°.
 fn multiple_of_root(value: f64) -> Option<(u32, u32, u32)> {
     [2_u32, 3].into_iter().find_map(|root| {
         let found = fraction(value / f64::from(root).sqrt());
@@ -117,8 +121,8 @@ fn multiple_of_root(value: f64) -> Option<(u32, u32, u32)> {
     })
 }
 
-/// Numerator and denominator of the factor of a power of π: simple fractions, and of π itself whole parts of two turns in
-/// degrees.
+/// Returns numerator and denominator of the coefficient of a power of π, and the power: simple fractions, and
+/// for π itself also whole degrees up to two revolutions.
 fn multiple_of_pi(value: f64) -> Option<(u32, u32, i8)> {
     for power in [1, 2, -1, -2] {
         let factor = value / PI.powi(power.into());
@@ -166,10 +170,10 @@ impl fmt::Display for Number {
     }
 }
 
-/// Plain text, with names for symbols: `1/3 m l² cos(theta)`.
+/// Plain text style, with names for symbols: `1/3 m l² cos(theta)`.
 #[derive(Clone, Copy)]
 pub struct Plain<'a> {
-    /// Name of a symbol.
+    /// Returns the name of a symbol.
     pub name: &'a dyn Fn(Symbol) -> String,
 }
 

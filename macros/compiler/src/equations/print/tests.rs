@@ -1,10 +1,10 @@
-//! Numbers, grouping and lines.
+//! Tests of numbers, grouping and line breaks.
 
 use super::*;
 use crate::algebra::normal::Normal;
 use crate::expr::{Function, Graph};
 
-/// Parameters, coordinates, rates, inputs: `m k l`, `x y`, `x' y'`, `u`.
+/// Names of parameters, coordinates, rates and an input: `m k l`, `x y`, `x' y'`, `u`.
 const NAMES: [&str; 8] = ["m", "k", "l", "x", "y", "x'", "y'", "u"];
 
 fn rank(symbol: Symbol) -> crate::algebra::polynomial::Rank {
@@ -44,7 +44,7 @@ fn numbers() {
     }
 }
 
-/// Sines of 45° and 60° and their multiples are exact; what only looks so has digits.
+/// Sines of 45° and 60° and their multiples are exact. Numbers close to them are printed as decimals.
 #[test]
 fn multiples_of_roots() {
     let (two, three) = (2.0_f64.sqrt(), 3.0_f64.sqrt());
@@ -64,7 +64,7 @@ fn multiples_of_roots() {
     assert_eq!(latex(|g, [m, ..]| m * g.num(3.0 * three)), r"3\sqrt{3}\,m");
 }
 
-/// Of what was π, nothing is written with digits; what only looks so is.
+/// Multiples of powers of π are printed without decimals. Numbers close to them are printed as decimals.
 #[test]
 fn multiples_of_pi() {
     use std::f64::consts::PI;
@@ -202,7 +202,7 @@ fn latex_names() {
     assert_eq!(super::latex::spelled(&Name::of("x"), 2), r"\ddot{x}");
 }
 
-/// What would look alike stays as it is.
+/// Names that would be indistinguishable in print are not split.
 #[test]
 fn names_are_kept_apart() {
     let names = names::Names::new(["m1", "m_1", "table.x", "x_table", "m2"].into_iter());

@@ -1,16 +1,18 @@
-//! Inertia alone, where forces are too long to be read; and what is said where nothing is written.
+//! Tests of equations with inertial terms only, printed if forces are too long to be readable, and of the
+//! messages if no equations are printed.
 
 use super::*;
 use quote::ToTokens;
 
-/// A satellite in a central field, whose forces go with the fifth power of the distance.
+/// A satellite in a central gravity field, whose forces contain the fifth power of the distance.
 const SATELLITE: &str = "struct Satellite { mu: f64, m: f64, a: f64, b: f64, c: f64,
     #[body(mass = m, inertia = diagonal(a, b, c))] body: Body,
     #[joint(ground -> body)] pose: Free,
     #[acts(on = body, about = body.x)] wheel: Torque,
     #[acts(between = (ground, body), mu = mu)] pull: Gravity }";
 
-/// Its left sides are those of a free body, which are tested against both derivations; its right sides are named.
+/// The left sides are those of a free body, which other tests compare with both derivations. The right sides
+/// are symbols.
 #[test]
 fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
     let text = with_model("0 * z", SATELLITE, |model| {
@@ -40,7 +42,7 @@ fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
     assert!(said.contains("`equations = lagrange` among the arguments"), "{text}");
 }
 
-/// The constant `EQUATIONS` of a mechanism.
+/// Returns the constant `EQUATIONS` of a mechanism.
 fn constant(arguments: &str, item: &str) -> String {
     let emitted = crate::expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file = syn::parse_file(&emitted.text).expect("a file");

@@ -1,4 +1,5 @@
-//! Kane's equations in independent speeds, read back: against the accelerations of Lagrange's equations with multipliers.
+//! Reads Kane's equations in independent velocities back and compares them with the accelerations of
+//! Lagrange's equations with multipliers.
 
 use super::super::kane::{kane, written_kane};
 use super::*;
@@ -11,7 +12,7 @@ const SLEIGH: &str = "struct Sleigh { m: f64, a: f64, j: f64,
     #[constraint(dot(v(sled / ground / ground), sled.y) = 0)] blade: Nonholonomic,
     #[acts(on = sled, along = x)] push: Force, #[acts(on = sled, about = z)] steer: Torque }";
 
-/// A sleigh in generalized speeds along and across its blade.
+/// Chaplygin's sleigh in generalized speeds along and across its blade.
 const SLEIGH_IN_SPEEDS: &str = "struct Sleigh { m: f64, a: f64, j: f64,
     #[body(mass = m, com = a * x, inertia = diagonal(1, 1, j))] sled: Body,
     #[joint(ground -> sled, about = z)] pose: Planar,
@@ -20,7 +21,7 @@ const SLEIGH_IN_SPEEDS: &str = "struct Sleigh { m: f64, a: f64, j: f64,
     #[constraint(dot(v(sled / ground / ground), sled.y) = 0)] blade: Nonholonomic,
     #[acts(on = sled, along = x)] push: Force, #[acts(on = sled, about = z)] steer: Torque }";
 
-/// A disk that rolls upright, and a sled on an incline with a knife edge at its centre of mass.
+/// An upright rolling disk in coordinates of position, heading and roll.
 const WHEEL: &str = "struct Wheel { m: f64, r: f64,
     px: Coordinate, py: Coordinate, heading: Coordinate, roll: Coordinate,
     #[frame(ground, z(heading))] fork: Frame,
@@ -36,7 +37,7 @@ const ROLLING: &str = "struct Ball { m: f64, r: f64,
     #[joint(ground -> ball)] pose: Free,
     #[constraint(rolls(ball.sphere(r), ground.plane(z)))] contact: Rolling }";
 
-/// A disk that rolls and leans, in the angles of heading, lean and roll.
+/// A rolling and leaning disk in angles of heading, lean and roll.
 const DISK: &str = "struct Disk { m: f64, r: f64,
     px: Coordinate, py: Coordinate, heading: Coordinate, lean: Coordinate, roll: Coordinate,
     #[frame(ground, z(heading))] fork: Frame,
@@ -46,14 +47,14 @@ const DISK: &str = "struct Disk { m: f64, r: f64,
     #[constraint(rate(px) = r * rate(roll) * cos(heading))] first: Nonholonomic,
     #[constraint(rate(py) = r * rate(roll) * sin(heading))] second: Nonholonomic }";
 
-/// A slide that follows another one, driven in time.
+/// A slide coupled to another one by a constraint that is driven in time.
 const CAM: &str = "struct Cam { m: f64, l: f64, w: f64,
     #[particle(mass = m)] one: Particle, #[particle(mass = 2 * m)] two: Particle,
     #[joint(ground -> one, along = x)] first: Sleeve, #[joint(ground -> two, along = y)] second: Sleeve,
     #[constraint(rate(second) = rate(first) * (2 + sin(first)) + l * w * cos(w * t))] follow: Nonholonomic,
     #[acts(on = first)] push: Force }";
 
-/// Solves a small linear system with pivots.
+/// Solves a small linear system by elimination with pivoting.
 fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
@@ -69,8 +70,8 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     rows.iter().map(|row| row[n]).collect()
 }
 
-/// The printed text, its equations read at states whose accelerations follow from Lagrange's equations with multipliers; the
-/// text is returned.
+/// Checks the equations of the printed text at random states, with accelerations from Lagrange's equations
+/// with multipliers. Returns the text.
 pub(super) fn check_printed(model: &Model<'_>) -> String {
     let joints = crate::kinematics::joints(model);
     let speeds = InSpeeds::of(model);
@@ -88,7 +89,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
     all.extend(constraints::rates(native));
     for seed in 1..8 {
         let at = state(native, seed);
-        // Velocities that fulfil the constraints: the nearest ones.
+        // Velocities that satisfy the constraints: the projection of random ones.
         let rates = eval(&[rows.concat(), constraints::rates(native)].concat(), &at);
         let (j, rate) = rates.split_at(nv * nc);
         let gram = (0..nc).map(|i| {
@@ -123,7 +124,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
             j[k * nv..][..nv].iter().copied().chain(vec![0.0; nc]).chain([-drift[k]]).collect::<Vec<f64>>()
         }));
         let a = solve(system)[..nv].to_vec();
-        // In speeds, if there are any.
+        // Conversion to generalized speeds, if any.
         let (v, a) = match &speeds {
             None => (v, a),
             Some(speeds) => {
@@ -156,13 +157,13 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
         let lines = printed(&text);
         assert!(lines.len() >= nv, "{text}");
         for (left, right) in &lines {
-            // Rates of coordinates that speeds replace are known to nobody else.
+            // Rates of coordinates that speeds replace have no reference value here.
             if speeds.is_some() && left.ends_with('\'') && !left.contains(' ') {
                 continue;
             }
             let line = format!("{left} = {right}");
             let (left, right) = (value(left, &by_name), value(right, &by_name));
-            // What holds configurations is printed as it is; the states are random.
+            // Holonomic constraints are printed as residuals, which are not zero since the states are random.
             let residuals = eval(&constraints::residuals(native), &at);
             if residuals.iter().any(|x| (x - left).abs() < 1e-12 && right == 0.0) {
                 continue;
@@ -192,7 +193,8 @@ fn printed_equations_are_those_of_the_motion() {
     }
 }
 
-/// The equations of the sleigh as they are found in books: m v' = m a ω² + push, (J + m a²) ω' = −m a v ω + steer.
+/// The equations of the sleigh in the form of textbooks: m v' = m a ω² + push, (J + m a²) ω' = −m a v ω +
+/// steer.
 #[test]
 fn the_sleigh_in_its_own_speeds() {
     let text = with_model("-9.81 * z", SLEIGH_IN_SPEEDS, |model| check_printed(&model));
@@ -208,7 +210,7 @@ along and pose.angle' are the independent velocities; from them the others follo
     assert!(text.starts_with(expected), "{text}");
 }
 
-/// Rolling upright: 3/2 m r² roll'' = drive, 1/4 m r² heading'' = steer.
+/// Upright rolling: 3/2 m r² roll'' = drive, 1/4 m r² heading'' = steer.
 #[test]
 fn an_upright_wheel() {
     let text = with_model("-9.81 * z", WHEEL, |model| check_printed(&model));

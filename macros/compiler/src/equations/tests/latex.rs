@@ -1,8 +1,8 @@
-//! The equations as LaTeX.
+//! Tests of equations as LaTeX.
 
 use super::*;
 
-/// Commands of LaTeX and `amsmath` that may occur, besides those of Greek letters.
+/// Allowed commands of LaTeX and `amsmath`, in addition to Greek letters.
 const COMMANDS: [&str; 27] = [
     "phi",
     "lambda",
@@ -32,14 +32,15 @@ const COMMANDS: [&str; 27] = [
     "omega",
     "quad",
 ];
-/// Commands of one sign: thin spaces, an underscore, the end of a line.
+/// Allowed one-character commands: thin spaces, an underscore, the end of a line.
 const SIGNS: [char; 4] = [',', '!', '_', '\\'];
 
 fn latex_of(gravity: &str, item: &str) -> String {
     with_model(gravity, item, |model| crate::equations_latex(&model))
 }
 
-/// What is wrong with LaTeX: braces, commands, `\left` without `\right`, indices outside of braces.
+/// Returns the errors in a LaTeX text: unbalanced braces, unknown commands, `\left` without `\right`, indices
+/// without braces.
 pub(super) fn faults(text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let mut open: Vec<&str> = Vec::new();
@@ -67,7 +68,7 @@ pub(super) fn faults(text: &str) -> Vec<String> {
                     },
                     "left" => open.push("left"),
                     "right" => {
-                        // The sign that follows belongs to it; its own parenthesis is closed first.
+                        // The delimiter after `\right` belongs to it; its own parenthesis is closed first.
                         open.pop();
                         close(&mut open, "left", at);
                         rest.nth(length);
@@ -132,7 +133,7 @@ fn cart_pole() {
     assert_eq!(latex_of("-9.81 * y", CART_POLE), expected);
 }
 
-/// Digits are indices; single letters are as they are.
+/// Digits become subscripts; single letters are printed unchanged.
 #[test]
 fn double_pendulum() {
     let item = DOUBLE_PENDULUM.replace("shoulder", "theta1").replace("elbow", "theta2");
@@ -147,7 +148,7 @@ fn double_pendulum() {
     assert_eq!(latex_of("-g * y", &item), expected);
 }
 
-/// Angular velocities and quaternion components name their joint.
+/// Angular velocities and quaternion components have their joint as subscript.
 #[test]
 fn top() {
     let expected = r"\begin{aligned}

@@ -1,9 +1,10 @@
-//! Linear equations against differences of the forces of Lagrange's equations, and what is written.
+//! Compares linear equations with finite differences of Lagrange's equations, and tests their printed form.
 
 use super::super::linear::{self, Linear};
 use super::*;
 
-/// Calls `f` with the linear equations of every equilibrium of a struct and with what is written of them.
+/// Calls `f` with the linear equations of every equilibrium of a struct, as polynomials, plain text and
+/// LaTeX.
 fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear, &str, &str)) {
     with_model(gravity, item, |model| {
         let joints = crate::kinematics::joints(&model);
@@ -20,7 +21,8 @@ fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear
     });
 }
 
-/// The rows of the linear equations against differences of the balance of forces, of constraints and of rates of states.
+/// Compares the rows of the linear equations with finite differences of force balances, constraints and rates
+/// of states.
 fn check_rows(model: &Model<'_>, found: &Linear) {
     let (nv, nu) = (model.nv(), model.nu());
     let at = &model.equilibria[0];
@@ -31,7 +33,8 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
     let rest = |k: &Expr<'_>| crate::expr::eval::eval_one(*k, &parameter);
     let (q, u): (Vec<f64>, Vec<f64>) =
         (at.configuration.iter().map(rest).collect(), at.inputs.iter().map(rest).collect());
-    // Forces of Lagrange's equations, which know no multipliers: those are left out, as is their geometric stiffness.
+    // Lagrange's equations of this reference have no multipliers: their forces, and their geometric
+    // stiffness, are omitted.
     let right = right_sides(model, &joints);
     let mut balance: Vec<Expr<'_>> = lagrange.bias.iter().zip(&right).map(|(a, b)| *a - *b).collect();
     balance.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
@@ -65,7 +68,7 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
         sides.iter().map(|p| found.ring.evaluate(p, &one)).collect()
     };
     for k in 0..nv {
-        // Configurations are plain here.
+        // All coordinates are plain here.
         let by_q = slope(&|d| value(&moved(&q, k, d), &still, &u, 0.0));
         assert_small(&of(linear::deviation(k), &found.motion), &by_q, "stiffness");
         let by_v = slope(&|d| value(&q, &moved(&still, k, d), &u, 0.0));
@@ -154,7 +157,8 @@ fn rows_are_derivatives() {
     });
 }
 
-/// A particle on a circle of wire at its lowest point: the multiplier's geometric stiffness is all that there is.
+/// A particle on a circular wire at its lowest point: the only stiffness is the geometric stiffness of the
+/// multiplier.
 #[test]
 fn a_particle_on_a_wire() {
     let item = "struct Wire { m: f64, g: f64, l: f64,
@@ -181,7 +185,7 @@ fn a_particle_on_a_wire() {
     });
 }
 
-/// Small rotations about body axes: those of a pendulum on a ball joint, one of which nothing brings back.
+/// Small rotations of a pendulum on a ball joint about body axes. One of them has no restoring moment.
 #[test]
 fn orientations_deviate_by_small_rotations() {
     let item = "struct Tip { m: f64, g: f64, l: f64, a: f64, c: f64,
@@ -201,7 +205,7 @@ fn orientations_deviate_by_small_rotations() {
     });
 }
 
-/// A bead on a hoop that spins is at rest on it, though it moves.
+/// A bead on a spinning hoop is at rest relative to the hoop, though it moves in space.
 #[test]
 fn a_bead_on_a_spinning_hoop() {
     let item = "struct Bead { g: f64, m: f64, radius: f64, spin: f64,
@@ -221,7 +225,7 @@ fn a_bead_on_a_spinning_hoop() {
     });
 }
 
-/// A skate between springs: its edge lets no velocity across it, and keeps no place.
+/// A skate between springs: the edge constrains the lateral velocity, but not the lateral position.
 #[test]
 fn a_skate_keeps_its_place_across() {
     let item = "struct Skate { m: f64, k: f64, c: f64,

@@ -1,10 +1,10 @@
-//! The MathML of the documentation, read back: the same numbers as the plain text.
+//! Reads the MathML of the documentation back and compares its values with those of the plain text.
 
 use super::super::print::mathml::spelled;
 use super::*;
 use roxmltree::{Document, Node};
 
-/// An element as the plain text has it, with names of its own for symbols.
+/// Converts an element to plain text, with simplified names of symbols.
 fn text(node: Node<'_, '_>) -> String {
     let children: Vec<Node<'_, '_>> = node.children().filter(Node::is_element).collect();
     let own = || node.text().unwrap_or("").to_string();
@@ -33,7 +33,7 @@ fn text(node: Node<'_, '_>) -> String {
     }
 }
 
-/// Elements side by side; an argument without parentheses gets them.
+/// Concatenates elements. An argument without parentheses gets them.
 fn row(children: &[Node<'_, '_>]) -> String {
     let (mut out, mut of) = (String::new(), false);
     for child in children {
@@ -48,14 +48,14 @@ fn power(digit: &str) -> String {
     ["", "", "²", "³", "⁴", "⁵", "⁶", "⁷"][digit.parse::<usize>().expect("a power")].to_string()
 }
 
-/// The equations of a page.
+/// Returns both sides of each equation of a page.
 fn lines(page: &str) -> Vec<(String, String)> {
     let document = Document::parse(page).unwrap_or_else(|e| panic!("{e}: {page}"));
     let paragraphs = document.root_element().children();
     paragraphs
         .map(|paragraph| {
             let parts: Vec<Node<'_, '_>> = paragraph.children().filter(Node::is_element).collect();
-            // Terms are formulas of their own.
+            // Each term is a formula of its own.
             let line = parts.iter().map(|part| text(*part)).collect::<String>();
             let (left, right) = line.split_once(" = ").unwrap_or_else(|| panic!("{line}"));
             (left.to_string(), right.to_string())
@@ -63,7 +63,7 @@ fn lines(page: &str) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Both texts of a mechanism give the same numbers.
+/// Checks that both texts of a mechanism have the same values.
 fn check_page(model: &Model<'_>) {
     let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
@@ -114,7 +114,7 @@ fn pages_say_what_the_text_says() {
     }
 }
 
-/// All other forms are well-formed as well.
+/// The pages of all other forms are well-formed as well.
 #[test]
 fn all_forms_have_pages() {
     for (words, item) in [("hamilton", CART_POLE), ("hamilton", ARM), ("routh", GYROSCOPE), ("kane", SPHERE)]

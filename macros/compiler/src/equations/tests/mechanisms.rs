@@ -1,4 +1,4 @@
-//! Small mechanisms in the struct language.
+//! Descriptions of small mechanisms.
 
 /// A cart with a pole.
 pub const CART_POLE: &str = "
@@ -12,7 +12,7 @@ struct CartPole {
     #[acts(on = cart, along = x)] push: Force,
 }";
 
-/// Relative angles.
+/// A double pendulum with relative angles.
 pub const DOUBLE_PENDULUM: &str = "
 struct DoublePendulum {
     g: f64, m1: f64, m2: f64, l1: f64, l2: f64,
@@ -23,7 +23,7 @@ struct DoublePendulum {
     #[acts(on = elbow)] motor: Torque,
 }";
 
-/// Three gimbals.
+/// A rotor in three gimbals.
 pub const GYROSCOPE: &str = "
 struct Gyroscope {
     axial: f64, transverse: f64, mass: f64, lever: f64, g: f64,
@@ -35,7 +35,7 @@ struct Gyroscope {
     #[joint(inner -> rotor, about = z)] spin: Pin,
 }";
 
-/// A slider with a spring on a turning shaft.
+/// A slider with a spring on a rotating shaft.
 pub const SHAFT: &str = "
 struct SliderOnShaft {
     g: f64, shaft_inertia: f64, mass: f64, stiffness: f64, free_length: f64, damping: f64,
@@ -69,7 +69,7 @@ struct Chain {
     #[acts(on = two, stiffness = k2, free_length = 0.5)] coil2: Spring,
 }";
 
-/// A top in quaternion components.
+/// A top on a ball joint, with quaternion components.
 pub const BALL: &str = "
 struct Top {
     g: f64, m: f64, l: f64, a: f64, c: f64,
@@ -77,7 +77,7 @@ struct Top {
     #[joint(ground -> top)] tip: Ball,
 }";
 
-/// No parameters.
+/// A cart with a pole and no parameters.
 pub const NUMBERS: &str = "
 struct Numbers {
     #[body(mass = 1.0, inertia = diagonal(0.004, 0.003, 0.005))] cart: Body,
@@ -99,7 +99,7 @@ struct Triple {
     #[joint(middle.at(-l2 * y) -> lower, about = z)] c: Pin,
 }";
 
-/// An arm that also turns about the vertical.
+/// An arm that also rotates about the vertical.
 pub const ARM: &str = "
 struct Arm {
     g: f64, m1: f64, m2: f64, l1: f64, l2: f64,
@@ -111,7 +111,7 @@ struct Arm {
     #[joint(upper.at(l1 * x) -> lower, about = y)] elbow: Pin,
 }";
 
-/// Skewed axes and dense inertias: as bad as four velocities can be.
+/// A chain with skewed axes and full inertia matrices: the worst case of four velocities.
 pub const SKEW: &str = "
 struct Skew {
     #[body(mass = 1.3, com = [0.1, -0.2, 0.05], inertia = [[0.03, 0.002, -0.001], [0.002, 0.04, 0.003], [-0.001, 0.003, 0.05]])] a: Body,
@@ -124,7 +124,7 @@ struct Skew {
     #[joint(c.at([0.1, 0.2, 0.3]).rotated(z(0.4), x(-0.3)) -> d, about = y)] s: Pin,
 }";
 
-/// A table on which a pendulum and a nut on a screw are mounted; a force in directions of two frames.
+/// A table that carries a pendulum and a nut on a screw, with a force whose direction involves two frames.
 pub const WAGON: &str = "
 struct Wagon {
     g: f64, m: f64, m1: f64, l1: f64, k: f64, c: f64, lead: f64,
@@ -138,7 +138,7 @@ struct Wagon {
     #[acts(on = bob.at(-l1 * y), along = ground.x + bob.y)] jet: Force,
 }";
 
-/// A particle with one coordinate; where it is, the test says.
+/// A bead with one coordinate. Tests replace its position.
 pub const HOOP: &str = "
 struct Hoop {
     g: f64, m: f64, _radius: f64, _speed: f64,
@@ -154,7 +154,7 @@ struct FreeBody {
     #[joint(ground -> body)] pose: Free,
 }";
 
-/// A ball that rolls.
+/// A rolling ball.
 pub const SPHERE: &str = "
 struct RollingSphere {
     g: f64, m: f64, radius: f64,
@@ -163,7 +163,7 @@ struct RollingSphere {
     #[constraint(rolls(ball.sphere(radius), ground.plane(z)))] contact: Rolling,
 }";
 
-/// A wheel on an axle that moves in the horizontal plane.
+/// A wheel on an axle that moves in a horizontal plane.
 pub const CASTOR: &str = "
 struct Castor {
     #[body(mass = 1, inertia = diagonal(1, 1, 1))] axle: Body,
@@ -173,7 +173,7 @@ struct Castor {
     #[constraint(rolls(wheel.circle(0.3, y), ground.plane(z)))] contact: Rolling,
 }";
 
-/// A right angle, a lead, and a moment that is a fraction.
+/// Constants with π: a right angle, the lead of a screw, and a moment of inertia that is a fraction.
 pub const TURNS: &str = "
 struct Turns {
     coil: f64, m: f64, i: f64, lead: f64,
@@ -184,7 +184,7 @@ struct Turns {
     #[acts(on = q, stiffness = coil, free_angle = pi / 2)] spring: Spring,
 }";
 
-/// Masses in a row, with springs between neighbours.
+/// Returns a row of masses with springs between neighbours.
 pub fn masses(n: usize) -> String {
     let mut items = String::new();
     for k in 0..n {
@@ -198,7 +198,7 @@ pub fn masses(n: usize) -> String {
     format!("struct Masses {{ g: f64, m: f64, k: f64, {items} }}")
 }
 
-/// A disk that rolls.
+/// A rolling disk.
 pub const DISK: &str = "
 struct RollingDisk {
     g: f64, m: f64, radius: f64,

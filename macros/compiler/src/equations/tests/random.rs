@@ -1,4 +1,5 @@
-//! Random mechanisms, driven and constrained ones among them: all forms of their equations agree, as polynomials and as texts.
+//! Compares all forms of the equations of random mechanisms, with and without prescribed motion and
+//! constraints, as polynomials and as texts.
 
 use super::kane::check_printed;
 use super::routh::check_whole;
@@ -7,8 +8,9 @@ use crate::mechanics::routh;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// A chain of pins and sleeves with a spring, a dashpot and an input; by choice on a table that is turned at a given speed, with
-/// a constraint between the first two joints, and free to turn about the vertical.
+/// Returns a chain of pins and sleeves with a spring, a dashpot and an input. Optionally its base is a table
+/// that rotates at a prescribed speed, its first two joints are constrained, or it can rotate freely about
+/// the vertical.
 fn chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> String {
     let mut pick = |n: u64| r.below(n) as usize;
     let length = 2 + pick(2);
@@ -61,7 +63,7 @@ fn chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> String 
 fn all_forms_agree() {
     let mut random = Random(4321);
     (0..20).for_each(|_| _ = random.below(2));
-    // Lagrange's and the recursive ones, Hamilton's, Kane's, Routh's.
+    // Number of comparisons: Lagrange's and recursive equations, Hamilton's, Kane's, Routh's.
     let mut compared = [0; 4];
     for k in 0..48 {
         let (driven, constrained) = (k % 4 == 1 || k % 4 == 3, k % 4 > 1);

@@ -1,4 +1,5 @@
-//! The printed linear equations, read back: against accelerations of Lagrange's equations, eigenvalues, and closed forms.
+//! Reads the printed linear equations back and compares them with accelerations of Lagrange's equations,
+//! eigenvalues, and closed forms.
 
 use super::*;
 use num_complex::Complex;
@@ -10,7 +11,7 @@ pub(super) mod text;
 use numbers::{Numbers, assert_same_roots, eigenvalues, roots};
 use text::{Text, Values, value};
 
-/// The printed rows, solved for accelerations, against differences.
+/// Compares the printed rows with accelerations by finite differences.
 #[track_caller]
 fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values<'_>) {
     let n = names.len();
@@ -18,7 +19,7 @@ fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values
     let mass: Vec<Vec<f64>> = names.iter().map(|name| column(name, "''")).collect();
     for (k, mark) in (0..2 * n).map(|k| (k, if k < n { "" } else { "'" })) {
         let force = column(names[k % n], mark);
-        // The inertia of the accelerations by differences, and the force: nothing is left.
+        // The products of inertia and accelerations by finite differences balance the forces.
         let size = force.iter().chain(&[1.0]).map(|x| x.abs()).fold(0.0, f64::max);
         for i in 0..n {
             let inertia: f64 = (0..n).map(|j| mass[j][i] * a[n + j][k]).sum();
@@ -32,7 +33,8 @@ fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values
     }
 }
 
-/// What is written of all equilibria, with the mechanism in numbers.
+/// Calls `f` with the printed linear equations of all equilibria, and with a numerical model of the
+/// mechanism.
 fn read<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Numbers<'g>, Vec<Text>) -> R) -> R {
     with_model(gravity, item, |model| {
         let joints = crate::kinematics::joints(&model);
@@ -48,7 +50,7 @@ fn read<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Numbers<'g>, Vec<Te
     })
 }
 
-/// Values of parameters by their names.
+/// Returns a function from parameter names to values.
 fn named<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> f64 + 'a {
     move |word| {
         let k = names.iter().position(|name| *name == word);
@@ -56,7 +58,7 @@ fn named<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> f64 + 'a 
     }
 }
 
-/// Random numbers in a range.
+/// Returns a generator of random numbers in a range.
 fn random(seed: u64, low: f64, high: f64) -> impl FnMut() -> f64 {
     let mut random = Random(2 * seed + 1);
     // The first numbers of a small seed are small.
@@ -116,7 +118,7 @@ fn rows_are_those_of_lagranges_equations() {
     });
 }
 
-/// A craft that hovers: a thrust along its own axis holds it.
+/// A hovering craft: a thrust along its own axis supports it.
 const CRAFT: &str = "struct Craft {
     m: f64,
     a: f64,
@@ -175,7 +177,7 @@ const ROW: &str = "struct Row {
     rest: Equilibrium,
 }";
 
-/// The conditions of Liénard and Chipart against eigenvalues.
+/// Compares the conditions of Liénard and Chipart with eigenvalues.
 #[test]
 fn conditions_of_three_masses_are_those_of_eigenvalues() {
     let names = ["k1", "k2", "k3", "d"];
@@ -196,7 +198,8 @@ fn conditions_of_three_masses_are_those_of_eigenvalues() {
     });
 }
 
-/// Ziegler's column: two links on spring hinges, with a force that follows the last (Ziegler, *Ing.-Arch.* 20, 1952).
+/// Ziegler's column: two links on spring hinges, with a follower force along the last link (Ziegler,
+/// *Ing.-Arch.* 20, 1952).
 const ZIEGLER: &str = "struct Ziegler {
     m: f64,
     l: f64,
@@ -224,7 +227,7 @@ const ZIEGLER: &str = "struct Ziegler {
     straight: Equilibrium,
 }";
 
-/// Without damping it flutters at `p l / k = 7/2 − √2`, the closed form of the literature.
+/// Without damping the column flutters from `p l / k = 7/2 − √2`, the closed form of the literature.
 #[test]
 fn a_follower_force_makes_a_column_flutter() {
     let names = ["m", "l", "k", "p"];
@@ -262,7 +265,8 @@ const HOOP: &str = "struct Hoop {
     side: Equilibrium,
 }";
 
-/// Where it stays and how fast it oscillates there is in every textbook: `ω² = Ω² − g²/(R² Ω²)` at the side, `g/R − Ω²` below.
+/// Textbook result for the frequency of a bead on a spinning hoop: `ω² = Ω² − g²/(R² Ω²)` about the
+/// equilibrium at the side, `g/R − Ω²` about the one at the bottom.
 #[test]
 fn a_bead_oscillates_about_both_equilibria() {
     let names = ["g", "m", "radius", "spin"];
@@ -286,7 +290,7 @@ fn a_bead_oscillates_about_both_equilibria() {
     });
 }
 
-/// A carriage on a spring whose motor answers late to what it is told.
+/// A carriage on a spring with a motor that follows its command with a first-order lag.
 const LATE: &str = "struct Late {
     m: f64,
     c: f64,
@@ -309,7 +313,7 @@ const LATE: &str = "struct Late {
     rest: Equilibrium,
 }";
 
-/// `lag m s³ + (m + lag c) s² + (c + lag k) s + k + gain`: Routh's condition of a cubic.
+/// Routh's condition of the cubic `lag m s³ + (m + lag c) s² + (c + lag k) s + k + gain`.
 #[test]
 fn a_lag_makes_control_unstable() {
     let names = ["m", "c", "k", "lag", "gain"];
@@ -346,7 +350,8 @@ const LADDER: &str = "struct Ladder {
     hanging: Equilibrium,
 }";
 
-/// Hanging below the floor it is a pendulum: `ω² = 3 g / (2 l)` by energy, `T = m l² θ̇² / 6`, `U = −m g l cos θ / 2`.
+/// A ladder that hangs below the floor is a pendulum with `ω² = 3 g / (2 l)` by energy, `T = m l² θ̇² / 6`,
+/// `U = −m g l cos θ / 2`.
 #[test]
 fn a_constrained_ladder_is_a_pendulum() {
     read("-9.81 * y", LADDER, |_, texts| {

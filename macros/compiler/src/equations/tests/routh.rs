@@ -1,11 +1,12 @@
-//! Routh's reduction against accelerations of the whole mechanism, Lagrange's equations of the Routhian, and closed forms.
+//! Compares Routh's reduction with accelerations of the unreduced mechanism, Lagrange's equations of the
+//! Routhian, and closed forms.
 
 use super::super::reduced::{reduced, written_reduced};
 use super::*;
 use crate::expr::eval::Tape;
 use crate::mechanics::routh;
 
-/// A heavy symmetric top in gimbals, a spherical pendulum, a slider on a shaft, a governor, and a chain on a cart that nothing holds.
+/// Mechanisms with cyclic coordinates: gravity, description, and names of the cyclic coordinates.
 const ROWS: [(&str, &str, &[&str]); 5] = [
     ("-g * z", GYROSCOPE, &["precession", "spin"]),
     ("-9.81 * z", PENDULUM, &["phi"]),
@@ -41,7 +42,7 @@ const SPINNING: &str = "struct Spinning { m: f64, k: f64,
     #[joint(wheel -> slider, along = (x, y))] place: Stage,
     #[energy(k / 2 * (place.x * place.x + place.y * place.y))] coil: Potential }";
 
-/// The values of expressions in a state, with momenta for the given symbols.
+/// Returns the values of symbols in a state, with the given momenta and forces.
 fn at<'a>(model: &Model<'_>, seed: u64, p: &'a [f64], tau: &'a [f64]) -> impl Fn(Symbol) -> f64 + use<'a> {
     let symbol = state(model, seed);
     move |s| match Quantity::of(s) {
@@ -51,8 +52,8 @@ fn at<'a>(model: &Model<'_>, seed: u64, p: &'a [f64], tau: &'a [f64]) -> impl Fn
     }
 }
 
-/// Accelerations, velocities and Routhian against Lagrange's equations of the whole; the names of the cyclic
-/// coordinates are returned.
+/// Compares accelerations, velocities and Routhian with Lagrange's equations of the unreduced mechanism.
+/// Returns the names of the cyclic coordinates.
 pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
     let joints = crate::kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
@@ -60,7 +61,7 @@ pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
     let reduced = routh::derive(model, &joints, &mass, cyclic.clone());
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let momenta = crate::mechanics::momentum::generalized_momentum(model, &joints, &velocities(model));
-    // The whole, by Lagrange's equations.
+    // Unreduced mechanism, by Lagrange's equations.
     let lagrange = lagrange::derive(model, &joints);
     let tau = crate::mechanics::efforts(model);
     let force = tau.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias).collect();
@@ -90,7 +91,7 @@ fn reduced_motion_is_that_of_the_whole() {
     }
 }
 
-/// Chains of random links on a column along gravity, which turns freely.
+/// Chains of random links on a column that rotates freely about the direction of gravity.
 #[test]
 fn reduced_motion_of_random_chains_is_that_of_the_whole() {
     let mut random = Random(77);
@@ -118,7 +119,8 @@ fn reduced_motion_of_random_chains_is_that_of_the_whole() {
     }
 }
 
-/// Lagrange's equations of the Routhian are those of the other coordinates: `d/dt ∂R/∂v − ∂R/∂q` is what has no potential.
+/// Lagrange's equations of the Routhian hold for the other coordinates: `d/dt ∂R/∂v − ∂R/∂q` equals the
+/// forces without a potential.
 #[test]
 fn lagranges_equations_hold_for_the_routhian() {
     for (gravity, item, _) in ROWS {
@@ -184,7 +186,7 @@ fn lagranges_equations_hold_for_the_routhian() {
     }
 }
 
-/// The printed polynomials are the functions.
+/// The printed polynomials have the values of the generated functions.
 #[test]
 fn printed_reduction_is_that_of_the_functions() {
     let mut texts = Vec::new();
@@ -220,7 +222,7 @@ fn printed_reduction_is_that_of_the_functions() {
                 let of = |list: &[Polynomial]| -> Vec<f64> {
                     list.iter().map(|p| printed.ring.evaluate(p, &value)).collect()
                 };
-                // Atoms that no polynomial contains are evaluated all the same.
+                // The ring also evaluates atoms that no polynomial contains.
                 assert_near(&of(&printed.motion), &of(&printed.forces), &model.name);
                 assert_near(&of(&printed.velocity), &eval(&functions.velocity, &symbol), "velocities");
                 assert_near(

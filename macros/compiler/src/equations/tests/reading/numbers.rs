@@ -1,8 +1,9 @@
-//! Linear equations in numbers, by differences of Lagrange's equations, and the roots of their characteristic polynomials.
+//! Numerical linearisation by finite differences of Lagrange's equations, and roots of characteristic
+//! polynomials.
 
 use super::*;
 
-/// The roots of a polynomial, by the iteration of Weierstrass, Durand and Kerner.
+/// Returns the roots of a polynomial by the Durand-Kerner (Weierstrass) iteration.
 pub fn roots(c: &[f64]) -> Vec<Complex<f64>> {
     let n = c.len() - 1;
     let monic: Vec<f64> = c.iter().map(|x| x / c[n]).collect();
@@ -20,7 +21,8 @@ pub fn roots(c: &[f64]) -> Vec<Complex<f64>> {
     found
 }
 
-/// The eigenvalues of a matrix, from its characteristic polynomial by the method of Faddeev and Leverrier.
+/// Returns the eigenvalues of a matrix from its characteristic polynomial, by the Faddeev-LeVerrier
+/// algorithm.
 pub fn eigenvalues(a: &[Vec<f64>]) -> Vec<Complex<f64>> {
     let n = a.len();
     let mut c = vec![0.0; n + 1];
@@ -39,7 +41,7 @@ pub fn eigenvalues(a: &[Vec<f64>]) -> Vec<Complex<f64>> {
     roots(&c)
 }
 
-/// The roots of one list, each near one of another.
+/// Checks that two lists contain the same roots within a tolerance.
 #[track_caller]
 pub fn assert_same_roots(a: &[Complex<f64>], b: &[Complex<f64>], tolerance: f64) {
     assert_eq!(a.len(), b.len(), "{a:?} {b:?}");
@@ -52,7 +54,7 @@ pub fn assert_same_roots(a: &[Complex<f64>], b: &[Complex<f64>], tolerance: f64)
     }
 }
 
-/// A mechanism in numbers: accelerations of Lagrange's equations.
+/// A numerical model of a mechanism: accelerations of Lagrange's equations.
 pub struct Numbers<'g> {
     nv: usize,
     forces: crate::expr::eval::Tape<'g>,
@@ -81,7 +83,7 @@ impl<'g> Numbers<'g> {
         let (mass, force) = values.split_at(self.nv * self.nv);
         let mut rows: Vec<Vec<f64>> =
             (0..self.nv).map(|i| [&mass[i * self.nv..][..self.nv], &force[i..=i]].concat()).collect();
-        // Symmetric and positive definite: pivots along the diagonal.
+        // The mass matrix is symmetric and positive definite: pivots along the diagonal.
         for k in 0..self.nv {
             let own: Vec<f64> = rows[k].iter().map(|x| x / rows[k][k]).collect();
             for (i, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
@@ -93,7 +95,8 @@ impl<'g> Numbers<'g> {
         rows.iter().map(|row| row[self.nv]).collect()
     }
 
-    /// The matrix of `ξ̇ = v`, `v̇ = a` about a state at rest, by differences; orientations are along the axes there.
+    /// Returns the matrix of `ξ̇ = v`, `v̇ = a` about a state at rest, by finite differences. The orientation
+    /// at rest is the identity.
     pub fn linear(&self, q: &[f64], u: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
         let n = self.nv;
         let at = |k: usize, h: f64| {

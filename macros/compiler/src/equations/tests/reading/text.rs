@@ -1,11 +1,11 @@
-//! Printed linear equations, read back.
+//! Parser of printed linear equations.
 
 use super::*;
 
-/// Values by name.
+/// Returns the value of a name.
 pub type Values<'a> = &'a dyn Fn(&str) -> f64;
 
-/// A reader of printed sums: `1/2 m l² cos(theta)/(a + b)`.
+/// Parser and evaluator of printed sums such as `1/2 m l² cos(theta)/(a + b)`.
 pub struct Reader<'a> {
     rest: &'a str,
     values: Values<'a>,
@@ -86,7 +86,7 @@ impl Reader<'_> {
     }
 }
 
-/// A printed text, taken apart.
+/// The components of a printed text.
 #[derive(Default)]
 pub struct Text {
     equations: Vec<(String, String)>,
@@ -98,7 +98,7 @@ pub struct Text {
 
 impl Text {
     pub fn of(text: &str) -> Text {
-        // Lines that go on are indented.
+        // Continuation lines are indented.
         let mut lines: Vec<String> = Vec::new();
         for line in text.lines() {
             let ends = lines.last().is_some_and(|last| last.contains(" = ") || last.ends_with("> 0"));
@@ -139,7 +139,7 @@ impl Text {
         found
     }
 
-    /// Coefficients of a name in all equations, of the left sides or of the right ones.
+    /// Returns the coefficients of a name in all equations, on the left or on the right sides.
     pub fn column(&self, name: &str, right: bool, parameters: Values<'_>) -> Vec<f64> {
         let one = |word: &str| match word {
             _ if word == name => 1.0,
@@ -149,7 +149,7 @@ impl Text {
         self.equations.iter().map(|(a, b)| value(if right { b } else { a }, &one)).collect()
     }
 
-    /// Names that are no parameters.
+    /// Returns true for names of variables instead of parameters.
     pub fn is_moving(&self, word: &str) -> bool {
         [
             "lambda", "motor", "push", "thrust", "rail", "hinge", "shoulder", "elbow", "pose", "one", "two",
@@ -164,13 +164,13 @@ impl Text {
         self.conditions.iter().all(|condition| value(condition, parameters) > 0.0)
     }
 
-    /// The coefficients of the characteristic polynomial by power, from its values.
+    /// Returns the coefficients of the characteristic polynomial in ascending powers, from its values.
     pub fn coefficients(&self, parameters: Values<'_>) -> Vec<f64> {
         let at = |s: f64| value(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
         let degree =
             ["⁶", "⁵", "⁴", "³", "²"].iter().position(|p| self.polynomial.contains(&format!("s{p}")));
         let n = degree.map_or(1, |k| 6 - k);
-        // Newton's differences at whole points, multiplied out.
+        // Newton interpolation at equidistant points, expanded to powers.
         let points: Vec<f64> = (0..=n).map(|k| k as f64 - n as f64 / 2.0).collect();
         let mut table: Vec<f64> = points.iter().map(|s| at(*s)).collect();
         for order in 1..=n {
