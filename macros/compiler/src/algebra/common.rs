@@ -15,11 +15,12 @@ const NESTED: usize = 3;
 /// Selection of the items of a sum from which common factors are taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
-    /// All items, for an equation.
+    /// Takes common factors out of all items: for an equation.
     All,
-    /// Items of the same nonzero degree in rates, for an energy. Rates and positions are not taken out.
+    /// Takes common factors out of items of the same nonzero degree in rates, but never rates and positions:
+    /// for an energy.
     Kinds,
-    /// No items, for a linear form: only its coefficients are shortened.
+    /// Takes no common factors out of the sum, and only shortens its coefficients: for a linear form.
     None,
 }
 

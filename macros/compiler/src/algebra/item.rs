@@ -1,4 +1,4 @@
-//! Sums of products as they are printed, and the order of their terms and factors.
+//! Representation of printed sums of products, and the order of their terms and factors.
 
 use super::polynomial::{Atom, Monomial, Polynomial, Rank, Ring, Term, Wave};
 use std::cmp::Reverse;
@@ -9,7 +9,7 @@ const ROUNDING: f64 = 1e-9;
 /// A term of a printed sum: `coefficient × factor × sums`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
-    /// Numeric factor.
+    /// Numeric factor of the item.
     pub coefficient: f64,
     /// Product of the factors that are atoms.
     pub factor: Monomial,

@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-13;
 /// A monomial with its coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
-    /// Product of powers of atoms.
+    /// Product of powers of atoms in the term.
     pub monomial: Monomial,
     /// Coefficient, not zero.
     pub coefficient: f64,
@@ -37,7 +37,7 @@ pub struct Term {
 /// A sum of terms, sorted by monomial. No monomial occurs twice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polynomial {
-    /// Terms in ascending order of their monomials.
+    /// Terms in ascending order of their monomials, without zeros.
     pub terms: Vec<Term>,
 }
 

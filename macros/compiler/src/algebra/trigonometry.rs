@@ -1,6 +1,6 @@
 //! Simplification by trigonometric identities: `sin² + cos² = 1`, and the conversion between products of
 //! sines and cosines and the sines and cosines of sums and differences of angles. Each step merges two terms
-//! into one. The steps start from three forms of the sum: as it is given, with squares of cosines replaced by
+//! into one. The steps start from three forms of the sum: unchanged, with squares of cosines replaced by
 //! squares of sines, and as a Fourier sum. The shortest result is used.
 
 use super::polynomial::{ANGLES, Atom, Monomial, Polynomial, Ring, Term, Wave};

@@ -7,7 +7,7 @@ use super::shape::{Argument, Record, Shape};
 
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
-/// Functions of mechanisms with constraints that are derived from equations.
+/// Rows of the functions of mechanisms with constraints that are derived from equations.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q],

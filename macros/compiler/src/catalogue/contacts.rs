@@ -8,7 +8,7 @@ use crate::syntax::Word;
 
 const TOUCHING: &[Need] = &[Need::Contacts];
 
-/// Functions of mechanisms with contacts.
+/// Rows of the functions of mechanisms with contacts.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {
         arguments: vec![Q],

@@ -13,7 +13,7 @@ const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
 const UNCONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints];
 const CONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Constraints];
 
-/// Derivatives of the dynamics.
+/// Rows of first derivatives of the dynamics.
 pub const ROWS: &[Row] = &[
     Row::derived(
         Id::MassMatrixInverse,
@@ -139,7 +139,7 @@ pub const ROWS: &[Row] = &[
 
 const MOMENTA: &[Need] = &[Need::Inertia, Need::Asks(Word::MomentumDerivatives)];
 
-/// Derivatives of momenta.
+/// Rows of derivatives of momenta.
 pub const MOMENTUM_ROWS: &[Row] = &[
     Row::derived(Id::GeneralizedMomentumDerivatives, "generalized_momentum_derivatives", MOMENTA, |f| {
         Declaration {
@@ -167,7 +167,7 @@ pub const MOMENTUM_ROWS: &[Row] = &[
 const SECOND: &[Need] = &[Need::Inertia, Need::Asks(Word::SecondDerivatives)];
 const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the first matrix; for ball and free joints `dq` is a motion in body axes.";
 
-/// Second derivatives of the dynamics.
+/// Rows of second derivatives of the dynamics.
 pub const SECOND_ROWS: &[Row] = &[
     Row::derived(Id::InverseDynamicsSecondDerivatives, "inverse_dynamics_second_derivatives", SECOND, |f| {
         Declaration {

@@ -1,4 +1,4 @@
-//! Functions of every mechanism.
+//! Rows of the functions of every mechanism.
 
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};
@@ -8,7 +8,7 @@ use crate::syntax::Word;
 
 const INERTIA: &[Need] = &[Need::Inertia];
 
-/// Equations of motion, energies and powers, and total mass, centre of mass and momentum.
+/// Rows of the equations of motion, energies and powers, and of total mass, centre of mass and momentum.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::Neutral, "neutral", &[], |f| Declaration {
         timeless: true,

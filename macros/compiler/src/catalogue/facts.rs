@@ -6,43 +6,43 @@ use crate::syntax::{Requests, Word};
 /// A requirement of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// Masses and inertias.
+    /// The mechanism has masses and inertias.
     Inertia,
-    /// Loops, rolling or other constraints.
+    /// The mechanism has constraints: loops, rolling or others.
     Constraints,
-    /// No constraints.
+    /// The mechanism has no constraints.
     NoConstraints,
-    /// An option of the `#[mechanism]` attribute.
+    /// The `#[mechanism]` attribute has this option.
     Asks(Word),
-    /// An invertible mass matrix: no constraint determines a coordinate without inertia.
+    /// The mass matrix is invertible: no constraint determines a coordinate without inertia.
     RegularMass,
-    /// Constraints of sliding contacts with friction.
+    /// The mechanism has constraints of sliding contacts with friction.
     Slipping,
-    /// No constraints of sliding contacts.
+    /// The mechanism has no constraints of sliding contacts with friction.
     NoSlipping,
-    /// Unilateral contacts.
+    /// The mechanism has unilateral contacts.
     Contacts,
-    /// Parameters.
+    /// The mechanism has parameters.
     Parameters,
-    /// Inertial parameters of a file that are parameters of the struct.
+    /// Values of a file, such as inertias, are parameters of the struct.
     FileParameters,
-    /// Mass properties of links of a file that are parameters of the struct.
+    /// Inertial parameters of links of a file are parameters of the struct.
     FileInertials,
-    /// Declared equilibria.
+    /// The mechanism declares equilibria.
     Equilibria,
-    /// Limits of coordinates.
+    /// The mechanism has limits of coordinates.
     Limits,
-    /// Ground with an expression for its height.
+    /// The ground has an expression for its height.
     Terrain,
-    /// Derivatives of forward dynamics that call other generated functions.
+    /// The derivatives of forward dynamics call other generated functions.
     Calls,
-    /// Passive forces in a function of their own that other functions call.
+    /// The passive forces are a function of their own that other functions call.
     PassiveCalls,
-    /// Declared generalized speeds.
+    /// The mechanism declares generalized speeds.
     Speeds,
-    /// No declared generalized speeds.
+    /// The mechanism declares no generalized speeds.
     NoSpeeds,
-    /// Unilateral contacts of a mechanism without constraints, few enough for a generated function of their
+    /// The mechanism has no constraints, and few enough unilateral contacts for a generated function of their
     /// Delassus matrix.
     FewContacts,
 }

@@ -1,4 +1,4 @@
-//! The functions of a mechanism's outputs.
+//! Declarations of the functions of a mechanism's outputs.
 
 use super::contacts::contact_forces;
 use super::facts::Facts;

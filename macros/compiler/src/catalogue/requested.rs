@@ -1,5 +1,5 @@
-//! Functions of the options `centroidal`, `hamilton`, `routh`, `conserved`, `regressor`, `sensitivities` and
-//! `packed`.
+//! Rows of the functions of the options `centroidal`, `hamilton`, `routh`, `conserved`, `regressor`,
+//! `sensitivities` and `packed`.
 
 use super::facts::Need;
 use super::row::{Declaration, Id, Row};
@@ -17,7 +17,7 @@ const CONSERVED: &[Need] = &[Need::Inertia, Need::Asks(Word::Conserved)];
 const REGRESSOR: &[Need] = &[Need::Inertia, Need::Asks(Word::Regressor)];
 const PACKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Packed)];
 
-/// Functions of the option `centroidal`.
+/// Rows of the functions of the option `centroidal`.
 pub const CENTROIDAL: &[Row] = &[
     Row::derived(Id::CentroidalMomentumMatrix, "centroidal_momentum_matrix", CENTROIDAL_ASKED, |f| {
         Declaration {
@@ -40,7 +40,7 @@ pub const CENTROIDAL: &[Row] = &[
     }),
 ];
 
-/// Functions of the options `hamilton`, `routh` and `conserved`.
+/// Rows of the functions of the options `hamilton`, `routh` and `conserved`.
 pub const CANONICAL: &[Row] = &[
     Row::derived(Id::Hamiltonian, "hamiltonian", HAMILTON, |f| Declaration {
         arguments: vec![Q, Argument::Momenta(f.nv)],
@@ -106,7 +106,8 @@ pub const CANONICAL: &[Row] = &[
     }),
 ];
 
-/// Functions of the options `regressor`, `sensitivities` and `packed`, and the checks of parameters.
+/// Rows of the functions of the options `regressor`, `sensitivities` and `packed`, and of the checks of
+/// parameters.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],

@@ -103,7 +103,7 @@ pub enum Made {
     Written,
 }
 
-/// A function that can be generated.
+/// A row of the catalogue: name, origin and signature of a function that can be generated.
 #[derive(Clone, Copy)]
 pub struct Row {
     /// Name of the function.
@@ -143,7 +143,7 @@ pub struct Declared {
     pub name: String,
     /// Documentation, one entry per paragraph. Empty for a hidden function.
     pub docs: Vec<String>,
-    /// Arguments after `&self`.
+    /// Arguments of the generated method, without `&self`.
     pub arguments: Vec<Argument>,
     /// Shape of the result.
     pub shape: Shape,

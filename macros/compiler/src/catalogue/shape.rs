@@ -5,20 +5,20 @@ use crate::mechanism::Quantity;
 /// Name of the argument with the forces of all contacts.
 pub const CONTACT_FORCES: &str = "forces";
 
-/// An argument of a generated function.
+/// An argument of a generated function, identified by its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
     /// Time `t`, s.
     T,
-    /// Configuration `q`.
+    /// Configuration `q`, with `NQ` entries.
     Q,
-    /// Velocity `v`.
+    /// Velocity `v`, with `NV` entries.
     V,
-    /// Acceleration `a`.
+    /// Acceleration `a`, with `NV` entries.
     A,
-    /// Generalized force `tau`.
+    /// Generalized force `tau`, with `NV` entries.
     Tau,
-    /// Inputs `u`.
+    /// Inputs `u`, with `NU` entries.
     U,
     /// A vector of program inputs: name of the argument, index of the first input, and their number.
     Given(&'static str, usize, usize),
@@ -99,16 +99,16 @@ impl Argument {
 /// Result of a generated function, and how it is assembled from the outputs of its program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shape {
-    /// A number.
+    /// A scalar result.
     #[default]
     Scalar,
-    /// A column vector.
+    /// A column vector as result, with its length.
     Vector(usize),
     /// A square matrix. The outputs are its columns one after another.
     Square(usize),
     /// A matrix. The outputs are its columns one after another.
     Matrix(usize, usize),
-    /// Two square matrices.
+    /// Two square matrices as result, with their number of rows.
     Pair(usize),
     /// Four square matrices of second derivatives: by configuration twice, by configuration and velocity, by
     /// velocity twice, and by configuration and acceleration.
@@ -139,9 +139,9 @@ pub enum Shape {
     /// inputs, their derivatives by `q`, `v` and the inputs, and the matrix `T` in the rate `ξ̇ = δv + T ξ`
     /// of displacements `ξ`.
     CalledLinear(usize, usize),
-    /// A plain array.
+    /// A plain array as result, with its length.
     Array(usize),
-    /// A struct of the runtime.
+    /// A struct of the runtime as result.
     Record(Record),
     /// A symmetric matrix written to a matrix argument, with its number of rows. Each output is written to
     /// both sides of the diagonal.

@@ -9,7 +9,7 @@ use crate::syntax::Word;
 
 const SPEEDS: &[Need] = &[Need::Speeds];
 
-/// Conversion between generalized speeds and joint velocities.
+/// Rows of the conversions between generalized speeds and joint velocities.
 pub const ROWS: &[Row] = &[
     Row::derived(Id::RatesOfSpeeds, "rates_of_speeds", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
@@ -58,7 +58,7 @@ pub const ROWS: &[Row] = &[
     .alone(),
 ];
 
-/// Functions of the option `derivatives`.
+/// Rows of the functions of the option `derivatives` for mechanisms with generalized speeds.
 pub const DERIVATIVES: &[Row] = &[Row::derived(
     Id::Turning,
     "__turning",

@@ -8,7 +8,7 @@ const ASKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives)];
 const ASKED_WITHOUT_SPEEDS: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoSpeeds];
 const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
-/// Constrained dynamics, assembly and projection.
+/// Rows of constrained dynamics, assembly and projection.
 pub const CONSTRAINED: &[Row] = &[
     Row::written("forward_dynamics", &[Need::Inertia, Need::Constraints]).and_batched(),
     Row::written(
@@ -34,7 +34,7 @@ pub const CONSTRAINED: &[Row] = &[
     Row::written("try_constrained_dynamics", &[Need::Constraints, Need::Inertia, Need::Slipping]),
 ];
 
-/// The configuration space, frames, and the prepared mechanism.
+/// Rows of the configuration space, frames, and the prepared mechanism.
 pub const ROWS: &[Row] = &[
     Row::written("difference", &[]).and_batched(),
     Row::written("integrate", &[]).and_batched(),

@@ -199,7 +199,7 @@ fn determinant(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
 struct Solved<'g> {
     independent: Vec<usize>,
     dependent: Vec<usize>,
-    /// Dependent velocities.
+    /// Dependent velocities in terms of the independent ones.
     values: Vec<Expr<'g>>,
     /// Time derivatives of the dependent velocities.
     changes: Vec<Expr<'g>>,

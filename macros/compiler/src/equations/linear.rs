@@ -36,9 +36,10 @@ pub use written::written_linear;
 pub struct Linear {
     /// Ring of all polynomials.
     pub ring: Ring,
-    /// Left sides, with the deviations: a row for each velocity, each constraint and each state.
+    /// Left sides of the linear equations, which contain the deviations: a row for each velocity, each
+    /// constraint and each state.
     pub motion: Vec<Polynomial>,
-    /// Right sides: contributions of inputs and multipliers.
+    /// Right sides of the linear equations: contributions of inputs and multipliers.
     pub forces: Vec<Polynomial>,
     /// Coordinates, inputs, states and multipliers that are not zero at rest, with their values.
     pub values: Vec<(Quantity, Polynomial)>,

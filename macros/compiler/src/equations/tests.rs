@@ -389,7 +389,7 @@ fn hamiltons_form_is_that_of_the_functions() {
         with_model("-g * z", item, |model| check_canonical(&model));
         with_model("-g * y", item, |model| check_canonical(&model));
     }
-    // Euler's equations, in momenta.
+    // Euler's equations in terms of momenta.
     let text = with_model("-g * z", FREE, |model| check_canonical(&model));
     assert!(text.contains("p_pose.wx' = p_pose.wy p_pose.wz (1/c - 1/b)\n"), "{text}");
     let text = with_model("-g * z", BALL, |model| check_canonical(&model));

@@ -125,7 +125,7 @@ pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
 }
 
-/// Returns a sentence that explains the determinants, empty if there are none.
+/// Returns a sentence that explains the determinants, or an empty text without determinants.
 pub(super) fn about_inertias(determinants: &[String]) -> String {
     match determinants {
         [] => String::new(),

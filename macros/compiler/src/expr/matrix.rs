@@ -198,9 +198,9 @@ impl<'g> Mul<Vec3<'g>> for Mat3<'g> {
 /// A symmetric 3×3 matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sym3<'g> {
-    /// Entries xx, yy, zz.
+    /// Diagonal entries xx, yy, zz.
     pub diagonal: [Expr<'g>; 3],
-    /// Entries xy, xz, yz.
+    /// Off-diagonal entries xy, xz, yz.
     pub off: [Expr<'g>; 3],
 }
 

@@ -186,25 +186,25 @@ impl Extreme {
 /// A node of the graph.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Node {
-    /// A constant.
+    /// A constant, the same in all lanes.
     Const(f64),
-    /// An input.
+    /// An input, the same in all lanes.
     Symbol(Symbol),
-    /// `-a`.
+    /// Negation `-a`.
     Neg(Id),
-    /// `a + b`.
+    /// Sum `a + b`.
     Add(Id, Id),
-    /// `a - b`.
+    /// Difference `a - b`.
     Sub(Id, Id),
-    /// `a * b`.
+    /// Product `a * b`.
     Mul(Id, Id),
-    /// `a / b`.
+    /// Quotient `a / b`.
     Div(Id, Id),
-    /// `f(a)`.
+    /// Elementary function `f(a)`.
     Call(Function, Id),
     /// `atan2(a, b)`: the angle, rad, of the point with ordinate `a` and abscissa `b`.
     Atan2(Id, Id),
-    /// `a` to the power `b`.
+    /// Power `a^b`.
     Pow(Id, Id),
     /// The minimum or maximum of `a` and `b`.
     Extreme(Extreme, Id, Id),
@@ -214,11 +214,11 @@ pub enum Node {
     Tuple(u32),
     /// An input for each lane: an index of the graph's gathers.
     Gather(u32),
-    /// The sum of the first `n` lanes of `a`.
+    /// Sum of the first `n` lanes of `a`: `n` and `a`.
     Sum(u8, Id),
-    /// One lane of `a`.
+    /// Value of one lane of `a`: index of the lane, and `a`.
     Lane(u8, Id),
-    /// The first `n` lanes of `a`, followed by the first `n` lanes of `b`.
+    /// First `n` lanes of `a`, followed by the first `n` lanes of `b`: `n`, `a` and `b`.
     Join(u8, Id, Id),
 }
 

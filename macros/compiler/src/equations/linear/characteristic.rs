@@ -18,7 +18,7 @@ const ROWS: usize = 6;
 /// Maximum number of terms of all coefficients.
 const TERMS: usize = 120;
 
-/// A characteristic polynomial.
+/// A characteristic polynomial, with the properties of its parameters that the stability analysis uses.
 pub struct Characteristic {
     /// Ring of all polynomials.
     pub ring: Ring,

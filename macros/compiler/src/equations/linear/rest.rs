@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-10;
 /// Maximum number of characters of a force in an error message. Longer texts are cut off.
 const MAX_FORCE_CHARACTERS: usize = 100;
 
-/// The state at rest.
+/// Values of coordinates, inputs, multipliers and states at a declared equilibrium.
 pub struct Rest<'g> {
     configuration: Vec<Expr<'g>>,
     inputs: Vec<Expr<'g>>,
@@ -297,7 +297,7 @@ fn solved<'g>(
     let right = without.of(balance);
     let jacobian: Vec<Vec<Expr<'g>>> =
         crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.of(row)).collect();
-    // Rows: Jᵀ λ = force to be balanced.
+    // Each row is an equation of Jᵀ λ = force to be balanced.
     let mut rows: Vec<Vec<Expr<'g>>> =
         (0..model.nv()).map(|k| jacobian.iter().map(|row| row[k]).chain([right[k]]).collect()).collect();
     let mut left: Vec<usize> = (0..rows.len()).collect();

@@ -35,13 +35,13 @@ pub enum Verdict {
     Asymptotic(Vec<Polynomial>),
     /// Stable if all of these polynomials are positive: deviations oscillate and remain bounded.
     Oscillation(Vec<Polynomial>),
-    /// Not asymptotically stable for any parameters.
+    /// Not asymptotically stable for any values of the parameters.
     NotAsymptotic,
-    /// Unstable for any parameters.
+    /// Unstable for all values of the parameters.
     Unstable,
     /// There are no nonzero roots.
     Nothing,
-    /// The conditions are too long.
+    /// The stability conditions are too long to be printed.
     Long,
 }
 

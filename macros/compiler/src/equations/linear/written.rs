@@ -90,9 +90,9 @@ fn deviations(model: &Model<'_>) -> Vec<String> {
 
 /// Printed linear equations in one style.
 struct Lines {
-    /// Both sides of every equation.
+    /// Left and right side of every equation.
     equations: Vec<(String, String)>,
-    /// Names and values at rest.
+    /// Names and values of the quantities that are not zero at rest.
     values: Vec<(String, String)>,
     polynomial: Option<String>,
     frequency: Option<String>,

@@ -4,9 +4,9 @@
 /// A name, split into base and subscripts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
-    /// Base.
+    /// Part of the name that is typeset on the line.
     pub base: Glyph,
-    /// Subscripts.
+    /// Parts of the name that are typeset as subscripts.
     pub indices: Vec<Glyph>,
 }
 

@@ -8,9 +8,9 @@ use std::fmt;
 /// A text in all output formats. Empty if there are no equations.
 #[derive(Clone, Debug, Default)]
 pub struct Written {
-    /// Plain text.
+    /// Text without markup.
     pub plain: String,
-    /// LaTeX.
+    /// Text for the math mode of LaTeX.
     pub latex: String,
     /// HTML with MathML, in one line.
     pub mathml: String,
@@ -68,7 +68,7 @@ pub struct Argument {
 /// numbers are printed as decimals.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
-    /// Numerator and denominator.
+    /// Numerator and denominator of a fraction.
     Fraction(u32, u32),
     /// Numerator and denominator of the coefficient of a power of π, and that power: 1, 2, −1 or −2.
     Pi(u32, u32, i8),
@@ -81,9 +81,9 @@ pub enum Number {
 }
 
 impl Number {
-    /// Zero.
+    /// The number zero.
     pub const ZERO: Number = Number::Fraction(0, 1);
-    /// One.
+    /// The number one.
     pub const ONE: Number = Number::Fraction(1, 1);
 
     /// Classifies a positive number: a fraction, multiple of π or multiple of a root if the integers involved
