@@ -75,7 +75,7 @@ pub enum Rank {
     Function,
     /// A rate, or a function of rates.
     Rate,
-    /// An acceleration.
+    /// A generalized acceleration.
     Acceleration,
     /// An input of the mechanism.
     Input,

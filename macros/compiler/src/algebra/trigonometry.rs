@@ -224,7 +224,7 @@ fn unfolded(mut product: Product) -> Product {
     product
 }
 
-/// Returns the angle `a ± b`.
+/// Returns the sum or difference of the angles of two waves.
 fn sum(a: &Wave, b: &Wave, sign: i8) -> [i8; ANGLES] {
     std::array::from_fn(|k| a.angle[k].saturating_add(sign * b.angle[k]))
 }

@@ -52,7 +52,7 @@ pub struct Kane {
     pub motion: Vec<Polynomial>,
     /// Right sides of the equations of motion: forces of inputs.
     pub forces: Vec<Polynomial>,
-    /// Dependent velocities, with their indices.
+    /// Dependent velocities in terms of the independent ones, each with its index.
     pub dependent: Vec<(usize, Polynomial)>,
     /// Joint velocities that declared generalized speeds replace, with their indices.
     pub rates: Vec<(usize, Polynomial)>,

@@ -173,7 +173,7 @@ impl Graph {
         Expr { graph: self, id }
     }
 
-    /// Returns a constant.
+    /// Returns a constant expression.
     pub fn num(&self, value: f64) -> Expr<'_> {
         self.expr(self.constant(value))
     }
@@ -188,7 +188,7 @@ impl Graph {
         self.expr(ONE)
     }
 
-    /// Returns an input.
+    /// Returns the expression of an input.
     pub fn symbol(&self, symbol: Symbol) -> Expr<'_> {
         self.expr(self.intern(Node::Symbol(symbol)))
     }

@@ -142,12 +142,12 @@ impl<'g> Mat3<'g> {
         Mat3([[o, -z, y], [z, o, -x], [-y, x, o]])
     }
 
-    /// Returns row `i`.
+    /// Returns row `i` of the matrix.
     pub fn row(&self, i: usize) -> Vec3<'g> {
         Vec3(self.0[i])
     }
 
-    /// Returns column `j`.
+    /// Returns column `j` of the matrix.
     pub fn column(&self, j: usize) -> Vec3<'g> {
         Vec3([self.0[0][j], self.0[1][j], self.0[2][j]])
     }

@@ -20,7 +20,7 @@ impl<'g> Memo<'g> {
         Memo { graph, table: graph.take_table(), written: Vec::new() }
     }
 
-    /// Returns the number of a node.
+    /// Returns the number assigned to a node, `None` if it is unset.
     pub fn get(&self, id: Id) -> Option<u32> {
         match self.table.get(id as usize) {
             None | Some(0) => None,

@@ -27,11 +27,11 @@ pub enum Function {
     Sqrt,
     Abs,
     Signum,
-    /// Temperature of the standard atmosphere at a geopotential height: K, of m.
+    /// Temperature, K, of the standard atmosphere at a geopotential height, m.
     IsaTemperature,
-    /// Derivative of the temperature of the standard atmosphere by geopotential height: K/m, of m.
+    /// Temperature gradient, K/m, of the standard atmosphere at a geopotential height, m.
     IsaLapseRate,
-    /// Pressure of the standard atmosphere at a geopotential height: Pa, of m.
+    /// Pressure, Pa, of the standard atmosphere at a geopotential height, m.
     IsaPressure,
 }
 

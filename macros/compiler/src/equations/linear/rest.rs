@@ -80,7 +80,7 @@ impl<'g> Rest<'g> {
     }
 }
 
-/// Error message and advice.
+/// Text of an error, and advice on how to correct it.
 type Refusal = (String, &'static str);
 
 /// Checks an equilibrium and determines its multipliers. `None` with an error in `cx` if it is not one.

@@ -4,7 +4,7 @@
 use std::iter::Peekable;
 use std::str::Chars;
 
-/// Width of a line, in tenths of a character: about the width of letter paper.
+/// Width of a line, in tenths of a character: about the width of a page.
 const ROOM: usize = 1000;
 /// Sides of equations up to this width get no line of their own.
 const SHORT: usize = 240;
