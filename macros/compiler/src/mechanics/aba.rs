@@ -1,6 +1,6 @@
-//! Forward dynamics by the articulated-body algorithm (Featherstone 1983, 2008, ch. 7), on the part of the forces that
-//! the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the mechanism at rest without
-//! gravity, so the recursion has no velocity terms.
+//! Forward dynamics by the articulated-body algorithm (Featherstone 1983, 2008, ch. 7). It acts on the forces
+//! that the bias does not balance: with `r = τ − h(q, v)`, the accelerations are those of the mechanism at
+//! rest without gravity, so the recursion has no velocity terms.
 
 use super::is_plain_tree;
 use super::ldl::second_inverse;
@@ -9,15 +9,15 @@ use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Inertia, Model};
 
-/// `M⁻¹ r`. `None` for a mechanism with coupled coordinates.
+/// Returns `M⁻¹ r`, or `None` for a mechanism with coupled coordinates.
 pub fn accelerations<'g>(model: &Model<'g>, joints: &[Joint<'g>], r: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
     solve(model, joints, vec![Spatial::zero(model); joints.len()], r)
 }
 
-/// `v̇ = M⁻¹ (τ − h)`. `None` for a mechanism with coupled coordinates.
+/// Returns `v̇ = M⁻¹ (τ − h)`, or `None` for a mechanism with coupled coordinates.
 ///
-/// `wrenches` are those that the links need when all joint accelerations are zero (`rnea::wrenches`): they are gathered
-/// on the way from the leaves to the root, instead of first in a recursion of their own.
+/// `wrenches` holds the wrench that each link needs when all joint accelerations are zero (`rnea::wrenches`).
+/// The inward pass of this recursion sums them, so no separate recursion computes the bias first.
 pub fn forward_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -47,7 +47,7 @@ fn solve<'g>(
             let next = place.checked_sub(1).map(|next| &joint.dofs[next]).filter(|_| inverse.is_none());
             let handle = Eliminated::new(dof, &inertia, &wrench, r[dof.index], inverse);
             inverse = next.and_then(|next| inertia.second_inverse(&dof.subspace, &next.subspace));
-            // Nothing above the last degree of freedom needs what is left of the inertia of a root.
+            // The reduced inertia after the last elimination of a root is used by no later step.
             inertia.eliminate(&handle);
             wrench = handle.transmit(&wrench);
             handles[k].push(handle);
@@ -73,12 +73,12 @@ fn outward<'g>(model: &Model<'g>, joints: &[Joint<'g>], handles: &[Vec<Eliminate
     result
 }
 
-/// What is known of one degree of freedom once its handle is computed: `U = IA s`, `U / D`, `u / D` with `D = s · U`
-/// and `u = r − s · pA`.
+/// Quantities of one eliminated degree of freedom (a *handle*): `U = IA s`, `U / D`, `u / D`, with
+/// `D = s · U` and `u = r − s · pA`.
 ///
-/// Where `s` is a coordinate axis (of six), `U` is without the entry of this axis, which is `D`: the wrench that is
-/// handed on has `r` there by `s · (pA + U u / D) = r`, and the acceleration along it is `(u − U · a) / D` whatever that
-/// of the parent.
+/// If `s` is one of the six coordinate axes, `U` is stored with a zero in the entry of this axis, which would
+/// be `D`. The transmitted wrench has the entry `r` there, because `s · (pA + U u / D) = r`. The acceleration
+/// along the axis is `(u − U · a) / D`, independent of the parent's acceleration along the axis.
 #[derive(Clone)]
 struct Eliminated<'g> {
     axis: Option<Axis>,
@@ -88,7 +88,7 @@ struct Eliminated<'g> {
     r: Expr<'g>,
 }
 
-/// A coordinate axis of six, linear ones first, and whether it points backwards.
+/// One of the six coordinate axes of spatial vectors, linear axes first, with its sign.
 #[derive(Clone, Copy)]
 struct Axis {
     entry: usize,
@@ -122,7 +122,7 @@ fn with_entry<'g>(mut s: Spatial<'g>, e: usize, value: Expr<'g>) -> Spatial<'g> 
 }
 
 impl<'g> Eliminated<'g> {
-    /// The inverse of `D` is given if it is known already.
+    /// Eliminates one degree of freedom. `inverse` is `1 / D` if it has already been computed.
     fn new(
         dof: &Dof<'g>,
         inertia: &Articulated<'g>,
@@ -140,13 +140,13 @@ impl<'g> Eliminated<'g> {
         Eliminated { axis, column, scaled: column.times(inverse), effort, r }
     }
 
-    /// The wrench that the joint hands on.
+    /// Returns the wrench that the joint transmits towards the parent.
     fn transmit(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
         let sum = wrench.plus(&self.column.times(self.effort));
         self.axis.map_or(sum, |axis| with_entry(sum, axis.entry, axis.signed(self.r)))
     }
 
-    /// The acceleration of the degree of freedom, and the motion with it.
+    /// Returns the acceleration of the degree of freedom, and the link's motion including it.
     fn accelerate(&self, subspace: &Spatial<'g>, motion: &Spatial<'g>) -> (Expr<'g>, Spatial<'g>) {
         let a = self.effort - self.scaled.dot(motion);
         match self.axis {
@@ -159,7 +159,8 @@ impl<'g> Eliminated<'g> {
     }
 }
 
-/// An articulated inertia: force `M a + Hᵀ w`, moment `H a + I w` for an acceleration `(a, w)` of the origin.
+/// Articulated-body inertia: force `M a + Hᵀ w` and moment `H a + I w` for an acceleration `(a, w)` of the
+/// origin.
 #[derive(Clone, Copy)]
 struct Articulated<'g> {
     m: Sym3<'g>,
@@ -179,14 +180,15 @@ impl<'g> Articulated<'g> {
         }
     }
 
-    /// The inverse of `D` of a second degree of freedom once the first is eliminated; `None` where the two do not meet. See
-    /// [`second_inverse`].
+    /// Returns `1 / D` of the second degree of freedom after elimination of the first, or `None` if the
+    /// inertia does not couple the two, see [`second_inverse`].
     fn second_inverse(&self, first: &Spatial<'g>, second: &Spatial<'g>) -> Option<Expr<'g>> {
         let column = self.times(first);
         second_inverse(first.dot(&column), second.dot(&column), second.dot(&self.times(second)))
     }
 
-    /// `IA − U Uᵀ / D`. Rows and columns of a coordinate axis that the joint leaves free are exactly zero then.
+    /// Subtracts `U Uᵀ / D`. If the joint leaves a coordinate axis free, the row and column of that axis are
+    /// then exactly zero.
     fn eliminate(&mut self, handle: &Eliminated<'g>) {
         let (f, n) = (handle.column.linear, handle.column.angular);
         let outer = |a: Vec3<'g>, b: Vec3<'g>| Mat3::from_fn(|i, j| a[i] * b[j]);
@@ -209,7 +211,7 @@ impl<'g> Articulated<'g> {
         }
     }
 
-    /// The same inertia about the parent's origin, in parent axes, added to `sum`.
+    /// Adds the inertia, transformed to the parent's origin and axes, to `sum`.
     ///
     /// `H' = H + [p]× M`, `I' = I − H [p]× − (H' [p]×)ᵀ`.
     fn add_to_parent(self, joint: &Joint<'g>, sum: &Articulated<'g>) -> Articulated<'g> {
@@ -233,7 +235,7 @@ impl<'g> Articulated<'g> {
 fn clear(s: &mut Sym3<'_>, k: usize) {
     let zero = s.diagonal[k].zero();
     s.diagonal[k] = zero;
-    // Entries xy, xz, yz: those of axis k are all but the one whose indices are the other two.
+    // The off-diagonal entries are xy, xz, yz. Those of axis k are the two whose indices include k.
     for (entry, (i, j)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
         if i == k || j == k {
             s.off[entry] = zero;

@@ -1,6 +1,7 @@
-//! Links that coordinates move alike: particles placed by sums over the coordinates before them have the same partial velocities.
-//! What they are multiplied with is summed over the links first: `Σ sᵀ Wₖ = sᵀ Σ Wₖ`, and `Σ sᵀ Iₖ r = sᵀ (Σ Iₖ) r`, so that a
-//! chain of `n` takes `n²` operations for its mass matrix instead of `n³`.
+//! Sharing of identical partial velocities. Particles whose positions are sums over the preceding coordinates
+//! have the same partial velocities. Wrenches and inertias of such links are summed before they are
+//! multiplied with the partial velocity: `Σ sᵀ Wₖ = sᵀ Σ Wₖ`, and `Σ sᵀ Iₖ r = sᵀ (Σ Iₖ) r`. The mass matrix
+//! of a chain of `n` then takes `n²` operations instead of `n³`.
 
 use super::crba::{Matrix, momentum};
 use crate::expr::{Expr, Id, Sym3};
@@ -8,29 +9,31 @@ use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, Model, Motion};
 use std::collections::BTreeMap;
 
-/// The motions of links that are placed by expressions, those once that several links share; none if no two do.
+/// Partial velocities of links that are placed by expressions, for links that share at least one with another
+/// link. A shared partial velocity is stored once. Empty if no two links share one.
 pub struct Alike<'g> {
     motions: Vec<SharedMotion<'g>>,
-    /// By link: it has one that another has, too.
+    /// True for each link that shares a partial velocity with another link.
     concerned: Vec<bool>,
 }
 
-/// How an entry of `v` moves some links, or how that changes: in the axes of each of them.
+/// Partial velocity of some links for an entry of `v`, or the time derivative of that partial velocity. Its
+/// components are the same in the axes of each of these links.
 struct SharedMotion<'g> {
     index: usize,
     ratio: f64,
     along: Spatial<'g>,
-    /// From the last to the first: sums over links from one on are then partial sums of others.
+    /// Links in descending order, so that sums over the last links are partial sums of other sums.
     links: Vec<usize>,
 }
 
 impl<'g> Alike<'g> {
-    /// By motion subspaces.
+    /// Collects shared motion subspaces.
     pub fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Alike<'g> {
         Alike::by(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
     }
 
-    /// By the rates of motion subspaces.
+    /// Collects shared time derivatives of motion subspaces.
     pub fn by_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> Alike<'g> {
         Alike::by(model, joints, |joint, dof| joint.drift.as_ref()?.subspace_rates.get(dof).copied())
     }
@@ -42,7 +45,8 @@ impl<'g> Alike<'g> {
     ) -> Alike<'g> {
         let mut motions: Vec<SharedMotion<'g>> = Vec::new();
         let mut known: BTreeMap<(usize, u64, Vec<Id>), usize> = BTreeMap::new();
-        // What hangs from other links is carried to them, and limbs side by side are summed on the way.
+        // Wrenches of links with a parent are transmitted to the parent, and identical limbs are summed in
+        // that step. Such links are left out here.
         let is_placed = |k: usize| {
             let (link, joint) = (&model.links[k], &joints[k]);
             matches!(link.motion, Motion::Placed) && joint.parent.is_none() && joint.limbs == 1
@@ -72,12 +76,12 @@ impl<'g> Alike<'g> {
         Alike { motions, concerned }
     }
 
-    /// True for a link whose motions stand here.
+    /// Returns true for a link whose partial velocities are stored in this collection.
     pub fn has(&self, link: usize) -> bool {
         self.concerned[link]
     }
 
-    /// Adds what wrenches on those links do along their motions.
+    /// Adds the generalized forces of the wrenches on these links along their shared partial velocities.
     pub fn add_forces(&self, wrenches: &[Spatial<'g>], out: &mut [Expr<'g>]) {
         for motion in &self.motions {
             let all = motion.links.iter().map(|k| wrenches[*k]).reduce(|sum, wrench| sum.plus(&wrench));
@@ -88,7 +92,8 @@ impl<'g> Alike<'g> {
         }
     }
 
-    /// Adds the entries of the mass matrix between the motions of those links, which have these inertias.
+    /// Adds the entries of the mass matrix between the partial velocities of these links, given all links'
+    /// inertias.
     pub fn add_masses(&self, inertias: &[Inertia<'g>], m: &mut Matrix<'g>) {
         let mut sums: BTreeMap<Vec<usize>, Inertia<'g>> = BTreeMap::new();
         for (k, one) in self.motions.iter().enumerate() {
@@ -109,7 +114,7 @@ impl<'g> Alike<'g> {
     }
 }
 
-/// What two lists have in common that fall both.
+/// Returns the common elements of two descending lists.
 fn common(a: &[usize], b: &[usize]) -> Vec<usize> {
     let mut b = b.iter().copied().peekable();
     let is_in_b = |k: &usize| {
@@ -119,7 +124,7 @@ fn common(a: &[usize], b: &[usize]) -> Vec<usize> {
     a.iter().copied().filter(is_in_b).collect()
 }
 
-/// The sum, number by number: nothing is moved.
+/// Returns the component-wise sum; both inertias refer to the same point and axes.
 fn plus<'g>(a: &Inertia<'g>, b: &Inertia<'g>) -> Inertia<'g> {
     let sums = |a: [Expr<'g>; 3], b: [Expr<'g>; 3]| std::array::from_fn(|k| a[k] + b[k]);
     Inertia {

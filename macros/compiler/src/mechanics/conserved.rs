@@ -1,6 +1,7 @@
-//! Quantities that keep their values in every motion without inputs: energy, Jacobi's integral, momenta. Candidates are
-//! tried in numbers: in random states that fulfil the constraints, with random parameters, the rate of what is
-//! conserved is zero. What only special parameters conserve is not seen.
+//! Quantities that are constant along every motion without inputs: energy, Jacobi's integral, momenta.
+//! Candidates are tested numerically: a candidate is conserved if its time derivative is zero in random
+//! states that satisfy the constraints, with random parameters. A quantity that is conserved for special
+//! parameters only is not found.
 
 use super::{added_mass, constraints, crba, energy, lagrange, momentum, rnea, velocities};
 use crate::diag::Diagnostics;
@@ -11,28 +12,29 @@ use crate::kinematics::redundancy::Basis;
 use crate::kinematics::{Joint, Rows, mobility, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
-/// Random states that are tried.
+/// Number of random states that are tested.
 const STATES: u64 = 5;
-/// What is left of a rate that is zero, beside what makes it up: the differences have so many digits.
+/// Tolerance of a zero time derivative relative to the sum of the magnitudes of its terms: the accuracy of
+/// the finite differences.
 const LEFT: f64 = 1e-9;
-/// The same beside the quantity itself.
+/// Tolerance of a zero time derivative relative to the value of the quantity.
 const ROUNDING: f64 = 1e-11;
-/// Step of the differences, s.
+/// Step of the finite differences, s.
 const STEP: f64 = 1e-3;
-/// A gradient counts as a combination of others if so little of it is left.
+/// A gradient counts as a linear combination of others if its relative remainder is below this tolerance.
 const DEPENDENT: f64 = 1e-6;
 
-/// A quantity that keeps its value.
+/// A conserved quantity.
 #[derive(Clone)]
 pub struct Conserved<'g> {
-    /// What it is.
+    /// Name for the user.
     pub name: String,
-    /// Its value in a state.
+    /// Value as an expression of the state.
     pub value: Expr<'g>,
 }
 
-/// What a mechanism conserves, independent of each other, the simplest first. Contacts that slip, or that open and
-/// close, conserve nothing that is looked for, nor is anything claimed where no configuration is known that fulfils the constraints.
+/// Returns independent conserved quantities, the simplest first. The list is empty for mechanisms with
+/// sliding or unilateral contacts, and if no configuration that satisfies the constraints is found.
 pub fn conserved<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
     let rubs = model.constraints.iter().any(|c| !c.friction.is_empty()) || !model.contacts.is_empty();
     if model.nv() == 0 || rubs {
@@ -70,7 +72,7 @@ pub fn conserved<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'
     candidates.into_iter().enumerate().filter(|(k, _)| kept[*k] && adds(*k)).map(|(_, c)| c).collect()
 }
 
-/// Everything that may be conserved.
+/// Returns all quantities that may be conserved.
 fn candidates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
     let v = velocities(model);
     let p = momentum::generalized_momentum(model, joints, &v);
@@ -97,7 +99,7 @@ fn candidates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>>
     all
 }
 
-/// Configurations that fulfil the constraints, with the seed of the parameters.
+/// Returns configurations that satisfy the constraints, each with the seed of its parameters.
 fn places(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
     if model.constraints.is_empty() {
         return (0..STATES).map(|seed| (random_configuration(model, seed), seed)).collect();
@@ -106,13 +108,13 @@ fn places(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
     found.into_iter().cycle().take(STATES as usize).collect()
 }
 
-/// What accelerations follow from.
+/// Equations of motion from which the accelerations are computed numerically.
 struct Motion<'g> {
     nv: usize,
     nc: usize,
-    /// Mass matrix, bias forces, Jacobian by rows, rates and biases of the constraints.
+    /// Mass matrix, bias forces, Jacobian by rows, then velocities and biases of the constraints.
     equations: Tape<'g>,
-    /// Rates of the configuration.
+    /// Time derivatives of the configuration.
     rates: Tape<'g>,
 }
 
@@ -128,7 +130,7 @@ impl<'g> Motion<'g> {
     }
 }
 
-/// A state in numbers.
+/// A numerical state.
 #[derive(Clone)]
 struct State {
     t: f64,
@@ -138,7 +140,8 @@ struct State {
 }
 
 impl State {
-    /// A random velocity that fulfils the constraints, in a configuration that does.
+    /// Returns a state with the configuration `q` and a random velocity that satisfies the constraints, or
+    /// `None` if the velocity is not finite. `at` is the seed of the velocity, `seed` that of the parameters.
     fn random(model: &Model<'_>, motion: &Motion<'_>, q: &[f64], seed: u64, at: u64) -> Option<State> {
         let random = |k: usize| 4.0 * sample(Quantity::Velocity(k).symbol(), 100 + at) - 4.0;
         let t = sample(Quantity::Time.symbol(), seed);
@@ -148,7 +151,7 @@ impl State {
             let (nv, nc) = (motion.nv, motion.nc);
             let jacobian: Vec<&[f64]> = values[nv * nv + nv..][..nc * nv].chunks(nv).collect();
             let gap = &values[nv * nv + nv + nc * nv..][..nc];
-            // Of least change: x = Jᵀ y.
+            // Correction of minimum norm: x = Jᵀ y.
             let product = |i: usize, j: usize| jacobian[i].iter().zip(jacobian[j]).map(|(a, b)| a * b).sum();
             let normal = (0..nc).map(|i| (0..nc).map(|j| product(i, j)).collect()).collect();
             let y = solved(normal, gap.to_vec());
@@ -173,7 +176,7 @@ impl State {
         tape.values(&|s| self.value(s))
     }
 
-    /// Velocities of the configuration, and accelerations, without inputs.
+    /// Returns the time derivatives of the configuration, and the accelerations, without inputs.
     fn motion(&self, motion: &Motion<'_>) -> (Vec<f64>, Vec<f64>) {
         let (nv, nc) = (motion.nv, motion.nc);
         let values = self.values(&motion.equations);
@@ -193,13 +196,14 @@ impl State {
         (self.values(&motion.rates), a)
     }
 
-    /// The state after some time along constant rates.
+    /// Returns the state displaced by `h` times constant time derivatives `t`, `q` and `v`.
     fn after(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
         let moved = |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
         State { t: self.t + h * t, q: moved(&self.q, q), v: moved(&self.v, v), seed: self.seed }
     }
 
-    /// Rates of values along rates of time, configuration and velocity: differences of fourth order.
+    /// Returns the derivatives of the values along a direction `(t, q, v)` of time, configuration and
+    /// velocity, by central differences of fourth order.
     fn along(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
         let at = |h: f64| self.after(h * STEP, t, q, v).values(tape);
         let all = [at(-2.0), at(-1.0), at(1.0), at(2.0)];
@@ -207,7 +211,7 @@ impl State {
         (0..all[0].len()).map(rate).collect()
     }
 
-    /// By value, whether it does not change. `None` where the motion is not finite.
+    /// Returns for each value whether it is constant along the motion, or `None` if the motion is not finite.
     fn are_constant(&self, motion: &Motion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
         let (q, v) = self.motion(motion);
         let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
@@ -225,7 +229,8 @@ impl State {
         v.iter().all(|a| a.is_finite()).then(|| (0..now.len()).map(constant).collect())
     }
 
-    /// By value, the derivatives by all entries of configuration and velocity, and by time.
+    /// Returns for each value its gradient with respect to all entries of the configuration, then of the
+    /// velocity.
     fn gradients(&self, tape: &Tape<'_>) -> Vec<Vec<f64>> {
         let (nq, nv) = (self.q.len(), self.v.len());
         let unit = |n: usize, k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
@@ -236,9 +241,10 @@ impl State {
     }
 }
 
-/// `x` of `m x = r` by elimination with complete pivoting; what rows leave open is zero.
+/// Solves `m x = r` by elimination with complete pivoting. Unknowns that the rows leave undetermined are
+/// zero.
 fn solved(mut m: Vec<Vec<f64>>, mut r: Vec<f64>) -> Vec<f64> {
-    /// Pivots below this part of the first count as zero.
+    /// Pivots below this fraction of the first pivot count as zero.
     const PIVOT_TOLERANCE: f64 = 1e-11;
     let n = r.len();
     let mut pivots: Vec<(usize, usize)> = Vec::new();

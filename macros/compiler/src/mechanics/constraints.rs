@@ -1,12 +1,14 @@
-//! Constrained motion by Lagrange multipliers: `M v̇ + h = τ + Jᵀ λ` with `J v̇ + J̇ v = 0`, one symmetric system
+//! Constrained motion by Lagrange multipliers: `M v̇ + h = τ + Jᵀ λ` with `J v̇ + J̇ v = 0`, one symmetric
+//! system
 //!
 //! ```text
 //! | M  Jᵀ | |  v̇ |   | τ − h |
 //! | J  0  | | −λ | = | −J̇ v  |
 //! ```
 //!
-//! that is eliminated symbolically, so that its zeros stay zeros (Featherstone 2008, ch. 8.5). A multiplier is eliminated
-//! after the velocities that its row names: its pivot is then the part of `−J M⁻¹ Jᵀ` that no other row explains.
+//! that is eliminated symbolically, which preserves its structural zeros (Featherstone 2008, ch. 8.5). A
+//! multiplier is eliminated after the velocities in its row. Its pivot is then the component of `−J M⁻¹ Jᵀ`
+//! that is independent of the other rows eliminated before.
 
 use super::crba::Matrix;
 use super::derivatives::{ForceDerivatives, symbolic};
@@ -16,13 +18,14 @@ use crate::expr::{Expr, Function};
 use crate::kinematics::{Joint, velocity_gradients};
 use crate::mechanism::{Model, Pivot, Quantity};
 
-/// `J`: a row for each constraint, a column for each velocity.
+/// Returns `J`, with a row for each constraint and a column for each velocity.
 pub fn jacobian<'g>(model: &Model<'g>) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
     jacobian_of(model, &rates)
 }
 
-/// How rates change with the velocities: a row for each.
+/// Returns the derivatives of `rates` with respect to the velocities: a row for each rate, a column for each
+/// velocity.
 pub fn jacobian_of<'g>(model: &Model<'g>, rates: &[Expr<'g>]) -> Matrix<'g> {
     let row = |gradient: Vec<(usize, Expr<'g>)>| {
         let mut row = vec![model.graph.zero(); model.nv()];
@@ -32,23 +35,24 @@ pub fn jacobian_of<'g>(model: &Model<'g>, rates: &[Expr<'g>]) -> Matrix<'g> {
     velocity_gradients(rates).into_iter().map(row).collect()
 }
 
-/// Residuals of the constraints on configurations.
+/// Returns the residuals of the holonomic constraints.
 pub fn residuals<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.constraints.iter().filter_map(|c| c.residual).collect()
 }
 
-/// Rates `J v + …` of all constraints.
+/// Returns the velocities `J v + …` of all constraints.
 pub fn rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.constraints.iter().map(|c| c.rate).collect()
 }
 
-/// `J̇ v + …`: derivatives of the rates at zero accelerations.
+/// Returns `J̇ v + …`: the time derivatives of the constraint velocities at zero accelerations.
 pub fn biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.constraints.iter().map(|c| c.bias).collect()
 }
 
-/// Accelerations and multipliers for forces `τ − h` and biases `J̇ v`, then what tells whether they can be trusted: for
-/// each constraint its pivot, and what that was before other constraints took their part of it.
+/// Returns accelerations and multipliers for forces `τ − h` and biases `J̇ v`, then measures of their
+/// reliability: the pivot of each constraint, and the value of that pivot before the elimination of other
+/// constraints reduced it.
 pub fn solve<'g>(
     mass: &Matrix<'g>,
     jacobian: &Matrix<'g>,
@@ -69,9 +73,9 @@ pub fn solve<'g>(
     x
 }
 
-/// What multipliers of least norm follow from, for constraints that depend on each other: the free accelerations
-/// `M⁻¹ f`, what `−b − J M⁻¹ f` the constraints lack, the matrix `J M⁻¹ Jᵀ`, and the accelerations `M⁻¹ Jᵀ` that
-/// each multiplier gives.
+/// Returns the terms from which multipliers of minimum norm are computed for dependent constraints: the
+/// unconstrained accelerations `M⁻¹ f`, the residuals `−b − J M⁻¹ f` of the constraints, the matrix
+/// `J M⁻¹ Jᵀ`, and the accelerations `M⁻¹ Jᵀ` per unit of each multiplier.
 pub fn responses<'g>(
     mass: &Matrix<'g>,
     jacobian: &Matrix<'g>,
@@ -87,7 +91,7 @@ pub fn responses<'g>(
     let lacking: Vec<Expr<'g>> = lacking.collect();
     out.extend(lacking);
     for (i, row) in jacobian.iter().enumerate() {
-        // The lower triangle, twice.
+        // The lower triangle gives both triangles.
         out.extend((0..given.len()).filter_map(|j| match j <= i {
             true => dot(row, &given[j]),
             false => dot(&jacobian[j], &given[i]),
@@ -97,7 +101,8 @@ pub fn responses<'g>(
     out
 }
 
-/// `Jᵀ λ`, with the friction that follows from normal forces: what constraints contribute to the forces.
+/// Returns the generalized forces `Jᵀ λ` of the constraints, including the friction that is proportional to
+/// their normal forces.
 pub fn forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = vec![model.graph.zero(); model.nv()];
     for ((row, drag), l) in jacobian(model).iter().zip(friction::jacobian_of_friction(model)).zip(lambda) {
@@ -109,17 +114,17 @@ pub fn forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
     forces
 }
 
-/// The multipliers as given numbers.
+/// Returns the multipliers as arguments of the generated function.
 pub fn multipliers<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.constraints.len()).map(|k| Quantity::Given(k).expr(model.graph)).collect()
 }
 
-/// About how many products the elimination takes.
+/// Returns the approximate number of products of the elimination.
 pub fn products(model: &Model<'_>, mass: &Matrix<'_>) -> usize {
     elimination_order(&system(mass, &jacobian(model)), mass.len(), &friction::slipping(model)).1
 }
 
-/// The matrix of the system.
+/// Returns the matrix of the system of accelerations and multipliers.
 pub fn system<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
     let mut k: Matrix<'g> = mass.clone();
     for (row, c) in k.iter_mut().zip(0..) {
@@ -132,9 +137,10 @@ pub fn system<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
     k
 }
 
-/// The same by independent speeds (Kane and Levinson, *Dynamics: Theory and Applications*, 1985; the projection `Nᵀ M N`
-/// of Gibbs, Appell and Kane): the dependent velocities are solved for with the given pivots, `a = N s + a₀`, then
-/// `Nᵀ M N s = Nᵀ (τ − h − M a₀)`; the multipliers are what is left of the dependent equations.
+/// Solves for accelerations and multipliers by independent velocities (Kane and Levinson, *Dynamics: Theory
+/// and Applications*, 1985; the projection `Nᵀ M N` of Gibbs, Appell and Kane), with the same results as
+/// [`solve`]. The dependent velocities are eliminated with the given pivots, `a = N s + a₀`, then
+/// `Nᵀ M N s = Nᵀ (τ − h − M a₀)`. The multipliers follow from the residuals of the dependent equations.
 pub fn solve_by_speeds<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
@@ -146,7 +152,7 @@ pub fn solve_by_speeds<'g>(
     let pivots: Vec<(usize, usize)> = pivots.iter().map(|p| (p.constraint, p.velocity.0)).collect();
     let rows = jacobian(model);
     let free: Vec<usize> = (0..nv).filter(|k| pivots.iter().all(|(_, column)| column != k)).collect();
-    // Columns of N, and a₀ as the last.
+    // Columns of N, with a₀ as the last.
     let mut right: Matrix<'g> = rows.iter().map(|row| free.iter().map(|k| -row[*k]).collect()).collect();
     right.iter_mut().zip(bias).for_each(|(row, b)| row.push(-b));
     let (solved, sizes) = eliminate(rows.clone(), right, &pivots);
@@ -167,7 +173,7 @@ pub fn solve_by_speeds<'g>(
     let s = solve_in(reduced, r, &order, 0).x;
     let a: Vec<Expr<'g>> =
         (0..nv).map(|k| columns.iter().zip(&s).fold(start[k], |sum, (c, s)| sum + c[k] * *s)).collect();
-    // J_dᵀ λ = (M a − f)_d, with the same pivots the other way round.
+    // J_dᵀ λ = (M a − f)_d, with the same pivots, rows and columns exchanged.
     let left: Vec<Expr<'g>> = times(&a).iter().zip(force).map(|(m, f)| *m - *f).collect();
     let transposed: Matrix<'g> = (0..nv).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
     let backwards: Vec<(usize, usize)> = pivots.iter().map(|(row, column)| (*column, *row)).collect();
@@ -182,7 +188,8 @@ pub fn solve_by_speeds<'g>(
     out
 }
 
-/// Gauss–Jordan elimination of the rows with given pivots, row and column, applied to right sides: those, solved, and the pivots by row.
+/// Eliminates the rows by Gauss–Jordan with the given pivots (row, column) and applies the steps to the right
+/// sides. Returns the solved right sides, and the pivot of each row.
 fn eliminate<'g>(
     mut rows: Matrix<'g>,
     mut right: Matrix<'g>,
@@ -213,8 +220,9 @@ fn eliminate<'g>(
     (right, sizes)
 }
 
-/// Fewest neighbours first, so that little fills in; a multiplier after the velocities of its row, those of the rows `last`
-/// after everything else. With the order comes about how many products it takes.
+/// Returns an elimination order of minimum degree, which limits fill-in, and the approximate number of
+/// products. A multiplier comes after the velocities of its row; the multipliers of the rows `last` come
+/// after everything else.
 pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usize>, usize) {
     let n = k.len();
     let is_last = |i: usize| i >= nv && last.contains(&(i - nv));
@@ -232,7 +240,7 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
     while !left.is_empty() {
         let degree = |i: usize| left.iter().filter(|j| **j != i && full[i][**j]).count();
         let ready = left.iter().copied().filter(|i| waits[*i].iter().all(|j| done[*j]));
-        // Of equals the last: leaves come before the links that carry them.
+        // Among equal degrees the last index is taken: leaves precede the links that carry them.
         let Some(next) = ready.min_by_key(|i| (degree(*i), usize::MAX - i)) else { break };
         left.retain(|i| *i != next);
         order.push(next);
@@ -248,7 +256,8 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
     (order, products)
 }
 
-/// The forces and biases of the equations of motion as symbols: what is handed to [`solve`] at run time.
+/// Returns the forces and biases of the equations of motion as the symbols that [`solve`] takes as arguments
+/// at run time.
 pub fn given<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let symbols =
@@ -256,17 +265,17 @@ pub fn given<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     (symbols(0..nv), symbols(nv..nv + nc))
 }
 
-/// What constraints add to the motion to first order.
+/// First derivatives of the terms that constraints add to the equations of motion.
 pub struct FirstOrder<'g> {
-    /// Derivatives of their forces `Jᵀ λ` at given multipliers.
+    /// Derivatives of the constraint forces `Jᵀ λ` at constant multipliers.
     pub forces: ForceDerivatives<'g>,
     /// Derivatives of `J a + b` at the accelerations `a`.
     pub accelerations: ForceDerivatives<'g>,
-    /// Derivatives of the rates by `q`.
+    /// Derivatives of the constraint velocities with respect to `q`.
     pub rates: Matrix<'g>,
 }
 
-/// The derivatives for given multipliers, symbols as well.
+/// Returns the derivatives at the accelerations `a`; the multipliers are argument symbols.
 pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
     let rows = jacobian(model);
     let zero = model.graph.zero();

@@ -7,15 +7,15 @@ use crate::kinematics::{Dof, Joint, Spatial, map_spatial};
 use crate::mechanism::{Inertia, Model};
 use crate::vectorise::{LaneGroup, Paths, Visitor};
 
-/// A square matrix of expressions by rows.
+/// Square matrix of expressions, by rows.
 pub type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 
-/// `M(q)`, both triangles.
+/// Returns `M(q)`, both triangles.
 pub fn mass_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
     mass_matrix_in_lanes(model, joints, 1)
 }
 
-/// The same with up to `most` columns side by side in lanes.
+/// Returns `M(q)`, both triangles, with up to `most` columns computed in the SIMD lanes of one expression.
 pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Matrix<'g> {
     let paths = Paths::of(joints, most);
     let dofs =
@@ -30,10 +30,11 @@ pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     m
 }
 
-/// The entries of each degree of freedom with itself, the earlier ones of its joint, and all of its ancestors.
+/// Visitor that adds the entries of each degree of freedom with itself, with the earlier degrees of freedom
+/// of its joint, and with those of all ancestors.
 struct Columns<'a, 'g> {
     joints: &'a [Joint<'g>],
-    /// Joint, and which of its degrees of freedom.
+    /// Joint, and index of the degree of freedom in the joint.
     dofs: Vec<(usize, usize)>,
     composites: Vec<Inertia<'g>>,
     alike: Alike<'g>,
@@ -57,7 +58,8 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
         if self.alike.has(link) {
-            // Such a link hangs from the ground: nothing is carried on, and its entries are added for all of them together.
+            // Such a link is placed on the ground: no ancestor has entries with it, and `Alike` adds its own
+            // entries.
             return own.subspace;
         }
         let wrench = momentum(&self.composites[link], &own.subspace);
@@ -79,7 +81,7 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
     }
 }
 
-/// Mass properties of each link with everything that it carries.
+/// Returns the composite mass properties of each link: those of the link with all its descendants.
 pub fn composites<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Inertia<'g>> {
     let mut sums: Vec<Inertia<'g>> = model.links.iter().map(|l| l.inertia).collect();
     for (k, joint) in joints.iter().enumerate().rev() {
@@ -90,7 +92,7 @@ pub fn composites<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Inertia<'g
     sums
 }
 
-/// Momentum (linear, and angular about the link's origin) of a body with a given twist.
+/// Returns the momentum (linear, and angular about the link's origin) of a body with a given twist.
 pub fn momentum<'g>(inertia: &Inertia<'g>, twist: &Spatial<'g>) -> Spatial<'g> {
     let h: Vec3<'g> = inertia.moment;
     Spatial {

@@ -1,7 +1,8 @@
-//! First derivatives of the equations of motion, on the tangent space of the configurations: column `i` of a derivative
-//! by `q` is along `q ⊕ ε eᵢ` (for ball and free joints: a motion in body axes, as in Pinocchio). With
-//! `τ = ID(q, v, a)`, differentiating `ID(q, v, FD(q, v, τ)) = τ` gives `∂v̇/∂x = −M⁻¹ ∂ID/∂x` at `a = v̇`
-//! (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018, § IV).
+//! First derivatives of the equations of motion on the tangent space of the configurations: column `i` of a
+//! derivative with respect to `q` is the derivative along `q ⊕ ε eᵢ` (for ball and free joints: a motion in
+//! body axes, as in Pinocchio). With `τ = ID(q, v, a)`, differentiating `ID(q, v, FD(q, v, τ)) = τ` gives
+//! `∂v̇/∂x = −M⁻¹ ∂ID/∂x` at `a = v̇` (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics
+//! algorithms*, 2018, § IV).
 
 use super::crba::Matrix;
 use super::{accelerations, rnea, velocities};
@@ -31,29 +32,30 @@ pub struct ForceDerivatives<'g> {
     pub by_v: Matrix<'g>,
 }
 
-/// The equations of motion to first order about a state: `M δv̇ + ∂q δq + ∂v δv = δτ`.
+/// The equations of motion linearised about a state: `M δv̇ + ∂q δq + ∂v δv = δτ`.
 pub struct Linearized<'g> {
-    /// Derivatives of all forces but inertia and `τ`.
+    /// Derivatives of inverse dynamics, minus the state derivatives of the input forces.
     pub forces: ForceDerivatives<'g>,
-    /// What the inputs do: `∂τ/∂u`; no columns if `τ` itself is given.
+    /// Derivatives `∂τ/∂u` of the input forces; no columns if `τ` itself is the input.
     pub by_u: Matrix<'g>,
     /// `M⁻¹`.
     pub inverse: Matrix<'g>,
-    /// The accelerations at which these are the derivatives.
+    /// Accelerations at which the derivatives are taken.
     pub accelerations: Vec<Expr<'g>>,
 }
 
-/// How the derivatives of inverse dynamics are found. The results are equal; what they cost is not.
+/// Method for the derivatives of inverse dynamics. The methods give equal results at different cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// By recursion, in up to so many lanes, where every motion subspace is constant in link axes; else by
+    /// Recursion in up to this number of lanes if every motion subspace is constant in link axes, otherwise
     /// differentiation.
     Recursion(usize),
-    /// By differentiation of the equations. It costs less where axes are parallel or meet, for a few degrees of freedom.
+    /// Differentiation of the equations. For few degrees of freedom it costs less than the recursion if axes
+    /// are parallel or intersect.
     Differentiation,
 }
 
-/// Derivatives of inverse dynamics at the accelerations `a`.
+/// Returns the derivatives of inverse dynamics at the accelerations `a`.
 pub fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -81,7 +83,7 @@ pub fn inverse_dynamics<'g>(
     ForceDerivatives { by_q: replaced(found.by_q), by_v: replaced(found.by_v) }
 }
 
-/// The equations of motion about the motion that the forces `tau` give.
+/// Linearises the equations of motion about the motion under the forces `tau`.
 pub fn forward_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -97,7 +99,8 @@ pub fn forward_dynamics<'g>(
     Linearized { forces, by_u: Vec::new(), inverse: factor.inverse(), accelerations }
 }
 
-/// The equations of motion about the motion that the inputs give; their forces `tau` may depend on the state as well.
+/// Linearises the equations of motion about the motion under the inputs, whose forces `tau` may depend on the
+/// state.
 pub fn linearized<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -113,14 +116,14 @@ pub fn linearized<'g>(
     found
 }
 
-/// `m − other`, entry by entry.
+/// Subtracts `other` from `m`, entry by entry.
 pub fn subtract<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
     for (entry, other) in m.iter_mut().flatten().zip(other.iter().flatten()) {
         *entry -= *other;
     }
 }
 
-/// True if every subspace is constant in link axes, so that the recursion applies.
+/// Returns true if every motion subspace is constant in link axes, so that the recursion applies.
 pub fn is_analytic(model: &Model<'_>) -> bool {
     model.inertances.is_empty()
         && model.acceleration_forces.is_empty()

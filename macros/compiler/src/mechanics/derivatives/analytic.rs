@@ -1,9 +1,11 @@
-//! Derivatives of inverse dynamics by recursion (Singh, Russell and Wensing, *Efficient analytical derivatives of
-//! rigid-body dynamics using spatial vector algebra*, 2022; linear part first here), and the Coriolis matrix (Echeandia
-//! and Wensing, *Numerical methods to compute the Coriolis matrix and Christoffel symbols*, 2021), in link axes.
+//! Derivatives of inverse dynamics by recursion (Singh, Russell and Wensing, *Efficient analytical
+//! derivatives of rigid-body dynamics using spatial vector algebra*, 2022; linear components first here), and
+//! the Coriolis matrix (Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and
+//! Christoffel symbols*, 2021), in link axes.
 //!
-//! With the sums `I`, `F` and `B` (inertia, wrench, velocity map) over a link and all that it carries, and the columns
-//! `S`, `Ψ̇`, `Ψ̈` of a degree of freedom, for `j` on the link and `i` on an ancestor of it or on the link itself:
+//! With the sums `I`, `F` and `B` (inertia, wrench, velocity map) over a link and its descendants, and the
+//! columns `S`, `Ψ̇`, `Ψ̈` of a degree of freedom, for `j` on the link and `i` on the link itself or on one
+//! of its ancestors:
 //!
 //! - `∂τᵢ/∂qⱼ = Sᵢ · (Sⱼ ×* F + I Ψ̈ⱼ + B Ψ̇ⱼ)`, without the first term if `i` is on the same link;
 //! - `∂τⱼ/∂qᵢ = (I Sⱼ) · Ψ̈ᵢ + (Bᵀ Sⱼ) · Ψ̇ᵢ`;
@@ -20,7 +22,8 @@ use crate::kinematics::{Joint, Spatial, time_derivative, twists, velocity_gradie
 use crate::mechanism::Model;
 use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
 
-/// Derivatives of `M a + h`, springs, dashpots and other loads left out; in up to `most` lanes, one for none.
+/// Returns the derivatives of `M a + h` without springs, dashpots and other loads, in up to `most` lanes
+/// (one: scalar code).
 pub fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -36,8 +39,8 @@ pub fn inverse_dynamics<'g>(
     entries(model, joints, &columns, &sums, most)
 }
 
-/// A matrix with `C v` the Coriolis and centrifugal forces and `Ṁ − 2 C` skew: half of the velocity map, and `Ṡ`; in
-/// up to `most` lanes, one for none.
+/// Returns a matrix `C` such that `C v` are the Coriolis and centrifugal forces and `Ṁ − 2 C` is
+/// skew-symmetric, from half of the velocity map and `Ṡ`, in up to `most` lanes (one: scalar code).
 pub fn coriolis_matrix<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -54,7 +57,7 @@ pub fn coriolis_matrix<'g>(
     matrix
 }
 
-/// An inertance `b` on a rate `J v` adds `b Jᵀ J̇`.
+/// Adds `b Jᵀ J̇` for each inertance `b` on a velocity `J v`.
 fn add_inertances<'g>(model: &Model<'g>, matrix: &mut Matrix<'g>) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
@@ -67,7 +70,8 @@ fn add_inertances<'g>(model: &Model<'g>, matrix: &mut Matrix<'g>) {
     }
 }
 
-/// All pairs of degrees of freedom on one path to the root; up to `most` go there in lanes.
+/// Returns the derivatives for all pairs of degrees of freedom on one path to the root, with up to `most`
+/// paths in lanes.
 fn entries<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -84,7 +88,7 @@ fn entries<'g>(
 }
 
 struct Entries<'a, 'g> {
-    /// Degrees of freedom, by link and all together.
+    /// Degrees of freedom, by link here and in one list in `all`.
     columns: &'a [Vec<Column<'g>>],
     all: Vec<Column<'g>>,
     links: &'a [usize],
@@ -119,11 +123,12 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
     }
 }
 
-/// What one degree of freedom brings to its ancestors: wrenches about their origins in their axes.
+/// Contribution of one degree of freedom to the entries with its ancestors: wrenches about an ancestor's
+/// origin in the ancestor's axes.
 struct Changes<'g> {
-    /// Change of the forces with its displacement.
+    /// Change of the wrench with the displacement of the degree of freedom.
     by_q: Spatial<'g>,
-    /// Change of the forces with its rate.
+    /// Change of the wrench with the velocity of the degree of freedom.
     by_v: Spatial<'g>,
     /// `I S`.
     momentum: Spatial<'g>,
@@ -141,8 +146,8 @@ impl<'g> Changes<'g> {
         }
     }
 
-    /// The derivatives of the force of a degree of freedom of an ancestor by `q` and `v` of this one, and the other way
-    /// round.
+    /// Returns the derivatives with respect to `q` and `v` of this degree of freedom of the force of an
+    /// ancestor's degree of freedom, then those with the two exchanged.
     fn meet(&self, other: &Column<'g>) -> [[Expr<'g>; 2]; 2] {
         let s = &other.subspace;
         let by_q = self.momentum.dot(&other.second) + self.moment.dot(other.first.angular);
@@ -179,7 +184,7 @@ impl<'g> ForceDerivatives<'g> {
     }
 }
 
-/// `S ×* F`: the change of a wrench that moves along `S`.
+/// Returns `S ×* F`, the change of a wrench `F` that moves along `S`.
 pub fn cross_force<'g>(s: &Spatial<'g>, f: &Spatial<'g>) -> Spatial<'g> {
     Spatial {
         linear: s.angular.cross(f.linear),

@@ -1,12 +1,13 @@
-//! Motion of the links, and how each degree of freedom changes it (Singh, Russell and Wensing 2022): with the twist `V`
-//! and the acceleration `A` of its parent, a degree of freedom `S` has `Ψ̇ = V × S` and `Ψ̈ = A × S + V × Ψ̇`.
+//! Motion of the links, and its change with each degree of freedom (Singh, Russell and Wensing 2022): with
+//! the twist `V` and the acceleration `A` of the parent, a degree of freedom `S` has `Ψ̇ = V × S` and
+//! `Ψ̈ = A × S + V × Ψ̇`.
 
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{Dof, Joint, Spatial};
 use crate::mechanism::Model;
 
-/// Motion of a frame in its own axes. Accelerations are classical, those of points, and gravity is an acceleration of
-/// the ground upwards.
+/// Motion of a frame in its own axes. Accelerations are classical (those of points), and gravity is included
+/// as an upward acceleration of the ground.
 #[derive(Clone, Copy)]
 pub struct State<'g> {
     /// Velocity of the origin.
@@ -20,13 +21,13 @@ pub struct State<'g> {
 }
 
 impl<'g> State<'g> {
-    /// The ground.
+    /// Returns the state of the ground: no velocity, and the acceleration opposite to gravity.
     pub fn ground(model: &Model<'g>) -> State<'g> {
         let zero = Vec3::zero(model.graph);
         State { v: zero, w: zero, dw: zero, a: -model.gravity }
     }
 
-    /// `U = [ẇ]× + [w]×[w]×`: a point at `r` has the acceleration `a + U r`.
+    /// Returns `U = [ẇ]× + [w]×[w]×`: a point at `r` has the acceleration `a + U r`.
     pub fn matrix(&self) -> Mat3<'g> {
         let ([x, y, z], dw) = (self.w.0, self.dw);
         let (xx, yy, zz) = (x * x, y * y, z * z);
@@ -38,22 +39,22 @@ impl<'g> State<'g> {
         ])
     }
 
-    /// Velocity and angular velocity.
+    /// Returns velocity and angular velocity.
     pub fn twist(&self) -> Spatial<'g> {
         Spatial { linear: self.v, angular: self.w }
     }
 }
 
-/// Motion of a link, and of its parent's points where the link's origin is, both in link axes.
+/// Motion of a link, and of the parent's point at the link's origin, both in link axes.
 #[derive(Clone, Copy)]
 pub struct LinkMotion<'g> {
-    /// The link's.
+    /// Motion of the link.
     pub own: State<'g>,
-    /// The parent's.
+    /// Motion of the parent's point at the link's origin.
     pub parent: State<'g>,
 }
 
-/// Outward recursion.
+/// Returns the motions of all links by the outward recursion.
 pub fn motions<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -83,12 +84,13 @@ pub fn motions<'g>(
     motions
 }
 
-/// A degree of freedom, and what a displacement along it and its rate do to the motion of all that it carries.
+/// A degree of freedom with the changes that its displacement and its velocity cause in the motion of the
+/// link and all descendants.
 #[derive(Clone, Copy)]
 pub struct Column<'g> {
-    /// Entry of `v`.
+    /// Index in `v`.
     pub index: usize,
-    /// Joint rate per entry of `v`.
+    /// Joint velocity per unit of the entry of `v`.
     pub ratio: f64,
     /// `S`.
     pub subspace: Spatial<'g>,
@@ -101,7 +103,7 @@ pub struct Column<'g> {
 }
 
 impl<'g> Column<'g> {
-    /// It with a function applied to all expressions.
+    /// Applies a function to all expressions.
     pub fn map(&self, f: &dyn Fn(Expr<'g>) -> Expr<'g>) -> Column<'g> {
         let each = |s: &Spatial<'g>| Spatial { linear: s.linear.map(f), angular: s.angular.map(f) };
         Column {
@@ -114,17 +116,19 @@ impl<'g> Column<'g> {
     }
 }
 
-/// The columns of a link for the derivatives of inverse dynamics.
+/// Returns the columns of a link for the derivatives of inverse dynamics.
 pub fn columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>> {
     let (above, single) = (&motion.parent, joint.dofs.len() == 1);
-    // The rotation about an axis does not change what U does to the axis, nor V × S of the only S.
+    // The rotation about an axis changes neither the product of U with the axis nor V × S if S is the only
+    // degree of freedom.
     let u = if single { motion.own.matrix() } else { above.matrix() };
     let column = |dof: &Dof<'g>| {
         let s = &dof.subspace;
         let first = cross(&above.twist(), s);
         let change = if single { first } else { cross(&motion.own.twist(), s) };
         let rate = first.plus(&change);
-        // In terms of classical accelerations: A × S + V × Ψ̇ = (U s + a × r + 2 v × (w × r), U r) for S = (s, r).
+        // In terms of classical accelerations: A × S + V × Ψ̇ = (U s + a × r + 2 v × (w × r), U r) for S =
+        // (s, r).
         let turning = above.w.cross(s.angular);
         let linear = u * s.linear + above.a.cross(s.angular) + above.v.cross(turning + turning);
         let second = Spatial { linear, angular: u * s.angular };
@@ -133,7 +137,8 @@ pub fn columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>
     joint.dofs.iter().map(column).collect()
 }
 
-/// The columns of a link for the Coriolis matrix: `Ṡ` in place of `Ψ̇ + Ṡ`, and no displacements.
+/// Returns the columns of a link for the Coriolis matrix, with `Ṡ` in `rate` instead of `Ψ̇ + Ṡ`; the
+/// displacement columns are zero.
 pub fn rate_columns<'g>(model: &Model<'g>, joint: &Joint<'g>, twist: &Spatial<'g>) -> Vec<Column<'g>> {
     let zero = Spatial::zero(model);
     let column = |(k, dof): (usize, &Dof<'g>)| {
@@ -144,7 +149,7 @@ pub fn rate_columns<'g>(model: &Model<'g>, joint: &Joint<'g>, twist: &Spatial<'g
     joint.dofs.iter().enumerate().map(column).collect()
 }
 
-/// `V × X`: the rate of a motion `X` that moves with the twist `V`.
+/// Returns `V × X`, the rate of a motion `X` that moves with the twist `V`.
 pub fn cross<'g>(v: &Spatial<'g>, x: &Spatial<'g>) -> Spatial<'g> {
     Spatial {
         linear: v.angular.cross(x.linear) + v.linear.cross(x.angular),

@@ -1,27 +1,29 @@
-//! The mass matrix factorised, `M = Lᵀ D L`, with the zeros of a tree kept (Featherstone 2008, ch. 6.5), for both an
-//! acceleration and the inverse. Where forces depend on accelerations the matrix is not symmetric, and it is `M = U D L` with
-//! triangles of both sides, eliminated in the same order: pivots stay away from zero as long as its symmetric part is positive
-//! definite (Golub and Van Loan, *Matrix Computations*, 2013, § 4.4).
+//! Factorisation `M = Lᵀ D L` of the mass matrix that preserves the zeros of a tree (Featherstone 2008, ch.
+//! 6.5), shared by accelerations and the inverse. If forces depend on accelerations, the matrix is not
+//! symmetric and the factorisation is `M = U D L` with triangles on both sides, eliminated in the same order.
+//! The pivots stay away from zero as long as the symmetric part of the matrix is positive definite (Golub and
+//! Van Loan, *Matrix Computations*, 2013, § 4.4).
 
 use super::super::crba::Matrix;
 use super::super::ldl::{elimination_order, inverses};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
-/// `M = Lᵀ D L`, or `U D L` of a matrix that is not symmetric; `L` and `U` with unit diagonals.
+/// The factors `M = Lᵀ D L`, or `U D L` of an unsymmetric matrix; `L` and `U` have unit diagonals.
 pub struct Factor<'g> {
     /// Entries of `v` from the leaves to the root.
     order: Vec<usize>,
-    /// By entry: the entries of its row of `L` that are not zero, without the diagonal.
+    /// Nonzero off-diagonal entries of `L`, a row for each entry of `v`.
     rows: Vec<Vec<(usize, Expr<'g>)>>,
-    /// By entry: those of its column of `U`, if that is not the transpose of `L`.
+    /// Nonzero off-diagonal entries of `U`, a column for each entry of `v`; `None` if `U` is the transpose of
+    /// `L`.
     columns: Option<Vec<Vec<(usize, Expr<'g>)>>>,
     /// Diagonal of `D⁻¹`.
     inverse: Vec<Expr<'g>>,
 }
 
 impl<'g> Factor<'g> {
-    /// Factorises.
+    /// Factorises a mass matrix, symmetric or not.
     pub fn of(mass: &Matrix<'g>, joints: &[Joint<'g>]) -> Factor<'g> {
         let order = elimination_order(joints, mass.len());
         let n = mass.len();
@@ -54,7 +56,7 @@ impl<'g> Factor<'g> {
         Factor { order: order.to_vec(), rows, columns: Some(columns), inverse }
     }
 
-    /// Factorises the block of some entries of `v`, from the leaves to the root.
+    /// Factorises the symmetric block of the entries of `v` in `order`, which lists leaves before the root.
     pub fn in_order(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
         let mut m = mass.clone();
         let mut rows = vec![Vec::new(); m.len()];
@@ -80,12 +82,12 @@ impl<'g> Factor<'g> {
         Factor { order: order.to_vec(), rows, columns: None, inverse }
     }
 
-    /// `M⁻¹ r`.
+    /// Returns `M⁻¹ r`.
     pub fn solve(&self, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.complete(self.reduced(r))
     }
 
-    /// `L⁻ᵀ r`, or `U⁻¹ r`.
+    /// Returns `L⁻ᵀ r`, or `U⁻¹ r`.
     fn reduced(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         let columns = self.columns.as_ref().unwrap_or(&self.rows);
         for &k in &self.order {
@@ -96,7 +98,7 @@ impl<'g> Factor<'g> {
         r
     }
 
-    /// `L⁻¹ D⁻¹ r`.
+    /// Returns `L⁻¹ D⁻¹ r`.
     fn complete(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         for &k in self.order.iter().rev() {
             r[k] = self.rows[k].iter().fold(r[k] * self.inverse[k], |x, (i, factor)| x - *factor * r[*i]);
@@ -104,7 +106,7 @@ impl<'g> Factor<'g> {
         r
     }
 
-    /// `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`.
+    /// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`.
     pub fn responses(&self, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let Some(zero) = self.inverse.first().map(|d| d.zero()) else { return Vec::new() };
         let reduced: Vec<Vec<Expr<'g>>> = rows.iter().map(|row| self.reduced(row.clone())).collect();
@@ -113,7 +115,7 @@ impl<'g> Factor<'g> {
             reduced.iter().map(|row| row.iter().zip(&self.inverse).map(|(r, d)| *r * *d).collect()).collect();
         for i in 0..rows.len() {
             out.extend((0..rows.len()).map(|j| {
-                // The lower triangle, twice.
+                // The lower triangle gives both triangles.
                 let (low, high) = (i.min(j), i.max(j));
                 let products = reduced[high].iter().zip(&weighted[low]).map(|(a, b)| *a * *b);
                 products.fold(zero, |a, b| a + b)
@@ -122,8 +124,9 @@ impl<'g> Factor<'g> {
         out
     }
 
-    /// The inverse, zero outside the block, from the root to the leaves: a unit force on an entry reaches only those
-    /// above it, so for all others the substitution starts from zero, and symmetry gives the rest.
+    /// Returns the inverse, zero outside the block. It is computed from the root to the leaves: a unit force
+    /// on an entry reaches only the entries nearer to the root, so for all others the substitution starts
+    /// from zero. Symmetry gives the other triangle.
     pub fn inverse(&self) -> Matrix<'g> {
         let n = self.rows.len();
         if self.columns.is_some() {

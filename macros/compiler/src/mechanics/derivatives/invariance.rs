@@ -1,13 +1,15 @@
-//! What is known of the derivatives of forward dynamics without any product: how a mechanism with a free base moves in the
-//! axes of the base depends neither on where the base is, nor on its velocity (Galilei), and on its orientation only in that
-//! uniform gravity has other components. With the linear and angular velocity `v` and `ω` of the base and gravity `g`, all in
-//! its axes, all accelerations are those without gravity, but that of the base, `v̇ = … + g − ω × v`. A rotation `φ` of the
-//! base in its axes changes `g` by `g × φ`, so that `∂v̇/∂φ = [g]×` and `∂v̇/∂v = −[ω]×`; those of all other accelerations are
-//! zero.
+//! Columns of the derivatives of forward dynamics that follow from invariance without any product. The motion
+//! of a mechanism with a free base, in the axes of the base, depends neither on the position nor on the
+//! velocity of the base (Galilean invariance). It depends on the orientation of the base only through the
+//! components of uniform gravity. With the linear and angular velocity `v` and `ω` of the base and gravity
+//! `g`, all in its axes, all accelerations equal those without gravity, except that of the base,
+//! `v̇ = … + g − ω × v`. A rotation `φ` of the base in its axes changes `g` by `g × φ`, so that
+//! `∂v̇/∂φ = [g]×` and `∂v̇/∂v = −[ω]×`. The derivatives of all other accelerations are zero.
 //!
-//! That is so where the links move in the axes of the base as if the ground were not there, and where nothing else of the
-//! equations changes with the orientation, the velocity or the acceleration of the base: springs, dashpots and inerters that
-//! see the ground, or what is placed along its axes, forbid it. It is read off the expressions of the equations themselves.
+//! The invariance requires that the links move in the axes of the base as if the ground did not exist. No
+//! other term of the equations may change with the orientation, the velocity or the acceleration of the base.
+//! Springs, dashpots and inerters attached to the ground violate this, and so do elements placed along ground
+//! axes. The condition is checked on the expressions of the equations themselves.
 
 use super::{ForceDerivatives, symbolic};
 use crate::expr::diff::Derivative;
@@ -16,15 +18,15 @@ use crate::kinematics::{Joint, Spatial, symbols_in};
 use crate::mechanics::{accelerations, rnea, velocities};
 use crate::mechanism::{Inertia, Link, Model, Motion, Quantity};
 
-/// Columns that are known, with their indices.
+/// Columns determined by invariance, with their indices.
 type Columns<'g> = Vec<(usize, Vec<Expr<'g>>)>;
 
-/// The columns of `∂v̇/∂q` and `∂v̇/∂v` that are known.
+/// Columns of `∂v̇/∂q` and `∂v̇/∂v` that invariance determines.
 #[derive(Default)]
 pub struct Known<'g> {
-    /// Of `∂v̇/∂q`.
+    /// Columns of `∂v̇/∂q`.
     pub by_q: Columns<'g>,
-    /// Of `∂v̇/∂v`.
+    /// Columns of `∂v̇/∂v`.
     pub by_v: Columns<'g>,
 }
 
@@ -65,7 +67,7 @@ pub fn known<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Known<'g> {
     found
 }
 
-/// A link that moves freely against the ground, with the first entries of its coordinates and velocities.
+/// A link that moves freely relative to the ground, with the first indices of its coordinates and velocities.
 struct Base {
     link: usize,
     q: usize,
@@ -73,8 +75,8 @@ struct Base {
 }
 
 impl Base {
-    /// True if the other links, with their masses and gravity, know nothing of where the base is and how it moves: not what
-    /// hangs from it, nor what does not.
+    /// Returns true if the masses, gravity and joints of all other links are independent of the pose and the
+    /// velocity of the base, whether or not they are descendants of the base.
     fn carries_all_alike<'g>(&self, model: &Model<'g>, joints: &[Joint<'g>]) -> bool {
         let mut all = model.gravity.0.to_vec();
         for (k, (link, joint)) in model.links.iter().zip(joints).enumerate() {
@@ -98,7 +100,7 @@ impl Base {
         !symbols_in(&all).into_iter().any(|s| self.owns(s))
     }
 
-    /// True for a coordinate or a velocity of the base.
+    /// Returns true for a coordinate or a velocity of the base.
     fn owns(&self, symbol: Symbol) -> bool {
         match Quantity::of(symbol) {
             Quantity::Configuration(k) => (self.q..self.q + 7).contains(&k),
@@ -108,16 +110,16 @@ impl Base {
     }
 }
 
-/// What stands in the equations of motion beside the inertia of the links, whatever it is.
+/// All terms of the equations of motion except the inertia of the links.
 struct Others<'g> {
-    /// Its derivatives by configuration and velocity.
+    /// Derivatives of these terms with respect to configuration and velocity.
     forces: ForceDerivatives<'g>,
-    /// By velocity: whether the forces depend on its acceleration.
+    /// For each velocity: whether the terms depend on the acceleration of that velocity.
     inertial: Vec<bool>,
 }
 
 impl<'g> Others<'g> {
-    /// The equations of motion of the model with links that have no mass.
+    /// Derives the equations of motion of the model with massless links.
     fn of(model: &Model<'g>, joints: &[Joint<'g>]) -> Others<'g> {
         let mut massless = model.clone();
         for link in &mut massless.links {
@@ -133,19 +135,21 @@ impl<'g> Others<'g> {
         Others { forces: symbolic::derivatives(model, &forces), inertial }
     }
 
-    /// True if the acceleration of the base whose velocities begin at `v` meets no inertia but that of the links.
+    /// Returns true if no inertia except that of the links acts on the linear acceleration of the base whose
+    /// velocities begin at `v`.
     fn let_fall(&self, v: usize) -> bool {
         !self.inertial[v..v + 3].contains(&true)
     }
 }
 
-/// True if three columns are zero.
+/// Returns true if the three columns from `first` on are zero.
 fn are_free(of: &[Vec<Expr<'_>>], first: usize) -> bool {
     of.iter().all(|row| row[first..first + 3].iter().all(|e| e.is_zero()))
 }
 
 impl<'g> Known<'g> {
-    /// Puts them in the place of the derivatives of forces from which the others follow.
+    /// Replaces the columns of the force derivatives by the known columns of the acceleration derivatives;
+    /// the other columns of the acceleration derivatives are computed from the force derivatives.
     pub fn replace(&self, forces: &mut ForceDerivatives<'g>) {
         for (to, from) in [(&mut forces.by_q, &self.by_q), (&mut forces.by_v, &self.by_v)] {
             for (k, column) in from {
@@ -156,12 +160,12 @@ impl<'g> Known<'g> {
         }
     }
 
-    /// All of them, one after another.
+    /// Returns all known columns, concatenated: those of `∂v̇/∂q`, then those of `∂v̇/∂v`.
     pub fn all(&self) -> Vec<Expr<'g>> {
         self.by_q.iter().chain(&self.by_v).flat_map(|(_, column)| column.iter().copied()).collect()
     }
 
-    /// The indices of those of `∂v̇/∂q` and of `∂v̇/∂v`.
+    /// Returns the indices of the known columns of `∂v̇/∂q` and of `∂v̇/∂v`.
     pub fn indices(&self) -> [Vec<usize>; 2] {
         [&self.by_q, &self.by_v].map(|columns| columns.iter().map(|(k, _)| *k).collect())
     }

@@ -1,4 +1,5 @@
-//! Derivatives of the equations of motion by the parameters of the mechanism, by differentiation.
+//! Derivatives of the equations of motion with respect to the parameters of the mechanism, by
+//! differentiation.
 
 use super::super::crba::Matrix;
 use super::super::{accelerations, added_mass, crba, forces, rnea, velocities};
@@ -9,13 +10,13 @@ use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
-/// `∂τ/∂p` of inverse dynamics, by columns: one for each parameter.
+/// Returns the columns of `∂τ/∂p` of inverse dynamics, one for each parameter.
 pub fn inverse_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
     let a = accelerations(model);
     columns(model, &rnea::inverse_dynamics(model, joints, &velocities(model), Some(&a)))
 }
 
-/// `∂τ/∂p` of the inputs' forces, by columns.
+/// Returns the columns of `∂τ/∂p` of the input forces.
 pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
     columns(model, &forces::generalized_forces(model, joints))
 }
@@ -26,7 +27,7 @@ fn columns<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
     (0..model.parameters.len()).map(|k| column(by(k))).collect()
 }
 
-/// `∂v̇/∂p = −M⁻¹ ∂τ/∂p` of forward dynamics under the forces `tau`, at `a = v̇`, by columns.
+/// Returns the columns of `∂v̇/∂p = −M⁻¹ ∂τ/∂p` of forward dynamics under the forces `tau`, at `a = v̇`.
 pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>]) -> Matrix<'g> {
     let factor = Factor::of(&added_mass::effective(model, &crba::mass_matrix(model, joints)), joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
