@@ -6,7 +6,7 @@ use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, position, twists};
 use crate::mechanism::Model;
 
-/// Kinetic energy: half of twist times momentum, summed over the links.
+/// Returns the kinetic energy: half of twist times momentum, summed over the links, plus that of inerters.
 pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Expr<'g> {
     let twists = twists(model, joints, v);
     let twice = model
@@ -17,7 +17,8 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
     twice * 0.5 + inertances::kinetic_energy(model)
 }
 
-/// Total mass of what moves, and its first moment about the ground's origin in ground axes.
+/// Returns the total mass of the moving bodies, and their first moment about the ground's origin in ground
+/// axes.
 pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>, Vec3<'g>) {
     let composites = composites(model, joints);
     let roots = joints.iter().zip(&composites).filter(|(joint, _)| joint.parent.is_none());
@@ -25,7 +26,7 @@ pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>
     (sum.mass, sum.moment)
 }
 
-/// Centre of mass in ground axes.
+/// Returns the centre of mass in ground axes, or the first moment (zero) if the total mass is zero.
 pub fn center_of_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec3<'g> {
     let (mass, moment) = mass_and_moment(model, joints);
     if mass.is_zero() {
@@ -35,7 +36,7 @@ pub fn center_of_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec3<'g> {
     moment * inverse
 }
 
-/// Potential energy of gravity and springs.
+/// Returns the potential energy of gravity, springs and other potentials.
 pub fn potential_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
     let (_, moment) = mass_and_moment(model, joints);
     let mut energy = -model.gravity.dot(moment);

@@ -1,11 +1,12 @@
-//! Generalized forces of the inputs: by virtual work, `τ = Σ Sᵀ W` over the links that a wrench's link hangs from.
+//! Generalized forces of the inputs by virtual work: `τ = Σ Sᵀ W`, summed over the link on which the wrench
+//! acts and all its ancestors.
 
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, change_axes, known_gradient};
 use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
 
-/// What the inputs `u` contribute to `τ`.
+/// Returns the contribution of the inputs `u` to `τ`.
 pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut tau = vec![g.zero(); model.nv()];
@@ -32,7 +33,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
         }
     }
     for load in &model.loads {
-        // What acts without inputs is part of the bias.
+        // The force at zero inputs belongs to the bias.
         let alone = replace(load.force, &|s| matches!(Quantity::of(s), Quantity::Input(_)).then(|| g.zero()));
         let by_inputs = load.force - alone;
         if !by_inputs.is_zero() {
@@ -53,7 +54,7 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
     tau
 }
 
-/// A direction in the axes of a link, by way of the nearest common ancestor's.
+/// Returns a direction in the axes of a link, transformed through the axes of the nearest common ancestor.
 fn resolve<'g>(joints: &[Joint<'g>], direction: &Direction<'g>, link: LinkId, zero: Vec3<'g>) -> Vec3<'g> {
     direction.iter().fold(zero, |sum, (from, v)| sum + change_axes(joints, *v, *from, Some(link)))
 }

@@ -1,8 +1,8 @@
-//! Placements and motions of links and named frames, each link from its parent: generated code calls one step after
-//! another along the path to a frame, so nothing is computed that a frame does not need.
+//! Placements and motions of links and named frames, each link from its parent. Generated code calls one step
+//! after another along the path to a frame, so only the links of this path are computed.
 //!
-//! The parent's figures come in as given numbers: placements as nine entries of the rotation by rows and three of the
-//! position, twists and accelerations as linear and angular part in link axes.
+//! The parent's values are arguments: placements as nine entries of the rotation by rows and three of the
+//! position, twists and accelerations as linear and angular component in link axes.
 
 use crate::expr::{Expr, Graph, Mat3, Vec3};
 use crate::kinematics::{Joint, Spatial};
@@ -18,19 +18,19 @@ pub struct Placement<'g> {
 }
 
 impl<'g> Placement<'g> {
-    /// Twelve numbers: the rotation by rows, then the position.
+    /// Returns twelve numbers: the rotation by rows, then the position.
     pub fn flat(&self) -> Vec<Expr<'g>> {
         self.rotation.0.iter().flatten().chain(&self.position.0).copied().collect()
     }
 
-    /// That of the ground.
+    /// Returns the placement of the ground.
     pub fn ground(graph: &'g Graph) -> Placement<'g> {
         Placement { rotation: Mat3::identity(graph), position: Vec3::zero(graph) }
     }
 
-    /// The placement of a frame that is placed in this one.
+    /// Returns the placement of a frame that has the pose `pose` in this frame.
     pub fn then(&self, pose: &Pose<'g>) -> Placement<'g> {
-        // R_parent R: rows are turned, so that the steps of the child's rotation apply to them one by one.
+        // R_parent R: rows are rotated, so that the steps of the child's rotation apply to them one by one.
         let rows: [Vec3<'g>; 3] = std::array::from_fn(|i| pose.rotation.to_child(self.rotation.row(i)));
         Placement {
             rotation: Mat3(rows.map(|r| r.0)),
@@ -54,24 +54,24 @@ fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
     Spatial { linear: given(model, first), angular: given(model, first + 3) }
 }
 
-/// Six numbers of a spatial vector.
+/// Returns the six components of a spatial vector.
 pub fn flat<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
     s.linear.0.iter().chain(&s.angular.0).copied().collect()
 }
 
-/// Placement of a link from its parent's (12 given numbers, none for a root).
+/// Returns the placement of a link from its parent's (12 arguments, none for a root).
 pub fn link_placement<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Placement<'g> {
     let parent = if joint.parent.is_some() { given_placement(model) } else { Placement::ground(model.graph) };
     parent.then(&Pose { rotation: joint.rotation.clone(), translation: joint.translation })
 }
 
-/// Placement of a named frame from its link's (12 given numbers, none if it is fixed to the ground).
+/// Returns the placement of a named frame from its link's (12 arguments, none if it is fixed to the ground).
 pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placement<'g> {
     let link = if frame.link.is_some() { given_placement(model) } else { Placement::ground(model.graph) };
     link.then(&frame.pose)
 }
 
-/// Twist of a link from its parent's (6 given numbers, none for a root).
+/// Returns the twist of a link from its parent's (6 arguments, none for a root).
 pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
     let own = joint.twist(model, v);
     match joint.parent {
@@ -80,8 +80,8 @@ pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> S
     }
 }
 
-/// Acceleration of a link (of its origin, angular; classical, without gravity; link axes) from its parent's twist and
-/// acceleration (12 given numbers, none for a root).
+/// Returns the acceleration of a link (of its origin, angular; classical, without gravity; link axes) from
+/// its parent's twist and acceleration (12 arguments, none for a root).
 pub fn link_acceleration<'g>(
     model: &Model<'g>,
     joint: &Joint<'g>,
@@ -92,7 +92,7 @@ pub fn link_acceleration<'g>(
     joint.acceleration(model, joint.parent.map(|_| (&twist, &parent)), v, a)
 }
 
-/// Twist of a named frame in ground axes, from its link's placement and twist (18 given numbers).
+/// Returns the twist of a named frame in ground axes, from its link's placement and twist (18 arguments).
 pub fn frame_twist<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g> {
     if frame.link.is_none() {
         return Spatial::zero(model);
@@ -105,7 +105,8 @@ pub fn frame_twist<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g>
     }
 }
 
-/// Acceleration of a named frame in ground axes, from its link's placement, twist and acceleration (24 given numbers).
+/// Returns the acceleration of a named frame in ground axes, from its link's placement, twist and
+/// acceleration (24 arguments).
 pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spatial<'g> {
     if frame.link.is_none() {
         return Spatial::zero(model);
@@ -117,8 +118,8 @@ pub fn frame_acceleration<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Spat
     Spatial { linear: placement.rotation * point, angular: placement.rotation * acceleration.angular }
 }
 
-/// Columns of a frame's Jacobian for the degrees of freedom of one link: twist of the frame per unit of velocity, in
-/// ground axes, from the link's placement and the frame's position (15 given numbers).
+/// Returns the columns of a frame's Jacobian for the degrees of freedom of one link: twist of the frame per
+/// unit of velocity, in ground axes, from the link's placement and the frame's position (15 arguments).
 pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial<'g>> {
     let placement = given_placement(model);
     let arm = given(model, 12) - placement.position;

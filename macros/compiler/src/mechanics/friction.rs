@@ -1,21 +1,22 @@
-//! Contacts that slip with dry friction: the normal force is a multiplier `λ`, and friction follows from it. With `J` the
-//! rows of all constraints and `T` those of friction, its generalized force per unit of each normal force,
+//! Sliding contacts with dry friction: the normal force is a multiplier `λ`, and the friction force is
+//! proportional to it. With `J` the rows of all constraints and `T` the rows of friction (the generalized
+//! friction force per unit of each normal force),
 //!
 //! ```text
 //! M v̇ + h = τ + Jᵀ λ + Tᵀ |λ|,   J v̇ + J̇ v = 0.
 //! ```
 //!
-//! Where the signs `σ` of the normal forces are known this is a linear system, which is not symmetric:
+//! For known signs `σ` of the normal forces this is a linear system, which is not symmetric:
 //!
 //! ```text
 //! | M  (J + σ T)ᵀ | |  v̇ |   | τ − h |
 //! | J      0      | | −λ | = | −J̇ v  |
 //! ```
 //!
-//! The multipliers of these contacts are eliminated last. What is left for them then is `−J M⁻¹ (J + σ T)ᵀ`, reduced to
-//! the motions that the other constraints allow; a normal force can be told from it as long as its pivots keep their sign.
-//! Where they do not, friction jams (Painlevé's paradox: Génot and Brogliato, *New results on Painlevé paradoxes*,
-//! Eur. J. Mech. A 18, 1999).
+//! The multipliers of these contacts are eliminated last. Their reduced matrix is then `−J M⁻¹ (J + σ T)ᵀ`,
+//! restricted to the motions that the other constraints allow. It determines the normal forces as long as its
+//! pivots keep their sign. If a pivot changes sign, friction jams (Painlevé's paradox: Génot and Brogliato,
+//! *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
 
 use super::constraints::{elimination_order, jacobian, system};
 use super::crba::Matrix;
@@ -24,13 +25,13 @@ use crate::expr::{Expr, Function};
 use crate::kinematics::velocity_gradients;
 use crate::mechanism::{Model, Quantity};
 
-/// The constraints whose multipliers are the normal forces of friction.
+/// Returns the constraints whose multipliers are normal forces of sliding contacts with friction.
 pub fn slipping(model: &Model<'_>) -> Vec<usize> {
     let all = model.constraints.iter().enumerate();
     all.filter(|(_, c)| !c.friction.is_empty()).map(|(k, _)| k).collect()
 }
 
-/// `T`: a row for each constraint, a column for each velocity.
+/// Returns `T`, with a row for each constraint and a column for each velocity.
 pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
     let row = |c: &crate::mechanism::Constraint<'g>| {
         let mut row = vec![model.graph.zero(); model.nv()];
@@ -43,8 +44,8 @@ pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
     model.constraints.iter().map(row).collect()
 }
 
-/// Accelerations and multipliers for forces `τ − h` and biases, and what tells whether they can be trusted, as
-/// [`super::constraints::solve`] does. The signs `σ` are given numbers, those behind `NV + NC` others.
+/// Returns accelerations and multipliers for forces `τ − h` and biases, then measures of their reliability,
+/// as [`super::constraints::solve`] does. The signs `σ` are arguments, which follow `NV + NC` others.
 pub fn solve<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
@@ -73,8 +74,8 @@ pub fn solve<'g>(
     x
 }
 
-/// The solution of `m x = r`, eliminated in a given order; with the magnitudes that the first so many indices have taken
-/// from each diagonal entry.
+/// Solves `m x = r` by elimination in a given order. Also returns the magnitudes that the elimination of the
+/// first `first` indices has subtracted from each diagonal entry.
 fn eliminate<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
     let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
     let (mut inverse, mut x, mut pivots, mut taken) = (zeros(), zeros(), zeros(), zeros());

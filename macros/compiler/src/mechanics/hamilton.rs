@@ -1,6 +1,6 @@
-//! Hamilton's form: the energy and the canonical equations as functions of configuration and momentum (Goldstein, Poole and
-//! Safko, *Classical Mechanics*, 2002, ch. 8). For ball and free joints the momenta are body components, and the equations
-//! those of Lie and Poisson.
+//! Hamilton's form of the equations: the energy and the canonical equations as functions of configuration and
+//! momentum (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, ch. 8). For ball and free joints the
+//! momenta are body components, and the equations are the Lie–Poisson equations.
 
 use super::crba::Matrix;
 use super::{energy, ldl, momentum};
@@ -9,7 +9,7 @@ use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
 use crate::mechanism::{Model, Quantity};
 
-/// Functions of `q` and the momenta, which are given numbers.
+/// Functions of `q` and the momenta, which are arguments.
 pub struct Hamilton<'g> {
     /// `H = p·v − T + U`.
     pub hamiltonian: Expr<'g>,
@@ -19,7 +19,8 @@ pub struct Hamilton<'g> {
     pub momentum_rate: Vec<Expr<'g>>,
 }
 
-/// Solves `p = M v + p₀` for the velocities and puts them into energy and rates; `p₀` is what driven motion contributes.
+/// Solves `p = M v + p₀` for the velocities and inserts them into the energy and the rates, where `p₀` is the
+/// momentum due to motion that is prescribed in time.
 pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Hamilton<'g> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
@@ -40,7 +41,8 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     Hamilton { hamiltonian, momentum_rate: with_velocities(&rate, &velocity), velocity }
 }
 
-/// Expressions with other velocities: what elements store and dissipate is written in those of the mechanism.
+/// Returns expressions with the velocity symbols replaced by `v`. Elements' energies and forces contain the
+/// velocity symbols of the mechanism.
 fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     replace_all(e, &|s| match Quantity::of(s) {
         Quantity::Velocity(k) => Some(v[k]),

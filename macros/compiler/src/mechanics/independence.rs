@@ -1,5 +1,5 @@
-//! Which of several columns of expressions depend linearly on the others, in numbers: they are evaluated at random
-//! states, and what adds nothing to those before it is a combination of them.
+//! Linear dependence of columns of expressions. It is determined numerically: the columns are evaluated at
+//! random states, and a column that is in the span of its predecessors is a combination of them.
 
 use crate::expr::eval::eval;
 use crate::expr::sample::sample;
@@ -7,22 +7,22 @@ use crate::expr::{Expr, Symbol};
 use crate::kinematics::random_configuration;
 use crate::mechanism::{Model, Quantity};
 
-/// A column that is left of another one in proportion to it, and counts as nothing.
+/// A column whose remainder relative to its norm is below this tolerance counts as dependent.
 const TOLERANCE: f64 = 1e-8;
 
-/// A sum of columns: index, factor.
+/// Linear combination of columns: index, factor.
 pub type Combination = Vec<(usize, f64)>;
 
-/// What becomes of a column.
+/// Result for one column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
-    /// It is independent of those before it.
+    /// Independent of its predecessors.
     Own,
-    /// It is this combination of independent ones before it, an empty one if it is zero.
+    /// This combination of independent predecessors; empty if the column is zero.
     Combined(Combination),
 }
 
-/// Sorts columns of equal length. Factors that depend on the parameters are none: such a column counts as independent.
+/// Classifies columns of equal length. A column whose factors depend on the parameters counts as independent.
 pub fn independent(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<Part> {
     let one = parts(&values(model, columns, 0));
     if model.parameters.is_empty() {
@@ -41,7 +41,8 @@ fn agree(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|((i, x), (j, y))| i == j && close(*x, *y))
 }
 
-/// Each column at so many states that they are more than the columns, for one choice of parameters.
+/// Returns the values of each column at random states, for one choice of parameters. The number of values per
+/// column exceeds the number of columns.
 fn values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f64>> {
     let all: Vec<Expr<'_>> = columns.concat();
     let height = columns.first().map_or(1, Vec::len).max(1);
@@ -66,10 +67,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Orthogonalises one column after another (Gram and Schmidt, twice for the sake of rounding).
+/// Orthogonalises the columns one after another (Gram–Schmidt, applied twice against rounding errors).
 fn parts(columns: &[Vec<f64>]) -> Vec<Part> {
     let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
-    // Unit vectors, each with its combination of independent columns.
+    // Orthonormal vectors, each with its combination of independent columns.
     let mut base: Vec<(Vec<f64>, Combination)> = Vec::new();
     let mut parts = Vec::with_capacity(columns.len());
     for (k, column) in columns.iter().enumerate() {

@@ -1,12 +1,12 @@
-//! Inerters: kinetic energy `½ b ṡ²` of a rate `ṡ = J v + …`, so `M` gains `b Jᵀ J` and the forces `b Jᵀ (J a + J̇ v)`
-//! (Smith 2002).
+//! Inerters: the kinetic energy `½ b ṡ²` of a velocity `ṡ = J v + …` adds `b Jᵀ J` to `M` and
+//! `b Jᵀ (J a + J̇ v)` to the forces (Smith 2002).
 
 use super::crba::Matrix;
 use crate::expr::Expr;
 use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::Model;
 
-/// Adds them to the mass matrix.
+/// Adds the inertances to the mass matrix.
 pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
@@ -18,7 +18,8 @@ pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     }
 }
 
-/// Adds them to forces: those of the accelerations `a` if given, and those of the motion.
+/// Adds the forces of the inertances to `tau`: the velocity terms, and the acceleration terms if `a` is
+/// given.
 pub fn add_to_forces<'g>(model: &Model<'g>, a: Option<&[Expr<'g>]>, tau: &mut [Expr<'g>]) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
@@ -35,12 +36,12 @@ pub fn add_to_forces<'g>(model: &Model<'g>, a: Option<&[Expr<'g>]>, tau: &mut [E
     }
 }
 
-/// Their kinetic energy.
+/// Returns the kinetic energy of the inerters.
 pub fn kinetic_energy<'g>(model: &Model<'g>) -> Expr<'g> {
     model.inertances.iter().fold(model.graph.zero(), |sum, e| sum + e.inertance * 0.5 * e.rate.square())
 }
 
-/// Adds their generalized momentum.
+/// Adds the generalized momentum of the inerters.
 pub fn add_to_momentum<'g>(model: &Model<'g>, p: &mut [Expr<'g>]) {
     for element in &model.inertances {
         for (k, d) in velocity_gradient(element.rate) {
@@ -49,7 +50,7 @@ pub fn add_to_momentum<'g>(model: &Model<'g>, p: &mut [Expr<'g>]) {
     }
 }
 
-/// Adds what they contribute to the rate of the momentum beside the acceleration: `b ṡ J̇ᵀ`.
+/// Adds the velocity term of the inerters to the rate of the momentum: `b ṡ J̇ᵀ`.
 pub fn add_to_momentum_rate<'g>(model: &Model<'g>, rate: &mut [Expr<'g>]) {
     for element in &model.inertances {
         for (k, d) in velocity_gradient(element.rate) {

@@ -1,10 +1,12 @@
-//! Lagrange's equations from the energies by differentiation: an independent derivation that proves the recursive one
-//! right, and the source of the printed equations of small mechanisms. Positions and orientations of all bodies are
-//! written out in the ground frame; velocities are their time derivatives. Not for large mechanisms: it does not share.
+//! Lagrange's equations from the energies by differentiation. The derivation is independent of the recursive
+//! algorithms and verifies them; it is also the source of the printed equations of small mechanisms.
+//! Positions and orientations of all bodies are expanded in the ground frame, and velocities are their time
+//! derivatives. The method is unsuitable for large mechanisms, since it shares no subexpressions between
+//! bodies.
 //!
-//! For ball and free joints the velocities are quasi-velocities, and Lagrange's equations take the form of Boltzmann
-//! and Hamel (Whittaker, *Analytical Dynamics*, § 30): the momenta of a free joint `(P, L)` gain `w × P` and
-//! `w × L + v × P`.
+//! For ball and free joints the velocities are quasi-velocities, and Lagrange's equations take the form of
+//! Boltzmann and Hamel (Whittaker, *Analytical Dynamics*, § 30): the momenta of a free joint `(P, L)` gain
+//! `w × P` and `w × L + v × P`.
 
 use super::crba::Matrix;
 use super::velocities;
@@ -14,7 +16,7 @@ use crate::kinematics::{Joint, configuration_rate, position};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Chart, InV, Model, Quantity};
 
-/// The Lagrangian and what follows from it.
+/// The energies and the equations of motion derived from them.
 pub struct Lagrange<'g> {
     /// Kinetic energy.
     pub kinetic: Expr<'g>,
@@ -26,7 +28,7 @@ pub struct Lagrange<'g> {
     pub bias: Vec<Expr<'g>>,
 }
 
-/// Rate of every entry of `q`, as an expression of `q` and `v`.
+/// Returns the time derivative of every entry of `q`, as an expression of `q` and `v`.
 pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect()
 }
@@ -57,7 +59,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     Lagrange { kinetic, potential, mass_matrix, bias }
 }
 
-/// `Σ ∂e/∂q q̇ + ∂e/∂t`.
+/// Returns `Σ ∂e/∂q q̇ + ∂e/∂t`.
 fn along<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Expr<'g> {
     let mut sum = Derivative::with_respect_to(Quantity::Time.symbol(), e.graph()).of(e);
     for (rate, d) in rates.iter().zip(by_q) {
@@ -66,7 +68,8 @@ fn along<'g>(rates: &[Expr<'g>], by_q: &mut [Derivative<'g>], e: Expr<'g>) -> Ex
     sum
 }
 
-/// The generalized coordinate forces `∂L/∂q`, taken along the directions `∂q̇/∂v` of the velocities.
+/// Subtracts the generalized forces `∂L/∂q`, taken along the directions `∂q̇/∂v` of the velocities, from the
+/// bias.
 fn subtract_tangent_gradient<'g>(
     rates: &[Expr<'g>],
     dl_dq: &[Expr<'g>],
@@ -100,14 +103,14 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
     }
 }
 
-/// Dashpots and friction; springs are in the potential energy.
+/// Returns the forces of dashpots and friction. Springs are included in the potential energy.
 fn dissipation<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let all = passive_forces(model, true);
     let springs = passive_forces(model, false);
     all.into_iter().zip(springs).map(|(all, springs)| all - springs).collect()
 }
 
-/// Kinetic and potential energy from positions and orientations in the ground frame.
+/// Returns the kinetic and potential energy from positions and orientations in the ground frame.
 fn energies<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],

@@ -1,38 +1,38 @@
-//! `M x = r` by a sparse factorisation `M = Lᵀ D L` run symbolically: the zeros that the branches of a tree leave stay
-//! zeros when the leaves are eliminated first (Featherstone 2008, ch. 6.5).
+//! Solution of `M x = r` by a sparse factorisation `M = Lᵀ D L` run symbolically. Eliminating the leaves
+//! first preserves the zeros between the branches of a tree (Featherstone 2008, ch. 6.5).
 
 use super::crba::Matrix;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
-/// The solution of `m x = r`.
+/// Returns the solution of `m x = r`.
 pub fn solve<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let order = elimination_order(joints, r.len());
     solve_in(m, r, &order, 0).x
 }
 
-/// A solution with what tells whether it can be trusted.
+/// A solution with measures of its reliability.
 pub struct Solution<'g> {
     /// The unknowns.
     pub x: Vec<Expr<'g>>,
-    /// By index: the pivot.
+    /// Pivot of each index.
     pub pivots: Vec<Expr<'g>>,
-    /// By index: what the first so many indices have taken from the diagonal entry.
+    /// Amount that the elimination of the first `first` indices has subtracted from each diagonal entry.
     pub taken: Vec<Expr<'g>>,
 }
 
-/// The solution of `m x = r` for a symmetric `m`, eliminated in a given order.
+/// Solves `m x = r` for a symmetric `m`, eliminated in a given order.
 pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
     let zeros = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
     let (mut inverse, mut x, mut pivots, mut taken) = (zeros(), zeros(), zeros(), zeros());
-    // By index: the rows that it is taken from, each with the multiple.
+    // For each index: the rows from which its row is subtracted, each with the multiple.
     let mut factors: Vec<Vec<(usize, Expr<'g>)>> = vec![Vec::new(); r.len()];
     let mut known = Vec::new().into_iter();
     for (step, &k) in order.iter().enumerate() {
         pivots[k] = m[k][k];
         inverse[k] = match known.next() {
             Some(inverse) => inverse,
-            // Where pivots are asked for they are there to be divided by.
+            // If pivots are an output, they are computed in any case, so the inverse is one division.
             None if first > 0 => m[k][k].num(1.0) / m[k][k],
             None => {
                 known = inverses(&m, &order[step..]).into_iter();
@@ -60,10 +60,11 @@ pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], fi
     Solution { x, pivots, taken }
 }
 
-/// The inverses of up to two pivots of a symmetric matrix, in the order in which they are eliminated, that do not wait for
-/// each other: of two divisions one after another the time of one is saved. A third by leading minors would be a ratio of
-/// determinants, whose rounding grows with the square of the condition where two pivots are small beside the first (light
-/// links that carry a heavy load, speeds that follow from others by large factors).
+/// Returns the inverses of up to two pivots of a symmetric matrix, in elimination order. The second does not
+/// depend on the first, so the latency of one of two successive divisions is saved. A third inverse by
+/// leading minors would be a ratio of determinants, whose rounding error grows with the square of the
+/// condition number if two pivots are small compared with the first (light links that carry a heavy load,
+/// velocities that follow from others by large factors).
 pub fn inverses<'g>(m: &Matrix<'g>, order: &[usize]) -> Vec<Expr<'g>> {
     let entry = |i: usize, j: usize| m[order[i]][order[j]];
     let Some(a) = order.first().map(|_| entry(0, 0)) else { return Vec::new() };
@@ -71,13 +72,15 @@ pub fn inverses<'g>(m: &Matrix<'g>, order: &[usize]) -> Vec<Expr<'g>> {
     std::iter::once(a.num(1.0) / a).chain(second).collect()
 }
 
-/// The inverse of the second pivot of a symmetric matrix `[a b; b c]`, `1 / (c − b² / a) = a / (a c − b²)`, which does not
-/// wait for the inverse of the first. `None` for `b = 0`.
+/// Returns the inverse of the second pivot of a symmetric matrix `[a b; b c]`,
+/// `1 / (c − b² / a) = a / (a c − b²)`, which does not depend on the inverse of the first pivot. Returns
+/// `None` for `b = 0`.
 pub fn second_inverse<'g>(a: Expr<'g>, b: Expr<'g>, c: Expr<'g>) -> Option<Expr<'g>> {
     (!b.is_zero()).then(|| a / (a * c - b * b))
 }
 
-/// Entries of `v` from the leaves to the root; first those that move no link, of which only elements take notice.
+/// Returns the entries of `v` from the leaves to the root. Entries that move no link and appear only in
+/// elements come first.
 pub fn elimination_order(joints: &[Joint<'_>], nv: usize) -> Vec<usize> {
     let mut seen = vec![true; nv];
     joints.iter().flat_map(|joint| &joint.dofs).for_each(|dof| seen[dof.index] = false);

@@ -1,33 +1,36 @@
-//! What contacts say of a state where alike limbs touch: their rates are side by side in lanes, as the limbs are.
+//! Contact functions with the identical limbs of a mechanism in SIMD lanes, as in [`Limbs`].
 
 use super::crba::Matrix;
 use crate::expr::Expr;
 use crate::vectorise::{LimbRows, Limbs, Merge};
 
-/// Contacts of alike limbs, each with as many rates.
+/// Contacts of identical limbs, each limb with the same number of contact velocities.
 pub struct LimbContacts<'a, 'g> {
     limbs: &'a Limbs<'g>,
     alike: Vec<LimbRows>,
     merge: Merge<'g>,
-    /// How many rates there are.
+    /// Number of contact velocities.
     count: usize,
 }
 
 impl<'a, 'g> LimbContacts<'a, 'g> {
-    /// Those with a Jacobian by rows. `None` unless each rate moves one limb of several alike ones, and each of these as many.
+    /// Groups the contact velocities with the given Jacobian rows. Returns `None` unless each contact
+    /// velocity depends on one limb of a group of identical limbs, and all limbs of a group have the same
+    /// number of them.
     pub fn of(limbs: &'a Limbs<'g>, jacobian: &Matrix<'g>) -> Option<LimbContacts<'a, 'g>> {
         let alike = limbs.limb_rows(jacobian)?;
         Some(LimbContacts { limbs, alike, merge: Merge::new(limbs.model.graph), count: jacobian.len() })
     }
 
-    /// Rates that each limb has, by lane: the numbers of those of one limb for each.
+    /// Returns, for each group of limbs, the indices of the contact velocities of each limb.
     pub fn of_limbs(&self) -> impl Iterator<Item = Vec<Vec<usize>>> {
         self.alike.iter().map(|alike| {
             (0..alike.width).map(|lane| alike.rows.iter().map(|row| row[lane]).collect()).collect()
         })
     }
 
-    /// One value for each rate. `None` if those of limbs are built differently.
+    /// Merges values, one for each contact velocity, into lanes. Returns `None` if the expressions of the
+    /// limbs differ in structure.
     pub fn values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let mut out = values.to_vec();
         for row in self.alike.iter().flat_map(|alike| &alike.rows) {
@@ -37,7 +40,8 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
         Some(out)
     }
 
-    /// A row by velocities for each rate, which depends on the limb alone that the rate is of.
+    /// Merges matrix rows, one for each contact velocity with a column for each velocity. Each row depends
+    /// only on the limb of its contact velocity.
     pub fn rows(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
         let mut out = vec![Vec::new(); self.count];
         for numbers in self.alike.iter().flat_map(|alike| &alike.rows) {
@@ -54,7 +58,8 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
         Some(out)
     }
 
-    /// The sum of square matrices by velocities, one of each limb, by the groups of [`of_limbs`](Self::of_limbs).
+    /// Returns the sum of square matrices over the velocities, one matrix for each limb, in the groups of
+    /// [`of_limbs`](Self::of_limbs).
     pub fn sum(&mut self, groups: &[Vec<Matrix<'g>>]) -> Option<Matrix<'g>> {
         let places: Vec<(usize, Option<usize>)> = self.limbs.places().collect();
         let mut sum: Option<Matrix<'g>> = None;

@@ -1,4 +1,4 @@
-//! What impulses at contacts do where alike limbs touch: their rates are side by side in lanes, as the limbs are.
+//! Responses to impulses at contacts with the identical limbs of a mechanism in SIMD lanes, as in [`Limbs`].
 
 use super::crba::{Matrix, mass_matrix};
 use super::ldl::elimination_order;
@@ -6,24 +6,24 @@ use crate::expr::Expr;
 use crate::vectorise::{LimbRows, Limbs, joined};
 use std::collections::BTreeMap;
 
-/// Rates at contacts of the limbs of one group.
+/// Contact velocities of the limbs of one group.
 struct Family<'g> {
-    /// The velocity that the group's limbs begin with.
+    /// First velocity of the group's limbs, which identifies the group.
     group: usize,
-    /// How many limbs there are.
+    /// Number of limbs.
     width: usize,
     rows: Vec<Row<'g>>,
 }
 
-/// A rate of each limb.
+/// One contact velocity of each limb, in lanes.
 struct Row<'g> {
-    /// `L⁻ᵀ g` by velocities of [`Limbs`], in lanes.
+    /// `L⁻ᵀ g` over the velocities of [`Limbs`], in lanes.
     reduced: Vec<Expr<'g>>,
-    /// Those of `M⁻¹ g` of the trunk and of the limb that the rate is of.
+    /// Entries of `M⁻¹ g` for the trunk and for the limb of the contact velocity.
     own: Vec<Expr<'g>>,
 }
 
-/// Where a rate is found: which family, row and lane.
+/// Location of a contact velocity: family, row and lane.
 #[derive(Clone, Copy)]
 struct Place {
     family: usize,
@@ -31,20 +31,20 @@ struct Place {
     lane: usize,
 }
 
-/// `M = Lᵀ D L`, with limbs as lanes.
+/// Factorisation `M = Lᵀ D L`, with limbs in lanes.
 struct Factor<'g> {
     /// Velocities from the leaves to the root.
     order: Vec<usize>,
-    /// By velocity: the entries of its row of `L`, without the diagonal.
+    /// Off-diagonal entries of `L`, a row for each velocity.
     rows: Vec<Vec<(usize, Expr<'g>)>>,
     /// Diagonal of `D⁻¹`.
     inverse: Vec<Expr<'g>>,
-    /// By velocity: the group of limbs that it belongs to.
+    /// Group of limbs of each velocity; `None` for the trunk.
     groups: Vec<Option<usize>>,
 }
 
-/// `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. `None` unless each row moves one limb of several alike ones,
-/// and each of these as many.
+/// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`. Returns `None` unless each row
+/// depends on one limb of a group of identical limbs, and all limbs of a group have the same number of rows.
 pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
     let alike = limbs.limb_rows(rows)?;
     let factor = Factor::of(limbs, limbs.groups());
@@ -72,7 +72,7 @@ pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Ex
     Some(out)
 }
 
-/// Of `n` lanes each that which is `by` farther.
+/// Rotates `n` lanes: lane `k` of the result is lane `k + by` modulo `n`.
 fn turned(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
     let lanes: Vec<Expr<'_>> = (0..n).map(|k| e.lane((k + by) % n)).collect();
     joined(&lanes)
@@ -103,7 +103,7 @@ impl<'g> Factor<'g> {
         Factor { order, rows, inverse, groups }
     }
 
-    /// A rate of each limb of a group, with its entries `g` in lanes.
+    /// Solves for one contact velocity of each limb of a group, whose entries `g` are in lanes.
     fn row(&self, g: Vec<Expr<'g>>, group: usize) -> Row<'g> {
         let mut reduced = g;
         for &k in &self.order {
@@ -119,7 +119,7 @@ impl<'g> Factor<'g> {
         Row { reduced, own }
     }
 
-    /// What a unit impulse along a rate adds to a velocity, in the lane that this has.
+    /// Returns the change of a velocity, in its own lane, per unit impulse along a contact velocity.
     fn velocity(&self, families: &[Family<'g>], at: Place, index: usize, lane: usize) -> Expr<'g> {
         let Family { group, width, rows } = &families[at.family];
         let own = &rows[at.row].own;
@@ -133,7 +133,7 @@ impl<'g> Factor<'g> {
         }
     }
 
-    /// The velocity of a limb that trunks carry along.
+    /// Returns the change of a limb's velocity that results from the velocity changes `trunk` of the trunk.
     fn carried(&self, index: usize, trunk: &dyn Fn(usize) -> Expr<'g>) -> Expr<'g> {
         self.rows[index].iter().fold(self.inverse[index].zero(), |x, (i, factor)| {
             let value = if self.groups[*i].is_none() { trunk(*i) } else { self.carried(*i, trunk) };
@@ -141,7 +141,7 @@ impl<'g> Factor<'g> {
         })
     }
 
-    /// What a unit impulse along one rate adds to another.
+    /// Returns the change of one contact velocity per unit impulse along another.
     fn weight(&self, families: &[Family<'g>], a: Place, b: Place) -> Expr<'g> {
         let (first, second) = (&families[a.family], &families[b.family]);
         let (x, y) = (&first.rows[a.row].reduced, &second.rows[b.row].reduced);

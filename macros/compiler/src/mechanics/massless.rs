@@ -1,12 +1,13 @@
-//! Coordinates without inertia, which constraints determine: the parameters of surfaces. The mass matrix `M` is singular,
-//! the system of accelerations and multipliers is not. The rows `J` that determine them are added to it with a weight `w`,
+//! Coordinates without inertia that constraints determine, such as the parameters of surfaces. The mass
+//! matrix `M` is singular, but the system of accelerations and multipliers is not. The rows `J` that
+//! determine these coordinates are added to `M` with a weight `w`,
 //!
 //! ```text
 //! (M + w Jᵀ J) v̇ + h = τ − w Jᵀ b + Jᵀ λ,   J v̇ = −b,
 //! ```
 //!
-//! which has the same solution for any `w`, since `J v̇` is known (an augmented Lagrangian: Nocedal and Wright, *Numerical
-//! Optimization*, 2006, § 17.3).
+//! which has the same solution for any `w`, since `J v̇` is known (an augmented Lagrangian: Nocedal and
+//! Wright, *Numerical Optimization*, 2006, § 17.3).
 
 use super::crba::Matrix;
 use super::{constraints, energy};
@@ -14,13 +15,13 @@ use crate::expr::Expr;
 use crate::kinematics::Joint;
 use crate::mechanism::Model;
 
-/// The constraints that determine coordinates without inertia.
+/// Returns the constraints that determine coordinates without inertia.
 pub fn rows(model: &Model<'_>) -> Vec<usize> {
     (0..model.constraints.len()).filter(|row| model.constraints[*row].determines).collect()
 }
 
-/// `w Jᵀ`: for each of the rows, its entries times the mass of all that moves, so that what is added is of the size of
-/// what is there.
+/// Returns `w Jᵀ` for these rows, where `w` is the mass of all moving bodies, so that the added terms have
+/// the magnitude of the mass matrix.
 fn weighted<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -31,7 +32,7 @@ fn weighted<'g>(
     rows(model).into_iter().map(|row| (row, jacobian[row].iter().map(|e| *e * w).collect())).collect()
 }
 
-/// `M + w Jᵀ J`.
+/// Returns `M + w Jᵀ J`.
 pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix<'g>) -> Matrix<'g> {
     if rows(model).is_empty() {
         return mass;
@@ -45,7 +46,7 @@ pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix
     mass
 }
 
-/// `f − w Jᵀ b`.
+/// Returns `f − w Jᵀ b`.
 pub fn loaded_force<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],

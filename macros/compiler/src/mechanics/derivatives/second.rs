@@ -1,22 +1,27 @@
-//! Second derivatives of inverse dynamics, contracted: those of `λᵀ τ(q, v, a)`, on the tangent space.
+//! Contracted second derivatives of inverse dynamics: those of `λᵀ τ(q, v, a)`, on the tangent space.
 //!
-//! With the twists `W` that the rates `λ` would give, `λᵀ τ` is the power `Σ W · f` of all bodies' wrenches (Jourdain's
-//! principle). A direction moves all that a degree of freedom carries as one: in axes that move along, velocities change by
-//! `α`, accelerations by `β + α × V` and `W` by `γ`, the same for every body. So each entry is a product of what sums over the
-//! outer degree of freedom's links make of its direction with the inner one's direction, as in the first derivatives
-//! (Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra*, 2022;
-//! *Second-order derivatives of rigid-body dynamics*, 2023, which gives the tensor that is contracted here).
+//! With the virtual twists `W` at the velocities `λ`, `λᵀ τ` is the power `Σ W · f` of the wrenches on all
+//! bodies (Jourdain's principle). A variation of a degree of freedom moves all its descendants as one rigid
+//! body: in axes that move with them, velocities change by `α`, accelerations by `β + α × V` and `W` by `γ`,
+//! the same for every body. Each entry is therefore a product of two factors: the sums over the outer degree
+//! of freedom's links, applied to the outer direction, and the direction of the inner degree of freedom. The
+//! first derivatives have the same structure (Singh, Russell and Wensing, *Efficient analytical derivatives
+//! of rigid-body dynamics using spatial vector algebra*, 2022; *Second-order derivatives of rigid-body
+//! dynamics*, 2023, which gives the tensor that is contracted here).
 //!
 //! | direction | `α` | `β` | `γ` |
 //! | --- | --- | --- | --- |
 //! | displacement | `Ψ̇` | `Ψ̈` | `Ω = W × S`, `W` of the parent |
-//! | rate | `S` | `Ψ̇ + Ṡ` | – |
+//! | velocity | `S` | `Ψ̇ + Ṡ` | – |
 //! | acceleration | – | `S` | – |
 //!
-//! With the sums `I`, `F`, `B` of the first derivatives, `P = Σ I W`, `N = Σ Bᵀ W` and `Q = Σ (W×)ᵀ I + I (W×)`, which is
-//! made as mass properties are, of no mass and the first moment `−P`:
+//! Let `I`, `F`, `B` be the sums of the first derivatives, `P = Σ I W`, `N = Σ Bᵀ W` and
+//! `Q = Σ (W×)ᵀ I + I (W×)`. The matrix `Q` has the structure of mass properties with zero mass and the first
+//! moment `−P`. An entry is
 //!
-//! `γ · (I β′ + B α′) + γ′ · (I β + B α) + α · Q α′ + P · (α × α′)`, and what the outer direction itself changes by.
+//! `γ · (I β′ + B α′) + γ′ · (I β + B α) + α · Q α′ + P · (α × α′)`,
+//!
+//! plus the terms that result from the change of the outer direction itself.
 
 use super::super::crba::{Matrix, momentum};
 use super::super::{accelerations, constraints, rnea, velocities};
@@ -29,26 +34,26 @@ use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Chart, Inertia, Model, Quantity};
 use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
 
-/// Second derivatives of a function of configuration, velocity and acceleration, which is linear in the last, and there has no
-/// mixed ones with the velocity.
+/// Second derivatives of a function of configuration, velocity and acceleration. The function is linear in
+/// the acceleration, without mixed derivatives with respect to velocity and acceleration.
 pub struct Hessian<'g> {
-    /// By configuration twice, symmetric: along `q ⊕ ε (eᵢ + eⱼ)`.
+    /// Second derivatives with respect to the configuration, symmetric: along `q ⊕ ε (eᵢ + eⱼ)`.
     pub qq: Matrix<'g>,
-    /// By configuration (rows) and velocity.
+    /// Mixed derivatives with respect to configuration (rows) and velocity (columns).
     pub qv: Matrix<'g>,
-    /// By velocity twice.
+    /// Second derivatives with respect to the velocity.
     pub vv: Matrix<'g>,
-    /// By configuration (rows) and acceleration.
+    /// Mixed derivatives with respect to configuration (rows) and acceleration (columns).
     pub qa: Matrix<'g>,
 }
 
-/// The factors `λ` as symbols.
+/// Returns the factors `λ` as argument symbols.
 pub fn factors<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Given(k).expr(model.graph)).collect()
 }
 
-/// The second derivatives of `λᵀ τ` of inverse dynamics by recursion, in up to so many lanes; `None` where a motion subspace
-/// is not constant in link axes.
+/// Returns the second derivatives of `λᵀ τ` of inverse dynamics by recursion, in up to `most` lanes, or
+/// `None` if a motion subspace is not constant in link axes.
 pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) -> Option<Hessian<'g>> {
     if !is_analytic(model) {
         return None;
@@ -82,19 +87,19 @@ pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) ->
     Some(out)
 }
 
-/// The same by differentiation.
+/// Returns the second derivatives of `λᵀ τ` of inverse dynamics by differentiation.
 pub fn by_differentiation<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Hessian<'g> {
     let (v, a) = (velocities(model), accelerations(model));
     let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
     of_power(model, &tau, &factors(model))
 }
 
-/// Those of springs, dashpots, friction, potentials and loads.
+/// Returns the second derivatives of the power of springs, dashpots, friction, potentials and loads.
 fn passive<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Hessian<'g> {
     of_power(model, &passive_forces(model, true), lambda)
 }
 
-/// The second derivatives of `λᵀ τ`, for forces as expressions.
+/// Returns the second derivatives of `λᵀ τ` for forces `tau` that are given as expressions.
 pub fn of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) -> Hessian<'g> {
     let zero = model.graph.zero();
     let power = tau.iter().zip(lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
@@ -111,19 +116,19 @@ pub fn of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) ->
     }
 }
 
-/// Second derivatives of the power `λᵀ τ` of the inputs' forces.
+/// Second derivatives of the power `λᵀ τ` of the input forces.
 pub struct InputHessian<'g> {
-    /// By the state.
+    /// Second derivatives with respect to the state.
     pub state: Hessian<'g>,
-    /// By configuration (rows) and input.
+    /// Mixed derivatives with respect to configuration (rows) and input (columns).
     pub qu: Matrix<'g>,
-    /// By velocity (rows) and input.
+    /// Mixed derivatives with respect to velocity (rows) and input (columns).
     pub vu: Matrix<'g>,
-    /// By inputs twice.
+    /// Second derivatives with respect to the inputs.
     pub uu: Matrix<'g>,
 }
 
-/// Those of forces `tau` that inputs give.
+/// Returns the second derivatives of the power `λᵀ τ` of the input forces `tau`.
 pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
     let lambda = factors(model);
     let zero = model.graph.zero();
@@ -139,16 +144,16 @@ pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
     }
 }
 
-/// Second derivatives of what constraints add to the equations of motion.
+/// Second derivatives of the terms that constraints add to the equations of motion.
 pub struct ConstraintHessian<'g> {
-    /// By the state and the accelerations.
+    /// Second derivatives with respect to the state and the accelerations.
     pub state: Hessian<'g>,
-    /// By configuration (rows) and multiplier.
+    /// Mixed derivatives with respect to configuration (rows) and multiplier (columns).
     pub q_lambda: Matrix<'g>,
 }
 
-/// Those of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)` at given accelerations `a`, with given numbers for the multipliers `λ`, then `w`,
-/// `z` and `y`.
+/// Returns the second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)` at constant accelerations `a`.
+/// The arguments of the generated function are the multipliers `λ`, then `w`, `z` and `y`.
 pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     let (nv, nc, zero) = (model.nv(), model.constraints.len(), model.graph.zero());
     let given = |first: usize, n: usize| -> Vec<Expr<'g>> {
@@ -166,7 +171,8 @@ pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     ConstraintHessian { state: of_power(model, &[sum], &[model.graph.one()]), q_lambda }
 }
 
-/// One displacement after another depends on their order where axes turn; of both orders the mean is along their sum.
+/// Symmetrises the configuration block `m`. If axes rotate, the result of two successive displacements
+/// depends on their order; the mean of both orders is the second derivative along their sum.
 pub fn symmetrise<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for chart in &model.charts {
         let block = match *chart {
@@ -183,7 +189,7 @@ pub fn symmetrise<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     }
 }
 
-/// A degree of freedom with what its displacement does to the twists of the factors, `Ω`.
+/// A degree of freedom with `Ω`, the change of the virtual twists with its displacement.
 #[derive(Clone, Copy)]
 struct Directions<'g> {
     column: Column<'g>,
@@ -197,24 +203,24 @@ impl<'g> Directions<'g> {
     }
 }
 
-/// The sums of one link, those with the twists of the factors included.
+/// Sums over one link and its descendants, including those with the virtual twists.
 struct Sums<'g> {
     plain: Subtree<'g>,
     /// `P`.
     momentum: Spatial<'g>,
-    /// `N`, a moment.
+    /// `N`, a pure moment.
     moment: Vec3<'g>,
-    /// What of `Q` is made as a tensor of inertia is.
+    /// Block of `Q` that corresponds to a tensor of inertia.
     tensor: Sym3<'g>,
 }
 
 impl<'g> Sums<'g> {
-    /// The moment of `Q X + X ×* P`; it has no force.
+    /// Returns the moment of `Q X + X ×* P`, which has no force.
     fn turned(&self, x: &Spatial<'g>) -> Vec3<'g> {
         self.change(x) + x.angular.cross(self.momentum.angular) + x.linear.cross(self.momentum.linear)
     }
 
-    /// The moment of `Q X`.
+    /// Returns the moment of `Q X`.
     fn change(&self, x: &Spatial<'g>) -> Vec3<'g> {
         x.linear.cross(self.momentum.linear) + self.tensor * x.angular
     }
@@ -255,8 +261,8 @@ fn contracted<'g>(
         .collect()
 }
 
-/// `(W×)ᵀ I + I (W×)` of a body with the momentum `p` at the twist `W = (a, b)`: no mass, the first moment `−p`, and the tensor
-/// `h aᵀ + a hᵀ − 2 (h · a) + J [b]× − [b]× J`.
+/// Returns `(W×)ᵀ I + I (W×)` of a body with the momentum `p` at the twist `W = (a, b)`: zero mass, the first
+/// moment `−p`, and the tensor `h aᵀ + a hᵀ − 2 (h · a) + J [b]× − [b]× J`.
 fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g> {
     let (h, a, b, j) = (body.moment, w.linear, w.angular, &body.tensor);
     let lever = (h.dot(a)) * 2.0;
@@ -275,7 +281,7 @@ fn change_of<'g>(body: &Inertia<'g>, w: &Spatial<'g>, p: Vec3<'g>) -> Inertia<'g
 }
 
 struct Entries<'a, 'g> {
-    /// Degrees of freedom, by link and all together.
+    /// Degrees of freedom, by link here and in one list in `all`.
     columns: &'a [Vec<Directions<'g>>],
     all: Vec<Directions<'g>>,
     links: &'a [usize],
@@ -292,7 +298,7 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
         let out = &mut self.out;
         for other in &self.columns[self.links[dof]] {
             let [qq, _, vq, _, _, aq] = changes.meet(other);
-            // Half of either order.
+            // Half of the value for each of the two orders.
             out.put(|h| &mut h.qq, &own, other, qq * 0.5);
             out.put(|h| &mut h.qq, other, &own, qq * 0.5);
             out.put(|h| &mut h.qv, other, &own, vq);
@@ -343,7 +349,7 @@ impl<'g> Hessian<'g> {
         block(self)[row.index][column.index] += entry * entry.num(row.ratio * column.ratio);
     }
 
-    /// Adds another.
+    /// Adds another Hessian, entry by entry.
     fn add(&mut self, other: &Hessian<'g>) {
         let blocks = [
             (&mut self.qq, &other.qq),
@@ -359,18 +365,18 @@ impl<'g> Hessian<'g> {
     }
 }
 
-/// What one degree of freedom brings to its ancestors: wrenches about their origins in their axes, and moments that are wrenches
-/// without force.
+/// Contribution of one degree of freedom to the entries with its ancestors: wrenches about an ancestor's
+/// origin in the ancestor's axes. Moments are wrenches without force.
 struct Changes<'g> {
     /// `I Ψ̈ + B Ψ̇ + S ×* F`.
     by_q: Spatial<'g>,
     /// `I Ω + S ×* P`.
     factored: Spatial<'g>,
-    /// `Bᵀ Ω + Q Ψ̇ + Ψ̇ ×* P + S ×* N`, a moment.
+    /// `Bᵀ Ω + Q Ψ̇ + Ψ̇ ×* P + S ×* N`, a pure moment.
     moment_by_q: Vec3<'g>,
     /// `I (Ψ̇ + Ṡ) + B S`.
     by_v: Spatial<'g>,
-    /// `Q S + S ×* P`, a moment.
+    /// `Q S + S ×* P`, a pure moment.
     moment_by_v: Vec3<'g>,
     /// `I S`.
     momentum: Spatial<'g>,
@@ -395,8 +401,9 @@ impl<'g> Changes<'g> {
         }
     }
 
-    /// The entries with a degree of freedom of an ancestor: both displacements; displacement of this and rate of the other, and
-    /// the other way round; both rates; displacement of this and acceleration of the other, and the other way round.
+    /// Returns the six entries with a degree of freedom of an ancestor, by the variation of this degree of
+    /// freedom and that of the other: displacement and displacement; displacement and velocity; velocity and
+    /// displacement; velocity and velocity; displacement and acceleration; acceleration and displacement.
     fn meet(&self, other: &Directions<'g>) -> [Expr<'g>; 6] {
         let Column { subspace, first, second, rate, .. } = &other.column;
         [

@@ -1,46 +1,48 @@
-//! Sums over a link and all that it carries, about its origin in its axes: inertia, wrench, and the linear map
-//! `X ↦ −I (V × X) + X ×* I V + V ×* I X` by which the forces change with the velocity.
+//! Sums over a link and all its descendants, about its origin in its axes: inertia, wrench, and the linear
+//! map `X ↦ −I (V × X) + X ×* I V + V ×* I X` that gives the change of the forces with the velocity.
 //!
-//! That map depends on the angular part `x` of `X` alone, and for particles of mass `m` at `r` with velocity `u` it is
-//! `−2 Σ m (u × x, r × (u × x))`: force `−2 p × x` with `p = Σ m u`, moment `−2 (K − tr K) x` with `K = Σ m u rᵀ`.
+//! The map depends only on the angular component `x` of `X`. For particles of mass `m` at `r` with velocity
+//! `u` it is `−2 Σ m (u × x, r × (u × x))`: force `−2 p × x` with `p = Σ m u`, moment `−2 (K − tr K) x` with
+//! `K = Σ m u rᵀ`.
 
 use super::super::crba;
 use crate::expr::{Mat3, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, Model};
 
-/// The sums of one link.
+/// Sums over one link and its descendants.
 #[derive(Clone, Copy)]
 pub struct Subtree<'g> {
     /// Mass properties.
     pub inertia: Inertia<'g>,
-    /// The wrench that gives all bodies their accelerations.
+    /// Wrench that produces the accelerations of all these bodies.
     pub wrench: Spatial<'g>,
-    /// A multiple of `p`.
+    /// Multiple of `p`; the factor is the argument `multiple` of `subtrees`.
     momentum: Vec3<'g>,
     /// The same multiple of `K`.
     moments: Mat3<'g>,
 }
 
 impl<'g> Subtree<'g> {
-    /// Forces of the velocity map for a motion `x`.
+    /// Returns the velocity map of a motion `x`: a force and a moment.
     pub fn map(&self, x: &Spatial<'g>) -> Spatial<'g> {
         Spatial { linear: x.angular.cross(self.momentum), angular: without_trace(&self.moments) * -x.angular }
     }
 
-    /// The transposed map; it gives a moment and no force.
+    /// Returns the transposed velocity map of `x`: a moment without force.
     pub fn transposed_map(&self, x: &Spatial<'g>) -> Vec3<'g> {
         self.momentum.cross(x.linear) + without_trace(&self.moments.transpose()) * -x.angular
     }
 }
 
-/// `K − tr K`.
+/// Returns `K − tr K`.
 fn without_trace<'g>(k: &Mat3<'g>) -> Mat3<'g> {
     let other = |i: usize| k.0[(i + 1) % 3][(i + 1) % 3] + k.0[(i + 2) % 3][(i + 2) % 3];
     Mat3::from_fn(|i, j| if i == j { -other(i) } else { k.0[i][j] })
 }
 
-/// The sums of all links with these twists and wrenches; the velocity map is multiplied by `multiple / 2`.
+/// Returns the sums of all links for the given twists and wrenches. The velocity map is multiplied by
+/// `multiple / 2`.
 pub fn subtrees<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -69,7 +71,8 @@ pub fn subtrees<'g>(
     sums
 }
 
-/// What a body itself adds. With its first moment `h` and `J = Σ m r rᵀ`: `p = m v + w × h`, `K = v hᵀ + [w]× J`.
+/// Returns the sums of a single body, without wrench. With its first moment `h` and `J = Σ m r rᵀ`:
+/// `p = m v + w × h`, `K = v hᵀ + [w]× J`.
 pub fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Subtree<'g> {
     let second = second_moments(&body.tensor);
     let (mass, h) = (body.mass * multiple, body.moment.map(|c| c * multiple));
@@ -83,7 +86,7 @@ pub fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Su
     }
 }
 
-/// `J = ½ tr(I) − I`.
+/// Returns `J = ½ tr(I) − I`.
 fn second_moments<'g>(tensor: &Sym3<'g>) -> Sym3<'g> {
     let [x, y, z] = tensor.diagonal;
     let half = (x + y + z) * 0.5;

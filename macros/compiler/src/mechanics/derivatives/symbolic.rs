@@ -1,4 +1,5 @@
-//! Derivatives of any expressions of the state by differentiation along the tangent directions of the configurations.
+//! Derivatives of arbitrary expressions of the state, by differentiation along the tangent directions of the
+//! configurations.
 
 use super::super::crba::Matrix;
 use super::ForceDerivatives;
@@ -8,12 +9,12 @@ use crate::kinematics::{configuration_rate, rotation_rates};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Model, Quantity};
 
-/// Derivatives of expressions by configuration and velocity.
+/// Returns the derivatives of expressions with respect to configuration and velocity.
 pub fn derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {
     ForceDerivatives { by_q: by_configuration(model, e), by_v: by_velocity(model, e) }
 }
 
-/// Derivatives of springs, dashpots, friction, potentials and loads.
+/// Returns the derivatives of springs, dashpots, friction, potentials and loads.
 pub fn of_passive_forces<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
     derivatives(model, &passive_forces(model, true))
 }
@@ -28,7 +29,8 @@ pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>)
     }
 }
 
-/// A column for each velocity: the rate of the expressions where that velocity is one and all others are zero.
+/// Returns a column for each velocity: the time derivative of the expressions when that velocity is one and
+/// all others are zero.
 pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let rates: Vec<Expr<'g>> = (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect();
     let turning = rotation_rates(model.space());
@@ -52,13 +54,13 @@ fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     columns(e, (0..model.nv()).map(direction))
 }
 
-/// Derivatives of expressions by the inputs.
+/// Returns the derivatives of expressions with respect to the inputs.
 pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let by = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
     columns(e, (0..model.nu()).map(by))
 }
 
-/// Derivatives of expressions by the accelerations.
+/// Returns the derivatives of expressions with respect to the accelerations.
 pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let by = |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
     columns(e, (0..model.nv()).map(by))

@@ -1,10 +1,11 @@
-//! A tree as a trunk with limbs, and the inverse of its mass matrix. With the trunk's velocities first it is
-//! `M = [A B; Bᵀ C]`, `C` with a block for each limb; with `W = C⁻¹ Bᵀ`, `S = A − B W` and `G = [1; −W]`
+//! Partition of a tree into a trunk and limbs, and the inverse of its mass matrix. With the trunk's
+//! velocities first, the mass matrix is `M = [A B; Bᵀ C]`, where `C` has a block for each limb. With
+//! `W = C⁻¹ Bᵀ`, `S = A − B W` and `G = [1; −W]`
 //!
 //! `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`, `H = G S⁻¹`
 //!
-//! (the inverse of a partitioned matrix; Golub and Van Loan, *Matrix Computations*, 2013, ch. 3). The columns of `H` are
-//! those of the trunk in `M⁻¹`. The part without the product is as sparse as the tree is branched.
+//! (the inverse of a partitioned matrix; Golub and Van Loan, *Matrix Computations*, 2013, ch. 3). The columns
+//! of `H` are the trunk's columns of `M⁻¹`. The first term is sparse: it has a block for each limb.
 
 use super::super::crba::Matrix;
 use super::super::ldl::elimination_order;
@@ -12,25 +13,26 @@ use super::factor::Factor;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
-/// Which velocities belong to the trunk, and which to each limb.
+/// Partition of the velocities into those of the trunk and those of each limb.
 #[derive(Clone, Debug)]
 pub struct Trunk {
-    /// From the leaves to the root.
+    /// Velocities of the trunk, from the leaves to the root.
     pub velocities: Vec<usize>,
     limbs: Vec<Limb>,
 }
 
-/// Velocities that no others of the mechanism but the trunk's depend on.
+/// Velocities that are coupled in the mass matrix only with each other and with those of the trunk.
 #[derive(Clone, Debug)]
 struct Limb {
-    /// From the leaves to the root.
+    /// Velocities of the limb, from the leaves to the root.
     velocities: Vec<usize>,
-    /// How many limbs stand side by side in the lanes of the expressions.
+    /// Number of identical limbs in the SIMD lanes of the expressions.
     alike: usize,
 }
 
 impl Trunk {
-    /// By velocity: true where the tree branches, or does so further out. Limbs that are lanes of one are not taken apart.
+    /// Returns for each velocity whether its joint is a branching link of the tree or an ancestor of one. A
+    /// group of limbs in SIMD lanes is not divided further.
     pub fn branching(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
         let mut children = vec![0; joints.len()];
         let mut branches = vec![false; joints.len()];
@@ -52,7 +54,8 @@ impl Trunk {
         velocities
     }
 
-    /// The trunk of these velocities. `None` if there is a single limb, or something else couples several.
+    /// Returns the partition with the given trunk, or `None` if there is only one limb or the mass matrix
+    /// couples different limbs.
     pub fn of(joints: &[Joint<'_>], mass: &Matrix<'_>, is_trunk: &[bool]) -> Option<Trunk> {
         let order = elimination_order(joints, mass.len());
         let mut limbs: Vec<Limb> = Vec::new();
@@ -86,12 +89,12 @@ impl Trunk {
         (several && (0..n).all(|i| (0..i).all(|j| is_apart(i, j)))).then_some(Trunk { velocities, limbs })
     }
 
-    /// Everything is trunk.
+    /// Returns the partition in which all velocities belong to the trunk.
     pub fn whole(joints: &[Joint<'_>], nv: usize) -> Trunk {
         Trunk { velocities: elimination_order(joints, nv), limbs: Vec::new() }
     }
 
-    /// The velocities of each limb, in their order.
+    /// Returns the velocities of each limb in ascending order.
     pub fn limbs(&self) -> Vec<Vec<usize>> {
         let sorted = |limb: &Limb| {
             let mut velocities = limb.velocities.clone();
@@ -103,14 +106,14 @@ impl Trunk {
 }
 
 impl Limb {
-    /// The sum over all limbs that are side by side.
+    /// Returns the sum over all identical limbs in the SIMD lanes.
     fn lane_sum<'g>(&self, e: Expr<'g>) -> Expr<'g> {
         if self.alike == 1 { e } else { e.lane_sum(self.alike) }
     }
 }
 
-/// What is left of `M⁻¹` if loops do the rest: `C⁻¹` in the columns of the limbs, and the columns of the trunk in `M`, in the
-/// order of its velocities.
+/// Returns the terms of `M⁻¹` that remain to be computed if runtime loops do the remainder: `C⁻¹` in the
+/// columns of the limbs, and the trunk's columns of `M` in the order of the trunk's velocities.
 pub fn divided<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
     let zero = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
     let mut inverses: Matrix<'g> = mass.iter().map(zero).collect();
@@ -124,15 +127,15 @@ pub fn divided<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
     [inverses, borders]
 }
 
-/// `M⁻¹` in its parts.
+/// `M⁻¹` by its blocks.
 pub struct Inverse<'a, 'g> {
     trunk: &'a Trunk,
-    /// `C⁻¹` among the limbs, `S⁻¹` in the trunk, `W` in the rows of limbs and the columns of the trunk.
+    /// `C⁻¹` among the limbs, `S⁻¹` in the trunk, `W` in the rows of the limbs and the columns of the trunk.
     parts: Matrix<'g>,
 }
 
 impl<'a, 'g> Inverse<'a, 'g> {
-    /// Inverts the parts.
+    /// Computes the blocks.
     pub fn of(mass: &Matrix<'g>, trunk: &'a Trunk) -> Inverse<'a, 'g> {
         let n = mass.len();
         let Some(zero) = mass.first().and_then(|row| row.first()).map(|e| e.zero()) else {
@@ -163,7 +166,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
         Inverse { trunk, parts }
     }
 
-    /// `M⁻¹ r`.
+    /// Returns `M⁻¹ r`.
     pub fn solve(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut x = r.to_vec();
@@ -186,7 +189,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
         x
     }
 
-    /// The columns of `H` where those of the trunk are, `C⁻¹` in the others.
+    /// Returns a matrix with the columns of `H` for the trunk and those of `C⁻¹` for the limbs.
     pub fn columns(&self) -> Matrix<'g> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut columns = parts.clone();
@@ -198,7 +201,8 @@ impl<'a, 'g> Inverse<'a, 'g> {
         columns
     }
 
-    /// The rows of `G` for the limbs, zero for the trunk; its columns in the order of the trunk's velocities.
+    /// Returns the rows of `G` for the limbs, with zero rows for the trunk. The columns are in the order of
+    /// the trunk's velocities.
     pub fn factors(&self) -> Matrix<'g> {
         let mut factors: Matrix<'g> =
             self.parts.iter().map(|row| vec![row[0].zero(); self.trunk.velocities.len()]).collect();
@@ -211,7 +215,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
     }
 }
 
-/// The sum of products over some indices.
+/// Returns the sum of products over some indices.
 fn product<'g>(over: &[usize], of: impl Fn(usize) -> (Expr<'g>, Expr<'g>), zero: Expr<'g>) -> Expr<'g> {
     over.iter().fold(zero, |sum, &k| {
         let (a, b) = of(k);
