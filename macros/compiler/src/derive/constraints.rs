@@ -1,4 +1,4 @@
-//! What constraints say of a state, as outputs of programs.
+//! Outputs of the functions of constraints and contacts.
 
 use crate::expr::diff::gradient;
 use crate::expr::{Expr, Symbol};
@@ -11,36 +11,39 @@ use crate::mechanism::{Model, Quantity};
 
 pub(super) use crate::mechanics::constraints::{biases, rates, residuals};
 
-/// The Jacobian column by column.
+/// Returns the Jacobian column by column.
 pub(super) fn jacobian<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     by_columns(model, &constraints::jacobian(model))
 }
 
-/// How the rates of contacts change with the velocities: a row for each.
+/// Returns the derivatives of the contact velocities with respect to the velocities: a row for each contact
+/// velocity.
 pub(super) fn contact_rows<'g>(model: &Model<'g>) -> Vec<Vec<Expr<'g>>> {
     constraints::jacobian_of(model, &model.contact_rates())
 }
 
-/// The gaps of the contacts.
+/// Returns the gap functions of the contacts.
 pub(super) fn contact_gaps<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.contacts.iter().map(|contact| contact.gap).collect()
 }
 
-/// What the rates of contacts gain beside what accelerations add to them.
+/// Returns the time derivatives of the contact velocities at zero accelerations.
 pub(super) fn contact_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     motion_rates(model.space(), &model.contact_rates(), false)
 }
 
-/// Friction and restitution of each contact.
+/// Returns the coefficients of friction and restitution of each contact.
 pub(super) fn contact_laws<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.contacts.iter().flat_map(|contact| [contact.friction, contact.restitution]).collect()
 }
 
-/// What contacts add to the motion to first order, at given accelerations `a` and forces `f`: derivatives of `Gᵀ f` by `q`, of
-/// `G a + b` by `q` and by `v`, and of the rates by `q`, each column by column.
+/// First derivatives of the contributions of contacts to the equations of motion, at constant accelerations
+/// `a` and contact forces `f`: of `Gᵀ f` with respect to `q`, of `G a + b` with respect to `q` and `v`, and
+/// of the contact velocities with respect to `q`, each column by column.
 pub(super) struct ContactDerivatives<'g> {
     rates: Vec<Expr<'g>>,
-    /// Of `G a + b` by `q` and by `v`, and of the rates by `q`.
+    /// Derivatives of `G a + b` with respect to `q` and `v`, and of the contact velocities with respect to
+    /// `q`.
     by_motion: [Matrix<'g>; 3],
 }
 
@@ -53,10 +56,11 @@ impl<'g> ContactDerivatives<'g> {
         ContactDerivatives { by_motion: [accelerations.by_q, accelerations.by_v, of_rates], rates }
     }
 
-    /// The derivatives of `Gᵀ f` by `q` for some of the rates.
+    /// Returns the derivatives of `Gᵀ f` with respect to `q` for some of the contact velocities.
     fn forces(&self, model: &Model<'g>, numbers: impl Iterator<Item = usize>) -> Matrix<'g> {
         let g = model.graph;
-        // The power of the forces, differentiated backwards: each goes to the axes of what it moves once.
+        // Reverse differentiation of the power of the forces transforms each force only once to the axes of
+        // the links that it acts on.
         let powers = numbers.map(|i| self.rates[i] * Quantity::ContactForce(i).expr(g));
         let power = powers.reduce(|sum, power| sum + power).unwrap_or(g.zero());
         let velocities: Vec<Symbol> = (0..model.nv()).map(|k| Quantity::Velocity(k).symbol()).collect();
@@ -68,7 +72,8 @@ impl<'g> ContactDerivatives<'g> {
         [&forces].into_iter().chain(&self.by_motion).flat_map(|rows| by_columns(model, rows)).collect()
     }
 
-    /// The derivatives of the contacts' forces with alike limbs as lanes; `None` if limbs are built differently.
+    /// Returns the derivatives of the contact forces with identical limbs in SIMD lanes; `None` if the
+    /// expressions of the limbs differ in structure.
     pub(super) fn outputs_in_lanes(
         &self,
         model: &Model<'g>,
@@ -86,7 +91,7 @@ impl<'g> ContactDerivatives<'g> {
     }
 }
 
-/// A matrix with as many columns as there are velocities, column by column.
+/// Returns the entries of a matrix with a column for each velocity, column by column.
 pub(super) fn by_columns<'g>(model: &Model<'g>, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
     (0..model.nv()).flat_map(|k| rows.iter().map(move |row| row[k])).collect()
 }

@@ -1,4 +1,5 @@
-//! From the rows of the catalogue to programs: each function's equations, by its id.
+//! Derivation of programs from the functions of the catalogue: the equations of each function, selected by
+//! its id.
 
 use super::derivatives::Derivatives;
 use super::dynamics::Dynamics;
@@ -22,18 +23,19 @@ use crate::passes::Passes;
 use std::cell::OnceCell;
 use std::rc::Rc;
 
-/// The functions of a mechanism, derived when they are asked for; what several of them need is derived once.
+/// The functions of a mechanism. Each function is derived on request; intermediate results that several
+/// functions need are derived once.
 pub(super) struct Derivation<'a, 'g> {
-    /// The model; with declared speeds what of it is written in these.
+    /// The model. With declared speeds, the model in which velocities are expressed in these.
     pub(super) model: &'a Model<'g>,
     pub(super) joints: &'a [Joint<'g>],
     speeds: Option<&'a Rc<InSpeeds<'g>>>,
     passes: Passes,
     specialisation: Specialisation,
     facts: &'a Facts,
-    /// For the words `regressor`, `hamilton` and `conserved`.
+    /// Data for the options `regressor`, `hamilton` and `conserved`.
     extras: Option<&'a Extras<'a, 'g>>,
-    /// For the word `derivatives`.
+    /// Data for the option `derivatives`.
     derivatives: Option<&'a Derivatives<'a, 'g>>,
     dynamics: OnceCell<Dynamics<'g>>,
     sensitivities: OnceCell<Sensitivities<'g>>,
@@ -64,7 +66,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         }
     }
 
-    /// Adds what the functions of several words need; what was derived already is kept.
+    /// Adds the data for the functions of several options; results that are already derived are retained.
     pub(super) fn with<'b>(
         self,
         facts: &'b Facts,
@@ -77,7 +79,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
         Derivation { facts, extras: Some(extras), derivatives, ..self }
     }
 
-    /// The functions that are declared, after those that are `done`: some consist of the same numbers as others.
+    /// Derives the declared functions after those that are `done`, since some reuse the program of another
+    /// function.
     pub(super) fn derive(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
         for declared in declared {
             pipeline::begin(&declared.name);
@@ -99,12 +102,12 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.sensitivities.get_or_init(|| Sensitivities::new(self.model, self.passes, self.specialisation))
     }
 
-    /// A function of the word `derivatives`, which is given where one is declared.
+    /// Returns a function of the option `derivatives`, whose data exist if such a function is declared.
     fn derivative(&self, function: impl FnOnce(&Derivatives<'a, 'g>) -> Program) -> (Program, Structure) {
         self.structured_derivative(|derivatives| (function(derivatives), Structure::default()))
     }
 
-    /// A function of the word `derivatives` whose results are put together by the runtime.
+    /// Returns a function of the option `derivatives` whose results the runtime assembles.
     fn structured_derivative(
         &self,
         function: impl FnOnce(&Derivatives<'a, 'g>) -> (Program, Structure),
@@ -117,7 +120,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.dynamics().contact_responses(&constraints::contact_rows(native))
     }
 
-    /// One value for each rate of the contacts.
+    /// Returns the program of values, one for each contact velocity.
     fn of_contacts(&self, values: &[Expr<'g>]) -> Program {
         self.with_limb_contacts(self.specialisation.program(values), |contacts| contacts.values(values))
     }
@@ -136,7 +139,8 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.with_limb_contacts(plain, |contacts| found.outputs_in_lanes(self.model, contacts))
     }
 
-    /// A function of the contacts, or what is made of it with alike limbs as lanes.
+    /// Returns the program of a contact function with the version in which identical limbs are SIMD lanes, if
+    /// one exists.
     fn with_limb_contacts(
         &self,
         plain: Program,
@@ -150,13 +154,14 @@ impl<'a, 'g> Derivation<'a, 'g> {
         }
     }
 
-    /// What is conserved, for the word of that name.
+    /// Returns the conserved quantities, for the option `conserved`.
     fn conserved(&self) -> Vec<Expr<'g>> {
         let kept = self.extras.and_then(|extras| extras.conserved.as_ref());
         kept.map_or_else(Vec::new, |kept| kept.iter().map(|c| c.value).collect())
     }
 
-    /// What a function of the word `regressor` gives; the word is given where one is declared.
+    /// Returns the outputs of a function of the option `regressor`, whose data exist if such a function is
+    /// declared.
     pub(super) fn identified(
         &self,
         outputs: impl FnOnce(&Identification<'a, 'g>) -> Vec<Expr<'g>>,
@@ -164,17 +169,17 @@ impl<'a, 'g> Derivation<'a, 'g> {
         self.extras.and_then(|extras| extras.identification.as_ref()).map(outputs).unwrap_or_default()
     }
 
-    /// What a function of the word `hamilton` gives.
+    /// Returns the outputs of a function of the option `hamilton`.
     pub(super) fn canonical(&self, outputs: impl FnOnce(&Hamilton<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.hamilton.as_ref()).map(outputs).unwrap_or_default()
     }
 
-    /// What a function of the word `routh` gives.
+    /// Returns the outputs of a function of the option `routh`.
     fn routh(&self, outputs: impl FnOnce(&Routh<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.routh.as_ref()).map(outputs).unwrap_or_default()
     }
 
-    /// What a function for passive forces gives, where they have one.
+    /// Returns the outputs of a function of the passive forces, if they have functions of their own.
     fn passive(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.model.passive.as_deref().map_or_else(Vec::new, outputs)
     }
@@ -268,7 +273,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
             Id::PassiveForces => of(&self.passive(|passive| passive.forces.clone())),
             Id::PassiveDerivatives => of(&self.passive(|passive| passive.derivatives.clone())),
-            // Of mechanisms with speeds alone, which came before.
+            // Functions that exist only for mechanisms with speeds, which `in_speeds` has already handled.
             Id::RatesOfSpeeds
             | Id::SpeedsOfRates
             | Id::RateMatrix
@@ -280,7 +285,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
         }
     }
 
-    /// The entries of the mass matrix that are not always zero.
+    /// Returns the program of the entries of the mass matrix that are not identically zero.
     fn packed(&self, id: Id) -> (Program, Structure) {
         let entries = &self.facts.entries;
         let at: Vec<usize> = entries.iter().map(|(i, j)| j * self.model.nv() + i).collect();
@@ -289,12 +294,12 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 }
 
-/// The numbers of another function.
+/// Returns the program of another function.
 fn as_of(other: Option<&Function>) -> (Program, Structure) {
     other.map(|f| (f.program.clone(), f.structure.clone())).unwrap_or_default()
 }
 
-/// All coordinates zero, with identity quaternions.
+/// Returns the configuration with all coordinates zero and identity quaternions.
 fn neutral<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut q = vec![g.zero(); model.nq()];

@@ -1,4 +1,4 @@
-//! The functions of the word `derivatives`.
+//! The functions of the option `derivatives`.
 
 use super::limb_lanes;
 use super::output::Function;
@@ -20,10 +20,10 @@ use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Passes, Variant};
 use crate::vectorise::{self, Limbs};
 
-/// Up to how many velocities differentiation is tried.
+/// Maximum number of velocities for which differentiation is tried.
 pub(super) const DIFFERENTIATE: usize = 6;
 
-/// The variants of the model that are tried.
+/// Returns the variants of the model that are compared.
 pub(super) fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
     let mut variants = passes::variants(model, passes);
     if passes.frames && model.nv() <= DERIVATIVES_COMPARED {
@@ -39,12 +39,13 @@ pub(super) fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>
     variants
 }
 
-/// The functions, from the variant of the model in which the derivatives of inverse dynamics cost least.
+/// The derivative functions, derived from the variant of the model in which inverse dynamics derivatives cost
+/// least.
 pub(super) struct Derivatives<'a, 'g> {
     parts: Parts<'a, 'g>,
-    /// The forces of the inputs.
+    /// Forces of the inputs.
     tau: Vec<Expr<'g>>,
-    /// There are constraints.
+    /// True if the mechanism has constraints.
     constrained: bool,
 }
 
@@ -75,12 +76,12 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
     }
 
-    /// True if the derivatives of forward dynamics call other functions.
+    /// Returns true if the derivatives of forward dynamics call other generated functions.
     pub(super) fn calls(&self) -> bool {
         !self.constrained && self.parts.is_large()
     }
 
-    /// True if the linear system is made of them.
+    /// Returns true if the linearization calls other generated functions.
     pub(super) fn calls_linear(&self) -> bool {
         self.parts.model.nv() > DERIVATIVES_COMPARED && self.parts.model.acceleration_forces.is_empty()
     }
@@ -113,7 +114,8 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         specialisation.program(&force_columns(&symbolic::derivatives(model, &rate)))
     }
 
-    /// The derivatives of forward dynamics; those of inverse dynamics say which entries are always zero.
+    /// Returns the derivatives of forward dynamics. `forces` are the derivatives of inverse dynamics, which
+    /// determine the entries that are always zero.
     pub(super) fn forward_dynamics_derivatives(&self, forces: Option<&Function>) -> (Program, Structure) {
         let parts = &self.parts;
         let is_zero = |o: &Operand| *o == Operand::Const(0.0);
@@ -156,26 +158,27 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 }
 
-/// A model with what all functions need of it.
+/// A variant of the model with the data that all derivative functions share.
 struct Parts<'a, 'g> {
     model: &'a Model<'g>,
     joints: Vec<Joint<'g>>,
     mass: crba::Matrix<'g>,
-    /// The mass matrix less the forces of accelerations.
+    /// Effective mass matrix: the mass matrix minus the coefficients of the forces that are linear in
+    /// accelerations.
     effective: crba::Matrix<'g>,
     method: Method,
     specialisation: Specialisation,
-    /// Of a large mechanism: its trunk, if it branches.
+    /// Trunk of a large mechanism, if its tree branches.
     trunk: Option<Trunk>,
-    /// The same with alike limbs as lanes.
+    /// The mechanism with identical limbs in SIMD lanes.
     limbs: Option<InLanes<'g>>,
-    /// In how many lanes changes are carried to the root, beside none.
+    /// Lane counts, in addition to scalar code, for the recursion towards the root.
     wide: &'static [usize],
-    /// Derivatives of forward dynamics that are known.
+    /// Columns of the derivatives of forward dynamics that follow from invariance.
     known: invariance::Known<'g>,
 }
 
-/// A mechanism with alike limbs as lanes.
+/// A mechanism with identical limbs in SIMD lanes.
 struct InLanes<'g> {
     limbs: Limbs<'g>,
     mass: crba::Matrix<'g>,
@@ -199,7 +202,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         }
     }
 
-    /// Finds alike limbs, and what all limbs hang from.
+    /// Finds groups of identical limbs, and the trunk that carries all limbs.
     fn take_apart(&mut self, lanes: bool) {
         let groups = if lanes { vectorise::find(self.model, &self.joints) } else { Vec::new() };
         let limbs = Limbs::of(self.model, &self.joints, &groups, || passive_forces(self.model, true));
@@ -257,7 +260,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         program(&self.effective, self.method).or_in_lanes(wide)
     }
 
-    /// The same with `M⁻¹` in parts.
+    /// Returns the derivatives of forward dynamics with `M⁻¹` by the blocks of trunk and limbs.
     fn forward_dynamics_in_parts(&self, trunk: &Trunk) -> Program {
         let model = self.model;
         let inverse = Inverse::of(&self.mass, trunk);
@@ -283,7 +286,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         program.or_in_lanes(in_lanes.into_iter().flatten())
     }
 
-    /// `M⁻¹`, in parts where there are some; on request after the accelerations.
+    /// Returns the program of `M⁻¹`, by blocks if there is a trunk; after the accelerations if `accelerated`.
     fn inverse(&self, accelerated: bool) -> Program {
         let outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
             [a.unwrap_or_default(), columns(&inverse), factors.concat()].concat()
@@ -306,7 +309,8 @@ impl<'a, 'g> Parts<'a, 'g> {
         }))
     }
 
-    /// What loops make `M⁻¹` of; on request after `τ − h`, of which they make the accelerations.
+    /// Returns the program of the terms from which runtime loops compute `M⁻¹`. If `accelerated`, they follow
+    /// `τ − h`, from which the loops compute the accelerations.
     fn divided(&self, accelerated: bool) -> Program {
         let outputs = |r: Option<Vec<Expr<'g>>>, [inverse, borders]: [crba::Matrix<'g>; 2]| {
             [r.unwrap_or_default(), columns(&inverse), borders.concat()].concat()
@@ -320,7 +324,9 @@ impl<'a, 'g> Parts<'a, 'g> {
         }))
     }
 
-    /// True if loops make `M⁻¹`. Alike limbs are lanes in straight lines, too.
+    /// Returns true if runtime loops compute `M⁻¹` instead of straight-line code. With identical limbs in
+    /// SIMD lanes, the size of the trunk decides, since straight-line code computes the limbs in lanes as
+    /// well.
     fn is_divided(&self) -> bool {
         let in_lanes = self.limbs.as_ref().is_some_and(|lanes| lanes.trunk.is_some());
         self.is_large()
@@ -330,19 +336,19 @@ impl<'a, 'g> Parts<'a, 'g> {
             }
     }
 
-    /// The trunk: everything for a mechanism that does not branch.
+    /// Returns the trunk, or a trunk of all velocities for a mechanism that does not branch.
     fn trunk_or_all(&self) -> Trunk {
         self.trunk.clone().unwrap_or_else(|| Trunk::whole(&self.joints, self.model.nv()))
     }
 
-    /// `τ − h`.
+    /// Returns `τ − h`.
     fn unbalanced(&self) -> Vec<Expr<'g>> {
         let (model, v) = (self.model, mechanics::velocities(self.model));
         let bias = rnea::inverse_dynamics(model, &self.joints, &v, None);
         mechanics::efforts(model).into_iter().zip(bias).map(|(tau, h)| tau - h).collect()
     }
 
-    /// True if a single function of all is too large.
+    /// Returns true if a single function for all derivatives of forward dynamics would be too large.
     fn is_large(&self) -> bool {
         let most = if self.trunk.is_some() { DERIVATIVES_WRITTEN_OUT } else { DERIVATIVES_COMPARED };
         self.model.nv() > most && self.model.acceleration_forces.is_empty()
@@ -355,7 +361,8 @@ impl<'a, 'g> Parts<'a, 'g> {
         self.specialisation.program(&outputs)
     }
 
-    /// The forces `tau` of the inputs with their derivatives.
+    /// Returns the program of the input forces `tau` with their derivatives and the commutators of
+    /// displacements.
     fn inputs(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
         outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
@@ -364,7 +371,8 @@ impl<'a, 'g> Parts<'a, 'g> {
         self.specialisation.program(&outputs)
     }
 
-    /// The same without what turns displacements.
+    /// Returns the program of the input forces `tau` with their derivatives, without the commutators of
+    /// displacements.
     fn inputs_alone(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
         outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
@@ -372,8 +380,9 @@ impl<'a, 'g> Parts<'a, 'g> {
         self.specialisation.program(&outputs)
     }
 
-    /// At given accelerations and multipliers: derivatives of `M a + h − Jᵀ λ`, of `J a + b`, and of the rates; then what
-    /// turns displacements.
+    /// Returns, at constant accelerations and multipliers, the program of the derivatives of
+    /// `M a + h − Jᵀ λ`, of `J a + b` and of the constraint velocities, followed by the commutators of
+    /// displacements.
     fn constrained_motion(&self) -> Program {
         let model = self.model;
         let a = mechanics::accelerations(model);
@@ -402,7 +411,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         program(1).or_in_lanes(wide.chain(in_lanes))
     }
 
-    /// `M⁻¹` with how its outputs make it; on request after the accelerations.
+    /// Returns the program of `M⁻¹` and the form of its outputs; after the accelerations if `accelerated`.
     fn inverse_function(&self, accelerated: bool) -> (Program, Structure) {
         let (program, inverse) = match self.is_divided() {
             true => {
@@ -416,7 +425,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         (program, Structure { inverse, ..Structure::default() })
     }
 
-    /// How the inverse is made of straight lines alone.
+    /// Returns the form of the inverse that straight-line code computes.
     fn parted(&self) -> InverseForm {
         self.trunk
             .as_ref()
@@ -424,7 +433,7 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 }
 
-/// A matrix column by column.
+/// Returns the entries of a matrix column by column.
 pub(super) fn columns<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     let [any, ..] = m.as_slice() else { return Vec::new() };
     (0..any.len()).flat_map(|j| m.iter().map(move |row| row[j])).collect()

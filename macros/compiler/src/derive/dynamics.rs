@@ -1,5 +1,5 @@
-//! Programs of the functions of dynamics. They are derived from several variants of one model, with equal functions, and
-//! the cheapest program is kept.
+//! Programs of the functions of dynamics. They are derived from several variants of one model that define
+//! equal functions, and the cheapest program is selected.
 
 use super::limb_lanes;
 use super::specialisation::{Candidate, Specialisation};
@@ -21,16 +21,17 @@ mod variants;
 use frame_choice::{FrameChoice, smallest};
 use variants::Variants;
 
-/// Frames in which mass matrix and inverse dynamics are larger by more than one in so many are not tried further.
+/// Tolerance of the frame comparison: frames whose mass matrix and inverse dynamics exceed the minimum size
+/// by more than one part in this number are excluded.
 const SIMILAR: usize = 8;
 
-/// What dynamics is derived from.
+/// The variants of a model from which the functions of dynamics are derived.
 pub(super) struct Dynamics<'g> {
-    /// The model's variants with each choice of frames that may be good, the best first.
+    /// Variants of the model for each frame choice that may be the cheapest, the best first.
     choices: Vec<Variants<'g>>,
-    /// Functions are in declared speeds.
+    /// True if the functions are in declared speeds.
     in_speeds: bool,
-    /// One algorithm of forward dynamics is taken without comparing.
+    /// True if one algorithm of forward dynamics is used without comparison.
     is_large: bool,
     specialisation: Specialisation,
     mass_matrix: Program,
@@ -39,9 +40,9 @@ pub(super) struct Dynamics<'g> {
 }
 
 impl<'g> Dynamics<'g> {
-    /// The variants that the passes give, in moved frames, of a small mechanism also in those as they are, and in common
-    /// axes.
-    /// With speeds what the algorithms give is written in these.
+    /// Derives mass matrix, inverse dynamics and bias of all variants. The variants have moved frames; for a
+    /// small mechanism also the original frames, and frames with common axes. With `speeds`, results are
+    /// transformed to generalized speeds.
     pub(super) fn new(
         model: &Model<'g>,
         passes: Passes,
@@ -153,7 +154,8 @@ impl<'g> Dynamics<'g> {
         self.of_best(Variants::slipping_response)
     }
 
-    /// What impulses along given rates do to the velocities and to these rates.
+    /// Returns the changes of the velocities, and of the contact velocities with these rows, due to unit
+    /// impulses.
     pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
         self.of_best(|variants| {
             let plain = variants.cheapest(Role::Responses(rows.len()), |model| {
@@ -165,7 +167,8 @@ impl<'g> Dynamics<'g> {
         })
     }
 
-    /// A function of contacts whose rates have these rows, or what is made of it with alike limbs as lanes.
+    /// Returns a contact function, whose contact velocities have these rows, with the version in which
+    /// identical limbs are SIMD lanes, if one exists.
     pub(super) fn with_limb_contacts(
         &self,
         plain: Program,
@@ -182,7 +185,8 @@ impl<'g> Dynamics<'g> {
         self.choices.first().map(program).unwrap_or_default()
     }
 
-    /// The program of the variant in which these expressions of model, joints and velocities are the smallest.
+    /// Returns the program of the variant in which these expressions of model, joints and velocities are
+    /// smallest.
     fn smallest(
         &self,
         role: Role,
@@ -194,7 +198,8 @@ impl<'g> Dynamics<'g> {
         })
     }
 
-    /// Articulated bodies or factorisation, whichever takes less time: the chains of the first are longer.
+    /// Returns forward dynamics by articulated bodies or by factorisation, whichever takes less time. The
+    /// dependency chains of articulated bodies are longer.
     pub(super) fn forward_dynamics(&self) -> Program {
         let articulated: Vec<Candidate<'g>> = self.choices.iter().flat_map(Variants::articulated).collect();
         let is_large = self.is_large;
@@ -213,7 +218,7 @@ impl<'g> Dynamics<'g> {
     }
 }
 
-/// Mass matrices in which alike limbs, or columns, are lanes.
+/// Returns programs of the mass matrix in which identical limbs, or columns, are SIMD lanes.
 fn mass_matrices_in_lanes<'g>(
     choices: &[Variants<'g>],
     specialisation: Specialisation,
@@ -239,7 +244,7 @@ fn mass_matrices_in_lanes<'g>(
         .collect()
 }
 
-/// The programs of outputs in lanes that may be the cheapest.
+/// Returns the programs of the outputs in lanes that may be the cheapest.
 fn in_lanes_of<'g>(
     specialisation: Specialisation,
     lists: impl Iterator<Item = Vec<Expr<'g>>>,

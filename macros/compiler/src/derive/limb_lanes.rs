@@ -1,5 +1,5 @@
-//! Dynamics of a mechanism with its alike limbs as lanes: the algorithms as they are, between gathering the state and
-//! scattering the results.
+//! Dynamics of a mechanism with its identical limbs in SIMD lanes: the unmodified algorithms run between
+//! gathering the state and scattering the results.
 
 use crate::expr::Expr;
 use crate::mechanics::derivatives::{ForceDerivatives, Inverse, analytic, symbolic};
@@ -7,12 +7,12 @@ use crate::mechanics::{aba, crba, rnea};
 use crate::mechanism::{Model, Quantity};
 use crate::vectorise::Limbs;
 
-/// The mass matrix, by rows; in up to `most` lanes.
+/// Returns the mass matrix by rows, in up to `most` lanes.
 pub fn mass_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> Vec<Expr<'g>> {
     limbs.scattered_matrix(&crba::mass_matrix_in_lanes(&limbs.model, &limbs.joints, most))
 }
 
-/// Inverse dynamics, or the bias alone.
+/// Returns inverse dynamics, or the bias if `accelerations` is false.
 pub fn inverse_dynamics<'g>(limbs: &Limbs<'g>, accelerations: bool) -> Vec<Expr<'g>> {
     let v = limbs.symbols(Quantity::Velocity);
     let a = accelerations.then(|| limbs.symbols(Quantity::Acceleration));
@@ -21,7 +21,7 @@ pub fn inverse_dynamics<'g>(limbs: &Limbs<'g>, accelerations: bool) -> Vec<Expr<
     limbs.scattered(&whole)
 }
 
-/// Forward dynamics by articulated bodies, with the forces that the motion needs from another variant. `None` for a
+/// Returns forward dynamics by articulated bodies, with the bias wrenches of another variant; `None` for a
 /// mechanism with coupled coordinates.
 pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<Expr<'g>>> {
     let v = limbs.symbols(Quantity::Velocity);
@@ -32,8 +32,8 @@ pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<E
     Some(limbs.scattered(&a))
 }
 
-/// Derivatives of inverse dynamics at accelerations here by the recursion, those of springs and the like taken from the
-/// whole mechanism; in up to `most` lanes.
+/// Returns the derivatives of inverse dynamics at the accelerations `a` of the mechanism in lanes, by
+/// recursion in up to `most` lanes. The derivatives of passive forces come from the whole mechanism.
 pub fn inverse_dynamics_derivatives<'g>(
     limbs: &Limbs<'g>,
     whole: &Model<'g>,
@@ -48,18 +48,19 @@ pub fn inverse_dynamics_derivatives<'g>(
     scattered
 }
 
-/// A Coriolis matrix, by rows; in up to `most` lanes.
+/// Returns a Coriolis matrix by rows, in up to `most` lanes.
 pub fn coriolis_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> crba::Matrix<'g> {
     let v = limbs.symbols(Quantity::Velocity);
     scattered_rows(limbs, &analytic::coriolis_matrix(&limbs.model, &limbs.joints, &v, most))
 }
 
-/// Accelerations here under forces, with the inverse of the mass matrix in its parts.
+/// Returns the accelerations of the mechanism in lanes under forces, given the blocks of its inverse mass
+/// matrix.
 pub fn accelerations<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> Vec<Expr<'g>> {
     inverse.solve(&unbalanced(limbs))
 }
 
-/// The forces here that motion does not need.
+/// Returns `τ − h` of the mechanism in lanes.
 pub fn unbalanced<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
     let v = limbs.symbols(Quantity::Velocity);
     let tau = limbs.symbols(Quantity::Force);
@@ -68,7 +69,8 @@ pub fn unbalanced<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
     resisted.zip(bias).map(|(r, h)| r - h).collect()
 }
 
-/// The inverse of the mass matrix of the whole mechanism in its parts: a matrix, and columns beside it.
+/// Scatters the inverse mass matrix of the mechanism in lanes to that of the whole mechanism: a matrix, and
+/// the columns of the low-rank term.
 pub fn inverse<'g>(limbs: &Limbs<'g>, [matrix, beside]: &[crba::Matrix<'g>; 2]) -> [crba::Matrix<'g>; 2] {
     let width = beside.iter().map(Vec::len).max().unwrap_or_default();
     let column = |k: usize| limbs.scattered(&beside.iter().map(|row| row[k]).collect::<Vec<_>>());

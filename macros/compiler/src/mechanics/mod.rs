@@ -1,6 +1,7 @@
-//! The mechanism's equations as expressions, by the recursive algorithms of rigid-body dynamics run symbolically
-//! (Featherstone, *Rigid Body Dynamics Algorithms*, 2008; linear part first here). Every algorithm works in link
-//! axes, where motion subspaces are constant. Knows no tokens.
+//! The mechanism's equations as expressions, by the recursive algorithms of rigid-body dynamics run
+//! symbolically (Featherstone, *Rigid Body Dynamics Algorithms*, 2008; the linear components of spatial
+//! vectors come first here). Every algorithm works in link axes, in which the motion subspaces of joints are
+//! constant. Independent of the syntax tree.
 
 use crate::expr::Expr;
 use crate::mechanism::{Coordinate, Model, Quantity};
@@ -34,22 +35,23 @@ pub mod rnea;
 pub mod routh;
 pub mod speeds;
 
-/// All velocities as symbols.
+/// Returns all velocities as symbols.
 pub fn velocities<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Velocity(k).expr(model.graph)).collect()
 }
 
-/// All accelerations as symbols.
+/// Returns all accelerations as symbols.
 pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Acceleration(k).expr(model.graph)).collect()
 }
 
-/// All generalized forces as symbols.
+/// Returns all generalized forces as symbols.
 pub fn efforts<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect()
 }
 
-/// True if every velocity belongs to one joint coordinate, so that the articulated-body algorithm applies.
+/// Returns true if every velocity belongs to exactly one joint coordinate, so that the articulated-body
+/// algorithm applies.
 pub fn is_plain_tree(model: &Model<'_>) -> bool {
     let mut seen = vec![false; model.nv()];
     model.inertances.is_empty()

@@ -1,4 +1,5 @@
-//! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the momentum of the whole.
+//! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the total momentum of
+//! the mechanism.
 
 use super::alike::Alike;
 use super::crba::{composites, momentum};
@@ -11,7 +12,7 @@ use crate::kinematics::{Joint, Spatial, twists};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Model, Pose};
 
-/// Momentum of each link with everything that it carries, about its origin in its axes.
+/// Returns the momentum of each link with all its descendants, about the link's origin in its axes.
 fn composite_momenta<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -21,7 +22,7 @@ fn composite_momenta<'g>(
     accumulate(joints, own)
 }
 
-/// Wrenches summed from the leaves to the roots.
+/// Sums wrenches from the leaves to the roots.
 fn accumulate<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<Spatial<'g>> {
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
@@ -43,7 +44,7 @@ fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]
     out
 }
 
-/// `p = M v`, without forming `M`.
+/// Returns `p = M v`, without forming `M`.
 pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let momenta = composite_momenta(model, joints, &twists(model, joints, v));
     let mut p = project(model, joints, &momenta);
@@ -51,9 +52,9 @@ pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Ex
     p
 }
 
-/// `ṗ − τ`. For a joint with subspace `S`, constant in link axes, `p = Sᵀ F` with `F` the momentum of all that the
-/// link carries; the components of `F` change by the forces and by the rotation and motion of the link:
-/// `ṗ = τ + Sᵀ (gravity − V ×* F)`.
+/// Returns `ṗ − τ`. For a joint with subspace `S`, constant in link axes, `p = Sᵀ F` with `F` the momentum of
+/// the link and all its descendants. The components of `F` change due to the forces and due to the rotation
+/// and motion of the link: `ṗ = τ + Sᵀ (gravity − V ×* F)`.
 pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let twists = twists(model, joints, v);
     let momenta = composite_momenta(model, joints, &twists);
@@ -68,7 +69,7 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
         })
         .collect();
     let mut rate = project(model, joints, &wrenches);
-    // Where the subspace itself changes: Ṡᵀ F.
+    // Contribution of a subspace that is not constant: Ṡᵀ F.
     let alike = Alike::by_rates(model, joints);
     alike.add_forces(&momenta, &mut rate);
     for (_, (joint, momentum)) in joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !alike.has(*k)) {
@@ -83,7 +84,7 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
     rate
 }
 
-/// Weight of each link, about its origin in its axes.
+/// Returns the weight of each link, about its origin in its axes.
 fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
     let mut gravity: Vec<Vec3<'g>> = Vec::new();
     for joint in joints {
@@ -98,12 +99,12 @@ fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
         .collect()
 }
 
-/// Momentum of the whole in ground axes: linear, and angular about the centre of mass.
+/// Returns the total momentum in ground axes: linear, and angular about the centre of mass.
 pub fn centroidal_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
     about_center(model, joints, &composite_momenta(model, joints, &twists(model, joints, v)))
 }
 
-/// The sum of what the roots have summed up, in ground axes about the centre of mass.
+/// Returns the sum of the roots' accumulated wrenches or momenta, in ground axes about the centre of mass.
 fn about_center<'g>(model: &Model<'g>, joints: &[Joint<'g>], sums: &[Spatial<'g>]) -> Spatial<'g> {
     let mut sum = Spatial::zero(model);
     for (joint, wrench) in joints.iter().zip(sums).filter(|(joint, _)| joint.parent.is_none()) {
@@ -113,8 +114,9 @@ fn about_center<'g>(model: &Model<'g>, joints: &[Joint<'g>], sums: &[Spatial<'g>
     Spatial { linear: sum.linear, angular: sum.angular - center.cross(sum.linear) }
 }
 
-/// The matrix `A` of `A v`, the momentum of the whole, column by column: a column is the momentum of what a degree of
-/// freedom carries, moving with it alone (Orin, Goswami and Lee 2013).
+/// Returns the matrix `A` of the total momentum `A v`, column by column. A column is the momentum of the
+/// descendants of a degree of freedom at unit velocity of that degree of freedom (Orin, Goswami and Lee
+/// 2013).
 pub fn centroidal_momentum_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let g = model.graph;
     let composites = composites(model, joints);
@@ -135,7 +137,7 @@ pub fn centroidal_momentum_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -
     columns.iter().flat_map(flat).collect()
 }
 
-/// Rate of the momentum of the whole where all accelerations are zero.
+/// Returns the rate of the total momentum at zero accelerations, without gravity.
 pub fn centroidal_bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
     let weightless = Model { gravity: Vec3::zero(model.graph), ..model.clone() };
     let wrenches = wrenches(&weightless, joints, v, None);

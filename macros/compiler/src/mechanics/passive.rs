@@ -1,12 +1,13 @@
-//! Passive forces: those of springs, dashpots and the like.
+//! Passive forces: those of springs, dashpots, friction and other elements that act without inputs.
 
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Function};
 use crate::kinematics::{energy_gradient, known_gradient, position, rate};
 use crate::mechanism::{Model, Quantity};
 
-/// Sum of the generalized forces of springs, dashpots and the like, with the sign of `h`: what resists motion is
-/// positive. Without velocity, those of potential energies alone. Where another function computes them, they are given.
+/// Returns the generalized forces of springs, dashpots, friction, potentials and loads, with the sign of `h`:
+/// resistance to motion is positive. Without `with_velocity`, returns only the forces of potential energies.
+/// If another function computes the passive forces, returns its results as symbols.
 pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g>> {
     if let Some(passive) = model.passive.as_ref().filter(|_| with_velocity) {
         return passive.given_forces();
@@ -18,7 +19,7 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
         h[spring.on.v.0] += spring.stiffness * stretch * g.num(spring.on.ratio);
     }
     for energy in &model.potentials {
-        // ∂U/∂q along the velocities, at a given time: time itself does no work on the coordinates.
+        // ∂U/∂q along the velocities at constant time, since time itself does no work on the coordinates.
         for (k, d) in energy_gradient(model, *energy) {
             h[k] += d;
         }

@@ -1,6 +1,6 @@
-//! Power balance: `d(T + U)/dt = control + disturbance − dissipated` for a mechanism that is not driven in time. Force
-//! elements are conservative (in `U`), dissipative, control (inputs) or disturbance (other applied forces), as in
-//! Table 1.4 of Bernstein, Goel and Ansari.
+//! Power balance: `d(T + U)/dt = control + disturbance − dissipated` for a mechanism without motion
+//! prescribed in time. Force elements are conservative (in `U`), dissipative, control (inputs) or disturbance
+//! (other applied forces), as in Table 1.4 of Bernstein, Goel and Ansari.
 
 use super::{forces, velocities};
 use crate::expr::replace::replace;
@@ -8,7 +8,7 @@ use crate::expr::{Expr, Function};
 use crate::kinematics::{Joint, rate, velocity_gradient};
 use crate::mechanism::{Load, Model, Quantity};
 
-/// Power that dashpots, friction and dissipation functions take out.
+/// Returns the power dissipated by dashpots, friction, dissipation functions and dissipative loads.
 pub fn dissipated<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
     let mut power = g.zero();
@@ -28,13 +28,13 @@ pub fn dissipated<'g>(model: &Model<'g>) -> Expr<'g> {
     taken.fold(power, |sum, load| sum - load.force * load.rate)
 }
 
-/// Power of the inputs: `v · τ(u)`.
+/// Returns the power of the inputs: `v · τ(u)`.
 pub fn control<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
     let tau = forces::generalized_forces(model, joints);
     tau.iter().zip(velocities(model)).fold(model.graph.zero(), |sum, (tau, v)| sum + *tau * v)
 }
 
-/// Power of the other applied forces.
+/// Returns the power of the other applied forces.
 pub fn disturbance<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
     let alone = |load: &Load<'g>| {

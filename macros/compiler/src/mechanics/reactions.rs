@@ -1,7 +1,7 @@
-//! What joints transmit: in a mechanism with released joints the forces that inverse dynamics asks for on their
-//! coordinates, less those of the constraints and of the inputs; in a joint that closes a loop the forces of its
-//! multipliers. Where a loop is solved in closed form, its multipliers follow from the joints that are solved for: those
-//! transmit nothing in the direction of their own motion.
+//! Joint reactions. In a mechanism with released joints they are the forces of inverse dynamics on the
+//! released coordinates, minus those of the constraints and of the inputs. In a joint that closes a loop they
+//! are the forces of its multipliers. If a loop is solved in closed form, its multipliers follow from the
+//! condition that the two joints for which it is solved transmit no force along their own motion.
 
 use super::crba::Matrix;
 use super::{constraints, forces, rnea};
@@ -10,16 +10,16 @@ use crate::expr::{Expr, Symbol};
 use crate::kinematics::{joints, symbols_in};
 use crate::mechanism::{Model, Quantity, Released, SolvedSide};
 
-/// Components of a joint's reaction: force, torque.
+/// Number of components of a joint's reaction: force, torque.
 const SIX: usize = 6;
 
-/// True if an expression names a reaction.
+/// Returns true if one of the expressions contains a reaction.
 pub fn names_one(e: &[Expr<'_>]) -> bool {
     symbols_in(e).into_iter().any(|s| matches!(Quantity::of(s), Quantity::Reaction(_)))
 }
 
-/// Expressions with the reactions in place: of `q`, `v`, `a`, the inputs, and the multipliers as given numbers; `touched` with
-/// the forces at contacts, which are none otherwise.
+/// Returns the expressions with reactions replaced by expressions of `q`, `v`, `a` and the inputs;
+/// multipliers are arguments. With `touched`, contact forces are included; otherwise they are zero.
 pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Expr<'g>> {
     let multiplier = |s: Symbol, all: &[Expr<'g>]| match Quantity::of(s) {
         Quantity::Reaction(k) => all.get(k.checked_sub(Quantity::MULTIPLIERS)?).copied(),
@@ -43,7 +43,7 @@ pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Exp
     replace_all(e, &of)
 }
 
-/// The component of what a loop's joint transmits; `None` if it closes none.
+/// Returns one component of the reaction of a joint that closes a loop; `None` for other joints.
 fn of_multipliers<'g>(
     model: &Model<'g>,
     released: &Released<'g>,
@@ -63,7 +63,7 @@ fn of_multipliers<'g>(
     sum.map(|e| replace_all(&[e], &|s| is_open(model, s).then(|| model.graph.zero()))[0])
 }
 
-/// Whether a symbol is a coordinate of an released joint, or its rate.
+/// Returns true for a coordinate of a released joint, or its velocity.
 fn is_open(model: &Model<'_>, s: Symbol) -> bool {
     match Quantity::of(s) {
         Quantity::Configuration(k) => k >= model.nq(),
@@ -72,7 +72,8 @@ fn is_open(model: &Model<'_>, s: Symbol) -> bool {
     }
 }
 
-/// The forces that hold the coordinates of released joints at zero, and the multipliers of all constraints.
+/// Returns the forces that fix the coordinates of released joints at zero, and the multipliers of all
+/// constraints.
 fn on_released_coordinates<'g>(
     model: &Model<'g>,
     released: &Released<'g>,
@@ -108,8 +109,9 @@ fn on_released_coordinates<'g>(
     (needed, multipliers)
 }
 
-/// The multipliers of the loops that are solved in closed form, two for each, from the forces `needed` on open coordinates
-/// and their share `rows` of them: nothing is left for the motions of the joints that are solved for.
+/// Returns the multipliers of the loops that are solved in closed form, two for each loop. `needed` are the
+/// forces on the released coordinates, and `rows` are their changes per unit of each multiplier. The
+/// multipliers make the forces along the motions of the joints zero for which the loops are solved.
 fn closing_forces<'g>(released: &Released<'g>, needed: &[Expr<'g>], rows: &Matrix<'g>) -> Vec<Expr<'g>> {
     let g = released.model.graph;
     let along = |side: &SolvedSide<'g>, forces: &[Expr<'g>]| {
@@ -120,7 +122,7 @@ fn closing_forces<'g>(released: &Released<'g>, needed: &[Expr<'g>], rows: &Matri
     let own = |forces: &[Expr<'g>]| -> Vec<Expr<'g>> {
         released.model.solved.iter().filter_map(|side| along(side, forces)).collect()
     };
-    // Equations by side, with their right sides last: pairs of rows and columns belong to a loop.
+    // Equations by side, with their right sides last. Two successive rows and columns belong to one loop.
     let columns: Vec<Vec<Expr<'g>>> = rows.iter().map(|row| own(row)).chain([own(needed)]).collect();
     let sides = columns.last().map_or(0, Vec::len);
     let mut m: Matrix<'g> = (0..sides).map(|k| columns.iter().map(|column| column[k]).collect()).collect();

@@ -1,30 +1,32 @@
-//! Inverse dynamics as a linear function of the mass properties: `τ = Y π`, with ten parameters for each frame in which
-//! mass properties are given (Atkeson, An and Hollerbach 1986). Springs, friction and other elements stay outside.
+//! Inverse dynamics as a linear function of the mass properties: `τ = Y π`, with ten parameters for each
+//! frame in which mass properties are declared (Atkeson, An and Hollerbach 1986). Springs, friction and other
+//! elements are excluded.
 
 use super::rnea::{motion, newton_euler};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, LinkId, Model, Pose};
 
-/// Parameters of a frame.
+/// Number of inertial parameters of a frame.
 pub const COUNT: usize = 10;
 
-/// Their names: mass, first moment `m c`, inertia about the frame's origin, in Pinocchio's order.
+/// Names of the inertial parameters: mass, first moment `m c`, inertia about the frame's origin, in
+/// Pinocchio's order.
 pub const NAMES: [&str; COUNT] = ["m", "mx", "my", "mz", "xx", "xy", "yy", "xz", "yz", "zz"];
 
-/// Row and column in the inertia of the parameters after the fourth.
+/// Row and column in the tensor of inertia of each parameter after the fourth.
 const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
 
-/// A frame that is fixed in a link.
+/// A frame fixed in a link.
 #[derive(Clone)]
 pub struct Site<'g> {
-    /// The link.
+    /// Link in which the frame is fixed.
     pub link: LinkId,
-    /// The frame in the link's.
+    /// Pose of the frame relative to the link's frame.
     pub pose: Pose<'g>,
 }
 
-/// The ten parameters of mass properties.
+/// Returns the ten parameters of mass properties.
 pub fn parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
     std::array::from_fn(|k| match k {
         0 => inertia.mass,
@@ -33,15 +35,15 @@ pub fn parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
     })
 }
 
-/// The mass properties with these parameters.
+/// Returns the mass properties with the given ten parameters.
 pub fn inertia<'g>(parameters: [Expr<'g>; COUNT]) -> Inertia<'g> {
     let [mass, x, y, z, xx, xy, yy, xz, yz, zz] = parameters;
     let tensor = Sym3 { diagonal: [xx, yy, zz], off: [xy, xz, yz] };
     Inertia { mass, moment: Vec3([x, y, z]), tensor }
 }
 
-/// The columns of `Y` for parameters of frames: the generalized forces per unit of each. `wanted` are pairs of a
-/// frame's index and a parameter's.
+/// Returns the columns of `Y` for the inertial parameters of frames: the generalized forces per unit of each
+/// parameter. `wanted` are pairs of a frame's index and a parameter's index.
 pub fn columns<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -75,7 +77,7 @@ pub fn columns<'g>(
     columns
 }
 
-/// By link, the twist that a unit of each velocity gives it, in its axes.
+/// Returns for each link its twist per unit of each velocity, in the link's axes.
 fn subspaces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spatial<'g>)>> {
     let mut all: Vec<Vec<(usize, Spatial<'g>)>> = Vec::with_capacity(joints.len());
     for joint in joints {
@@ -87,7 +89,7 @@ fn subspaces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spa
     all
 }
 
-/// A twist of a link as one of a frame that is fixed in it.
+/// Transforms a twist of a link to a frame that is fixed in the link.
 fn seen_from<'g>(pose: &Pose<'g>, twist: &Spatial<'g>) -> Spatial<'g> {
     Spatial {
         linear: pose.rotation.to_child(twist.linear + twist.angular.cross(pose.translation)),

@@ -1,4 +1,4 @@
-//! Whether the mass matrix can be inverted: a coordinate that moves no mass is a mistake in the model.
+//! Invertibility of the mass matrix. A coordinate that moves no mass is an error in the model.
 
 use super::crba::Matrix;
 use crate::expr::Symbol;
@@ -6,8 +6,9 @@ use crate::expr::eval::{Rounded, Tape};
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Model, Quantity};
 
-/// The entries of `v` at which the factorisation fails, from the root on. None if it does not fail in every one of several
-/// random configurations; those where it fails in all of them, if there are such.
+/// Returns the entries of `v` at which the factorisation of the mass matrix fails, from the root on. Several
+/// random configurations are tested. The result is empty if the factorisation succeeds in one of them. If
+/// some entries fail in all configurations, only those are returned.
 pub fn singular_velocities(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>) -> Vec<usize> {
     let mut found = failing_pivots(model, joints, mass, 0);
     for seed in 1..3 {
@@ -21,10 +22,12 @@ pub fn singular_velocities(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matri
     found
 }
 
-/// A pivot is `zᵀ M z` of a motion `z` in which one velocity is 1 and those before it are what leaves the least energy. If
-/// the entries of `M` are off by `E`, the pivot is by up to `|z|ᵀ E |z|` (Higham, *Accuracy and Stability of Numerical Algorithms*,
-/// 2002, § 10.1), however small it is beside the diagonal of `M`. `E` is what rounding does on the way to each entry, so that levers
-/// which cancel leave less than it, too. Masses may lie twelve powers of ten apart.
+/// Returns the failing pivots in one random configuration. A pivot is `zᵀ M z` of the motion `z` in which one
+/// velocity is 1 and its predecessors minimise the energy. If the entries of `M` have errors up to `E`, the
+/// error of the pivot is up to `|z|ᵀ E |z|` (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002,
+/// § 10.1), however small the pivot is compared with the diagonal of `M`. `E` bounds the accumulated rounding
+/// error of each entry, so that the rounding residue of cancelling lever arms counts as zero. Masses may
+/// differ by twelve powers of ten.
 fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, seed: u64) -> Vec<usize> {
     let n = model.nv();
     let q = random_configuration(model, seed);
@@ -39,9 +42,9 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
         .collect();
     let mut m: Vec<Vec<f64>> =
         whole.iter().map(|row| row.iter().map(|entry| entry.value).collect()).collect();
-    // Root first: an entry that fails is then one that adds nothing to those before it.
+    // Root first: an entry that fails then adds nothing to its predecessors.
     let mut order: Vec<usize> = Vec::new();
-    // Coordinates that place nothing come last.
+    // Coordinates that move no link come last.
     for index in joints.iter().flat_map(|j| j.dofs.iter().map(|d| d.index)).chain(0..n) {
         if !order.contains(&index) {
             order.push(index);
@@ -50,7 +53,8 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let mut failing = Vec::new();
     let mut eliminated = Vec::new();
     for (step, &k) in order.iter().enumerate() {
-        // Parameters at random may make an inertia that no body has: then a pivot is negative, and not zero all the same.
+        // Random parameters may give an inertia that no body has. A pivot may then be negative, but it is
+        // still different from zero.
         let pivot = Rounded { value: m[k][k], error: rounding(&whole, &m, &eliminated, k) };
         if pivot.may_be_zero() {
             failing.push(k);
@@ -67,7 +71,8 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     failing
 }
 
-/// `|z|ᵀ E |z|` of the motion `z` whose velocity `k` is 1, with what elimination has left of `M`.
+/// Returns `|z|ᵀ E |z|` of the motion `z` whose velocity `k` is 1, where `left` is the matrix `M` reduced by
+/// elimination.
 fn rounding(whole: &[Vec<Rounded>], left: &[Vec<f64>], eliminated: &[usize], k: usize) -> f64 {
     let mut z = vec![(k, 1.0)];
     for &i in eliminated.iter().rev() {

@@ -1,5 +1,5 @@
-//! Inverse dynamics by the recursive Newton–Euler algorithm (Luh, Walker and Paul 1980; Featherstone 2008, ch. 5), with
-//! the acceleration of the points of a link given by one matrix, `U = [ẇ]× + [w]×[w]×`
+//! Inverse dynamics by the recursive Newton–Euler algorithm (Luh, Walker and Paul 1980; Featherstone 2008,
+//! ch. 5). The acceleration of the points of a link is given by one matrix, `U = [ẇ]× + [w]×[w]×`
 //! (Balafoutis, Patel and Misra 1988): a point at `r` has the acceleration `a + U r`.
 
 use super::alike::Alike;
@@ -9,7 +9,7 @@ use crate::kinematics::{Joint, Spatial};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Inertia, Model, Pose};
 
-/// `τ = M a + h`. Without accelerations it is the bias `h` alone.
+/// Returns `τ = M a + h`, or the bias `h` if `a` is `None`.
 pub fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -36,7 +36,8 @@ pub fn inverse_dynamics<'g>(
     tau
 }
 
-/// The wrench that gives each link its acceleration, weight included; without accelerations `a`, those are zero.
+/// Returns the wrench that produces the acceleration of each link, including its weight. If `a` is `None`,
+/// the joint accelerations are zero.
 pub fn wrenches<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -74,14 +75,15 @@ impl<'g> State<'g> {
         State { w, squares: Vec3([xx, yy, zz]), products, dw, u, a }
     }
 
-    /// The motion of a frame that is fixed in the link.
+    /// Returns the motion of a frame that is fixed in the link.
     pub(super) fn seen_from(&self, pose: &Pose<'g>) -> State<'g> {
         let turned = |v| pose.rotation.to_child(v);
         State::new(turned(self.w), turned(self.dw), turned(self.a + self.u * pose.translation))
     }
 }
 
-/// Outward recursion. Gravity is an acceleration of the ground upwards.
+/// Returns the motions of all links by the outward recursion. Gravity is included as an upward acceleration
+/// of the ground.
 pub(super) fn motion<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -96,7 +98,7 @@ pub(super) fn motion<'g>(
         let rate = joint.twist(model, v);
         let w_parent = joint.rotation.to_child(parent.w);
         let mut dw = joint.rotation.to_child(parent.dw) + w_parent.cross(rate.angular);
-        // The joint's translation: Coriolis acceleration, and the rotation of a velocity given in link axes.
+        // Translation in the joint: Coriolis acceleration, and the rotation of a velocity given in link axes.
         let mut origin = joint.rotation.to_child(parent.a + parent.u * joint.translation)
             + (w_parent + w_parent + rate.angular).cross(rate.linear);
         if let Some(drift) = &joint.drift {
@@ -113,10 +115,10 @@ pub(super) fn motion<'g>(
     states
 }
 
-/// The wrench that gives a body its acceleration, about the link's origin.
+/// Returns the wrench that produces a body's acceleration, about the link's origin.
 pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<'g> {
     let (i, u) = (&inertia.tensor, &s.u.0);
-    // Component k of I ẇ + w × I w, gathered by the entries of I; (k, l, m) cyclic.
+    // Component k of I ẇ + w × I w, collected by the entries of I; (k, l, m) cyclic.
     let mut moment = inertia.moment.cross(s.a);
     for k in 0..3 {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
@@ -127,8 +129,8 @@ pub(super) fn newton_euler<'g>(inertia: &Inertia<'g>, s: &State<'g>) -> Spatial<
     Spatial { linear: s.a * inertia.mass + s.u * inertia.moment, angular: moment }
 }
 
-/// `I_kk ẇ_k + (I_mm − I_ll) w_l w_m`; with the second moments `P` of mass it is `P_ll U_ml − P_mm U_lm`. Whichever
-/// has fewer terms.
+/// Returns `I_kk ẇ_k + (I_mm − I_ll) w_l w_m`. In terms of the second moments `P` of mass this is
+/// `P_ll U_ml − P_mm U_lm`. The form with fewer terms is used.
 fn diagonal_terms<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
     let [own, next, last] = [k, l, m].map(|k| i.diagonal[k]);

@@ -1,7 +1,7 @@
-//! Routh's reduction: coordinates on which the Lagrangian does not depend leave the equations, and their momenta take the place of
-//! their velocities (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, § 8.3; Whittaker, *Analytical Dynamics*, § 38).
-//! The Routhian is `R(q, v, p) = L − p·w`, where `w` are the velocities of cyclic coordinates; Lagrange's equations hold for it
-//! with the other coordinates.
+//! Routh's reduction: cyclic coordinates, on which the Lagrangian does not depend, are eliminated from the
+//! equations, and their momenta replace their velocities (Goldstein, Poole and Safko, *Classical Mechanics*,
+//! 2002, § 8.3; Whittaker, *Analytical Dynamics*, § 38). The Routhian is `R(q, v, p) = L − p·w`, where `w`
+//! are the velocities of cyclic coordinates. It satisfies Lagrange's equations in the other coordinates.
 
 use super::crba::Matrix;
 use super::{energy, ldl, momentum, rnea, velocities};
@@ -12,25 +12,26 @@ use crate::expr::sample::sample;
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Chart, Model, Quantity};
 
-/// Random states that are tried.
+/// Number of random states that are tested.
 const STATES: u64 = 6;
-/// What is left of a rate that is zero, beside the others.
+/// Tolerance of a zero rate relative to the largest rate.
 const ROUNDING: f64 = 1e-11;
 
-/// A mechanism without its cyclic coordinates, as functions of `q`, the velocities of the others and the momenta of those.
+/// Equations of a mechanism without its cyclic coordinates, as functions of `q`, the velocities of the other
+/// coordinates and the momenta of the cyclic ones.
 pub struct Routh<'g> {
-    /// The cyclic coordinates: indices of their velocities.
+    /// Indices of the velocities of the cyclic coordinates.
     pub cyclic: Vec<usize>,
     /// `R`.
     pub routhian: Expr<'g>,
     /// Velocities of the cyclic coordinates.
     pub velocity: Vec<Expr<'g>>,
-    /// Accelerations of the others, with the forces `τ`.
+    /// Accelerations of the other coordinates, under the forces `τ`.
     pub acceleration: Vec<Expr<'g>>,
 }
 
-/// The cyclic coordinates: plain ones whose momenta do not change without inputs. What only special parameters make cyclic is
-/// not seen.
+/// Returns the cyclic coordinates: plain coordinates whose momenta are constant without inputs. A coordinate
+/// that is cyclic for special parameters only is not found.
 pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
     let rates = Tape::of(&momentum::momentum_rate(model, joints, &velocities(model)));
     let mut plain: Vec<usize> = model
@@ -63,8 +64,8 @@ pub struct Solved<'g> {
     pub velocity: Vec<Expr<'g>>,
 }
 
-/// Solves `p = M_cc w + π` for the velocities `w` of cyclic coordinates; `π` is what the other velocities and driven motion
-/// contribute to their momenta.
+/// Solves `p = M_cc w + π` for the velocities `w` of cyclic coordinates, where `π` is the contribution of the
+/// other velocities and of motion prescribed in time to their momenta. Returns `None` if `solve` does.
 pub fn solved<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -83,7 +84,7 @@ pub fn solved<'g>(
     Some(Solved { routhian: lagrangian - twice * 0.5, velocity })
 }
 
-/// The reduced mechanism.
+/// Derives the equations of the reduced mechanism.
 pub fn derive<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -97,7 +98,7 @@ pub fn derive<'g>(
     let Solved { routhian, velocity } =
         found.unwrap_or_else(|| Solved { routhian: g.zero(), velocity: Vec::new() });
     let all = with(model, &cyclic, &velocity);
-    // M_rr a + M_rc b = f_r and M_cr a + M_cc b = f_c, without b.
+    // M_rr a + M_rc b = f_r and M_cr a + M_cc b = f_c, with b eliminated.
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
     let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
     let force: Vec<Expr<'g>> =
@@ -116,14 +117,14 @@ pub fn derive<'g>(
     Routh { cyclic, routhian, velocity, acceleration }
 }
 
-/// All velocities, those of cyclic coordinates by their momenta.
+/// Returns all velocity symbols, with those of the cyclic coordinates replaced by `velocity`.
 pub fn with<'g>(model: &Model<'g>, cyclic: &[usize], velocity: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut all = velocities(model);
     cyclic.iter().zip(velocity).for_each(|(k, w)| all[*k] = *w);
     all
 }
 
-/// Expressions with other velocities.
+/// Returns the expressions with the velocity symbols replaced by `v`.
 pub fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     replace_all(e, &|s| match Quantity::of(s) {
         Quantity::Velocity(k) => Some(v[k]),
@@ -131,7 +132,7 @@ pub fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     })
 }
 
-/// Rows and columns of a matrix.
+/// Returns the block of the given rows and columns of a matrix.
 pub fn part<'g>(m: &Matrix<'g>, rows: &[usize], columns: &[usize]) -> Matrix<'g> {
     rows.iter().map(|i| columns.iter().map(|j| m[*i][*j]).collect()).collect()
 }

@@ -1,12 +1,12 @@
-//! The equations in generalized speeds (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 2, 4 and 6): with
-//! `v = Z u` and `u = Y v` for the velocities `v` that joints have,
+//! The equations in generalized speeds (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 2,
+//! 4 and 6): with `v = Z u` and `u = Y v` for the joint velocities `v`,
 //!
 //! ```text
 //! v̇ = Z u̇ + Ż u,   M_u = Zᵀ M Z,   h_u = Zᵀ (h + M Ż u),   τ_u = Zᵀ τ,   u̇ = Y (v̇ − Ż u).
 //! ```
 //!
-//! The algorithms run in the velocities of the joints; what goes in and what comes out is exchanged here. As everywhere, the
-//! symbols of velocities and accelerations stand for `u` and `u̇` in what comes out.
+//! The algorithms run in joint velocities. Their arguments and results are transformed here. In the results,
+//! as everywhere, the symbols of velocities and accelerations denote `u` and `u̇`.
 
 use super::crba::Matrix;
 use super::derivatives::symbolic;
@@ -17,36 +17,40 @@ use crate::kinematics::time_derivative;
 use crate::mechanism::{Chart, Gradients, InV, Model, Quantity, Speeds};
 use std::rc::Rc;
 
-/// What results of functions are, and so how they change with the velocities that are chosen.
+/// Kind of a function's results, which determines their transformation to generalized speeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Numbers that are the same in any velocities.
+    /// Values that are invariant under the choice of velocities.
     Scalars,
     /// Generalized forces or momenta.
     Forces,
-    /// The rate of momenta, and these.
+    /// Rate of generalized momenta, followed by the momenta.
     MomentumRate,
-    /// That number of values at zero accelerations, and the matrix by which they change with those, column by column.
+    /// This number of values at zero accelerations, followed by the matrix of their derivatives with respect
+    /// to the accelerations, column by column.
     Bias(usize),
-    /// Accelerations under the forces `tau`; scalars; and for each of so many multipliers the accelerations that it adds.
+    /// Accelerations under the forces `tau`, then scalars, then for each of this number of multipliers the
+    /// acceleration increments per unit of the multiplier.
     Accelerations(usize),
-    /// Velocities or accelerations that given forces lead to; scalars; and for each of so many multipliers those that it adds.
+    /// Velocities or accelerations that result from forces given as arguments, then scalars, then for each of
+    /// this number of multipliers the increments per unit of the multiplier.
     Answers(usize),
     /// The mass matrix.
     Metric,
-    /// The inverse of it.
+    /// Inverse of the mass matrix.
     InverseMetric,
-    /// A matrix of so many rows for velocities, column by column.
+    /// A matrix with this number of rows and a column for each velocity, column by column.
     Columns(usize),
-    /// For each of so many impulses the velocities that it adds; then scalars.
+    /// Velocity increments for each of this number of impulses, then scalars.
     Responses(usize),
 }
 
-/// What leads from the velocities of joints to speeds.
+/// Transformation from joint velocities to generalized speeds.
 pub struct InSpeeds<'g> {
-    /// The mechanism in the velocities of its joints.
+    /// The mechanism in joint velocities.
     pub native: Model<'g>,
-    /// The mechanism with everything that names velocities written in speeds: constraints, outputs.
+    /// The mechanism in which everything that contains velocities is expressed in generalized speeds:
+    /// constraints, contacts and outputs.
     pub model: Model<'g>,
     speeds: Rc<Speeds<'g>>,
     /// `Z u`.
@@ -60,7 +64,7 @@ pub struct InSpeeds<'g> {
 }
 
 impl<'g> InSpeeds<'g> {
-    /// What is needed for a mechanism with speeds; `None` for one without.
+    /// Returns the transformation for a mechanism with generalized speeds; `None` for a mechanism without.
     pub fn of(model: &Model<'g>) -> Option<InSpeeds<'g>> {
         let speeds = model.speeds.clone()?;
         let g = model.graph;
@@ -100,7 +104,8 @@ impl<'g> InSpeeds<'g> {
         }
     }
 
-    /// Expressions in speeds, whose velocities, accelerations and forces are those of the joints.
+    /// Expresses joint velocities, accelerations and forces in generalized speeds: replaces the symbols in
+    /// `e` by their values in terms of `u`, `u̇` and the forces of the speeds.
     pub fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         replace_all(e, &|s| match Quantity::of(s) {
             Quantity::Velocity(k) => self.rates.get(k).copied(),
@@ -110,24 +115,25 @@ impl<'g> InSpeeds<'g> {
         })
     }
 
-    /// Generalized forces or momenta of the joints: those of the speeds, `Zᵀ`.
+    /// Transforms generalized forces or momenta of the joints to those of the speeds: multiplies by `Zᵀ`.
     pub fn forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         transposed_times(&self.speeds.rates, &self.written(e))
     }
 
-    /// Velocities of the joints that are written in speeds: the speeds, `Y v`.
+    /// Transforms joint velocities, already expressed in speeds, to the speeds: `Y v`.
     pub fn speeds_of(&self, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
         times(&self.speeds.of_rates, v)
     }
 
-    /// Accelerations of the joints: the rates of the speeds, `Y (v̇ − Ż u)`.
+    /// Transforms joint accelerations to the rates of the speeds: `Y (v̇ − Ż u)`.
     pub fn rates_of_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let relative: Vec<Expr<'g>> =
             self.written(e).iter().zip(&self.change).map(|(a, change)| *a - *change).collect();
         self.speeds_of(&relative)
     }
 
-    /// Expressions in speeds whose given forces, the first of what is given, are those of the speeds.
+    /// Expresses `e` in speeds, where the first `nv` arguments are generalized forces: the arguments of the
+    /// result are the generalized forces of the speeds.
     pub fn with_given_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let n = self.model.nv();
         let g = self.model.graph;
@@ -139,13 +145,13 @@ impl<'g> InSpeeds<'g> {
         })
     }
 
-    /// Expressions of the rates of speeds, without those.
+    /// Sets the rates of the speeds in the expressions to zero.
     pub fn without_accelerations(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero = self.model.graph.zero();
         replace_all(e, &|s| matches!(Quantity::of(s), Quantity::Acceleration(_)).then_some(zero))
     }
 
-    /// Results of a function in the velocities of the joints, in speeds.
+    /// Transforms the results of a function in joint velocities to generalized speeds.
     pub fn results(&self, role: Role, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let n = self.model.nv();
         match role {
@@ -187,25 +193,26 @@ impl<'g> InSpeeds<'g> {
         }
     }
 
-    /// `Zᵀ M Z`.
+    /// Returns `Zᵀ M Z`.
     pub fn metric(&self, mass: &Matrix<'g>) -> Matrix<'g> {
         let rows: Matrix<'g> = mass.iter().map(|row| transposed_times(&self.speeds.rates, row)).collect();
         let by_column = transposed(&rows);
         transposed(&by_column.iter().map(|c| transposed_times(&self.speeds.rates, c)).collect())
     }
 
-    /// `Zᵀ X`, of a matrix whose rows belong to displacements.
+    /// Returns `Zᵀ X` for a matrix `X` whose rows correspond to displacements.
     pub fn along(&self, m: &Matrix<'g>) -> Matrix<'g> {
         transposed(&transposed(m).iter().map(|column| transposed_times(&self.speeds.rates, column)).collect())
     }
 
-    /// `Y M⁻¹ Yᵀ`.
+    /// Returns `Y M⁻¹ Yᵀ`.
     pub fn inverse_metric(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
         let rows: Matrix<'g> = inverse.iter().map(|row| times(&self.speeds.of_rates, row)).collect();
         transposed(&transposed(&rows).iter().map(|c| times(&self.speeds.of_rates, c)).collect())
     }
 
-    /// A matrix whose columns belong to velocities, column by column: times `Z`.
+    /// Multiplies a matrix, given column by column with a column for each joint velocity, by `Z` from the
+    /// right; returns it column by column.
     fn columns_by_speed(&self, e: &[Expr<'g>], rows: usize) -> Vec<Expr<'g>> {
         let written = self.written(e);
         let columns: Vec<&[Expr<'g>]> = written.chunks(rows.max(1)).collect();
@@ -218,14 +225,15 @@ impl<'g> InSpeeds<'g> {
         self::columns(&by_row)
     }
 
-    /// `Ż`.
+    /// Returns `Ż`.
     fn turning_rates(&self) -> Matrix<'g> {
         let space = self.model.space();
         let of_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
         self.speeds.rates.iter().map(of_row).collect()
     }
 
-    /// `Zᵀ (C Z + M Ż)`: a matrix of Coriolis forces, and `Ṁ_u − 2 C_u` is skew with `C`.
+    /// Returns `Zᵀ (C Z + M Ż)`, a Coriolis matrix in generalized speeds. `Ṁ_u − 2 C_u` is skew-symmetric if
+    /// `Ṁ − 2 C` is.
     pub fn coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
         let (z, rates) = (&self.speeds.rates, self.turning_rates());
         let row = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
@@ -236,19 +244,22 @@ impl<'g> InSpeeds<'g> {
         transposed(&transposed(&sum).iter().map(|c| transposed_times(z, c)).collect())
     }
 
-    /// The rate of generalized momenta from that in the velocities of the joints: `ṗ_u = Zᵀ ṗ + Żᵀ p`.
+    /// Returns the rate of generalized momenta from the rate and the momenta in joint velocities:
+    /// `ṗ_u = Zᵀ ṗ + Żᵀ p`.
     pub fn momentum_rate(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
         self.momentum_rate_of_written(&self.written(rate), &self.written(momentum))
     }
 
-    /// The rate of generalized momenta, from a rate and momenta of the joints that are written in speeds already.
+    /// Returns the rate of generalized momenta from the rate and the momenta of the joints that are already
+    /// expressed in speeds.
     pub fn momentum_rate_of_written(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let turned = transposed_times(&self.turning_rates(), momentum);
         let own = transposed_times(&self.speeds.rates, rate);
         own.into_iter().zip(turned).map(|(own, turned)| own + turned).collect()
     }
 
-    /// What a matrix times the velocities gains besides the matrix times their rates: `b + A Ż u`, the matrix column by column.
+    /// Returns `b + A Ż u`, the bias of a quantity `A v̇ + b` in generalized speeds, for the matrix `A`
+    /// column by column.
     pub fn bias(&self, bias: &[Expr<'g>], matrix: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (rows, mut sum) = (bias.len(), self.written(bias));
         for (column, change) in matrix.chunks(rows.max(1)).zip(&self.change) {
@@ -257,29 +268,30 @@ impl<'g> InSpeeds<'g> {
         sum
     }
 
-    /// The velocities of joints that speeds replace, by index.
+    /// Returns the indices of the joint velocities that speeds replace.
     pub fn replaced(&self) -> Vec<usize> {
         self.speeds.replaced.iter().map(|v| v.0).collect()
     }
 
-    /// `Y`, by which speeds follow from the velocities of the joints.
+    /// Returns `Y`, which gives the speeds as functions of the joint velocities.
     pub fn of_rates(&self) -> &Matrix<'g> {
         &self.speeds.of_rates
     }
 
-    /// `Z`, by which those follow from speeds.
+    /// Returns `Z`, which gives the joint velocities as functions of the speeds.
     pub fn of_speeds(&self) -> &Matrix<'g> {
         &self.speeds.rates
     }
 
-    /// How the velocities of the joints change with the configuration at constant speeds: a column for each speed, along which the
-    /// configuration moves.
+    /// Returns the derivatives of the joint velocities with respect to the configuration at constant speeds:
+    /// a column for the tangent direction of each speed.
     pub fn rate_changes(&self) -> Matrix<'g> {
         symbolic::by_configuration(&self.model, &self.rates)
     }
 
-    /// By which displacements `ξ` between two neighbouring motions change, `ξ̇ = δu + T ξ`: with `δ = Z ξ` and
-    /// `δ̇ = δv + K δ` in the velocities of the joints, `T = Y (K Z + ∂(Z u)/∂q − Ż)`.
+    /// Returns the matrix `T` of the variational equation `ξ̇ = δu + T ξ` for the displacement `ξ` between
+    /// two neighbouring motions. With `δ = Z ξ` and `δ̇ = δv + K δ` in joint velocities,
+    /// `T = Y (K Z + ∂(Z u)/∂q − Ż)`.
     pub fn turning(&self) -> Matrix<'g> {
         let (changes, rates) = (self.rate_changes(), self.turning_rates());
         let native: Matrix<'g> = commutators(&self.native)
@@ -293,8 +305,8 @@ impl<'g> InSpeeds<'g> {
     }
 }
 
-/// The matrix of `φ ↦ φ × v`: by this the displacement `φ` between two neighbouring motions changes, `φ̇ = δv + φ × v`,
-/// since it is measured in axes that turn (ball and free joints).
+/// Returns the matrix of `φ ↦ φ × v`. It gives the rate of the displacement `φ` between two neighbouring
+/// motions, `φ̇ = δv + φ × v`, which is measured in rotating axes (ball and free joints).
 pub fn commutators<'g>(model: &Model<'g>) -> Matrix<'g> {
     let mut m = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let v = velocities(model);
@@ -336,12 +348,12 @@ fn transposed<'g>(m: &Matrix<'g>) -> Matrix<'g> {
     (0..width).map(|j| m.iter().map(|row| row[j]).collect()).collect()
 }
 
-/// A matrix column by column.
+/// Returns the entries of a matrix column by column.
 fn columns<'g>(m: &Matrix<'g>) -> Vec<Expr<'g>> {
     transposed(m).concat()
 }
 
-/// A square matrix that is given column by column.
+/// Returns a square matrix from its entries column by column.
 fn square<'g>(e: &[Expr<'g>], n: usize) -> Matrix<'g> {
     transposed(&e.chunks(n.max(1)).map(<[Expr<'g>]>::to_vec).collect())
 }

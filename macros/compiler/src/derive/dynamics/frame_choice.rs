@@ -1,4 +1,4 @@
-//! In which frames dynamics is derived.
+//! Choice of the frames in which dynamics is derived.
 
 use super::variants::Variants;
 use crate::derive::specialisation::{Candidate, Specialisation};
@@ -8,21 +8,22 @@ use crate::mechanism::Model;
 use crate::passes::{self, Passes, Variant};
 use std::rc::Rc;
 
-/// Of a mechanism with many operations, frames are not tried further that are larger by more than one in so many with the first
-/// distribution of its masses, which is enough to tell there.
+/// Tolerance of the first frame comparison of a mechanism with many operations: with the first distribution
+/// of its masses, frames that are larger by more than one part in this number are excluded. The first
+/// distribution is sufficient for this decision.
 const SIMILAR_AT_FIRST: usize = 24;
 
-/// A choice of frames: the variants of the model that have them, with their mass matrices and inverse dynamics.
+/// A frame choice: the variants of the model with these frames, their mass matrices and inverse dynamics.
 pub struct FrameChoice<'g> {
     pub variants: Variants<'g>,
     pub masses: Vec<Candidate<'g>>,
     pub recursions: Vec<Candidate<'g>>,
-    /// Of the smallest of both together.
+    /// Sum of the sizes of the smallest mass matrix and the smallest inverse dynamics.
     pub size: usize,
 }
 
 impl<'g> FrameChoice<'g> {
-    /// All choices.
+    /// Returns all frame choices that may be the cheapest.
     pub fn all(
         model: &Model<'g>,
         passes: Passes,
@@ -50,8 +51,8 @@ impl<'g> FrameChoice<'g> {
         found
     }
 
-    /// False for frames that cost more, as far as the first distribution of the masses tells; of a mechanism with few operations
-    /// all distributions are asked later.
+    /// Returns false for frames that cost more according to the first distribution of the masses. For a
+    /// mechanism with few operations it returns true, since all distributions are compared later.
     fn is_similar(&self, variants: &Variants<'g>) -> bool {
         let first = |masses: &[Candidate<'_>], recursions: &[Candidate<'_>]| {
             Some(masses.first()?.size + recursions.first()?.size)
@@ -74,7 +75,7 @@ impl<'g> FrameChoice<'g> {
     }
 }
 
-/// The size of the smallest outputs.
+/// Returns the size of the smallest outputs.
 pub fn smallest(all: &[Candidate<'_>]) -> Option<usize> {
     all.iter().map(|list| list.size).min()
 }

@@ -19,20 +19,21 @@ pub struct Variants<'g> {
     all: Vec<Variant<'g>>,
     pub joints: Vec<Joint<'g>>,
     specialisation: Specialisation,
-    /// What results are written in, if not in the velocities of the joints.
+    /// Generalized speeds of the results; `None` if the results are in joint velocities.
     speeds: Option<Rc<InSpeeds<'g>>>,
-    /// The variants with alike limbs as lanes, and whether they are good for inverse dynamics alone; none if there are no such limbs.
+    /// Variants with identical limbs in SIMD lanes, each with whether it serves inverse dynamics only. Empty
+    /// if there are no identical limbs.
     limbs: Vec<(Limbs<'g>, bool)>,
     pub bias: Bias,
 }
 
-/// `h`, and the variant in which it is cheapest: all variants need the same forces, so that each part of a function can be taken
-/// from the variant where it is.
+/// The bias `h`, and the variant in which it is cheapest. All variants have the same generalized forces, so
+/// each term of a function can come from the variant in which that term is cheapest.
 #[derive(Default)]
 pub struct Bias {
     pub program: Program,
     variant: usize,
-    /// The program with alike limbs as lanes, and its variant.
+    /// Program with identical limbs in SIMD lanes, and its variant.
     pub simd: Option<(usize, Program)>,
 }
 
@@ -43,7 +44,7 @@ impl<'g> Variants<'g> {
         specialisation: Specialisation,
         speeds: Option<Rc<InSpeeds<'g>>>,
     ) -> Variants<'g> {
-        // All have the same joints.
+        // All variants have the same joints.
         let joints = match all.as_slice() {
             [any, ..] => any.joints.clone(),
             [] => Vec::new(),
@@ -69,17 +70,17 @@ impl<'g> Variants<'g> {
         self.bias = Bias { program, variant, simd };
     }
 
-    /// Variants that serve all functions.
+    /// Returns the variants that serve all functions.
     pub fn plain(&self) -> impl Iterator<Item = &Model<'g>> {
         self.all.iter().filter(|variant| !variant.for_inverse_dynamics).map(|variant| &variant.model)
     }
 
-    /// Variants with alike limbs as lanes, but those for inverse dynamics alone.
+    /// Returns the variants with identical limbs in SIMD lanes, except those for inverse dynamics only.
     pub fn plain_limbs(&self) -> impl Iterator<Item = &Limbs<'g>> {
         self.limbs.iter().filter(|(_, for_inverse_dynamics)| !for_inverse_dynamics).map(|(limbs, _)| limbs)
     }
 
-    /// The outputs of a function of any role, variant by variant.
+    /// Returns the outputs of a function, one candidate for each variant.
     pub fn candidates(
         &self,
         role: Role,
@@ -88,7 +89,7 @@ impl<'g> Variants<'g> {
         self.plain().map(outputs).map(move |list| self.candidate(role, list))
     }
 
-    /// Outputs, written in speeds where there are some.
+    /// Returns outputs as a candidate, transformed to generalized speeds if there are any.
     fn candidate(&self, role: Role, list: Vec<Expr<'g>>) -> Candidate<'g> {
         match &self.speeds {
             None => self.specialisation.sized(list),
@@ -96,12 +97,13 @@ impl<'g> Variants<'g> {
         }
     }
 
-    /// The program of the variant in which a function of any role takes the fewest operations.
+    /// Returns the program of the variant in which the function takes the fewest operations.
     pub fn cheapest(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
         self.specialisation.cheapest(self.candidates(role, outputs))
     }
 
-    /// The program of the variant in which its outputs are the smallest, which is found quicker.
+    /// Returns the program of the variant with the smallest outputs. This is faster than
+    /// [`cheapest`](Self::cheapest), since only one program is lowered.
     pub fn smallest(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
         let smallest = self.candidates(role, outputs).min_by_key(|list| list.size);
         smallest.map_or_else(Program::default, |list| self.specialisation.program(&list.outputs))
@@ -111,7 +113,7 @@ impl<'g> Variants<'g> {
         self.candidates(Role::Metric, |model| crba::mass_matrix(model, &self.joints).concat())
     }
 
-    /// Inverse dynamics, or the bias alone.
+    /// Returns inverse dynamics, or the bias if `accelerations` is false.
     pub fn recursions(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
         self.all.iter().map(move |variant| {
             let (v, a) = (mechanics::velocities(&variant.model), mechanics::accelerations(&variant.model));
@@ -124,7 +126,7 @@ impl<'g> Variants<'g> {
                     a,
                 ));
             };
-            // At zero rates of the speeds the joints may accelerate.
+            // At zero rates of the speeds, joint accelerations may be different from zero.
             let all = rnea::inverse_dynamics(&variant.model, &self.joints, &v, Some(&a));
             let all = speeds.results(Role::Forces, &all);
             self.specialisation.sized(if accelerations { all } else { speeds.without_accelerations(&all) })
@@ -135,7 +137,7 @@ impl<'g> Variants<'g> {
         self.limbs.iter().map(move |(limbs, _)| limb_lanes::inverse_dynamics(limbs, accelerations))
     }
 
-    /// Forward dynamics by articulated bodies.
+    /// Returns forward dynamics by articulated bodies.
     pub fn articulated(&self) -> Vec<Candidate<'g>> {
         let Some(bias) = self.all.get(self.bias.variant).map(|variant| &variant.model) else {
             return Vec::new();
@@ -150,14 +152,14 @@ impl<'g> Variants<'g> {
         all.collect()
     }
 
-    /// Forward dynamics by articulated bodies, with alike limbs as lanes.
+    /// Returns forward dynamics by articulated bodies, with identical limbs in SIMD lanes.
     pub fn articulated_in_lanes(&self) -> Vec<Vec<Expr<'g>>> {
         let bias = self.bias.simd.as_ref().and_then(|(k, _)| self.limbs.get(*k));
         let Some((bias, _)) = bias else { return Vec::new() };
         self.plain_limbs().filter_map(|limbs| limb_lanes::forward_dynamics(limbs, bias)).collect()
     }
 
-    /// Forward dynamics by factorisation of the mass matrix.
+    /// Returns forward dynamics by factorisation of the mass matrix.
     pub fn factorised(&self) -> Vec<Candidate<'g>> {
         let r = self.unbalanced();
         let solve = |model: &Model<'g>| {
@@ -170,7 +172,7 @@ impl<'g> Variants<'g> {
         self.candidates(Role::Accelerations(0), solve).collect()
     }
 
-    /// `τ − h`.
+    /// Returns `τ − h`.
     fn unbalanced(&self) -> Vec<Expr<'g>> {
         let Some(bias) = self.all.get(self.bias.variant).map(|variant| &variant.model) else {
             return Vec::new();
@@ -180,13 +182,13 @@ impl<'g> Variants<'g> {
     }
 }
 
-/// For how many multipliers it is told what each of them does.
+/// Returns the number of multipliers whose individual accelerations are outputs.
 fn answers(model: &Model<'_>) -> usize {
     if model.is_overdetermined() { model.constraints.len() } else { 0 }
 }
 
 impl<'g> Variants<'g> {
-    /// Accelerations and multipliers under the forces `tau`.
+    /// Returns accelerations and multipliers under the forces `tau`.
     pub fn constrained_dynamics(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, biases) = (self.unbalanced(), constraints::biases(&variant.model));
@@ -203,14 +205,14 @@ impl<'g> Variants<'g> {
         })
     }
 
-    /// The response of constraints to given forces and biases.
+    /// Returns the response of constraints to forces and biases that are arguments.
     pub fn constraint_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::given(&variant.model);
         self.multipliers(Role::Answers(answers(&variant.model)), &force, &bias)
     }
 
-    /// The response of constraints that slip, with friction, to given forces and biases.
+    /// Returns the response of sliding contacts with friction to forces and biases that are arguments.
     pub fn slipping_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::given(&variant.model);
@@ -236,7 +238,7 @@ impl<'g> Variants<'g> {
         })
     }
 
-    /// Mass matrix and forces with what makes up for coordinates without inertia.
+    /// Returns mass matrix and forces with the terms that compensate for coordinates without inertia.
     fn loaded(
         &self,
         model: &Model<'g>,

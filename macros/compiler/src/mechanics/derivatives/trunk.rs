@@ -31,7 +31,7 @@ struct Limb {
 }
 
 impl Trunk {
-    /// Returns for each velocity whether its joint is a branching link of the tree or an ancestor of one. A
+    /// Returns for each velocity whether its link, or a descendant of the link, has more than one child. A
     /// group of limbs in SIMD lanes is not divided further.
     pub fn branching(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
         let mut children = vec![0; joints.len()];
