@@ -1,4 +1,4 @@
-//! What is derived: everything that emission writes.
+//! Result of the derivation: everything that code generation writes.
 
 use crate::catalogue::{Argument, Called, Declared, Id, Shape, Structure};
 use crate::equations::Written;
@@ -8,35 +8,35 @@ use crate::mechanism::{Chart, Piece, Quantity};
 /// A generated function.
 #[derive(Clone)]
 pub struct Function {
-    /// Which it is.
+    /// Function of the catalogue.
     pub id: Id,
-    /// Its name.
+    /// Name of the generated function.
     pub name: String,
-    /// Documentation, a paragraph each; none for a hidden function.
+    /// Documentation, one paragraph per entry; empty for a hidden function.
     pub docs: Vec<String>,
     /// Arguments after `&self`.
     pub arguments: Vec<Argument>,
-    /// Result.
+    /// Shape of the result.
     pub shape: Shape,
-    /// What it computes.
+    /// Program that computes the result.
     pub program: Program,
-    /// What is known of its matrices.
+    /// Structure of its matrices: zeros, packed entries, form of an inverse.
     pub structure: Structure,
 }
 
 impl Function {
-    /// A function with its program and with what is known of its matrices.
+    /// Returns a declared function with its program and the structure of its matrices.
     pub fn new(declared: Declared, program: Program, structure: Structure) -> Function {
         let Declared { id, name, docs, arguments, shape } = declared;
         Function { id, name, docs, arguments, shape, program, structure }
     }
 
-    /// A function of a mechanism with a mistake, which does nothing.
+    /// Returns an empty function for a mechanism with an error.
     pub fn stub(declared: Declared) -> Function {
         Function::new(declared, Program::default(), Structure::default())
     }
 
-    /// A hidden part of what is written as it is.
+    /// Returns a hidden function that computes a part of another function.
     pub fn part(name: String, arguments: Vec<Argument>, length: usize, program: Program) -> Function {
         let shape = Shape::Array(length);
         Function {
@@ -50,12 +50,13 @@ impl Function {
         }
     }
 
-    /// True for a function that only others call.
+    /// Returns true for a function that only other generated functions call.
     pub fn is_hidden(&self) -> bool {
         self.docs.is_empty()
     }
 
-    /// True if its program, and the one in lanes, has as many outputs as the result takes, and reads its arguments alone.
+    /// Returns true if the program, and its version in lanes, has the number of outputs that the result takes
+    /// and reads only arguments of the function.
     fn is_whole(&self) -> bool {
         let expected = self.shape.outputs(&self.structure);
         let programs = [Some(&self.program), self.program.simd.as_deref()];
@@ -66,7 +67,8 @@ impl Function {
         })
     }
 
-    /// True for what the mechanism itself has, for an entry of an argument, and for a result of what all functions may call.
+    /// Returns true for a quantity stored in the mechanism, for an entry of an argument, and for a result of
+    /// a function that every function may call.
     fn is_given(&self, quantity: Quantity) -> bool {
         let called = Called::ALL.map(Argument::Called);
         match quantity {
@@ -80,35 +82,37 @@ impl Function {
 pub struct Output {
     /// The generated functions.
     pub functions: Vec<Function>,
-    /// Steps of the links.
+    /// Kinematic steps of the links.
     pub links: Vec<LinkSteps>,
-    /// Steps of the frames.
+    /// Kinematic steps of the named frames.
     pub frames: Vec<FrameSteps>,
-    /// First entries in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
+    /// First indices in `q` and `v` of each joint, with its kind of configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
-    /// The equations of motion for reading; empty for large mechanisms.
+    /// The equations of motion for printing; empty for large mechanisms.
     pub equations: Written,
-    /// The linear equations of every declared equilibrium.
+    /// The linearised equations of every declared equilibrium.
     pub linear_equations: Vec<Written>,
-    /// The functions of numbers that are computed before, if they were asked for.
+    /// Functions with precomputed values, if requested.
     pub prepared: Option<Prepared>,
-    /// Further constants.
+    /// Further associated constants.
     pub constants: Vec<Constant>,
 }
 
 impl Output {
-    /// All functions, those of the prepared mechanism included.
+    /// Returns all functions, including those of the prepared mechanism.
     pub fn all_functions(&self) -> impl Iterator<Item = &Function> {
         self.functions.iter().chain(self.prepared.iter().flat_map(|prepared| &prepared.functions))
     }
 
-    /// A part of a program that is no number wherever the mechanism is, as it is written.
+    /// Returns the text of a part of a program that is undefined (NaN) in every configuration, if there is
+    /// one.
     pub fn undefined(&self) -> Option<String> {
         let numbers = self.prepared.iter().map(|prepared| &prepared.numbers);
         self.all_functions().map(|f| &f.program).chain(numbers).find_map(Program::undefined)
     }
 
-    /// The name of a function whose program does not fit its arguments or its result: a mistake of the compiler's, which would make wrong code.
+    /// Returns the name of a function whose program does not fit its arguments or its result. This is an
+    /// internal error, which would produce wrong code.
     pub fn misfit(&self) -> Option<&str> {
         let function = self.all_functions().find(|f| !f.is_whole()).map(|f| f.name.as_str());
         let link = self.links.iter().any(|l| !l.is_whole()).then_some("the steps of a link");
@@ -117,30 +121,30 @@ impl Output {
     }
 }
 
-/// The functions of the word `prepare`.
+/// The functions of the option `prepare`.
 pub struct Prepared {
-    /// The numbers, of the parameters.
+    /// Program of the precomputed values, as functions of the parameters.
     pub numbers: Program,
-    /// Functions of the state and the numbers.
+    /// Functions of the state and the precomputed values.
     pub functions: Vec<Function>,
 }
 
-/// Numbers of a placement: a rotation matrix row by row, and a position.
+/// Number of entries of a placement: a rotation matrix row by row, and a position.
 pub const PLACEMENT: usize = 12;
-/// Numbers of a twist, or of its rate.
+/// Number of entries of a twist, or of its rate.
 pub const TWIST: usize = 6;
 
-/// The steps of one link.
+/// Kinematic steps of one link.
 pub struct LinkSteps {
     /// Parent link.
     pub parent: Option<usize>,
-    /// Entries of `v` of its degrees of freedom.
+    /// Indices in `v` of the degrees of freedom of its joint.
     pub velocities: Vec<usize>,
-    /// Its motion subspace depends on the configuration.
+    /// True if the motion subspace depends on the configuration.
     pub driven: bool,
-    /// Placement from the parent's.
+    /// Placement from the parent's placement.
     pub placement: Program,
-    /// Twist from the parent's.
+    /// Twist from the parent's twist.
     pub twist: Program,
     /// Acceleration from the parent's twist and acceleration.
     pub acceleration: Program,
@@ -156,15 +160,15 @@ impl LinkSteps {
     }
 }
 
-/// The steps of one frame on its link.
+/// Kinematic steps of one frame on its link.
 pub struct FrameSteps {
-    /// Its name.
+    /// Name of the frame.
     pub name: String,
-    /// The link that carries it.
+    /// Link in which the frame is fixed; `None` for the ground.
     pub link: Option<usize>,
-    /// True if the frame is the link's own.
+    /// True if the frame is the link's own frame.
     pub is_link: bool,
-    /// Placement from the link's.
+    /// Placement from the link's placement.
     pub placement: Program,
     /// Twist in ground axes from the link's placement and twist.
     pub twist: Program,
@@ -179,15 +183,15 @@ impl FrameSteps {
     }
 }
 
-/// An associated constant: a list.
+/// An associated constant of the generated type: a list.
 pub struct Constant {
-    /// Its name.
+    /// Name of the constant.
     pub name: &'static str,
-    /// What it holds.
+    /// Documentation of the constant.
     pub docs: &'static str,
-    /// The type of an item.
+    /// Type of an item.
     pub item: &'static str,
-    /// The items as they are written.
+    /// Source text of the items.
     pub list: Vec<String>,
 }
 
@@ -196,7 +200,7 @@ impl Constant {
         Constant { name, docs, item: "&'static str", list: list.iter().map(|s| format!("{s:?}")).collect() }
     }
 
-    /// The lists of names that go with the word `regressor`.
+    /// Returns the lists of names for the option `regressor`.
     pub fn regressor(bodies: &[String], base: &[String]) -> Vec<Constant> {
         vec![
             Constant::strings(
@@ -212,7 +216,7 @@ impl Constant {
         ]
     }
 
-    /// Where the entries stand that the word `packed` gives.
+    /// Returns the list of the rows and columns of the entries for the option `packed`.
     pub fn entries(list: &[(usize, usize)]) -> Constant {
         Constant {
             name: "MASS_MATRIX_ENTRIES",
@@ -222,7 +226,7 @@ impl Constant {
         }
     }
 
-    /// Which coordinates the word `routh` eliminates.
+    /// Returns the list of the coordinates that the option `routh` eliminates.
     pub fn cyclic(list: &[usize]) -> Constant {
         Constant {
             name: "CYCLIC",
@@ -232,7 +236,7 @@ impl Constant {
         }
     }
 
-    /// The names of what is conserved.
+    /// Returns the list of the names of the conserved quantities.
     pub fn conserved(list: &[String]) -> Constant {
         Constant::strings(
             "CONSERVED",
@@ -241,7 +245,8 @@ impl Constant {
         )
     }
 
-    /// The linear equations of declared equilibria: the name of each, and what is written; none without.
+    /// Returns the lists of the linearised equations of declared equilibria, each with its name; empty
+    /// without equilibria.
     pub fn linear_equations(all: &[(String, Written)]) -> Vec<Constant> {
         if all.is_empty() {
             return Vec::new();
@@ -266,7 +271,7 @@ impl Constant {
         ]
     }
 
-    /// What the word `drawing` gives.
+    /// Returns the list of the pieces of the drawing, for the option `drawing`.
     pub fn drawing(pieces: &[Piece<'_>]) -> Constant {
         let mut first = 0;
         let written = pieces.iter().map(|piece| {
@@ -291,7 +296,7 @@ impl Constant {
         }
     }
 
-    /// The names of the parameters.
+    /// Returns the list of the names of the parameters.
     pub fn parameters(list: &[String]) -> Constant {
         Constant::strings("PARAMETERS", "Name of every parameter of the struct.", list)
     }

@@ -8,7 +8,7 @@ use crate::mechanics::derivatives::symbolic;
 use crate::mechanics::reactions;
 use crate::mechanism::{Model, OutputValue, Quantity, Uses};
 
-/// The functions of all outputs, in order. Without dynamics there are no reactions.
+/// Returns the functions of all outputs, in order. Mechanisms without dynamics have no reactions.
 pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
     let functions = |output: &OutputValue<'_>| {
         let size = output.values.len();
@@ -37,7 +37,7 @@ fn uses(output: &OutputValue<'_>) -> Uses {
     }
 }
 
-/// What one of these functions gives.
+/// Returns the results of one of these functions.
 pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
     let name = match declared.id {
         Id::Reaction => declared.name.strip_prefix(REACTION),
@@ -59,7 +59,8 @@ pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
     }
 }
 
-/// By configuration, velocity, acceleration and input, each column by column.
+/// Returns the derivatives with respect to configuration, velocity, acceleration and input, each column by
+/// column.
 fn derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let by_state = symbolic::derivatives(model, values);
     let blocks = [
@@ -80,8 +81,8 @@ fn by_parameters<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
     (0..model.parameters.len()).flat_map(|k| column(by(k))).collect()
 }
 
-/// The Jacobian column by column: how an output changes with the velocities, or how its rate does if it depends on the
-/// configuration alone.
+/// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of
+/// its time derivative if the output depends only on configuration and time.
 fn jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>) -> Vec<Expr<'g>> {
     let rates: Vec<Expr<'g>> = match uses(output).velocities {
         true => output.values.clone(),

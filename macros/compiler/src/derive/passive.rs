@@ -1,4 +1,4 @@
-//! Passive forces that are long have functions of their own, which the other functions call.
+//! Functions for passive forces that are expensive; the other generated functions call these.
 
 use crate::expr::Expr;
 use crate::lower::size;
@@ -8,7 +8,8 @@ use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Model, PassiveForces};
 use std::rc::Rc;
 
-/// The model with passive forces that are given, if they are long enough; their derivatives are found only if they are asked for.
+/// Returns the model with passive forces as symbols if they take enough operations, otherwise `None`. Their
+/// derivatives are computed only if `derivatives` is true.
 pub(super) fn with_given_forces<'g>(model: &Model<'g>, derivatives: bool) -> Option<Model<'g>> {
     if operations(model) < CALLED_OPERATIONS {
         return None;
@@ -24,7 +25,8 @@ pub(super) fn with_given_forces<'g>(model: &Model<'g>, derivatives: bool) -> Opt
     Some(Model { passive: Some(Rc::new(passive)), ..model.clone() })
 }
 
-/// Operations of what the elements store and dissipate, and of the forces and rates of all others: nothing is derived for it.
+/// Returns the number of operations of the elements' energies and dissipation functions, and of the forces
+/// and velocities of all loads, without deriving the generalized forces.
 fn operations(model: &Model<'_>) -> usize {
     let energies = model.potentials.iter().chain(&model.dissipations).copied();
     let loads = model.loads.iter().flat_map(|load| [load.rate, load.force]);

@@ -1,5 +1,5 @@
-//! Functions of the word `prepare`: their programs begin with numbers that depend on the parameters alone, which are
-//! computed once and shared by all of them.
+//! Functions of the option `prepare`: their programs take values that depend only on the parameters as
+//! arguments. These values are computed once and shared by all functions.
 
 use super::output::{Function, Prepared};
 use crate::catalogue;
@@ -8,7 +8,7 @@ use crate::lower::{lower, pipeline, place_hoisted};
 use crate::mechanism::Quantity;
 use std::collections::BTreeMap;
 
-/// Numbers the values that programs name, in the order of their first use.
+/// Extracts the precomputed values from the programs of the functions, in the order of their first use.
 pub fn prepared(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
     let mut numbers: Vec<Expr<'_>> = Vec::new();
     let mut known: BTreeMap<(Id, bool), usize> = BTreeMap::new();
@@ -21,7 +21,7 @@ pub fn prepared(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
         }
         Quantity::Prepared(k).symbol()
     };
-    // What is checked of parameters is checked before.
+    // Conditions on parameters are checked before the values are computed.
     functions.retain(|f| f.id != catalogue::Id::Figures);
     for f in &mut functions {
         place_hoisted(&mut f.program, &mut place);

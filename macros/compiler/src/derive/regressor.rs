@@ -1,5 +1,5 @@
-//! The functions of the word `regressor`: the dynamics as linear functions of the mass properties, and the smallest set
-//! of combinations that they act by.
+//! The functions of the option `regressor`: the dynamics as linear functions of the mass properties, and the
+//! minimal set of identifiable combinations (base parameters).
 
 use super::output::Constant;
 use crate::expr::Expr;
@@ -10,21 +10,21 @@ use crate::mechanics::regressor::{COUNT, NAMES, Site, columns, inertia, paramete
 use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity};
 use crate::passes::{Gauge, Regroup, regroup};
 
-/// What identification needs to know of a model.
+/// Data of a model for parameter identification.
 pub(super) struct Identification<'a, 'g> {
     model: &'a Model<'g>,
-    /// The first body of each link that carries some.
+    /// The first body of each link that has bodies.
     bodies: Vec<&'a NamedFrame<'g>>,
     base: Base<'g>,
 }
 
 /// The base parameters.
 struct Base<'g> {
-    /// A link and one of its ten parameters, about the link's own frame.
+    /// Link, and index of one of its ten parameters about the link's own frame.
     entries: Vec<(usize, usize)>,
-    /// The combination of the bodies' parameters that acts there.
+    /// Combination of the bodies' parameters that replaces this parameter.
     values: Vec<Expr<'g>>,
-    /// The generalized forces per unit.
+    /// Generalized forces per unit of each base parameter.
     columns: Vec<Vec<Expr<'g>>>,
 }
 
@@ -36,12 +36,12 @@ impl<'a, 'g> Identification<'a, 'g> {
         Identification { model, bodies, base }
     }
 
-    /// How many bodies and base parameters there are.
+    /// Returns the numbers of bodies and of base parameters.
     pub(super) fn counts(&self) -> [usize; 2] {
         [self.bodies.len(), self.base.entries.len()]
     }
 
-    /// Names of the bodies and of the base parameters.
+    /// Returns the names of the bodies and of the base parameters.
     pub(super) fn names(&self) -> Vec<Constant> {
         let link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
@@ -70,7 +70,7 @@ impl<'a, 'g> Identification<'a, 'g> {
         self.base.values.clone()
     }
 
-    /// The parameters that the model has.
+    /// Returns the standard parameters of the bodies in the model.
     pub(super) fn standard_parameters(&self) -> Vec<Expr<'g>> {
         let zero = Inertia::zero(self.model.graph);
         let sites = self.bodies.iter().filter_map(|body| site(body));
@@ -88,8 +88,8 @@ fn site<'g>(body: &NamedFrame<'g>) -> Option<Site<'g>> {
     Some(Site { link: body.link?, pose: body.pose.clone() })
 }
 
-/// What acts of given parameters of the bodies: moved towards the base as far as they go (Gautier and Khalil 1990), then
-/// without those that still depend on others.
+/// Derives the base parameters of the bodies' parameters. Parameters are regrouped towards the base as far as
+/// possible (Gautier and Khalil 1990); then those that still depend linearly on others are removed.
 fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>]) -> Base<'g> {
     let g = model.graph;
     let mut given = model.clone();
@@ -119,7 +119,8 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
     }
     let mut base = Base { entries, values, columns };
     base.keep(&parts);
-    // Between two axes of a joint there is no body of its own, and what is moved there from one body may act in two ways.
+    // Between two axes of a joint there is no body. A parameter of one body that is moved to such a link may
+    // appear in two base parameters, whose values are then proportional.
     let alone: Vec<Vec<Expr<'g>>> = base.values.iter().map(|value| vec![*value]).collect();
     let parts = independent(model, &alone);
     for (k, part) in parts.iter().enumerate() {
@@ -136,7 +137,7 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
 }
 
 impl Base<'_> {
-    /// Leaves out what is a combination of others.
+    /// Removes the parameters that are combinations of others.
     fn keep(&mut self, parts: &[Part]) {
         retain(&mut self.entries, parts);
         retain(&mut self.values, parts);

@@ -1,4 +1,4 @@
-//! The functions of the word `second_derivatives`.
+//! The functions of the option `second_derivatives`.
 
 use super::derivatives::{DIFFERENTIATE, columns};
 use super::specialisation::Specialisation;
@@ -8,14 +8,16 @@ use crate::lower::Program;
 use crate::mechanics::derivatives::second::{self, ConstraintHessian, Hessian, InputHessian};
 use crate::mechanism::Model;
 
-/// Those of inverse dynamics: by recursion, also in up to so many lanes each, or by differentiation.
+/// Returns the second derivatives of inverse dynamics, by recursion (also in each of the lane counts `wide`)
+/// or by differentiation.
 pub(super) fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     wide: &[usize],
     specialisation: Specialisation,
 ) -> Program {
-    // Given forces do not show what they depend on.
+    // Passive forces as symbols hide their dependence on the state, so the elements themselves are
+    // differentiated.
     let model = &Model { passive: None, ..model.clone() };
     let in_lanes =
         |most: usize| second::by_recursion(model, joints, most).map(|found| state(&found).concat());
@@ -31,7 +33,7 @@ pub(super) fn inverse_dynamics<'g>(
     program.or_in_lanes(wide)
 }
 
-/// Those of forces of the inputs.
+/// Returns the second derivatives of the power of the input forces.
 pub(super) fn inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>], specialisation: Specialisation) -> Program {
     let InputHessian { state: by_state, qu, vu, uu } = second::of_inputs(model, tau);
     let [qq, qv, vv, _] = state(&by_state);
@@ -39,7 +41,7 @@ pub(super) fn inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>], specialisation: Sp
     specialisation.program(&blocks.concat())
 }
 
-/// Those of what constraints add to the equations of motion.
+/// Returns the second derivatives of the terms that constraints add to the equations of motion.
 pub(super) fn constraints(model: &Model<'_>, specialisation: Specialisation) -> Program {
     let ConstraintHessian { state: by_state, q_lambda } = second::of_constraints(model);
     let mut outputs = state(&by_state).concat();
@@ -47,7 +49,7 @@ pub(super) fn constraints(model: &Model<'_>, specialisation: Specialisation) -> 
     specialisation.program(&outputs)
 }
 
-/// The blocks of the state and the accelerations, each column by column.
+/// Returns the blocks of the state and the accelerations, each column by column.
 pub(super) fn state<'g>(found: &Hessian<'g>) -> [Vec<Expr<'g>>; 4] {
     [&found.qq, &found.qv, &found.vv, &found.qa].map(columns)
 }

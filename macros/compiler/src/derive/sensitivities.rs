@@ -1,4 +1,4 @@
-//! The functions of the word `sensitivities`: how the motion depends on the parameters.
+//! The functions of the option `sensitivities`: derivatives of the motion with respect to the parameters.
 
 use super::specialisation::Specialisation;
 use crate::expr::Expr;
@@ -9,7 +9,7 @@ use crate::mechanics::{self, derivatives::parameters};
 use crate::mechanism::Model;
 use crate::passes::{self, Passes, Variant};
 
-/// What both functions are derived from: the model as it is or one of its variants, whichever costs less.
+/// The model, or the cheapest of its variants, from which both functions are derived.
 pub(super) struct Sensitivities<'g> {
     variant: Option<Variant<'g>>,
     inverse: Program,
@@ -22,7 +22,8 @@ impl<'g> Sensitivities<'g> {
         passes: Passes,
         specialisation: Specialisation,
     ) -> Sensitivities<'g> {
-        // Given forces do not show what they depend on.
+        // Passive forces as symbols hide their dependence on the parameters, so the elements themselves are
+        // differentiated.
         let model = &Model { passive: None, ..model.clone() };
         let mut variants =
             if model.nv() <= DERIVATIVES_COMPARED { passes::variants(model, passes) } else { Vec::new() };

@@ -1,4 +1,4 @@
-//! Mass matrices that cannot be inverted: what lacks inertia is a mistake of the user's, told by its cause.
+//! Diagnostics for singular mass matrices: a lack of inertia is a user error, reported with its cause.
 
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Sym3, Vec3};
@@ -7,10 +7,10 @@ use crate::mechanics::{added_mass, crba, massless, regularity};
 use crate::mechanism::{Inertia, LinkId, Model, Motion};
 use crate::syntax::ROOT_JOINT;
 
-/// What to write for a mechanism without inertia.
+/// Help for a mechanism without inertia.
 const LEAVE_OUT: &str = "or leave the dynamics out, which need inertia: with `inertia = none` frames, their Jacobians, constraints and outputs remain";
 
-/// True if the mass matrix can be inverted; reports why not.
+/// Returns true if the mass matrix is regular; otherwise reports the cause.
 pub fn check<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -29,7 +29,7 @@ pub fn check<'g>(
         return false;
     }
     if let Some((bare, rest)) = bare_base(model, joints, &singular) {
-        // Only what would remain with a base that has mass is another mistake.
+        // An error that a base with mass would not remove is reported separately.
         report_base(model, bare, cx);
         singular = rest;
     }
@@ -39,7 +39,8 @@ pub fn check<'g>(
     false
 }
 
-/// True if what is to be multiplied by the accelerations can be inverted; reports where forces cancel inertia.
+/// Returns true if the effective mass matrix is regular; otherwise reports that forces linear in
+/// accelerations cancel the inertia.
 pub fn check_effective<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -60,13 +61,13 @@ pub fn check_effective<'g>(
     false
 }
 
-/// Some mass with some inertia.
+/// Returns mass properties with unit mass and unit inertia.
 fn unit(graph: &Graph) -> Inertia<'_> {
     Inertia::of_body(graph.one(), Vec3::zero(graph), Sym3::scalar(graph.one()))
 }
 
-/// A link that moves freely and lacks mass, or a moment of inertia about some axis: with more of them fewer velocities move
-/// nothing, which are told as well.
+/// Returns a free link without mass, or without a moment of inertia about some axis, if more inertia of this
+/// link would leave fewer singular velocities. The remaining singular velocities are returned as well.
 fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) -> Option<(usize, Vec<usize>)> {
     let free = |link: &usize| matches!(model.links[*link].motion, Motion::Free { .. });
     (0..model.links.len()).filter(free).find_map(|bare| {
@@ -79,7 +80,7 @@ fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) ->
     })
 }
 
-/// Reports a mechanism of which no part has inertia.
+/// Reports a mechanism without any inertia.
 fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
     let place = &model.velocities[velocity].1;
     let (what, mend) = match place.file {
@@ -108,7 +109,7 @@ fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
     }
 }
 
-/// Reports velocities that move nothing, all together: a file may have many.
+/// Reports all velocities that move no inertia in one error, since a file may have many.
 fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics) {
     const MAX_REPORTED: usize = 8;
     let place = &model.velocities[singular[0]].1;
@@ -127,7 +128,7 @@ fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics
     if place.file.is_some() {
         let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
         joints.dedup();
-        // The root's is not the file's.
+        // The root joint is not defined in the file.
         joints.retain(|joint| !joint.starts_with(ROOT_JOINT));
         match joints.as_slice() {
             [] => {}
@@ -139,7 +140,8 @@ fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics
     }
 }
 
-/// The name of a velocity's joint. Those of a joint with several stand at the same place, each with a word of its own.
+/// Returns the name of a velocity's joint. The velocities of a joint with several degrees of freedom have the
+/// same place and different suffixes.
 fn joint_of<'a>(model: &'a Model<'_>, velocity: usize) -> &'a str {
     let (name, place) = &model.velocities[velocity];
     let alone = model.velocities.iter().filter(|(_, other)| other.file == place.file).count() == 1;

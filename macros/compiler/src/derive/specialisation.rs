@@ -1,42 +1,45 @@
-//! What programs are specialised to, and which of several programs of a function is taken.
+//! Specialisation of programs to known parameters, and selection of the cheapest of several programs of a
+//! function.
 
 use crate::expr::{Expr, Symbol};
 use crate::lower::{Program, lower_without, size};
 use crate::mechanism::Quantity;
 
-/// By how many operations equal functions may change places when their sums are factored: so many, and one in so many.
+/// Tolerance of the comparison of sizes before lowering: factoring sums may change the operation count by
+/// this number of operations, plus one part in the second number.
 const SPREAD: (usize, usize) = (3, 100);
 
-/// Outputs of one of several variants of a function, with their size in operations.
+/// Outputs of one of several variants of a function, with their size.
 pub struct Candidate<'g> {
-    /// Operations.
+    /// Number of operations.
     pub size: usize,
-    /// The outputs.
+    /// Expressions of the outputs.
     pub outputs: Vec<Expr<'g>>,
 }
 
-/// What a function's program is specialised to.
+/// Specialisation of a function's program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Specialisation {
-    /// Nothing: it computes everything.
+    /// None: the program computes all values.
     None,
-    /// Given parameters: what depends on them alone is computed before.
+    /// Known parameters: values that depend only on parameters are computed beforehand.
     ByParameters,
 }
 
 impl Specialisation {
-    /// The program of outputs.
+    /// Returns the program of the outputs.
     pub fn program(self, outputs: &[Expr<'_>]) -> Program {
         lower_without(outputs, &|s| self.knows(s))
     }
 
-    /// The program of the outputs that take the fewest operations of some that compute the same, and of equally many
-    /// the fewest instructions.
+    /// Returns the program with the fewest operations among equivalent candidates; among equal operation
+    /// counts, the one with the fewest instructions.
     pub fn cheapest<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Program {
         self.cheapest_of(lists).1
     }
 
-    /// The program of the outputs that take the fewest operations, with their number.
+    /// Returns the program with the fewest operations among equivalent candidates, with the candidate's
+    /// index.
     pub fn cheapest_of<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
         let all = promising(lists);
         let mut programs: Vec<(usize, Program)> =
@@ -49,25 +52,25 @@ impl Specialisation {
         programs.into_iter().next().unwrap_or_default()
     }
 
-    /// The programs of those outputs, of some that compute the same, that may be the cheapest in lanes; with their
-    /// numbers.
+    /// Returns the programs of those of several equivalent candidates that may be the cheapest in lanes, with
+    /// their indices.
     pub fn programs<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Program)> {
         promising(lists).iter().map(|(k, list)| (*k, self.program(list))).collect()
     }
 
-    /// Outputs with their size.
+    /// Returns the outputs with their size.
     pub fn sized(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {
         Candidate { size: size(&outputs, &|s| self.knows(s)), outputs }
     }
 
-    /// True for what is known before.
+    /// Returns true for a symbol whose value is known beforehand.
     pub fn knows(self, symbol: Symbol) -> bool {
         self == Specialisation::ByParameters && matches!(Quantity::of(symbol), Quantity::Parameter(_))
     }
 }
 
-/// Those lists of outputs that may take the fewest operations of some that compute the same, with their numbers; of
-/// lists that are the same, the first.
+/// Returns those of several equivalent candidates that may take the fewest operations, with their indices. Of
+/// identical candidates, only the first is returned.
 fn promising<'g>(lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
     let mut all: Vec<(usize, Candidate<'g>)> = lists.enumerate().collect();
     let most = all.iter().map(|(_, list)| list.size + SPREAD.0 + list.size / SPREAD.1).min().unwrap_or(0);

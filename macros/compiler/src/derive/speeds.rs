@@ -1,5 +1,5 @@
-//! Functions of a mechanism with declared speeds that are not dynamics: what leads from speeds to the velocities of the joints,
-//! and all derivatives, by differentiation of the equations in speeds.
+//! Functions of a mechanism with declared generalized speeds, except dynamics: the transformation from speeds
+//! to joint velocities, and all derivatives, by differentiation of the equations in speeds.
 
 use super::derivation::Derivation;
 use super::derivatives::columns;
@@ -18,7 +18,7 @@ use crate::mechanics::{
 use crate::mechanism::{Model, Quantity};
 use crate::syntax::{Printed, Requests};
 
-/// What a word asks for that there is not with these speeds.
+/// Returns the error message and help for an option that does not support these speeds.
 pub(super) fn without(speeds: &InSpeeds<'_>, requests: Requests) -> Option<(&'static str, &'static str)> {
     if requests.routh || requests.equations == Printed::Routh {
         return Some((
@@ -36,7 +36,8 @@ pub(super) fn without(speeds: &InSpeeds<'_>, requests: Requests) -> Option<(&'st
 }
 
 impl<'g> Derivation<'_, 'g> {
-    /// The outputs of a function that is not that of a mechanism without speeds; `None` for one that is.
+    /// Returns the outputs of a function that differs from that of a mechanism without speeds; `None` for
+    /// other functions.
     pub(super) fn in_speeds(&self, speeds: &InSpeeds<'g>, declared: &Declared) -> Option<Vec<Expr<'g>>> {
         let (native, joints) = (&speeds.native, self.joints);
         let scalars = |e: Vec<Expr<'g>>| Some(speeds.written(&e));
@@ -115,7 +116,7 @@ impl<'g> Derivation<'_, 'g> {
         }
     }
 
-    /// `τ` of the rates of the speeds.
+    /// Returns `τ` as a function of the rates of the speeds.
     fn inverse(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (v, a) = (mechanics::velocities(&speeds.native), mechanics::accelerations(&speeds.native));
         speeds.forces(&rnea::inverse_dynamics(&speeds.native, self.joints, &v, Some(&a)))
@@ -131,12 +132,12 @@ impl<'g> Derivation<'_, 'g> {
         Factor::of(&mass, self.joints)
     }
 
-    /// The inverse of the mass matrix, or of what multiplies the accelerations, column by column.
+    /// Returns the inverse of the mass matrix, or of the effective mass matrix, column by column.
     fn inverse_of(&self, speeds: &InSpeeds<'g>, effective: bool) -> Vec<Expr<'g>> {
         columns(&speeds.inverse_metric(&self.factor(speeds, effective).inverse()))
     }
 
-    /// The accelerations under forces, which are symbols.
+    /// Returns the accelerations under forces that are symbols.
     fn free_accelerations(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let native = &speeds.native;
         let bias = rnea::inverse_dynamics(native, self.joints, &mechanics::velocities(native), None);
@@ -144,7 +145,7 @@ impl<'g> Derivation<'_, 'g> {
         speeds.results(Role::Accelerations(0), &self.factor(speeds, true).solve(lacking))
     }
 
-    /// Expressions at given accelerations.
+    /// Returns the expressions with the acceleration symbols replaced by `a`.
     fn at(&self, e: Vec<Expr<'g>>, a: &[Expr<'g>]) -> Vec<Expr<'g>> {
         replace_all(&e, &|s| match Quantity::of(s) {
             Quantity::Acceleration(k) => a.get(k).copied(),
@@ -169,7 +170,8 @@ impl<'g> Derivation<'_, 'g> {
         outputs
     }
 
-    /// At given accelerations and multipliers: derivatives of `M u̇ + h − Jᵀ λ`, of `J u̇ + b`, and of the rates; then what turns
+    /// Returns, at constant accelerations and multipliers, the derivatives of `M u̇ + h − Jᵀ λ`, of
+    /// `J u̇ + b` and of the constraint velocities, followed by the matrix of the variational equation of
     /// displacements.
     fn constrained_motion(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (native, model) = (&speeds.native, &speeds.model);
@@ -185,8 +187,8 @@ impl<'g> Derivation<'_, 'g> {
         outputs
     }
 
-    /// Second derivatives: along `q ⊕ ε dv` the joints move by `ε Z(q) dv`, so that those in the displacements of the joints are
-    /// turned by `Z` as it is at `q`.
+    /// Returns the second derivatives in speeds. Along `q ⊕ ε dv` the joints move by `ε Z(q) dv`, so the
+    /// second derivatives with respect to joint displacements are multiplied by `Z` at `q`.
     fn second_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Vec<Expr<'g>> {
         let native = &speeds.native;
         let turned = |found: Hessian<'g>| Hessian {
@@ -197,7 +199,8 @@ impl<'g> Derivation<'_, 'g> {
         };
         match id {
             Id::ConstraintCurvature => {
-                // In displacements of the joints, of constraints in speeds.
+                // Second derivatives of the constraints, expressed in speeds, with respect to joint
+                // displacements.
                 let constraints = speeds.model.constraints.clone();
                 let found = hessian::of_constraints(&Model { constraints, ..native.clone() });
                 let mut outputs = second::state(&turned(found.state)).concat();
@@ -217,7 +220,7 @@ impl<'g> Derivation<'_, 'g> {
         }
     }
 
-    /// Derivatives by all parameters, a list for each.
+    /// Returns the derivatives with respect to all parameters, a list for each parameter.
     fn by_parameters(&self, e: &[Expr<'g>]) -> Vec<Vec<Expr<'g>>> {
         let (graph, count) = (self.model.graph, self.model.parameters.len());
         let of = |k| {
@@ -227,7 +230,7 @@ impl<'g> Derivation<'_, 'g> {
         (0..count).map(of).collect()
     }
 
-    /// `∂u̇/∂p = −M⁻¹ ∂τ/∂p` at the accelerations under the forces.
+    /// Returns `∂u̇/∂p = −M⁻¹ ∂τ/∂p` at the accelerations under the forces.
     fn accelerations_by_parameters(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (n, a) = (self.model.nv(), self.free_accelerations(speeds));
         let inverse = self.inverse_of(speeds, true);
@@ -252,7 +255,8 @@ impl<'g> Derivation<'_, 'g> {
         Some(of_joints.chunks(n).flat_map(|column| speeds.forces(column)).collect())
     }
 
-    /// Hamilton's form: with the momenta `p` of the speeds those of the joints are `Yᵀ p`.
+    /// Returns Hamilton's form in speeds. With the momenta `p` of the speeds, the momenta of the joints are
+    /// `Yᵀ p`.
     fn canonical_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
         let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Given(k).expr(g)).collect();

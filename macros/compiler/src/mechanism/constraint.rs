@@ -4,87 +4,92 @@ use super::index::InV;
 use crate::diag::Place;
 use crate::expr::{Expr, Vec3};
 
-/// A scalar constraint: `rate` stays zero, and so does `residual` if it restricts configurations.
+/// A scalar constraint: `rate` is zero, and so is `residual` if the constraint is holonomic.
 #[derive(Clone, Debug)]
 pub struct Constraint<'g> {
-    /// Its name: that of the joint or constraint, and which component.
+    /// Name: that of the joint or constraint, and the component.
     pub name: String,
-    /// Where that stands.
+    /// Place of the name in the source.
     pub place: Place,
-    /// An expression of configuration and time whose derivative is `rate`; none for a constraint on velocities alone.
+    /// Expression of configuration and time whose time derivative is `rate`; `None` for a constraint on
+    /// velocities only.
     pub residual: Option<Expr<'g>>,
-    /// Linear in the velocities, with a term that does not contain them where something is driven in time.
+    /// Expression that is linear in the velocities, with a velocity-free term if motion is prescribed in
+    /// time.
     pub rate: Expr<'g>,
-    /// Derivative of `rate` at zero accelerations.
+    /// Time derivative of `rate` at zero accelerations.
     pub bias: Expr<'g>,
-    /// What `residual` measures, or where there is none, what `rate` is the rate of.
+    /// Quantity measured by `residual`; without a residual, the quantity whose time derivative is `rate`.
     pub measure: Measure,
-    /// What its multiplier is in a joint that closes a loop.
+    /// Forces and torques per unit of its multiplier in a joint that closes a loop.
     pub transmits: Vec<Transmission<'g>>,
-    /// Constraints of one number are components of one vector: how much each of them restricts is measured by all.
+    /// Index of a group of constraints that are components of one vector. The magnitude of a component is
+    /// compared with those of its group.
     pub group: usize,
-    /// It determines coordinates that may have no inertia.
+    /// True if the constraint determines coordinates that may have no inertia.
     pub determines: bool,
-    /// Friction in proportion to its multiplier, the normal force of a contact that slips.
+    /// Friction proportional to the multiplier, which is the normal force of a sliding contact.
     pub friction: Vec<FrictionTerm<'g>>,
 }
 
-/// Friction along a direction: its power is `share × rate` for each unit of normal force, pressing or pulling.
+/// Friction along a direction. Its power is `share × rate` per unit of the magnitude of the normal force,
+/// whether this is compressive or tensile.
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionTerm<'g> {
-    /// The rate of slip, linear in the velocities.
+    /// Slip velocity, linear in the velocities.
     pub rate: Expr<'g>,
-    /// Force along it by normal force, an expression of state and time.
+    /// Friction force along the slip velocity per unit of normal force, an expression of state and time.
     pub share: Expr<'g>,
 }
 
-/// What a scalar constraint measures.
+/// Quantity that a scalar constraint measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// A length between two points or surfaces.
+    /// Length between two points or surfaces.
     Length,
-    /// The sine of an angle, or the difference of a cosine, which are zero where the angle is right.
+    /// Sine of an angle, or difference of a cosine, which is zero at the required angle.
     Angle,
-    /// What an expression is, or the rate of something: that of a declared constraint, by its index.
+    /// Value of an expression, or a velocity, of the declared constraint with this index.
     Declared(usize),
 }
 
-/// A part of the force or torque that a joint's parent exerts on its child.
+/// Component of the force or torque that a joint's parent exerts on its child.
 #[derive(Clone, Copy, Debug)]
 pub struct Transmission<'g> {
-    /// The joint.
+    /// Index of the joint.
     pub joint: usize,
-    /// A torque, not a force.
+    /// True for a torque, false for a force.
     pub torque: bool,
     /// Direction in ground axes.
     pub direction: Vec3<'g>,
 }
 
-/// A joint that a loop is solved for: it turns about an axis or slides along one, in its frame on the parent.
+/// A joint for which a loop is solved in closed form. It rotates about an axis or slides along it; the axis
+/// is given in the joint's frame on the parent.
 #[derive(Clone, Debug)]
 pub struct SolvedSide<'g> {
-    /// The joint, by number.
+    /// Index of the joint.
     pub joint: usize,
-    /// A Pin, otherwise a Sleeve.
+    /// True for a Pin, false for a Sleeve.
     pub turns: bool,
-    /// Its axis.
+    /// Axis of the joint.
     pub axis: Vec3<'g>,
 }
 
-/// Which velocity follows from a constraint where speeds are independent.
+/// Velocity that a constraint determines if generalized speeds are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pivot {
-    /// The constraint, by number.
+    /// Index of the constraint.
     pub constraint: usize,
-    /// The velocity.
+    /// Index of the velocity.
     pub velocity: InV,
 }
 
-/// Degrees of freedom.
+/// Numbers of degrees of freedom.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Freedom {
-    /// How many coordinates are independent.
+    /// Number of independent coordinates.
     pub coordinates: usize,
-    /// How many velocities are independent.
+    /// Number of independent velocities.
     pub velocities: usize,
 }

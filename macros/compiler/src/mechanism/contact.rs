@@ -1,25 +1,27 @@
-//! Contacts that open and close.
+//! Unilateral contacts.
 
 use crate::expr::Expr;
 
-/// Two surfaces, or a coordinate and its stop, that may part, strike, slide and stick.
+/// Unilateral contact of two surfaces, or of a coordinate with its stop: separation, impact, sliding and
+/// sticking.
 #[derive(Clone, Debug)]
 pub struct Contact<'g> {
-    /// Its name; of several points of one pair with the number of the point.
+    /// Name; for one of several points of a pair of surfaces, with the index of the point.
     pub name: String,
-    /// The distance, an expression of configuration and time: negative where the surfaces overlap.
+    /// Gap function, an expression of configuration and time: negative if the surfaces penetrate.
     pub gap: Expr<'g>,
-    /// The gap is an angle.
+    /// True if the gap is an angle.
     pub turns: bool,
-    /// The contact whose normal force presses, where this is one of its moments of friction: it has the gap of that contact, and rates
-    /// of turning alone.
+    /// Index of the contact that supplies the normal force, if this contact is one of its friction moments. A
+    /// friction moment has the gap of that contact, and only angular velocities as rates.
     pub pressed_by: Option<usize>,
-    /// The rate of the gap, then those of the slip along one or two tangents if there is friction; linear in the velocities.
+    /// Normal (gap) velocity, then slip velocities along one or two tangents if there is friction; linear in
+    /// the velocities.
     pub rates: Vec<Expr<'g>>,
-    /// Coefficient of friction; of a moment of friction the largest by the normal force.
+    /// Coefficient of friction; for a friction moment, the maximum moment per unit of normal force.
     pub friction: Expr<'g>,
     /// Coefficient of restitution.
     pub restitution: Expr<'g>,
-    /// It is a ratio of impulses (Poisson), not of velocities (Newton).
+    /// True for a restitution coefficient of impulses (Poisson), false for one of velocities (Newton).
     pub of_impulses: bool,
 }

@@ -1,34 +1,34 @@
-//! What a mechanism looks like: solids, surfaces, joints and force elements, each fixed in named frames.
+//! Drawing of a mechanism: solids, surfaces, joints and force elements, each fixed in named frames.
 
 use crate::expr::{Expr, Mat3, Vec3};
 
-/// A part of the drawing.
+/// Piece of the drawing.
 #[derive(Clone, Debug)]
 pub struct Piece<'g> {
-    /// Name of what it shows.
+    /// Name of the declared object that it shows.
     pub name: String,
-    /// What of the declaration it is.
+    /// Kind of declared object that it shows.
     pub role: Role,
-    /// What it looks like.
+    /// Geometric form.
     pub kind: PieceKind,
-    /// Indices of the frames that its first and its second vector are fixed in; the ground if none.
+    /// Indices of the frames in which its first and its second vector are fixed; `None` for the ground.
     pub frames: [Option<usize>; 2],
-    /// Its numbers, in the axes of those frames: expressions of the parameters alone.
+    /// Geometric values in the axes of these frames: expressions of the parameters only.
     pub numbers: Vec<Expr<'g>>,
 }
 
-/// What of a declaration a piece shows.
+/// Kind of declared object that a piece shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A body, by its mass properties.
+    /// A body, drawn from its mass properties.
     Body,
-    /// What leads from one joint of a body to another.
+    /// Connection from one joint of a body to another.
     Link,
-    /// A body, by the visual geometry of a file.
+    /// A body, drawn from the visual geometry of a file.
     Visual,
     /// A joint.
     Joint,
-    /// A surface that touches others.
+    /// A contact surface.
     Surface,
     /// A spring or a dashpot.
     Element,
@@ -38,7 +38,7 @@ pub enum Role {
     Gravity,
 }
 
-/// Forms of pieces; the numbers of each begin with a place.
+/// Geometric forms of pieces. The values of each form begin with a position, then follow those listed for it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PieceKind {
     /// Axis, length.
@@ -67,48 +67,48 @@ pub enum PieceKind {
     Plane,
     /// Axis, half angle, from the apex.
     Funnel,
-    /// Axis, radius; as long as one likes.
+    /// Axis, radius; unbounded length.
     Pipe,
     /// Axis, radius of the centre line, radius of the section.
     Torus,
     /// Radius; seen from inside.
     Bowl,
-    /// Nothing more.
+    /// No further values.
     Point,
-    /// The other end.
+    /// Other end.
     Bar,
     /// Axis.
     Hinge,
     /// Axis.
     Slide,
-    /// Nothing more.
+    /// No further values.
     Ball,
-    /// The other end.
+    /// Other end.
     Coil,
     /// Axis.
     Spiral,
-    /// The other end.
+    /// Other end.
     Damper,
     /// Axis.
     Brake,
-    /// Direction; the number of the input.
+    /// Direction. The field is the index of the input.
     Force(usize),
-    /// Direction; the number of the input.
+    /// Direction. The field is the index of the input.
     Torque(usize),
-    /// Acceleration; at the origin.
+    /// Acceleration; drawn at the origin.
     Gravity,
-    /// Axes; the number of its height over x and y.
+    /// Axes. The field is the index of the terrain's height as a function of x and y.
     Terrain(usize),
-    /// Axes, scales; path of the file.
+    /// Axes, scales. The field is the path of the file.
     Mesh(String),
 }
 
-/// The entries of vectors one after the other.
+/// Returns the entries of vectors one after the other.
 pub fn entries<'g>(vectors: &[Vec3<'g>]) -> Vec<Expr<'g>> {
     vectors.iter().flat_map(|v| v.0).collect()
 }
 
-/// The entries of a matrix row by row.
+/// Returns the entries of a matrix row by row.
 pub fn rows<'g>(m: &Mat3<'g>) -> Vec<Expr<'g>> {
     m.0.iter().flatten().copied().collect()
 }

@@ -8,18 +8,18 @@ use crate::expr::{Expr, Vec3};
 /// A linear spring on a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct Spring<'g> {
-    /// What it acts on.
+    /// Coordinate on which it acts.
     pub on: Coordinate,
     /// Stiffness.
     pub stiffness: Expr<'g>,
-    /// Coordinate without force.
+    /// Value of the coordinate at zero force.
     pub free: Expr<'g>,
 }
 
 /// A dashpot on a coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct Dashpot<'g> {
-    /// What it acts on.
+    /// Coordinate on which it acts.
     pub on: Coordinate,
     /// Damping coefficient.
     pub damping: Expr<'g>,
@@ -28,20 +28,21 @@ pub struct Dashpot<'g> {
 /// Coulomb friction on a coordinate, regularised as `friction × tanh(rate / friction_speed)`.
 #[derive(Clone, Copy, Debug)]
 pub struct CoulombFriction<'g> {
-    /// What it acts on.
+    /// Coordinate on which it acts.
     pub on: Coordinate,
-    /// Force or torque of full friction.
+    /// Force or torque at full slip.
     pub friction: Expr<'g>,
 }
 
-/// What an entry of `u` does.
+/// Effect of an entry of `u`.
 #[derive(Clone, Debug)]
 pub enum Input<'g> {
-    /// Nothing by itself: expressions name it.
+    /// No effect by itself; expressions contain the input.
     Named,
     /// A force or torque on a coordinate.
     Coordinate(Coordinate),
-    /// A force on the sum of coordinates with their ratios: what a motor does behind a gear or on a tendon. Its unit.
+    /// A force on a sum of coordinates with their ratios, such as that of a motor behind a gear or on a
+    /// tendon, with the unit of the force.
     Sum(Vec<Coordinate>, &'static str),
     /// A force on a link.
     Force {
@@ -61,36 +62,37 @@ pub enum Input<'g> {
     },
 }
 
-/// A sum of vectors, each in the axes of a link (of the ground if none).
+/// A sum of vectors, each in the axes of a link (`None`: of the ground).
 pub type Direction<'g> = Vec<(Option<LinkId>, Vec3<'g>)>;
 
-/// A force with the rate that it does work on: its power is `force × rate`, and it contributes `force × ∂rate/∂v` to the
-/// generalized forces.
+/// A force and the velocity on which it does work. Its power is `force × rate`, and it contributes
+/// `force × ∂rate/∂v` to the generalized forces.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<'g> {
-    /// Linear in the velocities.
+    /// Velocity, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
-    /// An expression of state, time and inputs.
+    /// Force, an expression of state, time and inputs.
     pub force: Expr<'g>,
-    /// It takes energy out, as a dashpot does; otherwise it is applied from outside.
+    /// True for a force that dissipates energy like a dashpot; false for an applied force.
     pub dissipative: bool,
 }
 
-/// What a load adds that is linear in the accelerations: the force `Σ factor v̇ₖ` on a rate, with `k` and its factor in each pair.
+/// Term of a load that is linear in the accelerations: the force `Σ factor v̇ₖ` on the velocity `rate`, where
+/// each pair is `k` and its factor.
 #[derive(Clone, Debug)]
 pub struct AccelerationForce<'g> {
-    /// Linear in the velocities.
+    /// Velocity, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
-    /// Velocities with the factors of their derivatives: expressions of state and time.
+    /// Indices of velocities, and factors of their time derivatives: expressions of state and time.
     pub factors: Vec<(usize, Expr<'g>)>,
-    /// Where the force is written.
+    /// Place of the force in the source.
     pub place: Place,
 }
 
-/// An inertance on a rate: kinetic energy `½ b rate²`.
+/// An inertance on a velocity: kinetic energy `½ b rate²`.
 #[derive(Clone, Copy, Debug)]
 pub struct Inertance<'g> {
-    /// Linear in the velocities.
+    /// Velocity, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
     /// Inertance `b`.
     pub inertance: Expr<'g>,

@@ -1,33 +1,33 @@
-//! Configurations at rest that a user declares.
+//! Declared equilibrium configurations.
 
 use crate::diag::Place;
 use crate::expr::Expr;
 
-/// What to do where dry friction is to be linear.
+/// Help for an equilibrium that requires linearisation of dry friction.
 pub const DRY_FRICTION: &str = "at rest it holds whatever is too weak to overcome it: write a `Dashpot` for damping, or declare the equilibrium in a mechanism without friction";
 
-/// A configuration at rest, with all values that belong to it: expressions of the parameters.
+/// An equilibrium configuration with all values that belong to it: expressions of the parameters.
 #[derive(Clone, Debug)]
 pub struct Equilibrium<'g> {
-    /// Its name.
+    /// Name of the equilibrium.
     pub name: String,
-    /// Where that stands.
+    /// Place of the name in the source.
     pub place: Place,
-    /// Every entry of `q`.
+    /// Values of all entries of `q`.
     pub configuration: Vec<Expr<'g>>,
-    /// Every entry of `u`.
+    /// Values of all entries of `u`.
     pub inputs: Vec<Expr<'g>>,
-    /// The states of first order.
+    /// Values of the first-order states.
     pub states: Vec<RestingState<'g>>,
 }
 
-/// A state of first order that does not change.
+/// A first-order state at equilibrium.
 #[derive(Clone, Debug)]
 pub struct RestingState<'g> {
-    /// Its number among the parameters.
+    /// Index of the state among the parameters.
     pub parameter: usize,
-    /// Its value.
+    /// Value at the equilibrium.
     pub value: Expr<'g>,
-    /// Its rate in any state of the mechanism.
+    /// Time derivative in any state of the mechanism.
     pub rate: Expr<'g>,
 }

@@ -1,5 +1,5 @@
-//! The forces of energies, and derivatives by the velocities, found once: every form of a model and every function asks for
-//! those of the same elements.
+//! Cache for generalized forces of energies and for derivatives with respect to the velocities: every variant
+//! of a model and every function needs those of the same elements.
 
 use super::motion::Chart;
 use crate::expr::{Expr, Id};
@@ -7,26 +7,26 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Derivatives by the velocities that an expression depends on, each with its velocity's number.
+/// Derivatives with respect to the velocities that an expression depends on, each with the velocity's index.
 pub type Gradient<'g> = Vec<(usize, Expr<'g>)>;
 
-/// What was found for the expressions of a model; copies of the model share it.
+/// Cached derivatives of the expressions of a model, shared by copies of the model.
 #[derive(Clone, Debug, Default)]
 pub struct Gradients(Rc<RefCell<Found>>);
 
-/// By expression: numbers of velocities and derivatives.
+/// For each expression: indices of velocities, and derivatives.
 type Known = BTreeMap<Id, Vec<(usize, Id)>>;
 
 #[derive(Debug, Default)]
 struct Found {
     of_energies: Known,
     by_velocities: Known,
-    /// Those in which the forces of energies were found.
+    /// Configuration space for which the forces of energies were computed.
     charts: Vec<Chart>,
 }
 
 impl Gradients {
-    /// What is known of an energy in a configuration space, or else what `find` finds.
+    /// Returns the cached gradient of an energy in a configuration space, or computes it with `find`.
     pub fn of_energy<'g>(
         &self,
         charts: &[Chart],
@@ -41,7 +41,8 @@ impl Gradients {
         known_or(&mut found.of_energies, energy, find)
     }
 
-    /// What is known of an expression's derivatives by the velocities, or else what `find` finds.
+    /// Returns the cached derivatives of an expression with respect to the velocities, or computes them with
+    /// `find`.
     pub fn by_velocity<'g>(&self, e: Expr<'g>, find: impl FnOnce() -> Gradient<'g>) -> Gradient<'g> {
         known_or(&mut self.0.borrow_mut().by_velocities, e, find)
     }

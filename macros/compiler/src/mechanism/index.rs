@@ -1,37 +1,37 @@
-//! Indices of coordinates and of velocities, which count differently where a quaternion stands.
+//! Indices of coordinates and of velocities, which differ in the presence of quaternions.
 
 use super::quantity::Quantity;
 use crate::expr::{Expr, Graph};
 use std::fmt::{Display, Formatter, Result};
 use std::ops::{Add, Range};
 
-/// The index of an entry of `q`.
+/// Index of an entry of `q`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct InQ(pub usize);
 
-/// The index of an entry of `v`.
+/// Index of an entry of `v`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct InV(pub usize);
 
 impl InQ {
-    /// The coordinate.
+    /// Returns the coordinate as an expression.
     pub fn expr<'g>(self, graph: &'g Graph) -> Expr<'g> {
         Quantity::Configuration(self.0).expr(graph)
     }
 
-    /// The entries of `q` from this one on.
+    /// Returns the range of `count` entries of `q` from this one on.
     pub fn and_next(self, count: usize) -> Range<usize> {
         self.0..self.0 + count
     }
 }
 
 impl InV {
-    /// The velocity.
+    /// Returns the velocity as an expression.
     pub fn expr<'g>(self, graph: &'g Graph) -> Expr<'g> {
         Quantity::Velocity(self.0).expr(graph)
     }
 
-    /// The entries of `v` from this one on.
+    /// Returns the range of `count` entries of `v` from this one on.
     pub fn and_next(self, count: usize) -> Range<usize> {
         self.0..self.0 + count
     }

@@ -14,25 +14,26 @@ pub struct Inertia<'g> {
 }
 
 impl<'g> Inertia<'g> {
-    /// Nothing.
+    /// Returns zero mass properties.
     pub fn zero(graph: &'g Graph) -> Inertia<'g> {
         Inertia { mass: graph.zero(), moment: Vec3::zero(graph), tensor: Sym3::zero(graph) }
     }
 
-    /// A body with its centre of mass at `c` and an inertia about it.
+    /// Returns the mass properties of a body with its centre of mass at `c` and the inertia `central` about
+    /// it.
     pub fn of_body(mass: Expr<'g>, c: Vec3<'g>, central: Sym3<'g>) -> Inertia<'g> {
         Inertia { mass, moment: c * mass, tensor: central + Sym3::point(mass, c) }
     }
 
-    /// The sum.
+    /// Returns the sum of mass properties about the same origin in the same axes.
     pub fn plus(&self, b: &Inertia<'g>) -> Inertia<'g> {
         Inertia { mass: self.mass + b.mass, moment: self.moment + b.moment, tensor: self.tensor + b.tensor }
     }
 
-    /// The sum with mass properties of a frame placed in this one.
+    /// Returns the sum with mass properties `other` of a frame that is placed in this one.
     ///
-    /// With `h` the other's first moment in these axes and `s = h + m p / 2`, the parallel-axis theorem adds
-    /// `2 (p · s) 1 − (p sᵀ + s pᵀ)`.
+    /// With `h` the first moment of `other` in these axes and `s = h + m p / 2`, the parallel-axis theorem
+    /// adds `2 (p · s) 1 − (p sᵀ + s pᵀ)`.
     pub fn plus_placed(&self, other: &Inertia<'g>, rotation: &Rotation<'g>, p: Vec3<'g>) -> Inertia<'g> {
         let h = rotation.to_parent(other.moment);
         let s = h + p * (other.mass * 0.5);

@@ -3,25 +3,25 @@
 use super::index::{InQ, InV};
 use crate::expr::Expr;
 
-/// What an entry of `v` and the coordinate whose rate it is stay within; nothing where there is no bound.
+/// Limits of a coordinate, its velocity and its generalized force; `None` for each missing bound.
 #[derive(Clone, Copy, Debug)]
 pub struct Limit<'g> {
     /// Index of the coordinate in `q`.
     pub q: InQ,
-    /// Index of its rate in `v`.
+    /// Index of its velocity in `v`.
     pub v: InV,
-    /// Least value of the coordinate.
+    /// Minimum value of the coordinate.
     pub lower: Option<Expr<'g>>,
-    /// Largest value of the coordinate.
+    /// Maximum value of the coordinate.
     pub upper: Option<Expr<'g>>,
-    /// Largest rate, in both directions.
+    /// Maximum velocity, in both directions.
     pub speed: Option<Expr<'g>>,
-    /// Largest generalized force, in both directions.
+    /// Maximum generalized force, in both directions.
     pub effort: Option<Expr<'g>>,
 }
 
 impl<'g> Limit<'g> {
-    /// The bounds: lower, upper, speed, effort.
+    /// Returns the bounds: lower, upper, velocity, force.
     pub fn bounds(&self) -> [Option<Expr<'g>>; 4] {
         [self.lower, self.upper, self.speed, self.effort]
     }

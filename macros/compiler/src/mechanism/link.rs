@@ -1,4 +1,5 @@
-//! Links: moving frames in a tree, each with one elementary motion, and the configuration space that they span.
+//! Links: moving frames in a tree, each with one elementary motion, and the configuration space of all these
+//! motions.
 
 use super::inertia::Inertia;
 use super::motion::{Chart, Motion};
@@ -10,39 +11,39 @@ use crate::expr::Graph;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LinkId(pub usize);
 
-/// The configuration space, for rates of expressions of the coordinates.
+/// The configuration space, from which time derivatives of expressions of the coordinates are computed.
 #[derive(Clone, Copy)]
 pub struct Space<'a, 'g> {
-    /// Owner of the expressions.
+    /// Graph that owns the expressions.
     pub graph: &'g Graph,
-    /// Its parts.
+    /// Coordinate charts of its factors.
     pub charts: &'a [Chart],
-    /// What the entries of `v` are, where they are not the velocities that the joints have.
+    /// Generalized speeds that the entries of `v` are; `None` if the entries are joint velocities.
     pub speeds: Option<&'a Speeds<'g>>,
 }
 
-/// A moving frame of the tree, with everything that is fixed in it.
+/// A moving frame of the tree, with the bodies fixed in it.
 #[derive(Clone, Debug)]
 pub struct Link<'g> {
-    /// The link that carries it; the ground if none. Its index is smaller.
+    /// Parent link, whose index is smaller; `None` for the ground.
     pub parent: Option<LinkId>,
     /// The joint's frame on the parent link.
     pub placement: Pose<'g>,
-    /// How the link moves in the joint's frame.
+    /// Motion of the link relative to the joint's frame.
     pub motion: Motion<'g>,
     /// Mass properties of all bodies fixed in it.
     pub inertia: Inertia<'g>,
 }
 
-/// A named frame: a body's, a particle's or a point's.
+/// A named frame of a body, a particle or a point.
 #[derive(Clone, Debug)]
 pub struct NamedFrame<'g> {
-    /// Name.
+    /// Name of the frame.
     pub name: String,
-    /// It may have mass: it is no point.
+    /// True for a body or particle, which may have mass; false for a point.
     pub massive: bool,
-    /// The link it is fixed in; the ground if none.
+    /// Link in which it is fixed; `None` for the ground.
     pub link: Option<LinkId>,
-    /// Its placement in the link's frame.
+    /// Pose in the link's frame.
     pub pose: Pose<'g>,
 }

@@ -1,6 +1,6 @@
-//! The checked mechanism as data: a tree of links with elementary motions, bodies lumped into the links that carry them,
-//! force elements, constraints as scalar rows. Values are expressions of the parameters. Nothing here computes more than
-//! sums of placements and of mass properties.
+//! The checked mechanism as data: a tree of links with elementary motions, bodies merged into their links,
+//! force elements, and constraints as scalar rows. Values are expressions of the parameters. This module
+//! computes nothing beyond sums of placements and of mass properties.
 
 mod constraint;
 mod contact;

@@ -22,54 +22,55 @@ use std::rc::Rc;
 /// A checked mechanism.
 #[derive(Clone)]
 pub struct Model<'g> {
-    /// Owner of all expressions.
+    /// Graph that owns all expressions.
     pub graph: &'g Graph,
-    /// The struct's name.
+    /// Name of the struct.
     pub name: String,
-    /// Where the name stands.
+    /// Place of the name in the source.
     pub place: Place,
     /// Names of the parameters.
     pub parameters: Vec<String>,
-    /// There are no dynamics, as the user asked for: nothing needs inertia.
+    /// True if the user requested a mechanism without dynamics, which needs no inertia.
     pub kinematic: bool,
     /// Uniform gravity, in ground axes.
     pub gravity: Vec3<'g>,
-    /// Speed at which friction is regularised.
+    /// Velocity that scales the regularisation of dry friction.
     pub friction_speed: Expr<'g>,
     /// Links, parents before children.
     pub links: Vec<Link<'g>>,
-    /// Mass properties that count as moving although the ground carries them: what a pass found to stay where it is.
+    /// Mass properties of bodies that a pass found to be at rest; they are fixed to the ground but count as
+    /// moving mass.
     pub still: Inertia<'g>,
-    /// Something depends on time.
+    /// True if an expression depends on time.
     pub time: bool,
-    /// Inputs act by way of the velocity.
+    /// True if the effect of the inputs depends on the velocity.
     pub velocity_inputs: bool,
-    /// Parts of the configuration space, in the order of `v`.
+    /// Coordinate charts of the configuration space, in the order of `v`.
     pub charts: Vec<Chart>,
-    /// Forces of elements that were found so far.
+    /// Cache of the generalized forces of elements.
     pub gradients: Gradients,
     /// Name of every entry of `q`.
     pub configuration: Vec<String>,
-    /// Name of every entry of `v`, and where the joint stands.
+    /// Name of every entry of `v`, with the place of the joint.
     pub velocities: Vec<(String, Place)>,
-    /// The speeds that are the entries of `v`, if the user chose some. Everything else of the model is written in the
-    /// velocities that the joints have.
+    /// Generalized speeds that the entries of `v` are, if the user declared any. All other expressions of the
+    /// model contain joint velocities.
     pub speeds: Option<Rc<Speeds<'g>>>,
-    /// Name of every entry of `u`.
+    /// Name and effect of every entry of `u`.
     pub inputs: Vec<(String, Input<'g>)>,
     /// Limits, one for each entry of `v` that has any.
     pub limits: Vec<Limit<'g>>,
-    /// Configurations at rest about which linear equations are printed.
+    /// Equilibria about which linearised equations are printed.
     pub equilibria: Vec<Equilibrium<'g>>,
-    /// Contacts that open and close, stops among them.
+    /// Unilateral contacts, including stops.
     pub contacts: Vec<Contact<'g>>,
-    /// What figures that follow from parameters must fulfil.
+    /// Conditions on values that depend on parameters.
     pub requirements: Vec<Requirement<'g>>,
     /// Named frames.
     pub frames: Vec<NamedFrame<'g>>,
-    /// What it looks like, if that was asked for.
+    /// Pieces of the drawing, if requested.
     pub drawing: Vec<Piece<'g>>,
-    /// The heights of its terrains, by two given numbers.
+    /// Heights of the terrains, as functions of two arguments.
     pub heights: Vec<Expr<'g>>,
     /// Springs.
     pub springs: Vec<Spring<'g>>,
@@ -77,68 +78,74 @@ pub struct Model<'g> {
     pub dashpots: Vec<Dashpot<'g>>,
     /// Dry friction.
     pub frictions: Vec<CoulombFriction<'g>>,
-    /// Potential energies beside those of gravity and springs on coordinates.
+    /// Potential energies other than those of gravity and of springs on coordinates.
     pub potentials: Vec<Expr<'g>>,
     /// Rayleigh dissipation functions.
     pub dissipations: Vec<Expr<'g>>,
     /// Other forces.
     pub loads: Vec<Load<'g>>,
-    /// What of other forces is linear in the accelerations.
+    /// Terms of other forces that are linear in the accelerations.
     pub acceleration_forces: Vec<AccelerationForce<'g>>,
-    /// The forces of all these, where a function of its own computes them and all others take them as given.
+    /// Passive forces of all these elements, if a separate function computes them and the other functions
+    /// call it.
     pub passive: Option<Rc<PassiveForces<'g>>>,
     /// Inertances.
     pub inertances: Vec<Inertance<'g>>,
-    /// Scalar constraints; those on configurations first.
+    /// Scalar constraints, holonomic ones first.
     pub constraints: Vec<Constraint<'g>>,
-    /// Names of rows of joints and constraints that follow from the others everywhere.
+    /// Names of rows of joints and constraints that depend on the others in every configuration.
     pub redundant: Vec<String>,
-    /// The pivots by which dependent velocities are solved for, in their order, where independent speeds are to be used.
+    /// Pivots for elimination of the dependent velocities, in elimination order, if independent velocities
+    /// are to be used.
     pub dependent: Option<Vec<Pivot>>,
-    /// The joints that loops are solved for in closed form, two for each.
+    /// Joints for which loops are solved in closed form, two for each loop.
     pub solved: Vec<SolvedSide<'g>>,
-    /// Degrees of freedom.
+    /// Numbers of degrees of freedom.
     pub freedom: Freedom,
-    /// Outputs.
+    /// Outputs of the mechanism.
     pub outputs: Vec<OutputValue<'g>>,
-    /// The mechanism with the joints released whose reactions outputs name: six coordinates for each, after all others.
+    /// Copy of the mechanism in which each joint whose reaction is an output has six degrees of freedom;
+    /// these coordinates come last.
     pub released: Option<Rc<Released<'g>>>,
     /// Units of parameters, coordinates, inputs, outputs and constraints.
     pub units: Units,
 }
 
-/// A mechanism with released joints: what holds their coordinates at zero is what they transmit.
+/// A mechanism with released joints. The forces that fix the released coordinates at zero are the reactions
+/// of the joints.
 #[derive(Clone)]
 pub struct Released<'g> {
-    /// The mechanism.
+    /// Model of the mechanism.
     pub model: Model<'g>,
-    /// The joints in the order of their coordinates.
+    /// Indices of the released joints, in the order of their coordinates.
     pub joints: Vec<usize>,
 }
 
-/// An expression that becomes a function.
+/// An output expression, which becomes a generated function.
 #[derive(Clone, Debug)]
 pub struct OutputValue<'g> {
-    /// Its name.
+    /// Name of the output.
     pub name: String,
-    /// One component, three or nine; of a diagram nine for each action.
+    /// Components: one, three or nine; nine for each action of a free-body diagram.
     pub values: Vec<Expr<'g>>,
-    /// What the values are, if they are a free-body diagram.
+    /// Free-body diagram to which the values belong, if any.
     pub diagram: Option<Diagram>,
 }
 
-/// A free-body diagram: what acts on a body. By action its values are the point, the force and the torque.
+/// A free-body diagram: the actions on a body. The values of each action are the point, the force and the
+/// torque.
 #[derive(Clone, Debug)]
 pub struct Diagram {
-    /// The body.
+    /// Name of the body.
     pub body: String,
-    /// Name of each action, and what of the declaration it is.
+    /// Name and origin of each action.
     pub actions: Vec<(String, Origin)>,
-    /// What has to be released: joints, then places of bodies and particles, in the order of the declaration.
+    /// Indices of the joints to be released: joints, then positions of bodies and particles, in the order of
+    /// the declaration.
     pub released: Vec<usize>,
 }
 
-/// Where an action of a free-body diagram comes from.
+/// Origin of an action of a free-body diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// Uniform gravity.
@@ -151,74 +158,74 @@ pub enum Origin {
     Joint,
     /// A constraint.
     Constraint,
-    /// A contact that opens and closes.
+    /// A unilateral contact.
     Contact,
 }
 
-/// What a value depends on beside the configuration and time.
+/// Quantities that a value depends on in addition to the configuration and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Uses {
-    /// Velocities.
+    /// True if it depends on velocities.
     pub velocities: bool,
-    /// Accelerations.
+    /// True if it depends on accelerations.
     pub accelerations: bool,
-    /// Inputs.
+    /// True if it depends on inputs.
     pub inputs: bool,
 }
 
 impl<'g> Model<'g> {
-    /// The configuration space.
+    /// Returns the configuration space.
     pub fn space(&self) -> Space<'_, 'g> {
         Space { graph: self.graph, charts: &self.charts, speeds: self.speeds.as_deref() }
     }
 
-    /// Number of entries of `q`.
+    /// Returns the number of entries of `q`.
     pub fn nq(&self) -> usize {
         self.configuration.len()
     }
 
-    /// Number of entries of `v`.
+    /// Returns the number of entries of `v`.
     pub fn nv(&self) -> usize {
         self.velocities.len()
     }
 
-    /// The places of a coordinate that is to come after those that are there, and of its rate.
+    /// Returns the indices in `q` and `v` of the next coordinate that is added.
     pub fn next_coordinate(&self) -> (InQ, InV) {
         (InQ(self.nq()), InV(self.nv()))
     }
 
-    /// Number of entries of `u`.
+    /// Returns the number of entries of `u`.
     pub fn nu(&self) -> usize {
         self.inputs.len()
     }
 
-    /// The bounds of all limits, in their order.
+    /// Returns the bounds of all limits, in their order.
     pub fn limit_values(&self) -> Vec<Expr<'g>> {
         self.limits.iter().flat_map(|limit| limit.bounds()).flatten().collect()
     }
 
-    /// The numbers of the drawing, piece by piece.
+    /// Returns the geometric values of the drawing, piece by piece.
     pub fn drawing_numbers(&self) -> Vec<Expr<'g>> {
         self.drawing.iter().flat_map(|piece| &piece.numbers).copied().collect()
     }
 
-    /// The rates of all contacts, each with its normal one first.
+    /// Returns the contact velocities of all contacts, the normal velocity of each first.
     pub fn contact_rates(&self) -> Vec<Expr<'g>> {
         self.contacts.iter().flat_map(|contact| &contact.rates).copied().collect()
     }
 
-    /// The figures of all requirements, in their order.
+    /// Returns the values of all requirements, in their order.
     pub fn figures(&self) -> Vec<Expr<'g>> {
         self.requirements.iter().flat_map(|requirement| &requirement.values).copied().collect()
     }
 
-    /// Number of constraints on configurations.
+    /// Returns the number of holonomic constraints.
     pub fn holonomic(&self) -> usize {
         self.constraints.iter().filter(|c| c.residual.is_some()).count()
     }
 
-    /// Whether some constraints follow from others wherever all are fulfilled, though no elimination could tell which: as
-    /// in Bricard's linkage.
+    /// Returns true if constraints depend on others in every admissible configuration although the
+    /// elimination did not identify them, as in Bricard's linkage.
     pub fn is_overdetermined(&self) -> bool {
         let plain = self.constraints.iter().all(|c| c.friction.is_empty() && !c.determines);
         plain && self.constraints.len() + self.freedom.velocities > self.nv()
