@@ -104,8 +104,7 @@ impl Output {
         self.functions.iter().chain(self.prepared.iter().flat_map(|prepared| &prepared.functions))
     }
 
-    /// Returns the text of a part of a program that is undefined (NaN) in every configuration, if there is
-    /// one.
+    /// Returns the text of an operation on constants whose result is not finite, if a program contains one.
     pub fn undefined(&self) -> Option<String> {
         let numbers = self.prepared.iter().map(|prepared| &prepared.numbers);
         self.all_functions().map(|f| &f.program).chain(numbers).find_map(Program::undefined)

@@ -1,4 +1,4 @@
-//! Directions: of unit length, orthogonal to others.
+//! Unit vectors, orthogonal to others.
 
 use crate::expr::Vec3;
 use crate::expr::diff::TINY;
@@ -8,7 +8,7 @@ use crate::expr::sample::sample;
 /// Names of the coordinate axes.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// A vector divided by its length. The zero vector has no direction; the result is zero then, not NaN.
+/// Returns a vector divided by its length. The result for the zero vector is zero, not NaN.
 pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
     match v.values() {
         Some(_) => v.map(|c| c / v.norm()),
@@ -19,7 +19,7 @@ pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
     }
 }
 
-/// Two directions orthogonal to an axis and to each other, with their names.
+/// Returns two directions orthogonal to an axis and to each other, with their names.
 pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
     let g = axis[0].graph();
     let words: [(&'static str, Vec3<'_>); 3] = [0, 1, 2].map(|k| (AXES[k], Vec3::axis(g, k)));
@@ -30,7 +30,7 @@ pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
     let [first, second] = match in_plane(axis) {
         Some((first, second)) => [first, second],
         None => {
-            // The coordinate axis that the direction is farthest from for a sample of the parameters.
+            // The coordinate axis farthest from the direction for sampled parameters.
             let at = eval(&axis.0, &|s| sample(s, 0));
             let far = (0..3).min_by(|a, b| at[*a].abs().total_cmp(&at[*b].abs())).unwrap_or(0);
             let first = unit(axis.cross(Vec3::axis(g, far)));
@@ -40,8 +40,9 @@ pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
     [("first", first), ("second", second)]
 }
 
-/// Two directions that form a right-handed frame with a normal: for z they are x and y, and so on around; for any
-/// other normal the first is orthogonal to the coordinate axis that the normal is farthest from.
+/// Returns two directions that form a right-handed frame with a normal, or `None` if the normal is not
+/// constant. For the normal z they are x and y, and cyclically for x and y. For any other normal the first
+/// direction is orthogonal to the coordinate axis that is farthest from the normal.
 pub fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
     let graph = normal[0].graph();
     let n = normal.values()?;

@@ -1,5 +1,6 @@
-//! Jets: values with their rates, and the rates of those at zero accelerations. Motions are taken relative to the nearest
-//! link that carries both sides, so that what both share drops out.
+//! Jets: values with their first time derivatives, and their second time derivatives at zero accelerations.
+//! Motions are taken relative to the nearest common ancestor of both links, so that the common motion
+//! cancels.
 
 use super::joint::Joint;
 use super::links::change_axes;
@@ -7,34 +8,35 @@ use super::spatial::Spatial;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Model, Quantity};
 
-/// A scalar with its rate, and the rate of that at zero accelerations.
+/// A scalar with its first time derivative, and its second time derivative at zero accelerations.
 pub struct Jet<'g> {
     /// The value.
     pub value: Expr<'g>,
-    /// Its rate.
+    /// First time derivative.
     pub rate: Expr<'g>,
-    /// The rate of that.
+    /// Second time derivative at zero accelerations.
     pub second: Expr<'g>,
 }
 
-/// A vector with its rate, and the rate of that at zero accelerations, in the axes of a link that counts as fixed.
+/// A vector with its first time derivative, and its second time derivative at zero accelerations, in the axes
+/// of a link that is treated as fixed.
 #[derive(Clone, Copy)]
 pub struct Moving<'g> {
     /// The value.
     pub value: Vec3<'g>,
-    /// Its rate.
+    /// First time derivative.
     pub rate: Vec3<'g>,
-    /// The rate of that.
+    /// Second time derivative at zero accelerations.
     pub second: Vec3<'g>,
 }
 
 impl<'g> Moving<'g> {
-    /// The difference.
+    /// Returns the difference.
     pub fn minus(&self, b: &Moving<'g>) -> Moving<'g> {
         Moving { value: self.value - b.value, rate: self.rate - b.rate, second: self.second - b.second }
     }
 
-    /// The inner product.
+    /// Returns the inner product.
     pub fn dot(&self, b: &Moving<'g>) -> Jet<'g> {
         let twice = self.rate.dot(b.rate) * 2.0;
         Jet {
@@ -44,17 +46,17 @@ impl<'g> Moving<'g> {
         }
     }
 
-    /// A component.
+    /// Returns a component.
     pub fn component(&self, k: usize) -> Jet<'g> {
         Jet { value: self.value[k], rate: self.rate[k], second: self.second[k] }
     }
 }
 
-/// A link's motion relative to one of its ancestors, in link axes.
+/// Motion of a link relative to one of its ancestors, in the link's axes.
 pub struct Relative<'g> {
-    /// The link.
+    /// The link; `None` for the ground.
     pub link: Option<LinkId>,
-    /// The ancestor.
+    /// The ancestor; `None` for the ground.
     pub ancestor: Option<LinkId>,
     /// Velocity of the origin, angular velocity.
     pub twist: Spatial<'g>,
@@ -62,7 +64,7 @@ pub struct Relative<'g> {
     pub acceleration: Spatial<'g>,
 }
 
-/// Motion of a link relative to the nearest link that carries it and another.
+/// Returns the motion of a link relative to the nearest common ancestor of this link and another.
 pub fn relative<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -98,7 +100,7 @@ pub fn relative<'g>(
     Relative { link, ancestor: a, twist, acceleration }
 }
 
-/// A point of a link.
+/// Returns the motion of a point of a link, in the axes of the ancestor.
 pub fn point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
     let mut value = p;
     let mut at = on.link;
@@ -115,7 +117,7 @@ pub fn point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving
     Moving { value, rate: out(rate), second: out(second) }
 }
 
-/// A direction fixed in a link.
+/// Returns the motion of a direction fixed in a link, in the axes of the ancestor.
 pub fn direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
     let w = on.twist.angular;
     let second = on.acceleration.angular.cross(e) + w.cross(w.cross(e));
@@ -123,7 +125,7 @@ pub fn direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Mo
     Moving { value: out(e), rate: out(w.cross(e)), second: out(second) }
 }
 
-/// A vector of a link, in the axes of the ancestor.
+/// Returns the components of a vector, given in a link's axes, in the axes of the ancestor.
 pub fn direction_out<'g>(joints: &[Joint<'g>], on: &Relative<'g>, v: Vec3<'g>) -> Vec3<'g> {
     change_axes(joints, v, on.link, on.ancestor)
 }

@@ -1,6 +1,6 @@
-//! Joints of links: where a link is in its parent, how it can move, and what a twist, a wrench and mass properties become
-//! on the other side. A joint placed by expressions of coordinates and time has a motion subspace that depends on them,
-//! and may move by itself.
+//! Joints of links: pose of a link relative to its parent, motion subspace, and the transformation of twists,
+//! wrenches and mass properties across the joint. The motion subspace of a joint that is placed by
+//! expressions of coordinates and time depends on these, and its motion may be prescribed in time.
 
 use super::rates::{Partials, position_in, symbols_in};
 use super::spatial::{Spatial, map_spatial};
@@ -8,67 +8,68 @@ use crate::expr::replace::replace;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
 
-/// One degree of freedom of a joint: a column of its motion subspace, in link axes. It is constant there but for links
-/// that are placed by expressions.
+/// One degree of freedom of a joint: a column of its motion subspace, in link axes. It is constant there
+/// except for links that are placed by expressions.
 #[derive(Clone, Debug)]
 pub struct Dof<'g> {
-    /// Entry of `v`.
+    /// Index in `v`.
     pub index: usize,
-    /// Joint rate per entry of `v`.
+    /// Joint velocity per unit of the entry of `v`.
     pub ratio: f64,
-    /// Twist of the link per unit of joint rate, in link axes.
+    /// Twist of the link per unit of joint velocity, in link axes.
     pub subspace: Spatial<'g>,
 }
 
-/// A link's joint at a configuration: where the link is in its parent, and how it can move.
+/// Joint of a link at a configuration: pose of the link relative to its parent, and motion subspace.
 #[derive(Clone, Debug)]
 pub struct Joint<'g> {
-    /// Parent link.
+    /// Parent link; `None` for the ground.
     pub parent: Option<LinkId>,
-    /// Orientation of the link in the parent link.
+    /// Orientation of the link relative to the parent link.
     pub rotation: Rotation<'g>,
-    /// Origin of the link in the parent link.
+    /// Origin of the link, in the parent's frame.
     pub translation: Vec3<'g>,
     /// Degrees of freedom, parent side first.
     pub dofs: Vec<Dof<'g>>,
-    /// What is added where the motion subspace is not constant, or the link is driven in time: a link placed by expressions.
+    /// Additional motion of a link placed by expressions, whose motion subspace is not constant or which is
+    /// driven in time.
     pub drift: Option<Drift<'g>>,
-    /// How many limbs side by side hang from the parent by this joint, one in each lane of its expressions; one for a
-    /// joint that stands for itself.
+    /// Number of identical limbs that this joint connects to the parent, one in each SIMD lane of its
+    /// expressions; one for an ordinary joint.
     pub limbs: usize,
 }
 
-/// Motion of a link that its coordinates' rates alone do not give, in link axes.
+/// Motion of a link in addition to the velocities of its coordinates, in link axes.
 #[derive(Clone, Debug)]
 pub struct Drift<'g> {
-    /// Twist at zero rates: the link is driven in time.
+    /// Twist at zero velocities, different from zero if the link is driven in time.
     pub twist: Spatial<'g>,
-    /// Rate of the components of the joint's twist at constant `v`.
+    /// Time derivative of the components of the joint's twist at constant `v`.
     pub acceleration: Spatial<'g>,
-    /// Rate of the components of each degree of freedom's subspace.
+    /// Time derivative of the components of each degree of freedom's subspace.
     pub subspace_rates: Vec<Spatial<'g>>,
 }
 
 impl<'g> Joint<'g> {
-    /// A wrench on the link, about the parent's origin in parent axes.
+    /// Transforms a wrench on the link to the parent's origin and axes.
     pub fn wrench_to_parent(&self, w: &Spatial<'g>) -> Spatial<'g> {
         let force = self.rotation.to_parent(w.linear);
         let moment = self.rotation.to_parent(w.angular) + self.translation.cross(force);
         Spatial { linear: force, angular: moment }
     }
 
-    /// The wrench on the parent, given that on the link: the sum of those of limbs side by side.
+    /// Adds the wrench on the link to that on the parent, summed over identical limbs in lanes.
     pub fn add_wrench(&self, parent: &Spatial<'g>, link: &Spatial<'g>) -> Spatial<'g> {
         let wrench = self.wrench_to_parent(link);
         parent.plus(&map_spatial(&wrench, |c| self.lane_sum(c)))
     }
 
-    /// The sum over limbs side by side.
+    /// Returns the sum over identical limbs in lanes.
     pub fn lane_sum(&self, e: Expr<'g>) -> Expr<'g> {
         if self.limbs == 1 { e } else { e.lane_sum(self.limbs) }
     }
 
-    /// Mass properties of the parent with those of the link, or of all limbs side by side.
+    /// Returns the mass properties of the parent with those of the link, or of all identical limbs in lanes.
     pub fn composite(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
         if self.limbs == 1 {
             return parent.plus_placed(link, &self.rotation, self.translation);
@@ -81,7 +82,7 @@ impl<'g> Joint<'g> {
         })
     }
 
-    /// The parent's twist, at the link's origin in link axes.
+    /// Returns the parent's twist at the link's origin in link axes.
     pub fn twist_to_child(&self, parent: &Spatial<'g>) -> Spatial<'g> {
         Spatial {
             linear: self.rotation.to_child(parent.linear + parent.angular.cross(self.translation)),
@@ -89,7 +90,8 @@ impl<'g> Joint<'g> {
         }
     }
 
-    /// The joint's own twist for given rates (by entry of `v`).
+    /// Returns the joint's relative twist for the velocities `rates` (by entry of `v`), without motion
+    /// prescribed in time.
     pub fn relative(&self, model: &Model<'g>, rates: &[Expr<'g>]) -> Spatial<'g> {
         let mut sum = Spatial::zero(model);
         for dof in &self.dofs {
@@ -100,13 +102,13 @@ impl<'g> Joint<'g> {
 }
 
 impl<'g> Joint<'g> {
-    /// The joint's twist for rates `v`, what drives it in time included.
+    /// Returns the joint's relative twist for the velocities `v`, including motion prescribed in time.
     pub fn twist(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
         let relative = self.relative(model, v);
         self.drift.as_ref().map_or(relative, |drift| relative.plus(&drift.twist))
     }
 
-    /// The link's acceleration from its parent's twist and acceleration (none for the ground).
+    /// Returns the link's acceleration from its parent's twist and acceleration (`None` for the ground).
     pub fn acceleration(
         &self,
         model: &Model<'g>,
@@ -132,13 +134,13 @@ impl<'g> Joint<'g> {
     }
 }
 
-/// The joints of all links, at the configuration `q`.
+/// Returns the joints of all links at the configuration `q`.
 pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
     let mut partials = Partials::default();
     model.links.iter().map(|link| joint(model.space(), link, &mut partials)).collect()
 }
 
-/// The joint of a link; `partials` are those of the links before it.
+/// Returns the joint of a link; `partials` caches derivatives of the preceding links.
 pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
     let g = space.graph;
     let zero = Vec3::zero(g);
@@ -183,15 +185,17 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<
     }
 }
 
-/// The joint of a link whose placement is an expression of coordinates and time: its twist is the rate of the
-/// placement, and its subspace what each velocity adds to that.
+/// Returns the joint of a link whose placement is an expression of coordinates and time. Its twist is the
+/// time derivative of the placement, and its subspace consists of the derivatives of the twist with respect
+/// to the velocities.
 fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
     let place = &link.placement;
     let twist = rate_of_placement(space, &place.rotation, place.translation, partials);
     let acceleration = map_spatial(&twist, |c| partials.time_derivative(space, c));
     let mut dofs = Vec::new();
     let mut subspace_rates = Vec::new();
-    // The twist is linear in the velocities: what is left when all are taken away is what time does.
+    // The twist is linear in the velocities, so its value at zero velocities is the motion prescribed in
+    // time.
     let drift = map_spatial(&twist, |c| at_rest(space.graph, c));
     for index in velocities_in(&twist) {
         let subspace = map_spatial(&twist, |c| partials.of(Quantity::Velocity(index).symbol(), c));
@@ -208,7 +212,8 @@ fn placed_joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partia
     }
 }
 
-/// Twist of a frame from the rates of its placement, in the frame's axes: `Rᵀ ṗ`, and `[ω]× = Rᵀ Ṙ`.
+/// Returns the twist of a frame from the time derivatives of its placement, in the frame's axes: `Rᵀ ṗ`, and
+/// `[ω]× = Rᵀ Ṙ`.
 fn rate_of_placement<'g>(
     space: Space<'_, 'g>,
     rotation: &Rotation<'g>,
@@ -228,7 +233,7 @@ fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
     symbols_in(&all).into_iter().filter_map(index).collect()
 }
 
-/// An expression with all velocities set to zero.
+/// Returns an expression with all velocities set to zero.
 fn at_rest<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
     replace(e, &|s| matches!(Quantity::of(s), Quantity::Velocity(_)).then(|| graph.zero()))
 }

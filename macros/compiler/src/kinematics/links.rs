@@ -1,11 +1,12 @@
-//! Velocities and accelerations of all links, and vectors in the axes of other links.
+//! Velocities and accelerations of all links, and transformation of vectors between the axes of links.
 
 use super::joint::Joint;
 use super::spatial::Spatial;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Model};
 
-/// Twists of all links (velocity of the origin, angular velocity; link axes) for rates `v`.
+/// Returns the twists of all links (velocity of the origin, angular velocity; link axes) for the velocities
+/// `v`.
 pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Spatial<'g>> {
     let mut twists: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
@@ -18,8 +19,8 @@ pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Ve
     twists
 }
 
-/// Accelerations of all links (of the origin, angular; relative to the ground; link axes) for rates `v` and their
-/// derivatives `a`.
+/// Returns the accelerations of all links (of the origin, angular; relative to the ground; link axes) for the
+/// velocities `v` and the accelerations `a`.
 pub fn accelerations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -35,7 +36,7 @@ pub fn accelerations<'g>(
     all
 }
 
-/// Components in the axes of `to` of a vector given in the axes of `from`.
+/// Returns the components in the axes of `to` of a vector given in the axes of `from`.
 pub fn change_axes<'g>(
     joints: &[Joint<'g>],
     mut v: Vec3<'g>,

@@ -1,6 +1,6 @@
-//! Degrees of freedom: a configuration that fulfils the constraints is searched for numerically, with the numbers of the
-//! mechanism and samples of its parameters, and the independent rows are counted there. Grübler's count, which takes
-//! all rows for independent, is what is left where none is found.
+//! Degrees of freedom. A configuration that satisfies the constraints is searched numerically, with the
+//! mechanism's constants and samples of its parameters, and the independent rows are counted there. If none
+//! is found, Grübler's count is used, which assumes that all rows are independent.
 
 use super::rates::symbols_in;
 use super::redundancy::Basis;
@@ -9,27 +9,27 @@ use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::mechanism::{Chart, Freedom, InV, Model, Pivot, Quantity};
 
-/// Random starts of the search; a third of them where the parameters are samples and may not fit each other.
+/// Random starts of the search; a third of them if parameters are sampled, whose values may be incompatible.
 const STARTS: u64 = 24;
-/// Configurations that must agree on a mechanism that cannot move.
+/// Number of configurations that must agree before a mechanism is reported as immobile.
 const WITNESSES: usize = 3;
-/// Bound on the operations of the search, roughly: large mechanisms are searched from fewer starts.
+/// Approximate bound on the operations of the search: large mechanisms are searched from fewer starts.
 const WORK: u64 = 40_000_000;
-/// Steps from each start.
+/// Maximum number of steps from each start.
 const STEPS: u64 = 60;
-/// What may be left of the residuals.
+/// Tolerance of the residuals.
 const CLOSED: f64 = 1e-11;
-/// Residuals above this, m or rad, are not closed by more steps.
+/// Residuals above this, m or rad, are not reduced to zero by more steps.
 const OPEN: f64 = 1e-4;
 
-/// Pivots below this part of the largest entry count as zero.
+/// Pivots below this fraction of the largest entry count as zero.
 const SMALL_PIVOT: f64 = 1e-6;
 
-/// A configuration with the seed of the parameters that it belongs to.
+/// A configuration, with the seed of the parameters for which it satisfies the constraints.
 pub type Sample = (Vec<f64>, u64);
 
-/// Some configurations that fulfil the constraints, first one near the configuration with all coordinates zero, if there
-/// is one. Reports loops that nothing closes if all their numbers are known.
+/// Returns some configurations that satisfy the constraints, the first near the configuration with all
+/// coordinates zero if possible. Reports loops that cannot be closed if all their values are constant.
 pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagnostics) -> Vec<Sample> {
     let mut found: Vec<Sample> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
@@ -56,7 +56,7 @@ pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagno
     found
 }
 
-/// No residual depends on a parameter or on time.
+/// Returns true if no residual depends on a parameter or on time.
 fn is_numeric(model: &Model<'_>) -> bool {
     let residuals: Vec<Expr<'_>> = model.constraints.iter().filter_map(|c| c.residual).collect();
     symbols_in(&residuals)
@@ -64,9 +64,10 @@ fn is_numeric(model: &Model<'_>) -> bool {
         .all(|s| !matches!(Quantity::of(s), Quantity::Parameter(_) | Quantity::Time))
 }
 
-/// Counts the degrees of freedom, of configurations and of velocities, in the assembly mode that the first sample belongs
-/// to: linkages can have others, where links fold onto each other, with more. Reports a mechanism that cannot move; one
-/// that is driven in time moves also without a degree of freedom.
+/// Counts the degrees of freedom, of configurations and of velocities, in the assembly mode of the first
+/// sample that can move. Linkages can have other assembly modes, in which links fold onto each other, with
+/// more degrees of freedom. Reports a mechanism that cannot move. A mechanism driven in time moves even
+/// without a degree of freedom.
 pub fn degrees_of_freedom(
     model: &Model<'_>,
     rows: &Rows<'_>,
@@ -79,7 +80,7 @@ pub fn degrees_of_freedom(
         rows.jacobian(q, *seed)[..count].iter().for_each(|row| basis.add(row, 1e-7));
         nv - basis.rank()
     };
-    // The first that can move: others may be locked.
+    // The first sample that can move; others may be locked.
     let sample = samples.iter().find(|w| free(w, nc) > 0).or(samples.first());
     let count = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free(w, rank));
     let freedom = Freedom { coordinates: count(model.holonomic()), velocities: count(nc) };
@@ -93,15 +94,15 @@ pub fn degrees_of_freedom(
     freedom
 }
 
-/// Whether the mechanism moves where all velocities are zero: frames are placed by time, or the rate of a constraint has a
-/// term without velocities.
+/// Returns true if the mechanism moves at zero velocities: frames depend on time, or the rate of a constraint
+/// has a velocity-free term.
 fn is_driven(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample) -> bool {
     let placements: Vec<Expr<'_>> = model.links.iter().flat_map(|link| link.placement.entries()).collect();
     rows.has_drift(q, *seed) || symbols_in(&placements).into_iter().any(|s| Quantity::of(s) == Quantity::Time)
 }
 
-/// A pivot for each constraint among the velocities that need not be independent, in the order of
-/// an elimination that is well conditioned at a sample. `None` if some constraint has none.
+/// Returns a pivot for each constraint among the velocities that need not be independent, in the order of an
+/// elimination that is well-conditioned at a sample. Returns `None` if some constraint has no pivot.
 pub fn dependent(
     model: &Model<'_>,
     rows: &Rows<'_>,
@@ -133,7 +134,8 @@ pub fn dependent(
     Some(pivots)
 }
 
-/// Levenberg–Marquardt from a random configuration; where it fails, the row that is farthest off and how far.
+/// Closes the loops by the Levenberg–Marquardt method from a random configuration. On failure, returns the
+/// row with the largest residual, and the residual.
 fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Vec<f64>, (usize, f64)> {
     let spread = [0.2, 1.0, 3.0][(seed % 3) as usize];
     let mut q = random_configuration(model, seed);
@@ -166,7 +168,7 @@ fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Ve
     }
 }
 
-/// `−Jᵀ (J Jᵀ + damping)⁻¹ r` by elimination.
+/// Returns `−Jᵀ (J Jᵀ + damping)⁻¹ r` by elimination.
 fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
     let n = rows.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -192,7 +194,7 @@ fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
     (0..columns).map(|j| -(0..n).map(|i| rows[i][j] * y[i]).sum::<f64>()).collect()
 }
 
-/// `q ⊕ dv`, for free joints to first order.
+/// Returns `q ⊕ dv`, to first order for free joints.
 fn moved(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
     let mut out = q.to_vec();
     for chart in &model.charts {
@@ -209,7 +211,7 @@ fn moved(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
     out
 }
 
-/// A quaternion x y z w turned by a small rotation vector in body axes.
+/// Rotates a quaternion x y z w by a small rotation vector in body axes.
 fn turn(q: &mut [f64], w: &[f64]) {
     let [x, y, z, s] = [q[0], q[1], q[2], q[3]];
     let [a, b, c] = [w[0] / 2.0, w[1] / 2.0, w[2] / 2.0];
@@ -223,7 +225,7 @@ fn turn(q: &mut [f64], w: &[f64]) {
     q.iter_mut().zip(next).for_each(|(q, next)| *q = next / norm);
 }
 
-/// A vector in body axes turned by a quaternion x y z w.
+/// Rotates a vector by a quaternion x y z w.
 fn rotated(q: &[f64], v: &[f64]) -> [f64; 3] {
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

@@ -1,5 +1,5 @@
-//! Kinematics of a mechanism: joints and motion subspaces, velocities and accelerations, the rows of constraints in
-//! configurations, which of them are redundant, and how many degrees of freedom they leave. Knows no syntax.
+//! Kinematics of a mechanism: joints and motion subspaces, velocities and accelerations, the constraint rows
+//! at configurations, redundant rows, and the number of degrees of freedom. Independent of the syntax tree.
 
 mod directions;
 pub mod jet;

@@ -1,4 +1,4 @@
-//! Rates of expressions of the configuration along the motion, and derivatives by the velocities.
+//! Time derivatives of expressions along the motion, and derivatives with respect to the velocities.
 
 use crate::expr::diff::Derivative;
 use crate::expr::eval::needed;
@@ -6,28 +6,29 @@ use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
 use crate::mechanism::{Chart, Coordinate, Gradient, InQ, InV, Model, Quantity, Space};
 use std::collections::BTreeMap;
 
-/// Value of a coordinate as an expression of `q`.
+/// Returns the value of a coordinate as an expression of `q`.
 pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
     position_in(model.graph, c)
 }
 
-/// Value of a coordinate as an expression of `q`.
+/// Returns the value of a coordinate as an expression of `q`.
 pub fn position_in<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
     c.q.expr(g) * g.num(c.ratio) + g.num(c.offset)
 }
 
-/// Rate of a coordinate as an expression of `v`.
+/// Returns the velocity of a coordinate as an expression of `v`.
 pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
     c.v.expr(model.graph) * model.graph.num(c.ratio)
 }
 
-/// Rate of an expression of `q`, `v` and `t` along the motion, at constant `v`.
+/// Returns the time derivative of an expression of `q`, `v` and `t` along the motion, at constant `v`.
 pub fn time_derivative<'g>(space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
     rate_by(space, e, |symbol| Derivative::with_respect_to(symbol, space.graph).of(e))
 }
 
-/// Rates of expressions of `q`, `v` and `t` along the motion, whose velocities change with accelerations or stay. All symbols change at
-/// once: what expressions have in common is differentiated once, not by each of its symbols.
+/// Returns the time derivatives of expressions of `q`, `v` and `t` along the motion, with accelerations or at
+/// constant velocities. All symbols vary at once, so common subexpressions are differentiated once instead of
+/// once per symbol.
 pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool) -> Vec<Expr<'g>> {
     let g = space.graph;
     let rate = |symbol: Symbol| match Quantity::of(symbol) {
@@ -41,8 +42,9 @@ pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool)
     e.iter().map(|e| along.of(*e)).collect()
 }
 
-/// The entries of the rotation matrices of ball and free joints, each with its rate by `Ṙ = R [ω]×`: other entries times angular
-/// velocities, which the rates of the quaternion's components would have to be multiplied out for.
+/// Returns the entries of the rotation matrices of ball and free joints, each with its time derivative by
+/// `Ṙ = R [ω]×`. The derivative consists of other entries times angular velocities, whereas the derivatives
+/// of the quaternion's components would have to be multiplied out.
 pub fn rotation_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     let g = space.graph;
     let mut all = Vec::new();
@@ -67,7 +69,7 @@ pub fn rotation_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
     all
 }
 
-/// A velocity of the joints.
+/// Returns a joint velocity, expressed in generalized speeds if these are declared.
 fn velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
     match space.speeds {
         None => index.expr(space.graph),
@@ -75,19 +77,20 @@ fn velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
     }
 }
 
-/// Derivatives by single symbols, kept from one expression to the next: places of a chain have all in common that stands before
-/// them, and differentiating each of them by each coordinate would take the cube of its length.
+/// Derivatives with respect to single symbols, cached across expressions. The positions of a chain contain
+/// those of their predecessors, and differentiating each of them by each coordinate without a cache would
+/// take a number of operations that is cubic in the length of the chain.
 #[derive(Default)]
 pub struct Partials<'g>(BTreeMap<Symbol, Derivative<'g>>);
 
 impl<'g> Partials<'g> {
-    /// The derivative of an expression by a symbol.
+    /// Returns the derivative of an expression with respect to a symbol.
     pub fn of(&mut self, symbol: Symbol, e: Expr<'g>) -> Expr<'g> {
         let new = || Derivative::with_respect_to(symbol, e.graph());
         self.0.entry(symbol).or_insert_with(new).of(e)
     }
 
-    /// Its rate along the motion, at constant `v`.
+    /// Returns the time derivative of an expression along the motion, at constant `v`.
     pub fn time_derivative(&mut self, space: Space<'_, 'g>, e: Expr<'g>) -> Expr<'g> {
         rate_by(space, e, |symbol| self.of(symbol, e))
     }
@@ -106,7 +109,7 @@ fn rate_by<'g>(space: Space<'_, 'g>, e: Expr<'g>, mut partial: impl FnMut(Symbol
     sum
 }
 
-/// The symbols of expressions, in order.
+/// Returns the symbols of expressions, in ascending order.
 pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
     let Some(first) = e.first() else { return Vec::new() };
     let graph = first.graph();
@@ -119,9 +122,10 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
     symbols
 }
 
-/// Rate of an entry of `q` as an expression of `q` and `v`: `q̇ = v` for plain coordinates, half of the product of
-/// quaternion and angular velocity for a quaternion x y z w, `R v` for the position of a free joint. Where speeds were
-/// declared, these velocities are `Z(q)` times what the entries of `v` are.
+/// Returns the time derivative of an entry of `q` as an expression of `q` and `v`: `q̇ = v` for plain
+/// coordinates, half of the product of quaternion and angular velocity for a quaternion x y z w, `R v` for
+/// the position of a free joint. With declared generalized speeds, the joint velocities are `Z(q)` times the
+/// entries of `v`.
 pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
     let v = |index: InV| velocity(space, index);
@@ -157,12 +161,14 @@ fn quaternion_rate<'g>(quaternion: [Expr<'g>; 4], w: [Expr<'g>; 3], entry: usize
     }
 }
 
-/// Derivatives by all velocities that an expression depends on.
+/// Returns the derivatives with respect to all velocities that an expression depends on, with the velocities'
+/// indices.
 pub fn velocity_gradient(e: Expr<'_>) -> Vec<(usize, Expr<'_>)> {
     velocity_gradients(&[e]).pop().unwrap_or_default()
 }
 
-/// For each of several expressions its derivatives by the velocities, with their indices; common parts are differentiated once.
+/// Returns the derivatives of several expressions with respect to the velocities, with the velocities'
+/// indices. Common subexpressions are differentiated once.
 pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
     let mut gradients = vec![Vec::new(); all.len()];
     let Some(graph) = all.first().map(|e| e.graph()) else { return gradients };
@@ -181,13 +187,14 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
     gradients
 }
 
-/// The generalized forces against which an energy grows: what each velocity adds to its rate, at a given time.
+/// Returns the generalized forces that oppose an energy: the derivatives of its time derivative with respect
+/// to the velocities, at constant time.
 pub fn energy_gradient<'g>(model: &Model<'g>, energy: Expr<'g>) -> Gradient<'g> {
     let find = || velocity_gradient(time_derivative(model.space(), energy));
     model.gradients.of_energy(&model.charts, energy, find)
 }
 
-/// Derivatives by all velocities of an expression that a model asks for again and again.
+/// Returns the derivatives of an expression with respect to all velocities from the model's cache.
 pub fn known_gradient<'g>(model: &Model<'g>, e: Expr<'g>) -> Gradient<'g> {
     model.gradients.by_velocity(e, || velocity_gradient(e))
 }

@@ -1,6 +1,6 @@
-//! Rows of constraints that say nothing: spatial joints in a planar mechanism, loops that share a condition. Found in
-//! random configurations and in some that fulfil the constraints, for random parameters, where only what holds
-//! everywhere is seen.
+//! Redundant rows of constraints, such as those of spatial joints in a planar mechanism or of loops that
+//! share a condition. They are found in random configurations and in some that satisfy the constraints, for
+//! random parameters, so that only rows that are redundant in every configuration are recognised.
 
 use super::mobility::Sample;
 use super::rows::{Rows, random_configuration, value_of};
@@ -8,17 +8,18 @@ use crate::diag::Diagnostics;
 use crate::expr::eval::Tape;
 use crate::mechanism::{Constraint, Model};
 
-/// A row counts as a combination of others if so little of it is left.
+/// A row counts as a linear combination of others if its relative remainder is below this tolerance.
 const TOLERANCE: f64 = 1e-9;
-/// Random configurations tried.
+/// Number of random configurations that are tested.
 const SAMPLES: u64 = 3;
 
-/// What is left of zero after the few sums of a row, relative to others of one vector.
+/// Rounding error of a row that is zero, relative to the other rows of the same vector.
 const NOISE: f64 = 1e-12;
-/// What is left of zero after the few sums of a row, relative to all rows, whose units may differ.
+/// Rounding error of a row that is zero, relative to all rows, whose units may differ.
 const ROUNDING: f64 = 1e-15;
 
-/// By row, whether no velocity influences it anywhere, be it up to rounding: the height of a wheel whose axle keeps its own.
+/// Returns for each row whether no velocity influences it in any configuration, up to rounding. An example is
+/// the height of a wheel whose axle has a constant height.
 pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
     let sampled = |seed| rows.jacobian(&random_configuration(model, seed), seed);
     let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sampled).collect();
@@ -40,7 +41,8 @@ pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
     (0..model.constraints.len()).map(idle).collect()
 }
 
-/// Reports rows that no velocity influences and that are not fulfilled: they have the same value everywhere.
+/// Reports rows that no velocity influences and that are violated: they have the same value in every
+/// configuration.
 pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics) {
     let all = model.constraints.iter().zip(constant);
     let constant: Vec<&Constraint<'_>> = all.filter(|(_, constant)| **constant).map(|(c, _)| c).collect();
@@ -62,10 +64,11 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
     }
 }
 
-/// Drops rows that follow from the others wherever the mechanism is, constant ones among them; true if there are such rows.
+/// Removes rows that depend on the others in every configuration, including constant ones. Returns true if
+/// there are such rows.
 ///
-/// Where the others leave no degree of freedom, every further row depends on them, whether they agree or not: rows are dropped
-/// there only if a configuration is known that fulfils all of them.
+/// If the other rows leave no degree of freedom, every further row depends on them, whether or not it is
+/// compatible. In this case rows are removed only if a configuration is known that satisfies all of them.
 pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], samples: &[Sample]) -> bool {
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
     let all = random.chain(samples.iter().cloned());
@@ -91,17 +94,17 @@ pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], samples:
     !model.redundant.is_empty()
 }
 
-/// Orthonormal combinations of rows.
+/// Orthonormal basis of the span of rows.
 #[derive(Default)]
 pub struct Basis(Vec<Vec<f64>>);
 
 impl Basis {
-    /// How many rows are independent.
+    /// Returns the number of independent rows.
     pub fn rank(&self) -> usize {
         self.0.len()
     }
 
-    /// Adds a row, unless it is a combination of those before up to a relative tolerance.
+    /// Adds a row, unless it is a combination of the previous rows up to a relative tolerance.
     pub fn add(&mut self, row: &[f64], tolerance: f64) {
         let rest = self.rest(row);
         let size = dot(&rest, &rest).sqrt();
@@ -110,16 +113,17 @@ impl Basis {
         }
     }
 
-    /// True for a row that is a combination of those before, or zero; a row that has no value is none.
+    /// Returns true for a row that is zero or a combination of the previous rows; false for a row with NaN
+    /// entries.
     fn explains(&self, row: &[f64], tolerance: f64) -> bool {
         let rest = self.rest(row);
         dot(&rest, &rest).sqrt() <= tolerance * dot(row, row).sqrt().max(tolerance)
     }
 
-    /// What is left of a row without its parts along those before.
+    /// Returns the component of a row that is orthogonal to the basis.
     fn rest(&self, row: &[f64]) -> Vec<f64> {
         let mut rest = row.to_vec();
-        // Twice, since the first time leaves the rounding of what it takes away.
+        // Projected out twice, since the first projection leaves its rounding error.
         for b in self.0.iter().chain(&self.0) {
             let part = dot(&rest, b);
             rest.iter_mut().zip(b).for_each(|(x, b)| *x -= part * b);

@@ -1,4 +1,4 @@
-//! Constraints as rows of numbers: residuals and Jacobian in a configuration.
+//! Numerical rows of constraints: residuals and Jacobian at a configuration.
 
 use super::rates::velocity_gradients;
 use crate::expr::eval::Tape;
@@ -6,19 +6,19 @@ use crate::expr::sample::sample;
 use crate::expr::{Expr, Symbol};
 use crate::mechanism::{Model, Quantity};
 
-/// Constraints to be evaluated, in their order.
+/// Constraints compiled for numerical evaluation, in their order.
 pub struct Rows<'g> {
     residuals: Tape<'g>,
-    /// Entries of the Jacobian that are not zero: row, column.
+    /// Row and column of each nonzero entry of the Jacobian.
     at: Vec<(usize, usize)>,
     entries: Tape<'g>,
     rates: Tape<'g>,
-    /// Constraints, velocities.
+    /// Numbers of constraints and of velocities.
     size: (usize, usize),
 }
 
 impl<'g> Rows<'g> {
-    /// Of all constraints of a model.
+    /// Compiles all constraints of a model.
     pub fn of(model: &Model<'g>) -> Rows<'g> {
         let rates: Vec<Expr<'g>> = model.constraints.iter().map(|c| c.rate).collect();
         let gradients = velocity_gradients(&rates).into_iter().enumerate();
@@ -37,7 +37,8 @@ impl<'g> Rows<'g> {
         }
     }
 
-    /// Operations of an evaluation of residuals and Jacobian and of solving a system with them, roughly.
+    /// Returns the approximate number of operations for evaluating residuals and Jacobian and solving a
+    /// linear system with them.
     pub fn cost(&self) -> u64 {
         let (rows, columns) = (self.size.0 as u64, self.size.1 as u64);
         2 * self.residuals.steps() as u64
@@ -45,17 +46,17 @@ impl<'g> Rows<'g> {
             + rows * rows * (rows / 3 + columns / 2)
     }
 
-    /// True for a row that no velocity influences.
+    /// Returns true for a row that no velocity influences.
     pub fn is_constant(&self, row: usize) -> bool {
         self.at.iter().all(|(r, _)| *r != row)
     }
 
-    /// What is left of those constraints that have residuals: the first ones.
+    /// Returns the residuals of the holonomic constraints, which come first.
     pub fn residuals(&self, q: &[f64], seed: u64) -> Vec<f64> {
         self.residuals.values(&|s| value_of(s, q, seed))
     }
 
-    /// Coefficients of the velocities in a configuration, parameters sampled by `seed`.
+    /// Returns the coefficients of the velocities at a configuration, with parameters sampled by `seed`.
     pub fn jacobian(&self, q: &[f64], seed: u64) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.size.1]; self.size.0];
         let values = self.entries.values(&|s| value_of(s, q, seed));
@@ -65,13 +66,14 @@ impl<'g> Rows<'g> {
         rows
     }
 
-    /// Whether some constraint does not hold in a configuration at rest, beyond rounding: its rate has a term without
-    /// velocities.
+    /// Returns true if some constraint is violated at zero velocities beyond rounding: its rate has a
+    /// velocity-free term.
     pub fn has_drift(&self, q: &[f64], seed: u64) -> bool {
         self.rates.rounded(&|s| value_of(s, q, seed)).iter().any(|rate| !rate.may_be_zero())
     }
 
-    /// By row, whether all of its coefficients in a configuration may be what rounding has left of zero.
+    /// Returns for each row whether all of its coefficients at a configuration are zero up to rounding
+    /// errors.
     pub fn may_be_zero(&self, q: &[f64], seed: u64) -> Vec<bool> {
         let mut may_be = vec![true; self.size.0];
         let entries = self.entries.rounded(&|s| value_of(s, q, seed));
@@ -82,7 +84,7 @@ impl<'g> Rows<'g> {
     }
 }
 
-/// The value of a symbol at rest, parameters sampled by `seed`.
+/// Returns the value of a symbol at zero velocities, with parameters sampled by `seed`.
 pub fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
     match Quantity::of(s) {
         Quantity::Configuration(k) => q[k],
@@ -91,7 +93,7 @@ pub fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
     }
 }
 
-/// Random coordinates with unit quaternions.
+/// Returns random coordinates with unit quaternions.
 pub fn random_configuration(model: &Model<'_>, seed: u64) -> Vec<f64> {
     let mut q: Vec<f64> =
         (0..model.nq()).map(|k| 2.0 * sample(Quantity::Configuration(k).symbol(), seed) - 2.0).collect();

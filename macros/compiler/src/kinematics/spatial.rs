@@ -3,8 +3,8 @@
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::Model;
 
-/// A spatial vector: linear part, angular part. A twist (velocity of the link's origin, angular velocity), or a wrench
-/// (force, moment about the link's origin).
+/// A spatial vector with linear and angular component: a twist (velocity of the link's origin, angular
+/// velocity), or a wrench (force, moment about the link's origin).
 #[derive(Clone, Copy, Debug)]
 pub struct Spatial<'g> {
     /// Velocity or force.
@@ -14,28 +14,28 @@ pub struct Spatial<'g> {
 }
 
 impl<'g> Spatial<'g> {
-    /// Zero.
+    /// Returns the zero vector.
     pub fn zero(model: &Model<'g>) -> Spatial<'g> {
         Spatial { linear: Vec3::zero(model.graph), angular: Vec3::zero(model.graph) }
     }
 
-    /// Twist dotted with wrench: a power.
+    /// Returns the inner product; of a twist and a wrench it is the power.
     pub fn dot(&self, other: &Spatial<'g>) -> Expr<'g> {
         self.linear.dot(other.linear) + self.angular.dot(other.angular)
     }
 
-    /// The sum.
+    /// Returns the sum.
     pub fn plus(&self, other: &Spatial<'g>) -> Spatial<'g> {
         Spatial { linear: self.linear + other.linear, angular: self.angular + other.angular }
     }
 
-    /// All components multiplied.
+    /// Returns the vector multiplied by a scalar.
     pub fn times(&self, s: Expr<'g>) -> Spatial<'g> {
         Spatial { linear: self.linear * s, angular: self.angular * s }
     }
 }
 
-/// Every component with a function applied.
+/// Applies a function to every component.
 pub fn map_spatial<'g>(s: &Spatial<'g>, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Spatial<'g> {
     Spatial { linear: s.linear.map(&mut f), angular: s.angular.map(&mut f) }
 }

@@ -1,4 +1,4 @@
-//! Generalized speeds: which velocities they name, whether they can be inverted, and the inverse.
+//! Generalized speeds: the velocities that they depend on, their invertibility, and the inverse matrix.
 
 use super::redundancy::Basis;
 use super::rows::{random_configuration, value_of};
@@ -11,16 +11,16 @@ use crate::expr::{Expr, Symbol};
 use crate::mechanism::{Chart, Model, Quantity};
 use std::collections::BTreeMap;
 
-/// Most speeds that depend on each other: their inverse is written out by its minors.
+/// Maximum size of a block of coupled speeds, since the inverse is expanded by minors.
 pub const MOST_COUPLED: usize = 8;
-/// In how many configurations is looked at what holds everywhere.
+/// Number of random configurations in which identities are tested.
 const SAMPLES: u64 = 4;
-/// Below this part of its size a row counts as a combination of others.
+/// A row counts as a linear combination of others if its relative remainder is below this tolerance.
 const TOLERANCE: f64 = 1e-9;
 
 type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 
-/// The entries of a matrix in random configurations, row by row.
+/// Returns the entries of a matrix in random configurations, row by row.
 fn sampled(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
     let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
     let (tape, width) = (Tape::of(&entries), rows.first().map_or(0, Vec::len).max(1));
@@ -31,7 +31,7 @@ fn sampled(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
     (0..SAMPLES).map(at).collect()
 }
 
-/// The columns of a matrix that are not zero everywhere.
+/// Returns the columns of a matrix that are not zero in all configurations.
 pub fn named_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
     let all = sampled(model, rows);
     let width = rows.first().map_or(0, Vec::len);
@@ -39,7 +39,8 @@ pub fn named_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
     (0..width).filter(is_named).collect()
 }
 
-/// The first row that is a combination of those before it in every configuration; `None` if there is none.
+/// Returns the first row that is a combination of its predecessors in every configuration; `None` if there is
+/// none.
 pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
     let depends_at = |sample: &Vec<Vec<f64>>| {
         let mut basis = Basis::default();
@@ -53,7 +54,8 @@ pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
     found.into_iter().collect::<Option<Vec<usize>>>().and_then(|rows| rows.into_iter().max())
 }
 
-/// The inverse of a square matrix, block by block: minors over determinants, simplified. `None` if a block is too large.
+/// Returns the inverse of a square matrix, block by block: minors over determinants, simplified. Returns
+/// `None` if a block is larger than [`MOST_COUPLED`] or not square.
 pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
     let n = rows.len();
     let mut out = vec![vec![model.graph.zero(); n]; n];
@@ -72,7 +74,7 @@ pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
     Some(out)
 }
 
-/// Rows and columns that are connected by entries.
+/// Returns the sets of rows and columns that are connected by nonzero entries.
 fn blocks(rows: &Matrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
     let n = rows.len();
     let mut left: Vec<usize> = (0..n).collect();
@@ -113,7 +115,7 @@ fn block_inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// Determinants of parts of a matrix, each once; rows and columns as bits.
+/// Cache of the minors of a matrix; sets of rows and columns are bit masks.
 struct Minors<'a, 'g> {
     model: &'a Model<'g>,
     rows: &'a Matrix<'g>,
@@ -121,7 +123,7 @@ struct Minors<'a, 'g> {
 }
 
 impl<'g> Minors<'_, 'g> {
-    /// The determinant, expanded along its first row.
+    /// Returns the determinant of a submatrix, expanded along its first row.
     fn of(&mut self, rows: u32, columns: u32) -> Expr<'g> {
         if rows == 0 {
             return self.model.graph.one();
@@ -146,7 +148,8 @@ impl<'g> Minors<'_, 'g> {
     }
 }
 
-/// An expression of the configuration by fewer operations, where identities of sines and cosines or unit quaternions shorten it.
+/// Returns an equivalent expression of the configuration with fewer operations, if identities of sines and
+/// cosines or of unit quaternions give one; otherwise the expression itself.
 pub fn shortened<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     let found = short_form(model, e);
     found.filter(|found| Tape::of(&[*found]).steps() < Tape::of(&[e]).steps()).unwrap_or(e)
@@ -162,7 +165,7 @@ fn short_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
     Some(expression(model.graph, &normal.ring, &p))
 }
 
-/// The components of all unit quaternions.
+/// Returns the components of all unit quaternions.
 pub fn quaternions(model: &Model<'_>) -> Vec<[Symbol; 4]> {
     let firsts = model.charts.iter().filter_map(Chart::quaternion);
     firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q.0 + k).symbol())).collect()

@@ -1,4 +1,4 @@
-//! Elementary motions of links, with what they occupy of `q` and `v`.
+//! Elementary motions of links, with their indices in `q` and `v`.
 
 use super::index::{InQ, InV};
 use crate::expr::{Expr, Vec3};
@@ -11,23 +11,23 @@ pub struct Coordinate {
     pub q: InQ,
     /// Index in `v`.
     pub v: InV,
-    /// Factor.
+    /// Ratio of the joint coordinate to the entry of `q`, and of the joint velocity to the entry of `v`.
     pub ratio: f64,
-    /// Offset.
+    /// Joint coordinate at the zero of the entry of `q`.
     pub offset: f64,
 }
 
 /// The motion of a link in its parent's joint frame.
 #[derive(Clone, Debug)]
 pub enum Motion<'g> {
-    /// Rotation about a unit axis.
+    /// Rotation about a fixed unit axis.
     Turn {
         /// Axis, in joint axes.
         axis: Vec3<'g>,
         /// Angle.
         coordinate: Coordinate,
     },
-    /// Translation along a unit axis.
+    /// Translation along a fixed unit axis.
     Slide {
         /// Axis, in joint axes.
         axis: Vec3<'g>,
@@ -43,26 +43,26 @@ pub enum Motion<'g> {
         /// Angle.
         coordinate: Coordinate,
     },
-    /// All rotations: a quaternion from `q`, three angular velocities in link axes from `v`.
+    /// All rotations: a quaternion in `q`, three angular velocities in link axes in `v`.
     Ball {
         /// First of four entries of `q`.
         q: InQ,
         /// First of three entries of `v`.
         v: InV,
     },
-    /// All motions: position and quaternion from `q`, linear and angular velocity in link axes from `v`.
+    /// All rigid motions: position and quaternion in `q`, linear and angular velocity in link axes in `v`.
     Free {
         /// First of seven entries of `q`.
         q: InQ,
         /// First of six entries of `v`.
         v: InV,
     },
-    /// The link's placement is itself an expression of coordinates and time.
+    /// Arbitrary: the link's placement is itself an expression of coordinates and time.
     Placed,
 }
 
 impl Motion<'_> {
-    /// The coordinate of a motion that has one plain coordinate.
+    /// Returns the coordinate of a motion with one plain coordinate.
     pub fn coordinate(&self) -> Option<&Coordinate> {
         match self {
             Motion::Turn { coordinate, .. }
@@ -72,7 +72,7 @@ impl Motion<'_> {
         }
     }
 
-    /// The entries of `q` that it depends on.
+    /// Returns the entries of `q` that the motion depends on.
     pub fn configuration(&self) -> Range<usize> {
         match self {
             Motion::Turn { coordinate, .. }
@@ -84,7 +84,7 @@ impl Motion<'_> {
         }
     }
 
-    /// The first of the entries of `q` that are a unit quaternion, if it has one.
+    /// Returns the first of the entries of `q` that are a unit quaternion, if the motion has one.
     pub fn quaternion(&self) -> Option<InQ> {
         match self {
             Motion::Ball { q, .. } => Some(*q),
@@ -93,7 +93,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Gives its entries of `v` other places: `place` says where the first goes.
+    /// Moves the entries of `v`: `place` maps the first index of the motion to its new value.
     pub fn place_velocities(&mut self, place: impl Fn(InV) -> InV) {
         match self {
             Motion::Turn { coordinate, .. }
@@ -104,7 +104,7 @@ impl Motion<'_> {
         }
     }
 
-    /// True if its motion subspace is constant in link axes.
+    /// Returns true if the motion subspace is constant in link axes.
     pub fn has_constant_subspace(&self) -> bool {
         match self {
             Motion::Turn { .. }
@@ -116,8 +116,8 @@ impl Motion<'_> {
         }
     }
 
-    /// A number for each kind of motion that alike limbs may have: those of one kind have the same number of degrees of freedom, and a
-    /// constant subspace.
+    /// Returns an identifier of each kind of motion that identical limbs may have. Motions of one kind have
+    /// the same number of degrees of freedom, and a constant subspace.
     pub fn kind_in_limbs(&self) -> Option<usize> {
         match self {
             Motion::Turn { .. } => Some(1),
@@ -129,19 +129,19 @@ impl Motion<'_> {
     }
 }
 
-/// A part of the configuration space: first entries of `q` and `v`.
+/// Coordinate chart of a factor of the configuration space: first indices in `q` and `v`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Chart {
     /// A plain coordinate.
     Plain(InQ, InV),
-    /// A ball's quaternion.
+    /// Quaternion of a ball joint.
     Ball(InQ, InV),
-    /// A free joint's position and quaternion.
+    /// Position and quaternion of a free joint.
     Free(InQ, InV),
 }
 
 impl Chart {
-    /// The first of the entries of `q` that are a unit quaternion, if it has one.
+    /// Returns the first of the entries of `q` that are a unit quaternion, if the chart has one.
     pub fn quaternion(&self) -> Option<InQ> {
         match self {
             Chart::Plain(..) => None,

@@ -1,24 +1,24 @@
-//! Passive forces that a function of their own computes: all others take them, and their derivatives, as given values. What many
-//! springs do would else stand in every function once more.
+//! Passive forces that a separate generated function computes. The other functions take these forces and
+//! their derivatives as arguments; otherwise each of them would repeat the expressions of many springs.
 
 use super::quantity::Quantity;
 use crate::expr::{Expr, Symbol};
 
-/// What the functions for the passive forces and for their derivatives compute.
+/// Outputs of the functions for the passive forces and for their derivatives.
 #[derive(Clone, Debug)]
 pub struct PassiveForces<'g> {
-    /// By velocity.
+    /// Passive force of each velocity.
     pub forces: Vec<Expr<'g>>,
-    /// The derivatives that are not constant, in the order in which they are given.
+    /// Derivatives that are not constant, in the order of the function's results.
     pub derivatives: Vec<Expr<'g>>,
-    /// All derivatives, constant ones too: those by configuration, then those by velocity; in each, for the velocity of every
-    /// direction, one for every force.
+    /// All derivatives, including constant ones: those with respect to the configuration, then those with
+    /// respect to the velocity. The outer index is the velocity of the direction, the inner index the force.
     given: [Vec<Vec<Expr<'g>>>; 2],
 }
 
 impl<'g> PassiveForces<'g> {
-    /// Of the forces and their derivatives by configuration and by velocity: a row for each force, or none if there are to be
-    /// no derivatives.
+    /// Returns the passive forces with their derivatives with respect to configuration and velocity: a row
+    /// for each force, or no rows to leave out derivatives.
     pub fn new(forces: Vec<Expr<'g>>, by_q: &[Vec<Expr<'g>>], by_v: &[Vec<Expr<'g>>]) -> PassiveForces<'g> {
         let mut derivatives = Vec::new();
         let mut name = |e: Expr<'g>| match e.value() {
@@ -36,7 +36,7 @@ impl<'g> PassiveForces<'g> {
         PassiveForces { forces, derivatives, given }
     }
 
-    /// The forces as other functions take them.
+    /// Returns the forces as symbols for the other functions; constant forces as constants.
     pub fn given_forces(&self) -> Vec<Expr<'g>> {
         let given = |(k, e): (usize, &Expr<'g>)| match e.value() {
             Some(_) => *e,
@@ -45,12 +45,13 @@ impl<'g> PassiveForces<'g> {
         self.forces.iter().enumerate().map(given).collect()
     }
 
-    /// How the given forces change with the configuration along the direction of this velocity.
+    /// Returns the derivatives of the force symbols with respect to the configuration along the direction of
+    /// a velocity.
     pub fn changes_by_configuration(&self, velocity: usize) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
         self.changes(0, velocity)
     }
 
-    /// How the given forces change with this velocity.
+    /// Returns the derivatives of the force symbols with respect to a velocity.
     pub fn changes_by_velocity(&self, velocity: usize) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
         self.changes(1, velocity)
     }

@@ -12,12 +12,12 @@ pub struct Pose<'g> {
 }
 
 impl<'g> Pose<'g> {
-    /// The child frame is the parent frame.
+    /// Returns the pose of a child frame that coincides with the parent frame.
     pub fn identity(graph: &'g Graph) -> Pose<'g> {
         Pose { rotation: Rotation::identity(graph), translation: Vec3::zero(graph) }
     }
 
-    /// This placement, then `next` in the child frame.
+    /// Returns the composition of this pose with the pose `next` relative to the child frame.
     pub fn then(&self, next: &Pose<'g>) -> Pose<'g> {
         Pose {
             rotation: self.rotation.clone().then(&next.rotation),
@@ -25,13 +25,13 @@ impl<'g> Pose<'g> {
         }
     }
 
-    /// The placement of the parent frame in the child frame.
+    /// Returns the pose of the parent frame relative to the child frame.
     pub fn inverse(&self) -> Pose<'g> {
         let rotation = self.rotation.inverse();
         Pose { translation: -rotation.to_parent(self.translation), rotation }
     }
 
-    /// A point of the child frame, from the parent's origin in parent axes.
+    /// Returns the position of a point of the child frame, from the parent's origin in parent axes.
     pub fn point(&self, p: Vec3<'g>) -> Vec3<'g> {
         self.translation + self.rotation.to_parent(p)
     }

@@ -1,8 +1,8 @@
-//! What the symbols of expressions stand for.
+//! Quantities that the symbols of expressions denote.
 
 use crate::expr::{Expr, Graph, Symbol};
 
-/// What a symbol of the expressions stands for.
+/// Quantity that a symbol denotes, with its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// A parameter of the struct.
@@ -19,28 +19,28 @@ pub enum Quantity {
     Input(usize),
     /// Time.
     Time,
-    /// An entry of an intermediate result that is handed to a generated function.
+    /// An argument of a generated function: an entry of an intermediate result that the caller supplies.
     Given(usize),
-    /// A number that is computed from the parameters before.
+    /// A value that is precomputed from the parameters.
     Prepared(usize),
-    /// A component of what a joint transmits: six for each, a force and then a torque; from [`Quantity::MULTIPLIERS`] on the
-    /// multiplier of a constraint.
+    /// A component of a joint reaction: six for each joint, a force and then a torque. From
+    /// [`Quantity::MULTIPLIERS`] on, the multiplier of a constraint.
     Reaction(usize),
-    /// A passive force that a function of its own computes, by velocity.
+    /// The passive force of a velocity, computed by a separate function.
     PassiveForce(usize),
-    /// A derivative of passive forces that a function of its own computes, in the order of its results.
+    /// A derivative of passive forces, computed by a separate function, in the order of its results.
     PassiveDerivative(usize),
-    /// A force at a contact that opens and closes, in the order of the rates of all contacts.
+    /// A contact force, in the order of the contact velocities of all contacts.
     ContactForce(usize),
 }
 
 impl Quantity {
     const SHIFT: u32 = 20;
 
-    /// The first number of a multiplier among the reactions.
+    /// First index of multipliers among the reactions.
     pub const MULTIPLIERS: usize = 1 << 19;
 
-    /// The symbol that stands for it.
+    /// Returns the symbol of the quantity.
     pub fn symbol(self) -> Symbol {
         let (kind, index) = match self {
             Quantity::Parameter(k) => (0, k),
@@ -60,7 +60,7 @@ impl Quantity {
         Symbol((kind << Quantity::SHIFT) | index as u32)
     }
 
-    /// What a symbol stands for.
+    /// Returns the quantity that a symbol denotes.
     pub fn of(symbol: Symbol) -> Quantity {
         let index = (symbol.0 & ((1 << Quantity::SHIFT) - 1)) as usize;
         match symbol.0 >> Quantity::SHIFT {
@@ -80,7 +80,7 @@ impl Quantity {
         }
     }
 
-    /// It as an expression.
+    /// Returns the quantity as an expression.
     pub fn expr(self, graph: &Graph) -> Expr<'_> {
         graph.symbol(self.symbol())
     }

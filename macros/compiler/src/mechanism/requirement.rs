@@ -1,32 +1,32 @@
-//! What figures fulfil in every mechanism that there can be.
+//! Conditions that values must satisfy for every choice of the parameters.
 
 use crate::expr::Expr;
 
-/// A condition on figures that follow from parameters; where they are numbers it was checked when they were read.
+/// A condition on values that depend on parameters. Constant values were checked when they were parsed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement<'g> {
     /// The condition.
     pub rule: Rule,
-    /// What the figures are: `` the mass of `cart` ``.
+    /// Description of the values: `` the mass of `cart` ``.
     pub figure: String,
-    /// The parameters that they follow from, by index.
+    /// Indices of the parameters that the values depend on.
     pub parameters: Vec<usize>,
-    /// As many as the rule takes.
+    /// Values to which the rule applies; their number depends on the rule.
     pub values: Vec<Expr<'g>>,
 }
 
-/// The conditions. All of them ask for numbers that are finite.
+/// The conditions. Each of them includes that all values are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// Nothing else, of one number.
+    /// One finite value.
     Finite,
-    /// A mass: zero or more, in the range that leaves room for products and reciprocals.
+    /// A mass: zero or positive, in the range in which products and reciprocals do not overflow.
     Mass,
-    /// A coordinate of a place, in the range of lengths.
+    /// A coordinate of a position, in the range of lengths.
     Length,
-    /// Zero or more.
+    /// Zero or positive.
     NotNegative,
-    /// More than zero.
+    /// Positive.
     Positive,
     /// Between zero and a right angle.
     HalfAngle,
@@ -34,14 +34,14 @@ pub enum Rule {
     Unit,
     /// Between zero and one.
     Fraction,
-    /// A lower bound and an upper one.
+    /// A lower bound, then an upper bound that is not smaller.
     Order,
-    /// An inertia that a body can have: its entries xx, yy, zz, xy, xz, yz, and the body's mass.
+    /// A physically possible inertia: its entries xx, yy, zz, xy, xz, yz, and the body's mass.
     Inertia,
 }
 
 impl Rule {
-    /// Its name in the runtime.
+    /// Returns the name of the rule in the runtime.
     pub fn name(self) -> &'static str {
         match self {
             Rule::Finite => "Finite",
@@ -57,7 +57,7 @@ impl Rule {
         }
     }
 
-    /// True if what fulfils it fulfils the other: then the other need not be checked.
+    /// Returns true if this rule implies the other, which then need not be checked.
     pub fn includes(self, other: Rule) -> bool {
         self == other
             || match other {

@@ -1,27 +1,27 @@
-//! Generalized speeds of the user's choice in place of velocities of joints.
+//! Generalized speeds declared by the user in place of joint velocities.
 
 use super::index::InV;
 use super::quantity::Quantity;
 use crate::diag::Place;
 use crate::expr::{Expr, Graph};
 
-/// Kane's generalized speeds `u` (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 2.12): `u = Y(q) v` and
-/// `v = Z(q) u`, where `v` are the velocities that the joints have. Both matrices are square; rows and columns of velocities
-/// that are kept are those of the identity.
+/// Kane's generalized speeds `u` (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 2.12):
+/// `u = Y(q) v` and `v = Z(q) u`, where `v` are the joint velocities. Both matrices are square. Rows and
+/// columns of joint velocities that are retained are those of the identity matrix.
 #[derive(Clone, Debug)]
 pub struct Speeds<'g> {
     /// `Y`, row by row.
     pub of_rates: Vec<Vec<Expr<'g>>>,
     /// `Z`, row by row.
     pub rates: Vec<Vec<Expr<'g>>>,
-    /// Indices of the velocities that speeds replace.
+    /// Indices of the joint velocities that speeds replace.
     pub replaced: Vec<InV>,
-    /// The names of all velocities without speeds, and where the joints stand.
+    /// Names of all joint velocities, with the places of the joints.
     pub velocities: Vec<(String, Place)>,
 }
 
 impl<'g> Speeds<'g> {
-    /// A velocity that a joint has, in the speeds, which are the entries of `v` then.
+    /// Returns a joint velocity as an expression of the speeds, which are then the entries of `v`.
     pub fn rate(&self, graph: &'g Graph, velocity: InV) -> Expr<'g> {
         let terms = self.rates[velocity.0].iter().enumerate().filter(|(_, z)| !z.is_zero());
         terms.fold(graph.zero(), |sum, (j, z)| sum + *z * Quantity::Velocity(j).expr(graph))

@@ -1,21 +1,21 @@
-//! Units of what generated functions take and give.
+//! Units of the arguments and results of generated functions.
 
-/// Units as they are written in the documentation; `any` where nothing determines one.
+/// Units as text for the documentation; `any` for a unit that nothing determines.
 #[derive(Clone, Debug, Default)]
 pub struct Units {
-    /// Of every parameter.
+    /// Unit of every parameter.
     pub parameters: Vec<String>,
-    /// Of every table: its variables, then its value.
+    /// Units of every table: those of its variables, then that of its value.
     pub tables: Vec<Vec<String>>,
-    /// Of every entry of `q`.
+    /// Unit of every entry of `q`.
     pub configuration: Vec<String>,
-    /// Of every entry of `v`.
+    /// Unit of every entry of `v`.
     pub velocities: Vec<String>,
-    /// Of every entry of `u`.
+    /// Unit of every entry of `u`.
     pub inputs: Vec<String>,
-    /// Of every output.
+    /// Unit of every output.
     pub outputs: Vec<String>,
-    /// Of every scalar constraint: its residual, or its rate where it restricts velocities alone, and its multiplier,
-    /// which is a power per rate.
+    /// Units of every scalar constraint: that of its residual, or of its rate if it restricts only
+    /// velocities, and that of its multiplier, which is a power per rate.
     pub constraints: Vec<[String; 2]>,
 }
