@@ -14,7 +14,7 @@ pub struct Function {
     pub name: String,
     /// Documentation, one paragraph per entry; empty for a hidden function.
     pub docs: Vec<String>,
-    /// Arguments after `&self`.
+    /// Arguments of the generated function after `&self`.
     pub arguments: Vec<Argument>,
     /// Shape of the result.
     pub shape: Shape,
@@ -135,7 +135,7 @@ pub const TWIST: usize = 6;
 
 /// Kinematic steps of one link.
 pub struct LinkSteps {
-    /// Parent link.
+    /// Parent link; `None` for the ground.
     pub parent: Option<usize>,
     /// Indices in `v` of the degrees of freedom of its joint.
     pub velocities: Vec<usize>,

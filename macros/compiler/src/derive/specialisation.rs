@@ -20,7 +20,7 @@ pub struct Candidate<'g> {
 /// Specialisation of a function's program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Specialisation {
-    /// None: the program computes all values.
+    /// Without known parameters: the program computes all values.
     None,
     /// Known parameters: values that depend only on parameters are computed beforehand.
     ByParameters,

@@ -10,7 +10,7 @@ use crate::mechanism::{LinkId, Model, Quantity};
 
 /// A scalar with its first time derivative, and its second time derivative at zero accelerations.
 pub struct Jet<'g> {
-    /// The value.
+    /// Value of the scalar.
     pub value: Expr<'g>,
     /// First time derivative.
     pub rate: Expr<'g>,
@@ -22,7 +22,7 @@ pub struct Jet<'g> {
 /// of a link that is treated as fixed.
 #[derive(Clone, Copy)]
 pub struct Moving<'g> {
-    /// The value.
+    /// Value of the vector.
     pub value: Vec3<'g>,
     /// First time derivative.
     pub rate: Vec3<'g>,

@@ -58,8 +58,8 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
         if self.alike.has(link) {
-            // Such a link is placed on the ground: no ancestor has entries with it, and `Alike` adds its own
-            // entries.
+            // A link in `Alike` is placed on the ground, so no ancestor has entries with it. `Alike` adds its
+            // own entries.
             return own.subspace;
         }
         let wrench = momentum(&self.composites[link], &own.subspace);

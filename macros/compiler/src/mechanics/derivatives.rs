@@ -26,9 +26,9 @@ pub use trunk::{Inverse, Trunk, divided};
 
 /// Derivatives of forces: a row for each entry of `τ`, a column for each velocity.
 pub struct ForceDerivatives<'g> {
-    /// `∂τ/∂q`.
+    /// Derivatives `∂τ/∂q` with respect to the configuration, along the tangent directions.
     pub by_q: Matrix<'g>,
-    /// `∂τ/∂v`.
+    /// Derivatives `∂τ/∂v` with respect to the velocities.
     pub by_v: Matrix<'g>,
 }
 
@@ -38,7 +38,7 @@ pub struct Linearized<'g> {
     pub forces: ForceDerivatives<'g>,
     /// Derivatives `∂τ/∂u` of the input forces; no columns if `τ` itself is the input.
     pub by_u: Matrix<'g>,
-    /// `M⁻¹`.
+    /// Inverse `M⁻¹` of the effective mass matrix.
     pub inverse: Matrix<'g>,
     /// Accelerations at which the derivatives are taken.
     pub accelerations: Vec<Expr<'g>>,

@@ -11,11 +11,11 @@ use crate::mechanism::{Model, Quantity};
 
 /// Functions of `q` and the momenta, which are arguments.
 pub struct Hamilton<'g> {
-    /// `H = p·v − T + U`.
+    /// Hamiltonian `H = p·v − T + U`.
     pub hamiltonian: Expr<'g>,
-    /// `v`.
+    /// Velocities `v` as functions of the momenta.
     pub velocity: Vec<Expr<'g>>,
-    /// `ṗ`, with the forces `τ`.
+    /// Momentum rates `ṗ` under the forces `τ`.
     pub momentum_rate: Vec<Expr<'g>>,
 }
 

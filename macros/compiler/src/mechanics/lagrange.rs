@@ -24,7 +24,7 @@ pub struct Lagrange<'g> {
     pub potential: Expr<'g>,
     /// Mass matrix `∂²T/∂v²`.
     pub mass_matrix: Matrix<'g>,
-    /// Bias forces.
+    /// Bias forces `h(q, v)` of `M v̇ + h = τ`.
     pub bias: Vec<Expr<'g>>,
 }
 
@@ -33,7 +33,7 @@ pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect()
 }
 
-/// Derives Lagrange's equations.
+/// Derives Lagrange's equations in closed form.
 pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     let g = model.graph;
     let v = velocities(model);

@@ -13,7 +13,7 @@ pub fn solve<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<E
 
 /// A solution with measures of its reliability.
 pub struct Solution<'g> {
-    /// The unknowns.
+    /// Unknowns `x`.
     pub x: Vec<Expr<'g>>,
     /// Pivot of each index.
     pub pivots: Vec<Expr<'g>>,

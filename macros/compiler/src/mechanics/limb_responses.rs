@@ -33,11 +33,11 @@ struct Place {
 
 /// Factorisation `M = Lᵀ D L`, with limbs in lanes.
 struct Factor<'g> {
-    /// Velocities from the leaves to the root.
+    /// Velocities in elimination order: from the leaves to the root.
     order: Vec<usize>,
     /// Off-diagonal entries of `L`, a row for each velocity.
     rows: Vec<Vec<(usize, Expr<'g>)>>,
-    /// Diagonal of `D⁻¹`.
+    /// Diagonal of `D⁻¹`, by velocity.
     inverse: Vec<Expr<'g>>,
     /// Group of limbs of each velocity; `None` for the trunk.
     groups: Vec<Option<usize>>,

@@ -52,9 +52,9 @@ pub fn wrenches<'g>(
 #[derive(Clone, Copy)]
 pub(super) struct State<'g> {
     w: Vec3<'g>,
-    /// `wx²`, `wy²`, `wz²`.
+    /// Squares `wx²`, `wy²`, `wz²` of the angular velocity.
     squares: Vec3<'g>,
-    /// `wy wz`, `wz wx`, `wx wy`.
+    /// Products `wy wz`, `wz wx`, `wx wy` of the angular velocity.
     products: Vec3<'g>,
     dw: Vec3<'g>,
     u: Mat3<'g>,

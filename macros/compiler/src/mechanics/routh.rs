@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-11;
 pub struct Routh<'g> {
     /// Indices of the velocities of the cyclic coordinates.
     pub cyclic: Vec<usize>,
-    /// `R`.
+    /// Routhian `R`.
     pub routhian: Expr<'g>,
     /// Velocities of the cyclic coordinates.
     pub velocity: Vec<Expr<'g>>,
@@ -58,9 +58,9 @@ pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
 
 /// The Routhian and the velocities of cyclic coordinates.
 pub struct Solved<'g> {
-    /// `R = T(v, 0) − ½ (p − π)·w − U`.
+    /// Routhian `R = T(v, 0) − ½ (p − π)·w − U`.
     pub routhian: Expr<'g>,
-    /// `w`.
+    /// Velocities `w` of the cyclic coordinates.
     pub velocity: Vec<Expr<'g>>,
 }
 

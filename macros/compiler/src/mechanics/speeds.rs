@@ -22,7 +22,7 @@ use std::rc::Rc;
 pub enum Role {
     /// Values that are invariant under the choice of velocities.
     Scalars,
-    /// Generalized forces or momenta.
+    /// Generalized forces or momenta, one for each velocity.
     Forces,
     /// Rate of generalized momenta, followed by the momenta.
     MomentumRate,
@@ -35,9 +35,9 @@ pub enum Role {
     /// Velocities or accelerations that result from forces given as arguments, then scalars, then for each of
     /// this number of multipliers the increments per unit of the multiplier.
     Answers(usize),
-    /// The mass matrix.
+    /// Mass matrix, by rows.
     Metric,
-    /// Inverse of the mass matrix.
+    /// Inverse of the mass matrix, by rows.
     InverseMetric,
     /// A matrix with this number of rows and a column for each velocity, column by column.
     Columns(usize),
@@ -53,13 +53,13 @@ pub struct InSpeeds<'g> {
     /// constraints, contacts and outputs.
     pub model: Model<'g>,
     speeds: Rc<Speeds<'g>>,
-    /// `Z u`.
+    /// Joint velocities `Z u`, as expressions of the speeds.
     pub rates: Vec<Expr<'g>>,
-    /// `Z u̇ + Ż u`.
+    /// Joint accelerations `Z u̇ + Ż u`, as expressions of the speeds and their rates.
     pub accelerations: Vec<Expr<'g>>,
-    /// `Ż u`.
+    /// Bias `Ż u` of the joint accelerations.
     change: Vec<Expr<'g>>,
-    /// `Yᵀ τ`.
+    /// Generalized forces of the joints, `Yᵀ τ`, for the forces `τ` of the speeds.
     efforts: Vec<Expr<'g>>,
 }
 

@@ -41,65 +41,65 @@ pub enum Role {
 /// Geometric forms of pieces. The values of each form begin with a position, then follow those listed for it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PieceKind {
-    /// Axis, length.
+    /// Straight rod, given by axis and length.
     Rod,
-    /// Axis, radius.
+    /// Circle, given by axis and radius.
     Ring,
-    /// Axis, radius.
+    /// Disk, given by axis and radius.
     Disk,
-    /// Axis, radius, height.
+    /// Cylinder, given by axis, radius and height.
     Cylinder,
-    /// Axis, inner and outer radius, height.
+    /// Hollow cylinder, given by axis, inner and outer radius, and height.
     Tube,
-    /// Axis, radius, height, about the centre of mass.
+    /// Cone about its centre of mass, given by axis, radius and height.
     Cone,
-    /// Axis, radius, distance of the centres of its balls.
+    /// Capsule, given by axis, radius and the distance between the centres of its hemispheres.
     Capsule,
-    /// Radius.
+    /// Sphere, given by its radius.
     Sphere,
-    /// Axes, edges.
+    /// Cuboid, given by axes and edge lengths.
     Cuboid,
-    /// Axes, half axes.
+    /// Ellipsoid, given by axes and semi-axis lengths.
     Ellipsoid,
-    /// Mass, and inertia about the place: xx, yy, zz, xy, xz, yz.
+    /// Mass properties, given by mass and inertia about the position: xx, yy, zz, xy, xz, yz.
     Inertia,
-    /// Normal.
+    /// Plane, given by its normal.
     Plane,
-    /// Axis, half angle, from the apex.
+    /// Conical surface from its apex, given by axis and half angle.
     Funnel,
-    /// Axis, radius; unbounded length.
+    /// Cylindrical surface of unbounded length, given by axis and radius.
     Pipe,
-    /// Axis, radius of the centre line, radius of the section.
+    /// Torus, given by axis, radius of the centre line and radius of the section.
     Torus,
-    /// Radius; seen from inside.
+    /// Spherical surface seen from inside, given by its radius.
     Bowl,
-    /// No further values.
+    /// Point, given by its position only.
     Point,
-    /// Other end.
+    /// Straight bar, given by its other end.
     Bar,
-    /// Axis.
+    /// Revolute joint, given by its axis.
     Hinge,
-    /// Axis.
+    /// Prismatic joint, given by its axis.
     Slide,
-    /// No further values.
+    /// Ball joint, given by its position only.
     Ball,
-    /// Other end.
+    /// Helical spring, given by its other end.
     Coil,
-    /// Axis.
+    /// Torsion spring, given by its axis.
     Spiral,
-    /// Other end.
+    /// Dashpot, given by its other end.
     Damper,
-    /// Axis.
+    /// Rotary dashpot, given by its axis.
     Brake,
-    /// Direction. The field is the index of the input.
+    /// Input force, given by its direction. The field is the index of the input.
     Force(usize),
-    /// Direction. The field is the index of the input.
+    /// Input torque, given by its direction. The field is the index of the input.
     Torque(usize),
-    /// Acceleration; drawn at the origin.
+    /// Gravitational acceleration, drawn at the origin.
     Gravity,
-    /// Axes. The field is the index of the terrain's height as a function of x and y.
+    /// Terrain, given by its axes. The field is the index of its height function of x and y.
     Terrain(usize),
-    /// Axes, scales. The field is the path of the file.
+    /// Mesh, given by axes and scales. The field is the path of the file.
     Mesh(String),
 }
 

@@ -10,7 +10,7 @@ use crate::expr::{Expr, Vec3};
 pub struct Spring<'g> {
     /// Coordinate on which it acts.
     pub on: Coordinate,
-    /// Stiffness.
+    /// Stiffness, N/m or N·m/rad.
     pub stiffness: Expr<'g>,
     /// Value of the coordinate at zero force.
     pub free: Expr<'g>,
@@ -21,7 +21,7 @@ pub struct Spring<'g> {
 pub struct Dashpot<'g> {
     /// Coordinate on which it acts.
     pub on: Coordinate,
-    /// Damping coefficient.
+    /// Damping coefficient, N·s/m or N·m·s/rad.
     pub damping: Expr<'g>,
 }
 
@@ -46,18 +46,18 @@ pub enum Input<'g> {
     Sum(Vec<Coordinate>, &'static str),
     /// A force on a link.
     Force {
-        /// The link.
+        /// Link on which the force acts.
         link: LinkId,
         /// Point of application, in link axes.
         point: Vec3<'g>,
-        /// Direction.
+        /// Direction of the force.
         along: Direction<'g>,
     },
     /// A torque on a link.
     Torque {
-        /// The link.
+        /// Link on which the torque acts.
         link: LinkId,
-        /// Direction.
+        /// Direction of the torque.
         about: Direction<'g>,
     },
 }
@@ -94,6 +94,6 @@ pub struct AccelerationForce<'g> {
 pub struct Inertance<'g> {
     /// Velocity, linear in the velocities of the mechanism.
     pub rate: Expr<'g>,
-    /// Inertance `b`.
+    /// Inertance `b`, kg or kg·m².
     pub inertance: Expr<'g>,
 }

@@ -5,11 +5,11 @@ use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
 /// Mass properties of a link about its frame's origin, in its axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia<'g> {
-    /// Mass.
+    /// Mass, kg.
     pub mass: Expr<'g>,
-    /// Mass times centre of mass.
+    /// First moment: mass times centre of mass, kg·m.
     pub moment: Vec3<'g>,
-    /// Inertia about the origin.
+    /// Tensor of inertia about the origin, kg·m².
     pub tensor: Sym3<'g>,
 }
 

@@ -1,4 +1,4 @@
-//! The mechanism as a whole.
+//! The complete mechanism model.
 
 use super::constraint::{Constraint, Freedom, Pivot, SolvedSide};
 use super::contact::Contact;

@@ -5,7 +5,7 @@ use crate::expr::Expr;
 /// A condition on values that depend on parameters. Constant values were checked when they were parsed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement<'g> {
-    /// The condition.
+    /// Condition that the values satisfy.
     pub rule: Rule,
     /// Description of the values: `` the mass of `cart` ``.
     pub figure: String,
@@ -28,11 +28,11 @@ pub enum Rule {
     NotNegative,
     /// Positive.
     Positive,
-    /// Between zero and a right angle.
+    /// An angle between zero and a right angle.
     HalfAngle,
-    /// One: the square of a length.
+    /// The squared length of a unit vector: one.
     Unit,
-    /// Between zero and one.
+    /// A fraction between zero and one.
     Fraction,
     /// A lower bound, then an upper bound that is not smaller.
     Order,

@@ -10,9 +10,9 @@ use crate::expr::{Expr, Graph};
 /// columns of joint velocities that are retained are those of the identity matrix.
 #[derive(Clone, Debug)]
 pub struct Speeds<'g> {
-    /// `Y`, row by row.
+    /// Matrix `Y`, row by row.
     pub of_rates: Vec<Vec<Expr<'g>>>,
-    /// `Z`, row by row.
+    /// Matrix `Z`, row by row.
     pub rates: Vec<Vec<Expr<'g>>>,
     /// Indices of the joint velocities that speeds replace.
     pub replaced: Vec<InV>,

@@ -130,9 +130,9 @@ struct Changes<'g> {
     by_q: Spatial<'g>,
     /// Change of the wrench with the velocity of the degree of freedom.
     by_v: Spatial<'g>,
-    /// `I S`.
+    /// Momentum `I S` of the link and its descendants at unit velocity of the degree of freedom.
     momentum: Spatial<'g>,
-    /// `Bᵀ S`, a moment.
+    /// Transposed velocity map `Bᵀ S`, a pure moment.
     moment: Vec3<'g>,
 }
 

@@ -10,13 +10,13 @@ use crate::mechanism::Model;
 /// as an upward acceleration of the ground.
 #[derive(Clone, Copy)]
 pub struct State<'g> {
-    /// Velocity of the origin.
+    /// Velocity of the origin, in the frame's own axes.
     pub v: Vec3<'g>,
-    /// Angular velocity.
+    /// Angular velocity, in the frame's own axes.
     pub w: Vec3<'g>,
-    /// Angular acceleration.
+    /// Angular acceleration, in the frame's own axes.
     pub dw: Vec3<'g>,
-    /// Acceleration of the origin.
+    /// Classical acceleration of the origin, minus gravity, in the frame's own axes.
     pub a: Vec3<'g>,
 }
 
@@ -92,13 +92,15 @@ pub struct Column<'g> {
     pub index: usize,
     /// Joint velocity per unit of the entry of `v`.
     pub ratio: f64,
-    /// `S`.
+    /// Motion subspace `S`, in link axes.
     pub subspace: Spatial<'g>,
-    /// `Ψ̇`.
+    /// Change `Ψ̇ = V × S` of the link's twist with a displacement, `V` of the parent.
     pub first: Spatial<'g>,
-    /// `Ψ̈`.
+    /// Change `Ψ̈ = A × S + V × Ψ̇` of the link's acceleration with a displacement, `V` and `A` of the
+    /// parent.
     pub second: Spatial<'g>,
-    /// `Ψ̇ + Ṡ`, with `Ṡ = V × S` of the link itself.
+    /// Change `Ψ̇ + Ṡ` of the link's acceleration with the velocity, where `Ṡ = V × S` with the link's own
+    /// twist `V`.
     pub rate: Spatial<'g>,
 }
 

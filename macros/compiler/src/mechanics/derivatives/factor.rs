@@ -11,14 +11,14 @@ use crate::kinematics::Joint;
 
 /// The factors `M = Lᵀ D L`, or `U D L` of an unsymmetric matrix; `L` and `U` have unit diagonals.
 pub struct Factor<'g> {
-    /// Entries of `v` from the leaves to the root.
+    /// Indices of `v` in elimination order: from the leaves to the root.
     order: Vec<usize>,
     /// Nonzero off-diagonal entries of `L`, a row for each entry of `v`.
     rows: Vec<Vec<(usize, Expr<'g>)>>,
     /// Nonzero off-diagonal entries of `U`, a column for each entry of `v`; `None` if `U` is the transpose of
     /// `L`.
     columns: Option<Vec<Vec<(usize, Expr<'g>)>>>,
-    /// Diagonal of `D⁻¹`.
+    /// Diagonal of `D⁻¹`, by index of `v`.
     inverse: Vec<Expr<'g>>,
 }
 

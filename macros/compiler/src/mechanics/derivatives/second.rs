@@ -206,9 +206,9 @@ impl<'g> Directions<'g> {
 /// Sums over one link and its descendants, including those with the virtual twists.
 struct Sums<'g> {
     plain: Subtree<'g>,
-    /// `P`.
+    /// Momentum `P = Σ I W` at the virtual twists.
     momentum: Spatial<'g>,
-    /// `N`, a pure moment.
+    /// Moment `N = Σ Bᵀ W` of the virtual twists.
     moment: Vec3<'g>,
     /// Block of `Q` that corresponds to a tensor of inertia.
     tensor: Sym3<'g>,
@@ -368,17 +368,17 @@ impl<'g> Hessian<'g> {
 /// Contribution of one degree of freedom to the entries with its ancestors: wrenches about an ancestor's
 /// origin in the ancestor's axes. Moments are wrenches without force.
 struct Changes<'g> {
-    /// `I Ψ̈ + B Ψ̇ + S ×* F`.
+    /// Wrench `I Ψ̈ + B Ψ̇ + S ×* F`: change with the displacement.
     by_q: Spatial<'g>,
-    /// `I Ω + S ×* P`.
+    /// Virtual wrench `I Ω + S ×* P`: change with the displacement.
     factored: Spatial<'g>,
-    /// `Bᵀ Ω + Q Ψ̇ + Ψ̇ ×* P + S ×* N`, a pure moment.
+    /// Moment `Bᵀ Ω + Q Ψ̇ + Ψ̇ ×* P + S ×* N`: change with the displacement.
     moment_by_q: Vec3<'g>,
-    /// `I (Ψ̇ + Ṡ) + B S`.
+    /// Wrench `I (Ψ̇ + Ṡ) + B S`: change with the velocity.
     by_v: Spatial<'g>,
-    /// `Q S + S ×* P`, a pure moment.
+    /// Moment `Q S + S ×* P`: change with the velocity.
     moment_by_v: Vec3<'g>,
-    /// `I S`.
+    /// Momentum `I S` at unit velocity of the degree of freedom.
     momentum: Spatial<'g>,
 }
 

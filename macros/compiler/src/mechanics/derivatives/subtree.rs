@@ -13,13 +13,13 @@ use crate::mechanism::{Inertia, Model};
 /// Sums over one link and its descendants.
 #[derive(Clone, Copy)]
 pub struct Subtree<'g> {
-    /// Mass properties.
+    /// Mass properties of the link and its descendants, about the link's origin in its axes.
     pub inertia: Inertia<'g>,
     /// Wrench that produces the accelerations of all these bodies.
     pub wrench: Spatial<'g>,
     /// Multiple of `p`; the factor is the argument `multiple` of `subtrees`.
     momentum: Vec3<'g>,
-    /// The same multiple of `K`.
+    /// Multiple of `K`, with the same factor as that of `p`.
     moments: Mat3<'g>,
 }
 
