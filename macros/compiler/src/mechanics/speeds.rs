@@ -35,9 +35,9 @@ pub enum Role {
     /// Velocities or accelerations that result from forces given as arguments, then scalars, then for each of
     /// this number of multipliers the increments per unit of the multiplier.
     Answers(usize),
-    /// Mass matrix, by rows.
+    /// Mass matrix, column by column.
     Metric,
-    /// Inverse of the mass matrix, by rows.
+    /// Inverse of the mass matrix, column by column.
     InverseMetric,
     /// A matrix with this number of rows and a column for each velocity, column by column.
     Columns(usize),

@@ -43,7 +43,7 @@ pub enum Role {
 pub enum PieceKind {
     /// Straight rod, given by axis and length.
     Rod,
-    /// Circle, given by axis and radius.
+    /// Ring or circle, given by axis and radius.
     Ring,
     /// Disk, given by axis and radius.
     Disk,
@@ -81,7 +81,7 @@ pub enum PieceKind {
     Hinge,
     /// Prismatic joint, given by its axis.
     Slide,
-    /// Ball joint, given by its position only.
+    /// Ball or universal joint, given by its position only.
     Ball,
     /// Helical spring, given by its other end.
     Coil,
