@@ -119,6 +119,19 @@ macro_rules! scalars {
             }
         }
 
+        /// A sign, such as an assembly mode: the number's integer part.
+        impl Argument<$number> for i8 {
+            fn take(numbers: &[$number]) -> Self {
+                numbers.first().map_or(0, |number| *number as i8)
+            }
+        }
+
+        impl Results<$number> for i8 {
+            fn give(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
+                <$number>::from(self).give(to)
+            }
+        }
+
         impl Results<$number> for $number {
             fn give(self, to: &mut Sink<'_, '_, $number>) -> Result<(), Failure> {
                 self.write(to.next(), 0, 1);

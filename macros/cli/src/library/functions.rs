@@ -104,7 +104,8 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
         arguments.push((typed.pat.to_token_stream().to_string(), kind));
     }
     let ReturnType::Type(_, kind) = &function.sig.output else { return None };
-    let shapes = shapes(kind)?;
+    let is_mode = is_optional_sign(kind);
+    let shapes = if is_mode { vec![Vec::new()] } else { shapes(kind)? };
     let results = result_names(name, shapes.len()).into_iter().zip(shapes).collect();
     let list: Vec<String> = arguments
         .iter()
@@ -115,10 +116,14 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
             _ => format!("&given(g, {k})"),
         })
         .collect();
-    let call = format!("m.{name}({})", list.join(", "));
+    let call = format!("m.{name}({}){}", list.join(", "), if is_mode { ".unwrap_or(0)" } else { "" });
+    let mut docs = docs(&function.attrs);
+    if is_mode {
+        docs.iter_mut().for_each(|text| *text = text.replace("`None`", "zero"));
+    }
     Some(Function {
         name: name.to_string(),
-        docs: docs(&function.attrs),
+        docs,
         arguments,
         results,
         call,
@@ -192,6 +197,13 @@ const OTHERS: [&str; 5] = ["Self", "bool", "str", "u64", "usize"];
 
 fn is_number(kind: &Type) -> bool {
     matches!(kind, Type::Path(path) if path.path.get_ident().is_some_and(|name| !OTHERS.iter().any(|other| name == other)))
+}
+
+/// Returns true for `Option<i8>`, a sign that may be undetermined: plain arrays have zero for `None`.
+fn is_optional_sign(kind: &Type) -> bool {
+    word(kind).is_some_and(|(name, types, _)| {
+        name == "Option" && types.iter().all(|inner| inner.to_token_stream().to_string() == "i8")
+    })
 }
 
 fn behind(kind: &Type) -> Option<Kind> {
