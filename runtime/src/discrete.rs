@@ -1,9 +1,9 @@
-//! Single steps of a mechanism as maps of state and input, with their exact Jacobians: what Kalman filters, iLQR, DDP and
-//! multiple shooting are made of.
+//! Single integration steps of a mechanism as maps of state and input, with their exact Jacobians. Kalman
+//! filters, iLQR, DDP and multiple shooting are built from them.
 //!
-//! A step leads from the state `(q, v)` at the time `t` to the next, under inputs `u` that are held over the period of the
-//! method. Derivatives are along motions of the configuration, in body axes for ball and free joints, at the start and at the
-//! end: with `x = (δq, δv)`, `x⁺ = A x + B δu`.
+//! A step maps the state `(q, v)` at time `t` to the state one period of the method later, under constant
+//! inputs `u`. Derivatives are with respect to displacements of the configuration, in body axes for ball and
+//! free joints, both before and after the step: with `x = (δq, δv)`, `x⁺ = A x + B δu`.
 //!
 //! ```
 //! use linkwork::discrete;
@@ -25,10 +25,10 @@
 //! let next = discrete::transition(&m, &method, 0.0, &q, &v, &u)?;
 //! let (a, b) = (next.a::<2>(), next.b::<2>());
 //!
-//! // A little more torque moves the next state by B.
+//! // A small increase of the torque moves the next state by B.
 //! let moved = discrete::step(&m, &method, 0.0, &q, &v, &[0.1 + 1e-6].into())?;
 //! assert!((moved.1[0] - next.v[0] - b[(1, 0)] * 1e-6).abs() < 1e-12);
-//! // Without friction areas of states keep their size, to the order of the method.
+//! // Without friction the step preserves areas in state space, to the order of the method.
 //! assert!((a.determinant() - 1.0).abs() < 1e-9);
 //! # Ok(())
 //! # }
@@ -58,13 +58,14 @@ pub(crate) use implicit::eliminated;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
 
-/// The state after one step of a method under inputs `u` that are held: configuration and velocity.
+/// Returns configuration and velocity after one step of a method under constant inputs `u`.
 ///
-/// With constraints the state is brought onto them as in a simulation. The method's own memory begins anew.
+/// With constraints, the state is projected onto them as in a simulation. Steps are independent: the method's
+/// memory of previous steps is empty.
 ///
 /// # Errors
 ///
-/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, and those of the method:
+/// [`Error::InvalidStep`] for a period that is zero, negative or not finite; and the errors of the method:
 /// [`Error::NotFinite`], [`Error::NotConverged`], [`Error::Constraint`].
 pub fn step<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
@@ -84,7 +85,7 @@ where
     Ok((step.end.q, step.end.v))
 }
 
-/// A step with what leads through it.
+/// Returns one step of the method, with the displacement within the step.
 fn taken<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -98,7 +99,7 @@ where
     M: Rheonomic<NQ, NV, NU, Scalar = T>,
     S: FixedStep<T>,
 {
-    // Counted from its own start, a step is as long as it is.
+    // Time is counted from the start of the step, so that the length of the step is not rounded.
     let start = State { t: T::zero(), q: *q, v: *v };
     let mut memory = method.memory();
     if NU == 0 {
@@ -108,7 +109,7 @@ where
     System::new(mechanism, held).advance(method, &mut memory, t, &start, None, false)
 }
 
-/// The state after a step of `h` seconds, and the mean rate of the displacement that leads there.
+/// Returns the state after a step of `h` seconds, and the mean rate of the displacement over the step.
 fn advanced<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -127,14 +128,15 @@ where
     Ok(((step.end.q, step.end.v), step.displacement.at(T::one()) / h))
 }
 
-/// One step of a method under inputs that are held, and its Jacobians ([`Transition`]), exact to rounding.
+/// Returns one step of a method under constant inputs, and its Jacobians ([`Transition`]), exact to rounding.
 ///
-/// Under constraints the Jacobians are those of the whole step, which brings its end onto them; columns are along all motions, also
-/// those that the constraints forbid, which the step takes away. What has to be known of a mechanism:
+/// Under constraints the Jacobians are those of the whole step, including the final projection onto the
+/// constraints. Columns are along all displacements, including those that violate the constraints, which the
+/// projection removes. The mechanism needs these options:
 ///
 /// - `derivatives` for [`Rk4`], and for [`SemiImplicitEuler`] without constraints;
-/// - `momentum_derivatives` for [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), and for [`SemiImplicitEuler`] under
-///   constraints. One that does not ask for them does not compile here:
+/// - `momentum_derivatives` for [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), and for
+///   [`SemiImplicitEuler`] under constraints. A mechanism without this option does not compile here:
 ///
 /// ```compile_fail
 /// # use linkwork::{discrete, prelude::*};
@@ -151,11 +153,13 @@ where
 /// let step = discrete::transition(&Bead {}, &ImplicitMidpoint::step(0.01), 0.0, &q, &v, &u);
 /// ```
 ///
-/// Steps that are implicit are differentiated by the implicit function theorem on their equations. Contacts do not open or slip.
+/// Implicit steps are differentiated by the implicit function theorem. Contact modes must not change within a
+/// step, and contacts must not slide.
 ///
 /// # Errors
 ///
-/// Those of [`step`], and [`Error::Constraint`] with [`Singular`](crate::ConstraintError::Singular) where constraints lose rank.
+/// The errors of [`step`], and [`Error::Constraint`] with [`Singular`](crate::ConstraintError::Singular)
+/// where constraints lose rank.
 pub fn transition<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -174,12 +178,12 @@ where
     Ok(found)
 }
 
-/// [`transition`] into a step that is there, whatever is in it: the matrices of large mechanisms are long to copy, and solvers keep
-/// one for each instant anyway.
+/// Computes [`transition`] in place and overwrites `into`. This avoids copies of the matrices of large
+/// mechanisms; solvers store one transition for each instant.
 ///
 /// # Errors
 ///
-/// Those of [`transition`]; what is in the step then means nothing.
+/// The errors of [`transition`]; the contents of `into` are then unspecified.
 pub fn transition_into<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -223,7 +227,7 @@ where
     if is_finite { Ok(()) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
 
-/// Methods with steps of a length that is set: all that are not adaptive.
+/// Methods with fixed steps: all methods that are not adaptive.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no steps of a length that is set",
     note = "single steps are those of `Rk4`, `SemiImplicitEuler`, `ImplicitMidpoint`, `Rosenbrock` and `TimeStepping`"
@@ -236,7 +240,7 @@ impl<T: Real> FixedStep<T> for crate::integrate::TimeStepping<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::ImplicitMidpoint<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::Rosenbrock<T> {}
 
-/// A step that starts at a time, in a state and under inputs.
+/// Arguments of a step: method, time, state and inputs.
 struct Through<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
     method: &'a S,
     t: T,
@@ -261,20 +265,21 @@ where
     }
 }
 
-/// Methods whose steps have derivatives: [`SemiImplicitEuler`], [`Rk4`] and [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint).
+/// Methods with differentiable steps: [`SemiImplicitEuler`], [`Rk4`] and
+/// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint).
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no derivatives",
     note = "those of `Rk4`, `SemiImplicitEuler` and `ImplicitMidpoint` have"
 )]
 pub trait DifferentiableStep<T: Real>: FixedStep<T> {
-    /// Whether steps need derivatives of momenta, without constraints and with them.
+    /// Whether steps need derivatives of momenta: without constraints, with constraints.
     const IN_MOMENTA: [bool; 2];
 
-    /// A step of a mechanism with constraints; what [`transition`] calls for one.
+    /// Returns a step of a mechanism with constraints and its Jacobians; called by [`transition`].
     ///
     /// # Errors
     ///
-    /// Those of [`transition`].
+    /// The errors of [`transition`].
     fn differentiate_held<
         M,
         const NQ: usize,
@@ -293,11 +298,11 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
 
-    /// A step of one without; what [`transition`] calls.
+    /// Returns a step of a mechanism without constraints and its Jacobians; called by [`transition`].
     ///
     /// # Errors
     ///
-    /// Those of [`step`].
+    /// The errors of [`step`].
     fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -309,11 +314,11 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>;
 
-    /// [`differentiate`](Self::differentiate) into a step that is there; what [`transition_into`] calls.
+    /// Computes [`differentiate`](Self::differentiate) in place; called by [`transition_into`].
     ///
     /// # Errors
     ///
-    /// Those of [`step`].
+    /// The errors of [`step`].
     fn differentiate_into<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -331,63 +336,68 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     }
 }
 
-/// The state after a step, and how it changes with the state before and with the inputs.
+/// State after a step, and its derivatives with respect to the state before the step and the inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition<T, const NQ: usize, const NV: usize, const NU: usize> {
-    /// The configuration after the step.
+    /// Configuration after the step.
     pub q: SVector<T, NQ>,
-    /// The velocity after the step.
+    /// Velocity after the step.
     pub v: SVector<T, NV>,
-    /// How the configuration after the step moves with that before.
+    /// Derivative of the configuration after the step with respect to the configuration before it.
     pub q_by_q: SMatrix<T, NV, NV>,
-    /// How the configuration moves with the velocity before, s.
+    /// Derivative of the configuration after the step with respect to the velocity before it, s.
     pub q_by_v: SMatrix<T, NV, NV>,
-    /// How the configuration moves with the inputs.
+    /// Derivative of the configuration after the step with respect to the inputs.
     pub q_by_u: SMatrix<T, NV, NU>,
-    /// How the velocity changes with the configuration before, 1/s.
+    /// Derivative of the velocity after the step with respect to the configuration before it, 1/s.
     pub v_by_q: SMatrix<T, NV, NV>,
-    /// How the velocity changes with that before.
+    /// Derivative of the velocity after the step with respect to the velocity before it.
     pub v_by_v: SMatrix<T, NV, NV>,
-    /// How the velocity changes with the inputs.
+    /// Derivative of the velocity after the step with respect to the inputs.
     pub v_by_u: SMatrix<T, NV, NU>,
-    /// Of a step with `q⁺ = q ⊕ h v⁺` ([`SemiImplicitEuler`] without constraints) how the configuration follows from the velocity: the
-    /// derivatives of the former follow, too, which halves what [`backward`](crate::optimal::backward) has to do.
+    /// Relation between configuration and velocity after a step with `q⁺ = q ⊕ h v⁺` ([`SemiImplicitEuler`]
+    /// without constraints). It halves the work of [`backward`](crate::optimal::backward), because the
+    /// derivatives of the configuration follow from those of the velocity.
     pub chained: Option<Chained<T, NV>>,
 }
 
-/// How the configuration of a step follows from its velocity: `δq⁺ = by_q δq + h by_displacement δv⁺`.
+/// Linear relation between the configuration and the velocity after a step: `δq⁺ = by_q δq + h
+/// by_displacement δv⁺`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chained<T, const NV: usize> {
     period: T,
     by_q: SMatrix<T, NV, NV>,
     by_displacement: SMatrix<T, NV, NV>,
-    /// Which columns of either are not those of the identity, from one up to another.
+    /// Half-open column ranges in which `by_q` and `by_displacement` differ from the identity.
     others: [(usize, usize); 2],
 }
 
 impl<T: Real, const NV: usize> Chained<T, NV> {
-    /// How the configuration follows from the velocity by these derivatives.
+    /// Returns the relation with the period `h`, s, and the derivatives of `q ⊕ h v⁺` with respect to `q` and
+    /// to the displacement `h v⁺`.
     pub fn new(period: T, by_q: SMatrix<T, NV, NV>, by_displacement: SMatrix<T, NV, NV>) -> Self {
         let others = [&by_q, &by_displacement].map(|matrix| NearlyIdentity::of(matrix).others());
         Self { period, by_q, by_displacement, others }
     }
 
-    /// The period `h`, s.
+    /// Returns the period `h`, s.
     pub fn period(&self) -> T {
         self.period
     }
 
-    /// How `q ⊕ h v⁺` moves with `q`: the identity but for ball and free joints.
+    /// Returns the derivative of `q ⊕ h v⁺` with respect to `q`: the identity except for ball and free
+    /// joints.
     pub fn by_q(&self) -> &SMatrix<T, NV, NV> {
         &self.by_q
     }
 
-    /// How it moves with the displacement `h v⁺`: the identity but for ball and free joints.
+    /// Returns the derivative of `q ⊕ h v⁺` with respect to the displacement `h v⁺`: the identity except for
+    /// ball and free joints.
     pub fn by_displacement(&self) -> &SMatrix<T, NV, NV> {
         &self.by_displacement
     }
 
-    /// As matrices that are nearly the identity.
+    /// Returns both derivatives as matrices that are the identity outside the stored column ranges.
     pub(crate) fn nearly(&self) -> [NearlyIdentity<'_, T, NV>; 2] {
         let [of_q, of_displacement] = self.others;
         [
@@ -398,7 +408,7 @@ impl<T: Real, const NV: usize> Chained<T, NV> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, NQ, NV, NU> {
-    /// Nothing but zeros, for [`transition_into`].
+    /// Returns a transition of zeros, for [`transition_into`].
     pub fn zeros() -> Self {
         Self {
             q: zeros(),
@@ -413,21 +423,23 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
         }
     }
 
-    /// `A` of `x⁺ = A x + B δu`: displacements first, then changes of velocity. `NX` is `2 NV`; any other does not compile.
+    /// Returns `A` of `x⁺ = A x + B δu`: displacements first, then changes of velocity. `NX` is `2 NV`; any
+    /// other value does not compile.
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let blocks = [[&self.q_by_q, &self.q_by_v], [&self.v_by_q, &self.v_by_v]];
         SMatrix::from_fn(|i, j| entry(blocks, i, j))
     }
 
-    /// `B` of `x⁺ = A x + B δu`; `NX` is `2 NV`.
+    /// Returns `B` of `x⁺ = A x + B δu`; `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         column(&self.q_by_u, &self.v_by_u)
     }
 
-    /// The gradient by configuration, velocity and inputs before the step of a function whose gradient after it is
-    /// (`by_q`, `by_v`): `Aᵀ λ` and `Bᵀ λ`, what adjoint methods carry backwards.
+    /// Returns the gradient of a function with respect to configuration, velocity and inputs before the step,
+    /// given its gradient (`by_q`, `by_v`) after the step: `Aᵀ λ` and `Bᵀ λ`. Adjoint methods propagate this
+    /// gradient backwards in time.
     pub fn adjoint(
         &self,
         by_q: &SVector<T, NV>,
@@ -441,7 +453,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
     }
 }
 
-/// `x` of `x⁺ = A x + B δu` in one vector: displacements, then changes of velocity. `NX` is `2 NV`; any other does not compile.
+/// Returns `x` of `x⁺ = A x + B δu` as one vector: displacements, then changes of velocity. `NX` is `2 NV`;
+/// any other value does not compile.
 ///
 /// ```
 /// use linkwork::discrete;
@@ -460,7 +473,7 @@ pub fn stacked<T: Real, const NV: usize, const NX: usize>(
     column(dq, dv)
 }
 
-/// Displacements and changes of velocity of [`stacked`].
+/// Splits a vector made by [`stacked`] into displacements and changes of velocity.
 pub fn split<T: Real, const NV: usize, const NX: usize>(
     x: &SVector<T, NX>,
 ) -> (SVector<T, NV>, SVector<T, NV>) {

@@ -1,38 +1,40 @@
-//! What a mechanism with the word `drawing` looks like, as data: pieces fixed in its frames, for programs that draw it. The crate
-//! `linkwork-view` makes pages of it.
+//! Drawing of a mechanism with the option `drawing`, as data: pieces fixed in its frames, for programs that
+//! draw it. The crate `linkwork-view` converts it to web pages.
 
 use crate::Frames;
 
-/// A part of the drawing of a mechanism. Its numbers are those of [`Drawn::drawing_numbers`] from `first` on, as many as its
-/// [`Kind`] says, in m and rad, in the axes of its frames.
+/// Element of the drawing of a mechanism. Its numbers start at index `first` of [`Drawn::drawing_numbers`],
+/// and its [`Kind`] defines their count. They are in m and rad, in the axes of the piece's frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Name of what it shows: a body, a joint, a contact, a force element, an input.
+    /// Name of the drawn body, joint, contact, force element or input.
     pub name: &'static str,
-    /// What of the declaration it is.
+    /// Part of the declaration that the piece shows.
     pub role: Role,
-    /// What it looks like.
+    /// Shape of the piece.
     pub kind: Kind,
-    /// The frames that its first vector and, if it has one in a frame of its own, its second one are fixed in, by number; the
-    /// ground if none.
+    /// Indices of the frames in which the first vector and, if it has a frame of its own, the second vector
+    /// are fixed; `None` is the ground.
     pub frames: [Option<usize>; 2],
-    /// Where its numbers begin.
+    /// Index of the first number of the piece.
     pub first: usize,
 }
 
-/// What of a declaration a piece shows.
+/// Part of a declaration that a piece shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A body, by its mass properties: the solids of its inertia, or mass and moments that determine an ellipsoid. A body that a file
-    /// draws by meshes has these pieces as well, for programs that cannot read them.
+    /// A body, drawn from its mass properties: the solids of its inertia, or the mass and moments that
+    /// determine an ellipsoid. A body that a file draws by meshes has these pieces as well, for programs that
+    /// cannot read meshes.
     Body,
-    /// Bars from the joint that holds a body to its other joints and its centre of mass, for the same bodies.
+    /// Bars from the inboard joint of a body to its other joints and its centre of mass, for the same bodies
+    /// as [`Body`](Self::Body).
     Link,
-    /// A body, by the visual geometry of a file.
+    /// A body, drawn from the visual geometry of a file.
     Visual,
     /// A joint.
     Joint,
-    /// A surface that touches others.
+    /// A contact surface.
     Surface,
     /// A spring or a dashpot.
     Element,
@@ -42,11 +44,11 @@ pub enum Role {
     Gravity,
 }
 
-/// The form of a piece. Its numbers are a place first; then what stands here, vectors with three numbers, axes as a rotation
-/// matrix row by row, lengths in m.
+/// Shape of a piece. Its numbers start with a position, followed by the numbers listed at each variant.
+/// Vectors have three numbers; axes are a rotation matrix, row by row; lengths are in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// Axis, length; about its centre, as all solids.
+    /// Axis, length; the position is the centre, as for all solids.
     Rod,
     /// Axis, radius.
     Ring,
@@ -56,60 +58,61 @@ pub enum Kind {
     Cylinder,
     /// Axis, inner radius, outer radius, height.
     Tube,
-    /// Axis, radius, height; about its centre of mass, a quarter of the height above the base.
+    /// Axis, radius, height; the position is the centre of mass, a quarter of the height above the base.
     Cone,
-    /// Axis, radius, distance of the centres of its balls.
+    /// Axis, radius, distance between the centres of the end spheres.
     Capsule,
-    /// Radius.
+    /// Radius of the sphere.
     Sphere,
-    /// Axes, edges.
+    /// Axes, edge lengths.
     Cuboid,
-    /// Axes, half axes.
+    /// Axes, semi-axes.
     Ellipsoid,
-    /// Mass, kg, and inertia about the place, kg·m²: xx, yy, zz, xy, xz, yz.
+    /// Mass, kg, and inertia about the position, kg·m²: xx, yy, zz, xy, xz, yz.
     Inertia,
-    /// Normal.
+    /// Normal of the plane.
     Plane,
-    /// Axis, half angle, rad; a cone of any length from its apex.
+    /// Axis, half angle, rad: a cone of unbounded length from its apex.
     Funnel,
-    /// Axis, radius; of any length.
+    /// Axis, radius: a cylinder of unbounded length.
     Pipe,
-    /// Axis, radius of the centre line, radius of the section.
+    /// Axis, radius of the centre line, radius of the cross section.
     Torus,
-    /// Radius; a ball seen from inside.
+    /// Radius: a sphere seen from inside.
     Bowl,
-    /// Nothing more.
+    /// No further numbers.
     Point,
-    /// The other end, in the second frame.
+    /// Position of the other end, in the second frame.
     Bar,
-    /// Axis.
+    /// Axis of a revolute joint.
     Hinge,
-    /// Axis.
+    /// Axis of a prismatic joint.
     Slide,
-    /// Nothing more: a joint of all rotations.
+    /// No further numbers: a ball joint.
     Ball,
-    /// The other end, in the second frame: a spring that spans a length.
+    /// Position of the other end, in the second frame: a translational spring.
     Coil,
-    /// Axis: a spring that turns.
+    /// Axis: a torsional spring.
     Spiral,
-    /// The other end, in the second frame: a dashpot that spans a length.
+    /// Position of the other end, in the second frame: a translational dashpot.
     Damper,
-    /// Axis: a dashpot that turns.
+    /// Axis: a torsional dashpot.
     Brake,
-    /// Direction in the second frame; number of the input.
+    /// Direction in the second frame; index of the input.
     Force(usize),
-    /// Direction in the second frame; number of the input.
+    /// Direction in the second frame; index of the input.
     Torque(usize),
     /// Acceleration, m/s², at the ground's origin.
     Gravity,
-    /// Axes; ground whose height along the third of them is that number of [`Drawn::drawing_heights`] at the place along the others.
+    /// Axes; ground surface whose height along the third axis, as a function of the coordinates along the
+    /// first two, is the entry of [`Drawn::drawing_heights`] with this index.
     Terrain(usize),
-    /// Axes, scales along them; path of the file of triangles, as the robot's file writes it.
+    /// Axes, scale factors along them; path of the triangle mesh file, as written in the robot's file.
     Mesh(&'static str),
 }
 
 impl Kind {
-    /// How many numbers it has.
+    /// Returns the number of numbers, including the position.
     pub const fn count(self) -> usize {
         match self {
             Kind::Point | Kind::Ball => 3,
@@ -135,7 +138,7 @@ impl Kind {
     }
 }
 
-/// A mechanism with the word `drawing`: what is declared, as pieces that move with its frames.
+/// Mechanism with the option `drawing`: its declarations as pieces that move with its frames.
 ///
 /// ```
 /// use linkwork::drawing::{Kind, Role};
@@ -163,14 +166,14 @@ impl Kind {
     note = "add the word to the attribute: `#[mechanism(…, drawing)]`"
 )]
 pub trait Drawn<const NQ: usize, const NV: usize>: Frames<NQ, NV> {
-    /// The pieces.
+    /// Pieces of the drawing.
     const DRAWING: &'static [Piece];
 
-    /// Their numbers, for the parameters as they are.
+    /// Returns the numbers of all pieces, for the current parameters.
     fn drawing_numbers(&self) -> impl AsRef<[Self::Scalar]>;
 
-    /// The heights of the pieces [`Kind::Terrain`] at a place along the first two of the axes of each, m, by their numbers; of a
-    /// table outside of its grid what the table says there.
+    /// Returns the heights, m, of the pieces [`Kind::Terrain`], ordered by their indices, at a position along
+    /// the first two axes of each piece. Outside the grid of a table, the table's own extrapolation applies.
     fn drawing_heights(&self, _place: &[Self::Scalar; 2]) -> impl AsRef<[Self::Scalar]> {
         let none: [Self::Scalar; 0] = [];
         none

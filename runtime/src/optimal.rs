@@ -1,12 +1,15 @@
-//! The recursion of optimal control in blocks of `NV` by `NV`: what iterative linear-quadratic regulators (iLQR), differential
-//! dynamic programming (DDP) and linear-quadratic regulators do at each instant, from the last to the first.
+//! Backward recursion of optimal control in blocks of `NV` by `NV`. Iterative linear-quadratic regulators
+//! (iLQR), differential dynamic programming (DDP) and linear-quadratic regulators apply it to each instant,
+//! from the last to the first.
 //!
-//! With the step `x⁺ = A x + B δu` of a mechanism ([`Transition`]), the costs of an instant and those to go after it
-//! ([`Value`]), [`backward`] finds the change of inputs that is best to second order, and the costs to go from there. Sources:
-//! Mayne, *A second-order gradient method for determining optimal trajectories of non-linear discrete-time systems* (1966);
-//! Tassa, Erez and Todorov, *Synthesis and stabilization of complex behaviors through online trajectory optimization* (2012).
+//! [`backward`] takes the linearised step `δx⁺ = A δx + B δu` of a mechanism ([`Transition`]), the cost of an
+//! instant ([`Quadratic`]) and the cost-to-go after the step ([`Value`]). It returns the change of inputs
+//! that minimises the total cost to second order, and the cost-to-go before the step. Sources: Mayne, *A
+//! second-order gradient method for determining optimal trajectories of non-linear discrete-time systems*
+//! (1966); Tassa, Erez and Todorov, *Synthesis and stabilization of complex behaviors through online
+//! trajectory optimization* (2012).
 //!
-//! Nothing is allocated: trajectories are arrays of the caller.
+//! The functions allocate no memory: the caller stores the trajectories.
 //!
 //! ```
 //! use linkwork::optimal::{Quadratic, Value, backward};
@@ -26,18 +29,20 @@
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let step = discrete::transition(&Cart {}, &Rk4::step(0.01), 0.0, &[0.0].into(), &[0.0].into(), &[0.0].into())?;
-//! // Costs of state and input, over so long a time that the gain no longer changes: the linear-quadratic regulator.
+//! // Costs of state and input, over a horizon long enough for the gain to converge:
+//! // the linear-quadratic regulator.
 //! let mut cost = Quadratic::zeros();
 //! (cost.qq[0], cost.uu[0]) = (1.0, 1.0);
 //! let (mut policy, mut to_go) = backward(&step, &cost, &Value::zeros(), 0.0)?;
 //! for _ in 0..2000 {
 //!     (policy, to_go) = backward(&step, &cost, &to_go, 0.0)?;
 //! }
-//! // For a period that tends to zero they are −1 and −√(2 m) (Bryson and Ho, *Applied Optimal Control*, 1975, § 5.2).
+//! // As the period tends to zero, the gains tend to −1 and −√(2 m)
+//! // (Bryson and Ho, *Applied Optimal Control*, 1975, § 5.2).
 //! let gain = [policy.by_q[0], policy.by_v[0]];
 //! assert!((gain[0] + 1.0).abs() < 0.02 && (gain[1] + 2.0).abs() < 0.04, "{gain:?}");
 //!
-//! // What it costs to bring the cart back from a metre off, moving, is what the costs to go say.
+//! // The cost-to-go predicts the cost of bringing the moving cart back from a displacement of one metre.
 //! let (mut q, mut v, mut sum) = ([1.0].into(), [0.5].into(), 0.0);
 //! let expected = to_go.at(&q, &v);
 //! let x: SVector<f64, 2> = discrete::stacked(&q, &v);
@@ -62,62 +67,65 @@ use crate::private::constant;
 use crate::{InputSecondOrder, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Costs to second order about a state and inputs: `gradient · (δq, δv, δu) + ½ (δq, δv, δu) · Hessian (δq, δv, δu)`, in units of
-/// the user's. Displacements of ball and free joints are in body axes.
+/// Second-order model of the costs about a state and inputs: `gradient · (δq, δv, δu) + ½ (δq, δv, δu) ·
+/// Hessian (δq, δv, δu)`. The unit of the costs is the user's choice. Displacements of ball and free joints
+/// are in body axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadratic<T, const NV: usize, const NU: usize> {
-    /// Gradient by configuration.
+    /// Gradient with respect to the configuration.
     pub q: SVector<T, NV>,
-    /// Gradient by velocity.
+    /// Gradient with respect to the velocity.
     pub v: SVector<T, NV>,
-    /// Gradient by inputs.
+    /// Gradient with respect to the inputs.
     pub u: SVector<T, NU>,
-    /// By configuration twice.
+    /// Block of the Hessian: configuration by configuration.
     pub qq: SMatrix<T, NV, NV>,
-    /// By configuration (rows) and velocity.
+    /// Block of the Hessian: configuration (rows) by velocity (columns).
     pub qv: SMatrix<T, NV, NV>,
-    /// By velocity twice.
+    /// Block of the Hessian: velocity by velocity.
     pub vv: SMatrix<T, NV, NV>,
-    /// By configuration (rows) and inputs.
+    /// Block of the Hessian: configuration (rows) by inputs (columns).
     pub qu: SMatrix<T, NV, NU>,
-    /// By velocity (rows) and inputs.
+    /// Block of the Hessian: velocity (rows) by inputs (columns).
     pub vu: SMatrix<T, NV, NU>,
-    /// By inputs twice.
+    /// Block of the Hessian: inputs by inputs.
     pub uu: SMatrix<T, NU, NU>,
 }
 
-/// Costs to go from a state on, to second order: [`Quadratic`] without inputs.
+/// Second-order model of the cost-to-go from a state: [`Quadratic`] without inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value<T, const NV: usize> {
-    /// Gradient by configuration.
+    /// Gradient with respect to the configuration.
     pub q: SVector<T, NV>,
-    /// Gradient by velocity.
+    /// Gradient with respect to the velocity.
     pub v: SVector<T, NV>,
-    /// By configuration twice.
+    /// Block of the Hessian: configuration by configuration.
     pub qq: SMatrix<T, NV, NV>,
-    /// By configuration (rows) and velocity.
+    /// Block of the Hessian: configuration (rows) by velocity (columns).
     pub qv: SMatrix<T, NV, NV>,
-    /// By velocity twice.
+    /// Block of the Hessian: velocity by velocity.
     pub vv: SMatrix<T, NV, NV>,
 }
 
-/// How the inputs change: `δu = α change + by_q δq + by_v δv`, with the length `α` of a line search, 1 for all of it.
+/// Affine feedback policy for the inputs, `δu = α change + by_q δq + by_v δv`, with the step length `α` of a
+/// line search (1 for the full step).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Policy<T, const NV: usize, const NU: usize> {
-    /// The change that is best to second order.
+    /// Feedforward change of the inputs that minimises the costs to second order.
     pub change: SVector<T, NU>,
-    /// The gain on displacements of the configuration.
+    /// Feedback gain on displacements of the configuration.
     pub by_q: SMatrix<T, NU, NV>,
-    /// The gain on changes of velocity.
+    /// Feedback gain on changes of the velocity.
     pub by_v: SMatrix<T, NU, NV>,
-    /// What `α change` adds to the costs: `α` times the first and `α²` times the second of these.
+    /// Coefficients of the expected change of the costs due to `α change`: `α expected[0] + α² expected[1]`.
     pub expected: [T; 2],
 }
 
-/// Why there is no best change of inputs: the costs are not convex in them.
+/// Error for costs that are not convex in the inputs, so that no change of the inputs minimises them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Indefinite {
-    /// The input where the factorisation of the Hessian by inputs meets a pivot that is not positive.
+    /// Index of the input at which the factorisation of the Hessian block `uu` meets a pivot that is not
+    /// positive.
     pub input: usize,
 }
 
@@ -141,7 +149,7 @@ impl core::fmt::Display for Indefinite {
 impl core::error::Error for Indefinite {}
 
 impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
-    /// No costs.
+    /// Returns zero costs.
     pub fn zeros() -> Self {
         let (state, mixed) = (SMatrix::zeros(), SMatrix::zeros());
         Self {
@@ -157,8 +165,9 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
         }
     }
 
-    /// Adds the costs `½ weight |r|²` of a residual `r` with its derivatives by configuration, velocity and inputs, without its curvature
-    /// (Gauss and Newton): of what is to be met, such as a place for a hand, or forces of contacts in their cone.
+    /// Adds the costs `½ weight |r|²` of a residual `r`, given its derivatives with respect to configuration,
+    /// velocity and inputs. The curvature of `r` is neglected (Gauss-Newton). The residual is a quantity to
+    /// be driven to zero, such as the distance of a hand from its target or the violation of a friction cone.
     pub fn add_squares<const R: usize>(
         &mut self,
         weight: T,
@@ -179,9 +188,10 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
         add_product(&mut self.uu, &u_rows, by_u);
     }
 
-    /// Adds the costs `gradient · δr + ½ δr · Hessian δr` of numbers with derivatives by configuration, velocity and inputs, without the
-    /// curvature of these (Gauss and Newton): of forces of contacts that are outside of their cones, say, many at once. Numbers without
-    /// costs, whose entries are zero, take no time.
+    /// Adds the costs `gradient · δr + ½ δr · Hessian δr` of quantities `r`, given their derivatives with
+    /// respect to configuration, velocity and inputs. The curvature of `r` is neglected (Gauss-Newton). One
+    /// call treats many quantities, for example all contact forces outside their friction cones. Quantities
+    /// with zero gradient and Hessian column are skipped and take no time.
     pub fn add_costs_of<const R: usize>(
         &mut self,
         gradient: &SVector<T, R>,
@@ -213,7 +223,8 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
         add_product_of_some(&mut self.uu, places, &u_rows, &of_u);
     }
 
-    /// [`add_squares`](Self::add_squares) of a residual of the configuration alone.
+    /// Adds the costs `½ weight |r|²` of a residual `r` that depends on the configuration alone, see
+    /// [`add_squares`](Self::add_squares).
     pub fn add_squares_of_configuration<const R: usize>(
         &mut self,
         weight: T,
@@ -226,8 +237,9 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
         add_product(&mut self.qq, &rows, by_q);
     }
 
-    /// With the curvature of the step besides ([`second_order`](crate::discrete::second_order), with the gradient of the costs to
-    /// go as factors): differential dynamic programming; without it, iLQR.
+    /// Returns the costs with the curvature of the step added
+    /// ([`second_order`](crate::discrete::second_order), with the gradient of the cost-to-go as factors). The
+    /// recursion with curvature is differential dynamic programming; without it, iLQR.
     pub fn with_curvature(&self, (qq, qv, vv, qu, vu, uu): &InputSecondOrder<T, NV, NU>) -> Self {
         Self {
             qq: self.qq + qq,
@@ -242,21 +254,21 @@ impl<T: Real, const NV: usize, const NU: usize> Quadratic<T, NV, NU> {
 }
 
 impl<T: Real, const NV: usize> Value<T, NV> {
-    /// No costs.
+    /// Returns a zero cost-to-go.
     pub fn zeros() -> Self {
         let zero = SMatrix::zeros();
         Self { q: SVector::zeros(), v: SVector::zeros(), qq: zero, qv: zero, vv: zero }
     }
 
-    /// The Hessian by `x = (δq, δv)` in one matrix; `NX` is `2 NV`, which the type that is asked for says; any other does not
-    /// compile.
+    /// Returns the Hessian with respect to `x = (δq, δv)` as one matrix. `NX` is `2 NV`, inferred from the
+    /// requested type; any other value is a compile error.
     pub fn hessian<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let vq = transposed(&self.qv);
         SMatrix::from_fn(|i, j| entry([[&self.qq, &self.qv], [&vq, &self.vv]], i, j))
     }
 
-    /// What a state that is off by `dq` and `dv` costs more.
+    /// Returns the additional cost-to-go of a state displaced by `dq` and `dv`.
     pub fn at(&self, dq: &SVector<T, NV>, dv: &SVector<T, NV>) -> T {
         let quadratic = dq.dot(&product(&self.qq, dq)) + dv.dot(&product(&self.vv, dv));
         self.q.dot(dq) + self.v.dot(dv) + dq.dot(&product(&self.qv, dv)) + quadratic * constant(0.5)
@@ -264,12 +276,13 @@ impl<T: Real, const NV: usize> Value<T, NV> {
 }
 
 impl<T: Real, const NV: usize, const NU: usize> Policy<T, NV, NU> {
-    /// Inputs that stay as they are.
+    /// Returns the policy that leaves the inputs unchanged.
     pub fn zeros() -> Self {
         Self { change: zeros(), by_q: zeros(), by_v: zeros(), expected: [T::zero(); 2] }
     }
 
-    /// The change `δu` of the inputs for a state that is off by `dq` and `dv`, with the length `α` of a line search.
+    /// Returns the change `δu` of the inputs for a state displaced by `dq` and `dv`, with step length `α`
+    /// (`length`) of a line search.
     pub fn inputs(&self, length: T, dq: &SVector<T, NV>, dv: &SVector<T, NV>) -> SVector<T, NU> {
         let mut change = self.change * length;
         add_product(&mut change, &self.by_q, dq);
@@ -278,12 +291,13 @@ impl<T: Real, const NV: usize, const NU: usize> Policy<T, NV, NU> {
     }
 }
 
-/// The change of inputs at an instant that is best to second order, and the costs to go from there, by those after the step;
-/// `regularisation` is added to the diagonal of the Hessian by inputs.
+/// Returns the policy that minimises the costs of an instant to second order, and the cost-to-go before the
+/// step, given the cost-to-go `after` it. `regularisation` is added to the diagonal of the Hessian with
+/// respect to the inputs.
 ///
 /// # Errors
 ///
-/// [`Indefinite`] where that Hessian is not positive definite, also where something is not finite.
+/// [`Indefinite`] if that Hessian is not positive definite or a value is not finite.
 pub fn backward<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     step: &Transition<T, NQ, NV, NU>,
     cost: &Quadratic<T, NV, NU>,
@@ -295,12 +309,12 @@ pub fn backward<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     Ok((policy, to_go))
 }
 
-/// [`backward`] into a policy, with costs to go after the step that become those before it: the matrices of large mechanisms are long
-/// to copy.
+/// Computes [`backward`] in place: writes the policy, and replaces the cost-to-go after the step by that
+/// before it. This avoids copies of the matrices of large mechanisms.
 ///
 /// # Errors
 ///
-/// Those of [`backward`]; policy and costs stay as they are then.
+/// The errors of [`backward`]; `policy` and `to_go` are then unchanged.
 pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     step: &Transition<T, NQ, NV, NU>,
     cost: &Quadratic<T, NV, NU>,
@@ -308,7 +322,8 @@ pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>
     policy: &mut Policy<T, NV, NU>,
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {
-    // Costs before the step by state and inputs, those after it included.
+    // Costs as a function of the state before the step and the inputs, including the cost-to-go after the
+    // step.
     let mut before = *cost;
     match &step.chained {
         Some(chain) => chained(&mut before, step, to_go, chain),
@@ -317,14 +332,14 @@ pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>
     minimised(&mut before, regularisation, policy, to_go)
 }
 
-/// For any step.
+/// Adds the cost-to-go after a step of any method to the costs before it.
 fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
     after: &Value<T, NV>,
 ) {
     let vq = transposed(&after.qv);
-    // Column by column of blocks: the rows of S [A B], then what the rows of [A B]ᵀ make of them.
+    // One block column at a time: the rows of S [A B], then their products with the rows of [A B]ᵀ.
     let (q_by_q, v_by_q) = (transposed(&step.q_by_q), transposed(&step.v_by_q));
     let (q_by_v, v_by_v) = (transposed(&step.q_by_v), transposed(&step.v_by_v));
     let (q_by_u, v_by_u) = (transposed(&step.q_by_u), transposed(&step.v_by_u));
@@ -342,7 +357,7 @@ fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     add_both(&mut before.u, &q_by_u, &v_by_u, &gradient);
 }
 
-/// The rows of configuration and velocity of `S X`.
+/// Returns the configuration rows and the velocity rows of `S X`, with the Hessian `S` of the cost-to-go.
 fn rows<T: Real, const NV: usize, const C: usize>(
     after: &Value<T, NV>,
     vq: &SMatrix<T, NV, NV>,
@@ -355,7 +370,7 @@ fn rows<T: Real, const NV: usize, const C: usize>(
     (of_q, of_v)
 }
 
-/// Adds the products with the rows of configuration and velocity.
+/// Adds `q of_q + v of_v`, the products with the configuration and velocity rows, to `sum`.
 fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
     q: &SMatrix<T, R, NV>,
@@ -366,8 +381,9 @@ fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
     add_product(sum, v, of_v);
 }
 
-/// For a step with `q⁺ = q ⊕ h v⁺`: with `G` the derivatives of `v⁺`, and those `E` and `D` of `⊕`, `A = [E 0; 0 0] + H G_x` and
-/// `B = H G_u`, `H = [h D; 1]`, so that `W = Hᵀ S H` takes the place of `S`.
+/// Adds the cost-to-go after a step with `q⁺ = q ⊕ h v⁺` to the costs before it. With the derivatives `G` of
+/// `v⁺`, and `E` and `D` of `⊕`, the step is `A = [E 0; 0 0] + H G_x` and `B = H G_u`, `H = [h D; 1]`.
+/// Therefore `W = Hᵀ S H` replaces `S`.
 fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
@@ -381,7 +397,8 @@ fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     transpose_into(by_u, &mut u_rows);
     let (mut z, mut w) = (zeros(), after.vv);
     let [of_q, gradient] = link::<T, NQ, NV>(&mut before.qq, &mut z, &mut w, after, chain);
-    // With P = G_qᵀ W + Z the rows of q are P [G_v G_u], and by q twice Eᵀ S_qq E + ½ (P + Z) G_q with its transpose.
+    // With P = G_qᵀ W + Z the rows of q are P [G_v G_u], and the block qq is Eᵀ S_qq E + ½ (P + Z) G_q plus
+    // its transpose.
     let mut rows = z;
     add_product(&mut rows, &q_rows, &w);
     add_product(&mut before.qv, &rows, by_v);
@@ -403,9 +420,9 @@ fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     add_product(&mut before.u, &u_rows, &gradient);
 }
 
-/// The costs to go by the configuration before a step and by the velocity after it, which the configuration after it follows: makes
-/// `z` of nothing `Eᵀ (h S_qq D + S_qv)` and `w` of `S_vv` `Hᵀ S H`, adds `Eᵀ S_qq E` to the costs by configuration, and returns `Eᵀ s_q`
-/// and `Hᵀ s`.
+/// Rewrites the cost-to-go as a function of the configuration before the step and the velocity after it,
+/// which together determine the configuration after the step. Sets `z` (zero on entry) to `Eᵀ (h S_qq D +
+/// S_qv)` and `w` (`S_vv` on entry) to `Hᵀ S H`, adds `Eᵀ S_qq E` to `qq`, and returns `Eᵀ s_q` and `Hᵀ s`.
 fn link<T: Real, const NQ: usize, const NV: usize>(
     qq: &mut SMatrix<T, NV, NV>,
     z: &mut SMatrix<T, NV, NV>,
@@ -443,7 +460,7 @@ fn link<T: Real, const NQ: usize, const NV: usize>(
     [of_q, after.v + of_dv * h]
 }
 
-/// The best change of the inputs, and what the costs then are.
+/// Computes the change of the inputs that minimises the costs, and the resulting cost-to-go.
 fn minimised<T: Real, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     regularisation: T,
@@ -461,9 +478,9 @@ fn minimised<T: Real, const NV: usize, const NU: usize>(
     transpose_into(&of_q, by_q);
     transpose_into(&of_v, by_v);
     let linear = u.dot(change);
-    // (Q_uu + r) change = −Q_u.
+    // The change satisfies (Q_uu + r) change = −Q_u.
     *expected = [linear, (linear + regularisation * change.dot(change)) * constant(-0.5)];
-    // With K = −Q_uu⁻¹ Q_ux the costs to go are Q_xx + Q_xu K; with regularisation r, less by r Kᵀ K.
+    // With K = −Q_uu⁻¹ Q_ux the cost-to-go is Q_xx + Q_xu K; with regularisation r, r Kᵀ K is subtracted.
     if regularisation != T::zero() {
         add_multiple(qu, -regularisation, &of_q);
         add_multiple(vu, -regularisation, &of_v);

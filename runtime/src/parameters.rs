@@ -1,10 +1,11 @@
-//! Whether parameters are those of a mechanism that can be.
+//! Checks of parameter values: whether a physical mechanism can have them.
 
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use core::fmt;
 
-/// A figure that no mechanism can have, found by the function `validate` of a mechanism with parameters.
+/// Error of the function `validate` of a mechanism with parameters: a value that no physical mechanism can
+/// have.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -30,40 +31,42 @@ use core::fmt;
 /// ```
 #[derive(Clone, Copy, PartialEq)]
 pub struct ParameterError {
-    /// What is wrong with it.
+    /// Violated condition.
     pub fault: Fault,
-    /// Which figure it is: ``the mass of `rod` ``.
+    /// Description of the checked value: ``the mass of `rod` ``.
     pub figure: &'static str,
-    /// The names of the parameters that it follows from.
+    /// Names of the parameters on which the value depends.
     pub parameters: &'static [&'static str],
-    /// Its value in SI units; of a range its lower end minus its upper one, of an inertia the sum of the two lesser principal
-    /// moments minus the largest. NaN where it is not a number, and where lanes differ.
+    /// Value in SI units. For a range: its lower end minus its upper end. For an inertia: the sum of the two
+    /// smaller principal moments minus the largest. NaN if the value is not a number or differs between SIMD
+    /// lanes.
     pub value: f64,
 }
 
-/// What can be wrong with a figure.
+/// Condition that a checked value violates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// It is infinite or NaN.
+    /// The value is infinite or NaN.
     NotFinite,
-    /// It is negative: masses, sizes and coefficients of friction or damping are zero or more.
+    /// The value is negative. Masses, sizes and coefficients of friction or damping must be zero or positive.
     Negative,
-    /// It is not positive, as the sizes of surfaces and the speeds of smooth laws are.
+    /// The value is zero or negative. Sizes of surfaces and the velocities of smooth friction laws must be
+    /// positive.
     NotPositive,
-    /// It is so large that products with it are not finite.
+    /// The value is so large that products with it overflow.
     TooLarge,
-    /// It is so small that its reciprocal is not finite, and not zero.
+    /// The value is not zero, but so small that its reciprocal overflows.
     TooSmall,
-    /// It is no half angle of a cone: not between zero and a right angle.
+    /// The half angle of a cone is not between zero and a right angle.
     NotHalfAngle,
-    /// It is the square of the length of a quaternion, and not one.
+    /// The squared norm of a unit quaternion or vector is not one.
     NotUnit,
-    /// It is a coefficient of restitution, and not between zero and one.
+    /// The coefficient of restitution is not between zero and one.
     NotFraction,
-    /// It is a range that ends before it begins.
+    /// The upper end of a range is below its lower end.
     EmptyRange,
-    /// It is an inertia that no body has: a principal moment is negative, or exceeds the sum of the others.
+    /// No rigid body has this inertia: a principal moment is negative, or exceeds the sum of the other two.
     Inertia,
 }
 
@@ -96,7 +99,7 @@ impl fmt::Display for ParameterError {
             ),
         }?;
         let [first, rest @ ..] = parameters else { return Ok(()) };
-        // A parameter by itself says so already.
+        // The description already names a single parameter.
         if rest.is_empty() && figure.starts_with("the parameter") {
             return Ok(());
         }
@@ -109,18 +112,18 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// What generated code knows of a figure, or of several that are checked together.
+/// Check of one value or of several values together, written into generated code.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
-    /// The condition.
+    /// Condition to check.
     pub rule: Rule,
-    /// What it is.
+    /// Description of the value for messages.
     pub name: &'static str,
-    /// Names of the parameters that it follows from.
+    /// Names of the parameters on which the value depends.
     pub parameters: &'static [&'static str],
 }
 
-/// The conditions; the compiler describes them.
+/// Conditions on parameter values; the compiler documents them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "no part of the public interface")]
 pub enum Rule {
@@ -137,7 +140,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// How many numbers it takes.
+    /// Returns the number of values that the condition takes.
     fn count(self) -> usize {
         match self {
             Rule::Order => 2,
@@ -147,11 +150,12 @@ impl Rule {
     }
 }
 
-/// Checks all figures; `values` are theirs, one after another.
+/// Checks all conditions of `figures`; `values` contains the values of each condition in the same order, one
+/// after another.
 ///
 /// # Errors
 ///
-/// The first that does not fulfil its condition.
+/// The first violated condition.
 pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), ParameterError> {
     let mut rest = values;
     for figure in figures {
@@ -165,15 +169,15 @@ pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), Paramet
     Ok(())
 }
 
-/// What a type of numbers leaves room for. The figures are those by which the compiler judges numbers.
+/// Limits of magnitudes for a scalar type. The compiler checks constants against the same limits.
 struct Range {
-    /// Largest mass and moment.
+    /// Largest mass and moment of inertia.
     most: f64,
     /// Largest length.
     length: f64,
-    /// Smallest mass beside zero.
+    /// Smallest mass other than zero.
     least: f64,
-    /// Relative tolerance of inertias: published figures are rounded, and single precision rounds more.
+    /// Relative tolerance of inertias: published values are rounded, and single precision rounds more.
     tolerance: f64,
 }
 
@@ -186,13 +190,15 @@ impl Range {
     }
 }
 
-/// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
+/// Moment of inertia, kg·m², below which it counts as zero: exporters write such residues for bodies without
+/// inertia.
 const NOTHING: f64 = 1e-18;
 
-/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m².
+/// Square of the radius of gyration, m², below which the moments of inertia of a body with mass count as
+/// zero.
 const SMALLEST: f64 = 1e-16;
 
-/// What is wrong with figures, and the value to tell.
+/// Returns the violated condition, if any, and the value to report.
 fn fault<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
     if let Some(x) = values.iter().find(|x| !is_finite(**x)) {
         return Some((Fault::NotFinite, to_f64(*x)));
@@ -231,30 +237,31 @@ fn fault<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
     }
 }
 
-/// Whether a number is finite; of lanes, whether all are.
+/// Whether a number is finite; for lanes, whether all of them are.
 fn is_finite<T: Real>(x: T) -> bool {
     x * T::zero() == T::zero()
 }
 
-/// Whether `x` is no less than `y`; of lanes, whether none is.
+/// Whether `x ≥ y`; for lanes, whether this is true in all of them.
 fn is_at_least<T: Real>(x: T, y: T) -> bool {
     x.max(y) == x
 }
 
-/// Whether `x` is no more than `y`; of lanes, whether none is.
+/// Whether `x ≤ y`; for lanes, whether this is true in all of them.
 fn is_at_most<T: Real>(x: T, y: T) -> bool {
     x.min(y) == x
 }
 
-/// Whether a number that is not negative is zero, or no less than `least`; of lanes, whether each is one of both.
+/// Whether a nonnegative number is zero or at least `least`; for lanes, whether each of them is.
 fn is_zero_or_at_least<T: Real>(m: T, least: T) -> bool {
     let part = m.min(least) / least;
     (T::one() - part) * part == T::zero()
 }
 
-/// Whether a body of mass `m` can have the inertia xx, yy, zz, xy, xz, yz: whether `½ tr(I) 1 − I`, the second moments of its mass,
-/// is positive semidefinite (Wensing, Kim and Slotine, *Linear matrix inequalities for physically consistent inertial parameter
-/// identification*, 2018). Its pivots are those of a matrix that is lifted by the tolerance.
+/// Whether a body of mass `m` can have the inertia xx, yy, zz, xy, xz, yz: whether `½ tr(I) 1 − I`, the
+/// second moments of its mass, is positive semidefinite (Wensing, Kim and Slotine, *Linear matrix
+/// inequalities for physically consistent inertial parameter identification*, 2018). The pivots tested are
+/// those of the matrix with the tolerance added to its diagonal.
 fn is_of_a_body<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, tolerance: f64) -> bool {
     let half = (xx + yy + zz) * constant(0.5);
     let nothing = m.max(T::zero()) * constant(SMALLEST) + constant(NOTHING);
@@ -269,9 +276,9 @@ fn is_of_a_body<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, tolerance: f64)
     a > T::zero() && second > T::zero() && third > T::zero()
 }
 
-/// The sum of the two lesser principal moments minus the largest (rotations of Jacobi).
+/// Returns the sum of the two smaller principal moments minus the largest (Jacobi rotations).
 fn lacking([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
-    // Diagonal x, y, z and off-diagonal entries opposite to them: yz, xz, xy.
+    // Diagonal entries xx, yy, zz, and the off-diagonal entries opposite to them: yz, xz, xy.
     let (mut d, mut o) = ([xx, yy, zz], [yz, xz, xy]);
     for _ in 0..16 {
         for [p, q, r] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
@@ -291,7 +298,7 @@ fn lacking([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
     d.into_iter().sum::<f64>() - 2.0 * largest
 }
 
-/// The square root, without a standard library too.
+/// Returns the square root, also without the standard library.
 fn sqrt(x: f64) -> f64 {
     nalgebra::ComplexField::sqrt(x)
 }
@@ -306,7 +313,7 @@ mod tests {
         validate(&[Figure { rule, name: "x", parameters: &["p"] }], &values).err().map(|error| error.fault)
     }
 
-    /// Values with the fault of each, in any type of numbers.
+    /// Rules and values, with the fault that each must report in every scalar type.
     const TABLE: [(Rule, &[f64], Option<Fault>); 26] = [
         (Rule::Finite, &[-1.0], None),
         (Rule::Finite, &[f64::NAN], Some(Fault::NotFinite)),
@@ -327,7 +334,8 @@ mod tests {
         (Rule::Order, &[-1.0, 1.0], None),
         (Rule::Order, &[1.0, 1.0], None),
         (Rule::Order, &[1.0, -1.0], Some(Fault::EmptyRange)),
-        // A ball; a rod, at the bound; a rod along (1, 1, 0); nothing; moments of which one exceeds the others; a negative one.
+        // A ball; a rod, at the bound; a rod along (1, 1, 0); zero; one moment above the sum of the others; a
+        // negative moment; a product of inertia that is too large.
         (Rule::Inertia, &[0.4, 0.4, 0.4, 0.0, 0.0, 0.0, 1.0], None),
         (Rule::Inertia, &[0.0, 0.3, 0.3, 0.0, 0.0, 0.0, 1.0], None),
         (Rule::Inertia, &[0.15, 0.15, 0.3, -0.15, 0.0, 0.0, 1.0], None),
@@ -350,7 +358,7 @@ mod tests {
     fn one_lane_suffices_for_a_fault() {
         let figure = |rule| [Figure { rule, name: "x", parameters: &[] }];
         for (rule, values, fault) in TABLE {
-            // Beside numbers that every rule but that of order admits.
+            // The other lanes contain values that every rule except `Order` admits.
             let sound = |k: usize| {
                 if rule == Rule::Order { k as f64 } else { [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0][k] }
             };
@@ -374,7 +382,7 @@ mod tests {
 
     #[test]
     fn the_message_says_how_much_is_lacking() {
-        // Turned by 45° about z, then about x: principal moments 0.1, 0.2, 0.5.
+        // Rotated by 45° about z, then about x: principal moments 0.1, 0.2, 0.5.
         let (a, b) = (core::f64::consts::FRAC_1_SQRT_2, 0.5);
         let axes = [[a, a, 0.0], [-b, b, a], [b, -b, a]];
         let moments = [0.1, 0.5, 0.2];

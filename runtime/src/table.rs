@@ -1,24 +1,28 @@
-//! Tables: functions of one to three variables, given by their values on a grid.
+//! Lookup tables: functions of one to three variables, interpolated between values on a grid.
 
 use crate::Real;
 use crate::private::constant;
 use core::fmt;
 
-/// A function of `N` variables, one to three, by its values on a grid: a parameter of mechanisms.
+/// Function of `N` variables, one to three, interpolated between values on a grid. A table is a parameter of
+/// a mechanism.
 ///
-/// A field `pub lift: Table<2>` is called in expressions, `lift(alpha, elevator)`, and its slopes in derivatives of the
-/// mechanism are those of the interpolation. Units of values and axes are inferred from use, as those of numbers are.
+/// Expressions call a field `pub lift: Table<2>` as `lift(alpha, elevator)`. Derivatives of the mechanism use
+/// the slopes of the interpolation. The units of values and axes are inferred from use, as for parameters
+/// that are numbers.
 ///
-/// Between the points of the grid it is linear in each variable, or [`smooth`](Table::smooth) with continuous slopes; beyond the
-/// grid it keeps the value of the edge, or is [`extrapolated`](Table::extrapolated).
+/// Between grid points the table is linear in each variable, or [`smooth`](Table::smooth) with continuous
+/// slopes. Beyond the grid it has the constant value of the edge, or is
+/// [`extrapolated`](Table::extrapolated).
 ///
-/// It borrows its figures, so that a mechanism with tables stays `Copy` and allocates nothing: constants, or what
-/// `Vec::leak` makes of figures that are read at run time. They are `f64` whatever the mechanism's numbers.
+/// A table borrows its grid and values for `'static`, so that a mechanism with tables is `Copy` and allocates
+/// no memory. They are constants, or slices from `Vec::leak` if they are read at run time. They are `f64` for
+/// every scalar type of the mechanism.
 ///
 /// ```
 /// use linkwork::{Table, TableError};
 ///
-/// // Rows for two angles, columns for three.
+/// // One row for each angle of the first axis, one column for each angle of the second.
 /// const LIFT: Table<2> = match Table::new(
 ///     [&[0.0, 0.1], &[-0.2, 0.0, 0.2]],
 ///     &[-0.1, 0.0, 0.1, 0.4, 0.5, 0.6],
@@ -32,7 +36,7 @@ use core::fmt;
 /// assert_eq!(Table::new([&[0.0, 0.0]], &[1.0, 2.0]), Err(TableError::NotIncreasing { axis: 0, place: 1 }));
 /// ```
 ///
-/// Figures that are no table stop the compiler where they stand:
+/// Invalid axes or values of a constant are a compile error:
 ///
 /// ```compile_fail,E0080
 /// use linkwork::Table;
@@ -52,38 +56,38 @@ pub struct Table<const N: usize> {
     extrapolated: bool,
 }
 
-/// Why figures are no table.
+/// Error for axes and values that do not form a table.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// An axis, counted from zero, has fewer than two points.
+    /// An axis has fewer than two points.
     TooFewPoints {
-        /// Which axis.
+        /// Index of the axis, counted from zero.
         axis: usize,
     },
-    /// A point of an axis is not greater than the one before it, or is infinite or NaN.
+    /// A point of an axis is not greater than the point before it, or is infinite or NaN.
     NotIncreasing {
-        /// Which axis.
+        /// Index of the axis, counted from zero.
         axis: usize,
-        /// Which point of it.
+        /// Index of the point on the axis.
         place: usize,
     },
-    /// There are not as many values as points of the grid.
+    /// The number of values differs from the number of grid points.
     Size {
-        /// How many points the grid has.
+        /// Number of grid points.
         expected: usize,
-        /// How many values there are.
+        /// Number of values.
         found: usize,
     },
     /// A value is infinite or NaN.
     NotFinite {
-        /// Which value.
+        /// Index of the value.
         place: usize,
     },
 }
 
 impl TableError {
-    /// What is wrong, in words; for constants, which cannot be formatted.
+    /// Returns a message without the indices, as a constant: constants cannot use formatting.
     #[must_use]
     pub const fn message(self) -> &'static str {
         match self {
@@ -122,13 +126,14 @@ impl fmt::Display for TableError {
 impl core::error::Error for TableError {}
 
 impl<const N: usize> Table<N> {
-    /// A table that is linear between the points of its grid and keeps the value of the edge beyond it. Values stand in order
-    /// of their points, those along the last axis side by side.
+    /// Returns a table that is linear between its grid points and constant beyond the grid. Values are
+    /// ordered like the grid points, with the last axis varying fastest.
     ///
     /// # Errors
     ///
-    /// Axes that do not increase strictly or have fewer than two points, values that are not finite, or more or fewer of
-    /// them than the grid has points. In a constant they can stop the compiler, as the example of [`Table`] shows.
+    /// Axes that do not increase strictly or have fewer than two points, values that are not finite, or a
+    /// number of values that differs from the number of grid points. In a constant these errors can stop the
+    /// compilation, see the example of [`Table`].
     pub const fn new(axes: [&'static [f64]; N], values: &'static [f64]) -> Result<Table<N>, TableError> {
         const { assert!(N >= 1 && N <= 3, "a table has one to three variables") };
         let (mut axis, mut expected) = (0, 1_usize);
@@ -160,34 +165,35 @@ impl<const N: usize> Table<N> {
         Ok(Table { axes, values, smooth: false, extrapolated: false })
     }
 
-    /// The table with continuous slopes: along each axis cubic between neighbouring points, where its slope is that of the
-    /// parabola through a point and its neighbours (Bessel's tangents; de Boor, *A Practical Guide to Splines*, ch. IV). It
-    /// goes through all values, and is exact for parabolas. Second slopes jump at the points, where those to the right count.
+    /// Returns the table with continuous slopes. Along each axis it is cubic between neighbouring points; the
+    /// slope at a point is that of the parabola through the point and its two neighbours (Bessel's tangents;
+    /// de Boor, *A Practical Guide to Splines*, ch. IV). The interpolation passes through all values and is
+    /// exact for parabolas. Second derivatives jump at the points, where the value to the right is returned.
     #[must_use]
     pub const fn smooth(self) -> Table<N> {
         Table { smooth: true, ..self }
     }
 
-    /// The table continued beyond its grid in straight lines, with the slopes of the edge.
+    /// Returns the table extrapolated linearly beyond its grid, with the slopes of the edge.
     #[must_use]
     pub const fn extrapolated(self) -> Table<N> {
         Table { extrapolated: true, ..self }
     }
 
-    /// The points of the axes.
+    /// Returns the grid points of each axis.
     #[must_use]
     pub const fn axes(&self) -> &[&'static [f64]; N] {
         &self.axes
     }
 
-    /// The value at `x`. NaN where an entry of `x` is.
+    /// Returns the value at `x`; NaN if an entry of `x` is NaN.
     #[must_use]
     pub fn value<T: Real>(&self, x: [T; N]) -> T {
         self.derivative(x, [0; N])
     }
 
-    /// The slope with variable `k` at `x`: zero where the table keeps the value of its edge, and with a variable that it does
-    /// not have. At a point of a linear table it is the slope to the right.
+    /// Returns the slope with respect to variable `k` at `x`. The slope is zero where the table is constant
+    /// beyond its edge, and for `k ≥ N`. At a grid point of a linear table it is the slope to the right.
     #[must_use]
     pub fn slope<T: Real>(&self, x: [T; N], k: usize) -> T {
         if k >= N {
@@ -196,8 +202,9 @@ impl<const N: usize> Table<N> {
         self.derivative(x, core::array::from_fn(|i| u8::from(i == k)))
     }
 
-    /// The derivative of these orders in the variables at `x`, of the interpolation; `[1, 1]` is ∂²f/∂x₀∂x₁. Second and higher
-    /// ones of one variable are zero in a linear table, and those above the third in all.
+    /// Returns the derivative of the interpolation at `x`, of the given order in each variable; `[1, 1]` is
+    /// ∂²f/∂x₀∂x₁. Second and higher derivatives with respect to one variable are zero in a linear table;
+    /// derivatives above the third are zero in all tables.
     #[must_use]
     pub fn derivative<T: Real>(&self, x: [T; N], orders: [u8; N]) -> T {
         let mut all = [Weights::one(); 3];
@@ -223,7 +230,8 @@ impl<const N: usize> Table<N> {
         sum
     }
 
-    /// The weights of the values around a cell of an axis; a variable that the table does not have is at its only point.
+    /// Returns the weights of the four values around a cell of an axis. An axis that the table does not have
+    /// is treated as a single point with weight one.
     fn weights<T: Real>(&self, axis: usize, cell: usize, range: [usize; 2], all: &[Weights<T>; 3]) -> [T; 4] {
         let only = [T::zero(), T::one(), T::zero(), T::zero()];
         let (Some(points), Some(Weights { place: Some(place), order })) =
@@ -240,7 +248,7 @@ impl<const N: usize> Table<N> {
         weights.map(|w| w * share)
     }
 
-    /// Which of the four weights of an axis count.
+    /// Returns the range of the four weights of an axis that can be nonzero.
     fn slots(&self, axis: usize) -> core::ops::Range<usize> {
         match (axis < N, self.smooth) {
             (false, _) => 1..2,
@@ -249,10 +257,10 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// The weighted sum of the values around a cell.
+    /// Returns the weighted sum of the values around a cell.
     fn block<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
         let length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
-        // Weights stand for the points from the one before the cell on.
+        // Slot 0 of the weights is the point before the cell.
         let point = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);
         let weight = |axis: usize, slot: usize| weights[axis].get(slot).copied().unwrap_or(T::zero());
         let (rows, columns) = (length(1), length(2));
@@ -274,14 +282,15 @@ impl<const N: usize> Table<N> {
     }
 }
 
-/// How a table goes on between and beyond its points.
+/// Interpolation between, and extrapolation beyond, the points of a table.
 #[derive(Clone, Copy)]
 struct Shape {
     smooth: bool,
     extrapolated: bool,
 }
 
-/// What the weights of an axis are made of.
+/// Position on an axis and order of the derivative, from which the weights of the axis are computed; no
+/// position for an axis that the table does not have.
 #[derive(Clone, Copy)]
 struct Weights<T> {
     place: Option<AxisPosition<T>>,
@@ -294,7 +303,8 @@ impl<T> Weights<T> {
     }
 }
 
-/// Where a variable is: within the axis, how far beyond it, and whether it is within (one or zero).
+/// Position of a variable on an axis: clamped to the axis, its distance beyond the axis, and whether it is
+/// within (one or zero).
 #[derive(Clone, Copy)]
 struct AxisPosition<T> {
     x: T,
@@ -302,7 +312,7 @@ struct AxisPosition<T> {
     within: T,
 }
 
-/// One for a number that is not negative, zero for one that is; of lanes, in each.
+/// Returns one for a nonnegative number and zero for a negative one, lane by lane.
 fn step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
@@ -312,12 +322,13 @@ impl<T: Real> AxisPosition<T> {
         let at = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
         let (low, high) = (at(points.first()), at(points.last()));
         let inner = x.max(low).min(high);
-        // The extremes of a NaN and a number are the number.
+        // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
         let nothing = x * T::zero();
         AxisPosition { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
     }
 
-    /// The cells that may hold it, from the first to before the last: one, or where lanes differ all.
+    /// Returns the half-open range of cells that can contain the position: one cell, or all cells if lanes
+    /// differ.
     fn cells(&self, points: &[f64]) -> [usize; 2] {
         let last = points.len().saturating_sub(2);
         let (mut low, mut high) = (0, last);
@@ -336,7 +347,7 @@ impl<T: Real> AxisPosition<T> {
         [low, low + 1]
     }
 
-    /// One where the cell holds it, zero elsewhere.
+    /// Returns one if the cell contains the position and zero otherwise, lane by lane.
     fn share(&self, points: &[f64], cell: usize) -> T {
         let from = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
@@ -344,7 +355,7 @@ impl<T: Real> AxisPosition<T> {
         low - if last { T::zero() } else { from(cell + 1) }
     }
 
-    /// The weights of the four points around a cell, of the derivative of some order.
+    /// Returns the weights of the four points around a cell, for a derivative of the given order.
     fn weights(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
         let around = Around::of(points, cell, shape.smooth);
         let s = (self.x - constant(around.start)) / constant(around.width);
@@ -361,8 +372,8 @@ impl<T: Real> AxisPosition<T> {
     }
 }
 
-/// A cell of an axis: where it starts, how wide it is, and by which weights of the four points around it the slopes at its
-/// ends are made, times its width.
+/// Cell of an axis: its start, its width and, for smooth tables, the weights of the four points around it
+/// that yield the slopes at both ends times the width.
 struct Around {
     start: f64,
     width: f64,
@@ -377,7 +388,8 @@ impl Around {
         let before = cell.checked_sub(1).and_then(at).map(|p| start - p);
         let after = at(cell + 2).map(|p| p - end);
         let slopes = smooth.then(|| {
-            // The slope at the middle of three points, then at the first and at the last of them, times `h`.
+            // Slope of the parabola through three points, times `h`: at the middle point, otherwise at the
+            // first or the last point.
             let first = match before {
                 Some(b) => [-h * h / (b * (b + h)), (h - b) / b, b / (b + h), 0.0],
                 None => after.map_or([0.0, -1.0, 1.0, 0.0], |a| {
@@ -395,7 +407,7 @@ impl Around {
         Around { start, width: h, slopes }
     }
 
-    /// The weights at a part `s` of the width, of the derivative of some order.
+    /// Returns the weights at the fraction `s` of the width, for a derivative of the given order.
     fn weights<T: Real>(&self, s: T, order: u8) -> [T; 4] {
         let c = constant::<T>;
         let zero = T::zero();
@@ -407,7 +419,7 @@ impl Around {
                 _ => [zero; 4],
             };
         };
-        // Hermite's polynomials: of the values at both ends, and of the slopes there.
+        // Hermite polynomials of the values and slopes at both ends.
         let (one, s2) = (T::one(), s * s);
         let s3 = s2 * s;
         let [end, m0, m1] = match order {

@@ -1,5 +1,5 @@
-//! Second derivatives along the parts of a step: how those of a function of two vectors become those by the start of the step, and
-//! those of displacements.
+//! Second derivatives within a step: the chain rule for functions of two vectors, and second derivatives of
+//! displacements.
 
 use super::explicit::Sensitive;
 use crate::blocks::{add_multiple, add_product, product, transposed};
@@ -9,8 +9,8 @@ use nalgebra::{SMatrix, SVector};
 
 type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
 
-/// Second derivatives of a function of two vectors: by the first twice, by the first (rows) and the second, by the second twice.
-/// Those that are zero are not there.
+/// Second derivatives of a function of two vectors: with respect to the first twice, to the first (rows) and
+/// the second (columns), and to the second twice. `None` is zero.
 pub(super) struct Curvature<T, const NV: usize> {
     pub(super) first: Option<Square<T, NV>>,
     pub(super) mixed: Square<T, NV>,
@@ -18,7 +18,8 @@ pub(super) struct Curvature<T, const NV: usize> {
 }
 
 impl<T: Real, const NV: usize> Curvature<T, NV> {
-    /// What both vectors make of columns by which they change.
+    /// Returns the products of the Hessian with columns of changes of both vectors: the rows of the first
+    /// vector and of the second.
     fn rows<const C: usize>(
         &self,
         first: &SMatrix<T, NV, C>,
@@ -35,7 +36,8 @@ impl<T: Real, const NV: usize> Curvature<T, NV> {
         (of_first, of_second)
     }
 
-    /// Adds them along the changes of both vectors with the start of the step.
+    /// Adds the second derivatives with respect to the start of the step, given the derivatives of both
+    /// vectors with respect to it.
     pub(super) fn add_to<const NU: usize>(
         &self,
         sum: &mut InputSecondOrder<T, NV, NU>,
@@ -56,7 +58,7 @@ impl<T: Real, const NV: usize> Curvature<T, NV> {
     }
 }
 
-/// Adds two products.
+/// Adds two products, `a b + c d`, to `sum`.
 fn add_both<T: Real, const R: usize, const K: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
     (a, b): (&SMatrix<T, R, K>, &SMatrix<T, K, C>),
@@ -66,12 +68,12 @@ fn add_both<T: Real, const R: usize, const K: usize, const C: usize>(
     add_product(sum, c, d);
 }
 
-/// A displacement of a configuration to second order: where `q ⊕ dv` is moved by `δq` at its start and by a change of `dv`, it moves
-/// by `ξ` at its end, `q ⊕ dv ⊕ ξ`.
+/// Displacement of a configuration to second order. A change `δq` of the start and a change of `dv` move the
+/// end of `q ⊕ dv` by `ξ`: it becomes `q ⊕ dv ⊕ ξ`.
 pub(super) struct Displacement<T, const NV: usize> {
-    /// How `ξ` changes with `δq`.
+    /// Derivative of `ξ` with respect to `δq`.
     pub(super) by_q: Square<T, NV>,
-    /// How it changes with `dv`.
+    /// Derivative of `ξ` with respect to `dv`.
     pub(super) by_dv: Square<T, NV>,
     dv: SVector<T, NV>,
 }
@@ -85,11 +87,13 @@ impl<T: Real, const NV: usize> Displacement<T, NV> {
         Self { by_q, by_dv, dv: *dv }
     }
 
-    /// The second derivatives of `λᵀ ξ` by `δq` and `dv`, those by `δq` twice being zero.
+    /// Returns the second derivatives of `λᵀ ξ` with respect to `δq` and `dv`; those with respect to `δq`
+    /// twice are zero.
     ///
-    /// `exp ξ = exp(E δq) exp ζ` with `E` the adjoint of `exp(−dv)` and `exp ζ = exp(−dv) exp(dv + δ)`, so that `ξ` is
-    /// `E δq + ζ + ½ [E δq, ζ]` to second order, and `ζ` is `D δ` with half the change of `D`, the right Jacobian, along `δ`. What changes
-    /// is known of its inverse, by which rates of displacements follow from velocities.
+    /// `exp ξ = exp(E δq) exp ζ` with `E` the adjoint of `exp(−dv)` and `exp ζ = exp(−dv) exp(dv + δ)`, so
+    /// that `ξ` is `E δq + ζ + ½ [E δq, ζ]` to second order. `ζ` is `D δ` plus half the change of the right
+    /// Jacobian `D` along `δ`. The derivative of `D` is computed from that of its inverse, which maps
+    /// velocities to rates of displacements.
     pub(super) fn curvature<M, const NQ: usize, const NU: usize>(
         &self,
         m: &M,
@@ -99,7 +103,7 @@ impl<T: Real, const NV: usize> Displacement<T, NV> {
         M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let still = SVector::zeros();
-        // Of v + ½ [dv, v] + …, at dv = 0.
+        // Derivatives of v + ½ [dv, v] + … at dv = 0.
         let bracket = m.tangent_rate_second_derivatives(&still, &still, lambda).1;
         let turned = product(&transposed(&self.by_dv), lambda);
         let inverse = m.tangent_rate_second_derivatives(&self.dv, &still, &turned).1;

@@ -1,4 +1,4 @@
-//! Explicit steps, whose derivatives are carried forwards through their stages.
+//! Derivatives of explicit steps, propagated forwards through their stages.
 
 use super::{Chained, DifferentiableStep, Transition, implicit, plain, projected};
 use crate::Real;
@@ -9,7 +9,8 @@ use crate::integrate::{Error, Rk4, SemiImplicitEuler};
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
 
-/// How a vector of the tangent space changes with the state and the inputs at the start of a step.
+/// Vector of the tangent space with its derivatives with respect to the state at the start of a step and to
+/// the inputs.
 #[derive(Clone, Copy)]
 pub(super) struct Sensitive<T, const NV: usize, const NU: usize> {
     pub(super) value: SVector<T, NV>,
@@ -19,19 +20,19 @@ pub(super) struct Sensitive<T, const NV: usize, const NU: usize> {
 }
 
 impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
-    /// The velocity at the start.
+    /// Returns the velocity at the start.
     pub(super) fn velocity(v: &SVector<T, NV>) -> Self {
         let (by_q, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
     }
 
-    /// A displacement of the start itself, of no length.
+    /// Returns the zero displacement of the configuration at the start, which moves with that configuration.
     pub(super) fn displacement() -> Self {
         let (by_v, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: SVector::zeros(), by_q: SMatrix::identity(), by_v, by_u }
     }
 
-    /// `self + s other`.
+    /// Returns `self + s other`.
     pub(super) fn plus(&self, s: T, other: &Self) -> Self {
         Self {
             value: self.value + other.value * s,
@@ -45,7 +46,8 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
         Self { value: self.value * s, by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
     }
 
-    /// A function of two of these, by its derivatives.
+    /// Returns a function of two such vectors, given its value and its derivatives with respect to both
+    /// (chain rule).
     pub(super) fn of(
         value: SVector<T, NV>,
         (by_a, a): (&SMatrix<T, NV, NV>, &Self),
@@ -61,7 +63,7 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
     }
 }
 
-/// A mechanism under inputs at the start of a step.
+/// Start of a step: mechanism, time, configuration and inputs.
 pub(super) struct Start<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     pub(super) mechanism: &'a M,
     pub(super) t: T,
@@ -74,14 +76,14 @@ where
     T: Real,
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
 {
-    /// The configuration `q ⊕ displacement` with how it moves.
+    /// Returns the configuration `q ⊕ displacement` and the derivatives of its motion.
     pub(super) fn moved(
         &self,
         displacement: &Sensitive<T, NV, NU>,
     ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
         let q = self.mechanism.integrate(self.q, &displacement.value);
         if NQ == NV && !M::SPEEDS {
-            // Plain coordinates: a displacement is added.
+            // In coordinates that are a vector space, displacements are added.
             let by_q = displacement.by_q + SMatrix::<T, NV, NV>::identity();
             return (q, Sensitive { by_q, ..*displacement });
         }
@@ -96,7 +98,8 @@ where
         (q, motion)
     }
 
-    /// The acceleration at a time `h` after the start.
+    /// Returns the acceleration at a time `h` after the start, with its derivatives with respect to the start
+    /// of the step.
     pub(super) fn acceleration(
         &self,
         h: T,
@@ -109,7 +112,8 @@ where
         found
     }
 
-    /// The acceleration at a time `h` after the start in a state, with its derivatives by that state and by the inputs.
+    /// Returns the acceleration at a time `h` after the start, in a given state, with its derivatives with
+    /// respect to that state and to the inputs.
     pub(super) fn accelerated(
         &self,
         h: T,
@@ -121,7 +125,7 @@ where
         found
     }
 
-    /// The end of a step.
+    /// Returns the state after a step with a given displacement and final velocity.
     pub(super) fn end(
         &self,
         displacement: &Sensitive<T, NV, NU>,
@@ -141,17 +145,19 @@ where
         }
     }
 
-    /// Where it starts: the configuration moves as itself.
+    /// Returns the configuration at the start; its derivative with respect to itself is the identity.
     pub(super) fn here(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
         (*self.q, Sensitive::displacement())
     }
 }
 
-/// A step of [`SemiImplicitEuler`] of `h` seconds by accelerations and their derivatives by configuration, velocity and inputs, which are
-/// known: those of contacts that are held come with the derivatives of their forces
-/// ([`Holding::held_derivatives`](crate::contact::Holding::held_derivatives)), which costs ask for and a step alone does not give.
+/// Writes a step of [`SemiImplicitEuler`] of `h` seconds, given the accelerations and their derivatives with
+/// respect to configuration, velocity and inputs. It serves mechanisms whose contacts are enforced as
+/// bilateral constraints: [`Holding::held_derivatives`](crate::contact::Holding::held_derivatives) returns
+/// their accelerations together with the derivatives of the contact forces, which costs need and a step does
+/// not return.
 ///
-/// Nothing is brought onto constraints.
+/// The step is not projected onto constraints.
 pub fn semi_implicit_into<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     h: T,
@@ -169,7 +175,7 @@ pub fn semi_implicit_into<M, T, const NQ: usize, const NV: usize, const NU: usiz
     chain(mechanism, h, (q, v), acceleration, into);
 }
 
-/// Makes a step of changes of velocity, whose derivatives stand in it.
+/// Completes a step whose derivatives of the change of velocity are already in `step`.
 fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     h: T,
@@ -186,7 +192,7 @@ fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     step.v = v + acceleration * h;
     let displacement = step.v * h;
     step.q = mechanism.integrate(q, &displacement);
-    // q ⊕ h v⁺; in plain coordinates a displacement is added.
+    // q ⊕ h v⁺; in coordinates that are a vector space, displacements are added.
     let is_plain = NQ == NV && !M::SPEEDS;
     let (by_q, by_displacement) = match is_plain {
         true => (SMatrix::identity(), SMatrix::identity()),

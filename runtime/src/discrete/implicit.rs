@@ -1,9 +1,10 @@
-//! Steps that are implicit in momenta, by the implicit function theorem on their equations.
+//! Derivatives of steps that are implicit in momenta, from the implicit function theorem.
 //!
-//! With the velocity `w` of the midpoint `q_m = q ⊕ (h/2) w` and momenta `p(q, v) = M v + …`, whose rates are `f`, a step is
-//! `p(q_m, w) = p₀ + Jᵀ(q) λ + (h/2) f(q_m, w)`, `q⁺ = q ⊕ h w`,
-//! `p(q⁺, v⁺) = p(q_m, w) + (h/2) f(q_m, w) + Jᵀ(q⁺) μ`, with constraints on configurations that hold at `q⁺`, those on
-//! velocities at the midpoint, and all of their rates at the end ([`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint)).
+//! With the velocity `w` of the midpoint `q_m = q ⊕ (h/2) w` and momenta `p(q, v) = M v + …`, whose rates are
+//! `f`, a step is `p(q_m, w) = p₀ + Jᵀ(q) λ + (h/2) f(q_m, w)`, `q⁺ = q ⊕ h w`, `p(q⁺, v⁺) = p(q_m, w) +
+//! (h/2) f(q_m, w) + Jᵀ(q⁺) μ`, with constraints on configurations enforced at `q⁺`, constraints on
+//! velocities enforced at the midpoint, and the rates of all constraints enforced at the end
+//! ([`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint)).
 
 use super::projected::Corrections;
 use super::{DifferentiableStep, Transition, advanced};
@@ -15,7 +16,7 @@ use crate::speeds::{at_midpoint, led, way_of};
 use crate::{Real, at};
 use nalgebra::{SMatrix, SVector};
 
-/// Derivatives of the momentum by configuration and velocity.
+/// Returns the derivatives of the momentum with respect to configuration and velocity.
 fn momentum<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
@@ -26,14 +27,14 @@ where
     T: Real,
     M: RheonomicDerivatives<NQ, NV, NU, Scalar = T>,
 {
-    // The velocity itself stands for it.
+    // With feedback the velocity replaces the momentum.
     if M::FEEDBACK {
         return (SMatrix::zeros(), SMatrix::identity());
     }
     (m.generalized_momentum_derivatives(t, q, v), m.mass_matrix(t, q))
 }
 
-/// Derivatives of its rate under inputs.
+/// Returns the derivatives of the momentum's rate under inputs.
 fn rate<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
@@ -54,7 +55,7 @@ where
     (by_q + force_by_q, by_v + force_by_v, by_u)
 }
 
-/// Derivatives of what velocities contribute to the rate.
+/// Returns the derivatives of the velocity-dependent part of the momentum's rate.
 fn inertial<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
@@ -69,38 +70,39 @@ where
     (by_q - m.momentum_rate_derivatives(t, q, &SVector::zeros()).0, by_v, SMatrix::zeros())
 }
 
-/// A step that has been made: its state before, its period, the velocity of its midpoint, and how the rate of the momentum there and
-/// the momentum at the start change.
+/// Completed step: the state before it, its period, the velocity of its midpoint, and the derivatives of the
+/// momentum's rate at the midpoint and of the momentum at the start.
 struct Made<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     m: &'a M,
     t: T,
     h: T,
     q: &'a SVector<T, NQ>,
     w: SVector<T, NV>,
-    /// The configuration of the midpoint.
+    /// Configuration of the midpoint.
     middle: SVector<T, NQ>,
-    /// How it and that of the end change with the configuration before and with the velocity of the midpoint.
+    /// Derivatives of the configurations at the midpoint and at the end, with respect to the configuration
+    /// before the step and to the velocity of the midpoint.
     led: [(SMatrix<T, NV, NV>, SMatrix<T, NV, NV>); 2],
     end: (SVector<T, NQ>, SVector<T, NV>),
     rate: ByMotion<T, NV, NU>,
     start: ByMotion<T, NV, NU>,
-    /// What the momentum gains before the midpoint, besides half a step of the rate.
+    /// Momentum at the midpoint without the contribution of half a step of its rate.
     kick: SVector<T, NV>,
 }
 
-/// How changes in the equations of the midpoint and of the end are answered.
+/// Linear solutions of the equations of the midpoint and of the end for given perturbations.
 trait Answer<T, const NV: usize> {
-    /// The change of the midpoint's velocity by forces and by the configuration at the start.
+    /// Returns the change of the midpoint's velocity due to forces and to the configuration at the start.
     fn middle<const C: usize>(
         &self,
         force: &SMatrix<T, NV, C>,
         by_q: &SMatrix<T, NV, C>,
     ) -> SMatrix<T, NV, C>;
-    /// The change of the velocity at the end by momenta and by the configuration there.
+    /// Returns the change of the velocity at the end due to momenta and to the configuration at the end.
     fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C>;
 }
 
-/// Without constraints.
+/// Solution without constraints.
 struct Free<T, const NV: usize> {
     matrix: SMatrix<T, NV, NV>,
     mass: SMatrix<T, NV, NV>,
@@ -121,25 +123,27 @@ impl<T: Real, const NV: usize> Answer<T, NV> for Free<T, NV> {
     }
 }
 
-/// With constraints.
+/// Solution with constraints.
 struct Held<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
     m: &'a M,
     matrix: SMatrix<T, NV, NV>,
-    /// How pushes at the start move the midpoint.
+    /// Derivatives of the midpoint's velocity with respect to constraint impulses at the start.
     pushed: SMatrix<T, NV, NC>,
-    /// How those change with the configuration.
+    /// Derivatives of the constraint impulses at the start with respect to the configuration.
     pushes_by_q: SMatrix<T, NV, NV>,
-    /// How the constraints of the step change with the velocity of the midpoint and with the configuration at the start.
+    /// Derivatives of the step's constraints with respect to the velocity of the midpoint and to the
+    /// configuration at the start.
     by_w: SMatrix<T, NC, NV>,
     by_q: SMatrix<T, NC, NV>,
-    /// The end, with how momentum less pushes, and rates, change with its configuration.
+    /// Time and configuration of the end, and the derivatives with respect to that configuration of the
+    /// momentum minus the constraint impulses, and of the constraint rates.
     t: T,
     end: &'a SVector<T, NQ>,
     balance_by_q: SMatrix<T, NV, NV>,
     rates_by_q: SMatrix<T, NC, NV>,
 }
 
-/// The same with the numbers of its traits.
+/// [`Held`] with the const parameters of its mechanism's traits.
 struct Numbered<
     'a,
     'b,
@@ -185,7 +189,8 @@ where
         self.h * constant(0.5)
     }
 
-    /// The derivative of what the midpoint's equation lacks by its velocity.
+    /// Returns the derivative of the residual of the midpoint's equation with respect to the midpoint's
+    /// velocity.
     fn matrix(&self) -> SMatrix<T, NV, NV> {
         let half = self.half();
         let (by_q, by_v) = momentum(self.m, self.t + half, &self.middle, &self.w);
@@ -193,8 +198,8 @@ where
         by_v - self.rate.1 * half + (by_q - self.rate.0 * half) * moves * half
     }
 
-    /// Changes of configuration and velocity after the step with those of the configuration before, of the momentum at the start and
-    /// of the rate.
+    /// Returns the changes of configuration and velocity after the step, due to changes of the configuration
+    /// before it, of the momentum at the start and of the momentum's rate.
     fn changes<const C: usize>(
         &self,
         answer: &impl Answer<T, NV>,
@@ -244,7 +249,8 @@ where
         let own = m.generalized_momentum(t + half, &middle, &self.w);
         let lambda = multipliers(m, t, self.q, &(own - self.kick - gain));
         let jacobian = m.constraint_jacobian(t, self.q);
-        // Constraints on configurations at the end, divided by the period; those on velocities half-way.
+        // Constraints on configurations at the end, divided by the period; constraints on velocities at the
+        // midpoint.
         let (mut by_w, mut by_q) = (SMatrix::<T, NC, NV>::zeros(), SMatrix::<T, NC, NV>::zeros());
         let at_end = m.constraint_jacobian(t + h, end);
         let [half_way, (turned, moves)] = self.led;
@@ -352,7 +358,8 @@ impl<T: Real> ImplicitMidpoint<T> {
     }
 }
 
-/// A constrained step of the semi-implicit Euler method: forces push at its start, inertia goes on.
+/// Returns a constrained step of the semi-implicit Euler method: forces act at its start, inertial terms at
+/// its midpoint.
 pub(super) fn pushed<
     M,
     T,
@@ -400,7 +407,8 @@ where
     made.held(&(gain * half))
 }
 
-/// `x` with `m x = b` by Gaussian elimination with complete pivots; what pivots of rounding alone would determine is zero.
+/// Solves `m x = b` by Gaussian elimination with complete pivoting. Unknowns whose pivots are below rounding
+/// error are set to zero.
 pub fn eliminated<T: Real, const N: usize, const C: usize>(
     mut m: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, C>,

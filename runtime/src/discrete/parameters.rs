@@ -1,4 +1,4 @@
-//! How steps change with the parameters of a mechanism.
+//! Derivatives of steps with respect to the parameters of a mechanism.
 
 use super::FixedStep;
 use crate::blocks::{add_product, product};
@@ -7,12 +7,13 @@ use crate::private::{constant, to_f64};
 use crate::{Derivatives, Real, RheonomicDerivatives, Sensitivities, at};
 use nalgebra::{SMatrix, SVector};
 
-/// How configuration and velocity after a step change with the parameters: `(∂q⁺/∂p, ∂v⁺/∂p)`, a column for each of
-/// [`PARAMETERS`](Sensitivities::PARAMETERS), exact to rounding. The step is that of [`transition`](super::transition), whose
-/// Jacobians by state and inputs stand beside these; changes of the configuration are displacements, in body axes for ball and free
-/// joints. Estimators of parameters, and designs over many steps, add up `x_p⁺ = A x_p + ∂x⁺/∂p`.
+/// Returns the derivatives of configuration and velocity after a step with respect to the parameters,
+/// `(∂q⁺/∂p, ∂v⁺/∂p)`, with one column for each of [`PARAMETERS`](Sensitivities::PARAMETERS), exact to
+/// rounding. The step is that of [`transition`](super::transition), which returns the Jacobians with respect
+/// to state and inputs. Changes of the configuration are displacements, in body axes for ball and free
+/// joints. Parameter estimation and design optimisation over many steps accumulate `x_p⁺ = A x_p + ∂x⁺/∂p`.
 ///
-/// The mechanism has the words `derivatives` and `sensitivities`, and no constraints.
+/// The mechanism has the options `derivatives` and `sensitivities`, and no constraints.
 ///
 /// ```
 /// use linkwork::discrete;
@@ -40,7 +41,8 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// # Errors
 ///
-/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state that is not.
+/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state
+/// that is not.
 #[allow(clippy::type_complexity, reason = "two matrices")]
 pub fn by_parameters<M, T, S, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     mechanism: &M,
@@ -71,13 +73,13 @@ where
     if finite { Ok((by_q, by_v)) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
 
-/// A method whose steps have derivatives by parameters.
+/// Methods whose steps have derivatives with respect to parameters.
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no derivatives by parameters",
     note = "those of `Rk4` and `SemiImplicitEuler` have"
 )]
 pub trait StepByParameters<T: Real>: FixedStep<T> {
-    /// Those of a step of a mechanism without constraints; what [`by_parameters`] calls.
+    /// Returns the derivatives of a step of a mechanism without constraints; called by [`by_parameters`].
     #[allow(clippy::type_complexity, reason = "two matrices")]
     fn differentiate_by_parameters<M, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
         &self,
@@ -90,7 +92,7 @@ pub trait StepByParameters<T: Real>: FixedStep<T> {
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>;
 }
 
-/// A vector of the tangent space with how it changes with the parameters.
+/// Vector of the tangent space with its derivatives with respect to the parameters.
 #[derive(Clone, Copy)]
 struct Changing<T, const NV: usize, const NP: usize> {
     value: SVector<T, NV>,
@@ -102,7 +104,7 @@ impl<T: Real, const NV: usize, const NP: usize> Changing<T, NV, NP> {
         Self { value: *value, by: SMatrix::zeros() }
     }
 
-    /// `self + s other`.
+    /// Returns `self + s other`.
     fn plus(&self, s: T, other: &Self) -> Self {
         Self { value: self.value + other.value * s, by: self.by + other.by * s }
     }
@@ -112,7 +114,8 @@ impl<T: Real, const NV: usize, const NP: usize> Changing<T, NV, NP> {
     }
 }
 
-/// The rates at a stage of a step that starts with `q` at the time `t`: after `h` seconds, displaced and with a velocity.
+/// Returns the acceleration at a stage of a step that starts with `q` at time `t`: after `h` seconds, for a
+/// displacement and a velocity.
 fn acceleration<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     t: T,
@@ -139,7 +142,7 @@ where
     Changing { value: motion.acceleration, by }
 }
 
-/// How the configuration after a displacement moves.
+/// Returns the derivatives of the configuration after a displacement.
 fn moved<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     q: &SVector<T, NQ>,

@@ -1,9 +1,11 @@
-//! A step of the classical Runge–Kutta method with its Jacobians where the rates of coordinates are velocities.
+//! Steps of the classical Runge–Kutta method with their Jacobians, for mechanisms whose velocities are the
+//! rates of the coordinates.
 //!
-//! Displacements are then sums of accelerations, and only these are carried from stage to stage. With the slopes
-//! `K = (∂a/∂q, ∂a/∂v, ∂a/∂u)` of the acceleration of a stage by the start, and `A_q`, `A_v`, `B` those by where it is evaluated,
-//! a stage at `q + s v + r a_i`, `v + s a_j` has `K = (A_q, A_v + s A_q, B) + r A_q K_i + s A_v K_j`: five products of matrices
-//! with slopes in a step.
+//! Displacements are then sums of accelerations, so that only accelerations are propagated from stage to
+//! stage. With the derivatives `K = (∂a/∂q, ∂a/∂v, ∂a/∂u)` of a stage's acceleration with respect to the
+//! start, and `A_q`, `A_v`, `B` with respect to the point of evaluation, a stage at `q + s v + r a_i`, `v + s
+//! a_j` has `K = (A_q, A_v + s A_q, B) + r A_q K_i + s A_v K_j`. One step takes five products of matrices
+//! with such derivatives.
 
 use super::Transition;
 use super::explicit::{Sensitive, Start};
@@ -13,11 +15,11 @@ use crate::derivatives::RheonomicDerivatives;
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
 
-/// Slopes of a stage before, with what they are multiplied by.
+/// Acceleration of an earlier stage with its derivatives, and its coefficient.
 type Part<'a, T, const NV: usize, const NU: usize> = (T, &'a Sensitive<T, NV, NU>);
 
 impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
-    /// Adds a matrix times the slopes of another.
+    /// Adds a matrix times the derivatives of another vector.
     fn add_led(&mut self, by: &SMatrix<T, NV, NV>, other: &Self) {
         add_product(&mut self.by_q, by, &other.by_q);
         add_product(&mut self.by_v, by, &other.by_v);
@@ -25,8 +27,8 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
     }
 }
 
-/// The acceleration `after` seconds after the start, with its slopes: at a velocity that accelerations `near` have changed, and at a
-/// displacement that those `far` have.
+/// Returns the acceleration `after` seconds after the start, with its derivatives. The accelerations `near`
+/// change the velocity of the stage, the accelerations `far` its displacement.
 fn stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
@@ -61,7 +63,7 @@ where
     found
 }
 
-/// The step of `h` seconds from a start with the velocity `v`.
+/// Returns the step of `h` seconds from a start with the velocity `v`.
 pub(super) fn runge_kutta<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
@@ -95,7 +97,7 @@ where
     }
 }
 
-/// `s Σ weight · slopes`.
+/// Returns `s Σ weight · term`.
 fn sum<T: Real, const NV: usize, const NU: usize, const N: usize>(
     s: T,
     terms: [(f64, &Sensitive<T, NV, NU>); N],

@@ -1,4 +1,4 @@
-//! Derivatives of the projection onto constraints that ends a step.
+//! Derivatives of the projection onto constraints at the end of a step.
 
 use super::Transition;
 use crate::Real;
@@ -10,35 +10,36 @@ use crate::integrate::Error;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
-/// Corrections of a configuration that are followed; the second is rounding for what steps leave.
+/// Maximum number of differentiated corrections of a configuration. After an integration step the second
+/// correction is usually at rounding level.
 pub(super) const MOST_CORRECTIONS: usize = 8;
 
-/// A correction `x` of a configuration by Newton's method, `M x = Jᵀ λ`, `J x = −φ`, to first order.
+/// First derivatives of a Newton correction `x` of a configuration: `M x = Jᵀ λ`, `J x = −φ`.
 pub(super) struct Correction<T, const NV: usize, const NC: usize> {
     pub(super) x: SVector<T, NV>,
-    /// Its multipliers `λ`.
+    /// Multipliers `λ` of the correction.
     pub(super) own: SVector<T, NC>,
-    /// Derivatives of `M x − Jᵀ λ` by the configuration.
+    /// Derivatives of `M x − Jᵀ λ` with respect to the configuration.
     pub(super) forces: SMatrix<T, NV, NV>,
-    /// How the correction changes with the configuration.
+    /// Derivatives of the correction with respect to the configuration.
     pub(super) change: SMatrix<T, NV, NV>,
-    /// Nothing is left but rounding.
+    /// Whether the correction is at rounding level.
     pub(super) done: bool,
 }
 
-/// The correction `x` of a velocity, `M x = Jᵀ λ`, `J (v + x) + … = 0`, to first order.
+/// First derivatives of the correction `x` of a velocity: `M x = Jᵀ λ`, `J (v + x) + … = 0`.
 pub(super) struct Stop<T, const NV: usize, const NC: usize> {
-    /// Its multipliers `λ`.
+    /// Multipliers `λ` of the correction.
     pub(super) own: SVector<T, NC>,
-    /// Derivatives of `M x − Jᵀ λ` by the configuration.
+    /// Derivatives of `M x − Jᵀ λ` with respect to the configuration.
     pub(super) forces: SMatrix<T, NV, NV>,
-    /// How the velocity after it changes with the configuration.
+    /// Derivatives of the corrected velocity with respect to the configuration.
     pub(super) turned: SMatrix<T, NV, NV>,
-    /// How it changes with the velocity before it.
+    /// Derivatives of the corrected velocity with respect to the velocity before the correction.
     pub(super) kept: SMatrix<T, NV, NV>,
 }
 
-/// The corrections that bring a step onto constraints, with their derivatives.
+/// Corrections that project a step onto constraints, with their derivatives.
 pub(super) trait Corrections<
     T: Real,
     const NQ: usize,
@@ -48,7 +49,7 @@ pub(super) trait Corrections<
     const NC: usize,
 >: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T> + Sized
 {
-    /// Derivatives of `M x − Jᵀ λ` and `J x` by the configuration.
+    /// Returns the derivatives of `M x − Jᵀ λ` and `J x` with respect to the configuration.
     fn balance(
         &self,
         t: T,
@@ -62,7 +63,11 @@ pub(super) trait Corrections<
         (with.forces_by_q - without.forces_by_q, with.accelerations_by_q - without.accelerations_by_q)
     }
 
-    /// The error of a step that begins or ends where constraints lose rank, as it counts time.
+    /// Checks that the constraints have full rank; `t` is the time to report.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstraintError::Singular`] where constraints lose rank.
     fn check_regular(&self, t: T, q: &SVector<T, NQ>) -> Result<(), Error> {
         if self.is_nearly_singular(t, q, &SVector::zeros()) {
             return Err(Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular });
@@ -70,7 +75,7 @@ pub(super) trait Corrections<
         Ok(())
     }
 
-    /// That of a configuration at the time `t`.
+    /// Returns the correction of a configuration at time `t`.
     fn correction(&self, t: T, near: &SVector<T, NQ>) -> Correction<T, NV, NC> {
         let residuals = self.constraint_residuals(t, near);
         let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
@@ -87,7 +92,7 @@ pub(super) trait Corrections<
         Correction { x, own, forces, change, done }
     }
 
-    /// That of the correction `x` which ends at the velocity `v`.
+    /// Returns the derivatives of the velocity correction `x` that results in the velocity `v`.
     fn stop(&self, t: T, (q, v): (&SVector<T, NQ>, &SVector<T, NV>), x: &SVector<T, NV>) -> Stop<T, NV, NC> {
         let own = multipliers(self, t, q, &(self.mass_matrix(t, q) * x));
         let forces = self.balance(t, q, x, &own).0;
@@ -110,9 +115,10 @@ where
 {
 }
 
-/// A step brought onto the constraints at the time `t` of its end.
+/// Returns a step projected onto the constraints at its end, at time `t`.
 ///
-/// The configuration goes by Newton's corrections, the velocity by one; each is differentiated as it is.
+/// Newton corrections project the configuration, and one linear correction projects the velocity. Each
+/// correction is differentiated as computed.
 pub(super) fn projected<
     M,
     T,

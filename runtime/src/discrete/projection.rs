@@ -1,4 +1,4 @@
-//! Second derivatives of the projection onto constraints that ends a step.
+//! Second derivatives of the projection onto constraints at the end of a step.
 
 use super::curvature::{Curvature, Displacement};
 use super::projected::{Correction, Corrections, MOST_CORRECTIONS, Stop};
@@ -12,15 +12,17 @@ use crate::integrate::Error;
 use crate::private::{constant, to_f64};
 use nalgebra::{SMatrix, SVector};
 
-/// What factors of the configuration and of the velocity after a projection make of it, by those before.
+/// Derivatives of a projection contracted with factors of the projected configuration and velocity, with
+/// respect to the state before the projection.
 pub(super) struct Contraction<T, const NV: usize> {
-    /// The gradient.
+    /// Gradient with respect to configuration and velocity.
     pub(super) gradient: (SVector<T, NV>, SVector<T, NV>),
-    /// Second derivatives, of which there are none by velocity twice.
+    /// Second derivatives; those with respect to the velocity twice are zero.
     pub(super) second: Curvature<T, NV>,
 }
 
-/// Equations of a correction `x` with multipliers `λ`, contracted with `w`, `z` and `y`: `wᵀ (M x − Jᵀ λ) + zᵀ J x + yᵀ (J v + …)`.
+/// Equations of a correction `x` with multipliers `λ`, contracted with `w`, `z` and `y`: `wᵀ (M x − Jᵀ λ) +
+/// zᵀ J x + yᵀ (J v + …)`.
 struct Contracted<'a, T, const NV: usize, const NC: usize> {
     x: &'a SVector<T, NV>,
     lambda: &'a SVector<T, NC>,
@@ -30,7 +32,8 @@ struct Contracted<'a, T, const NV: usize, const NC: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Contracted<'_, T, NV, NC> {
-    /// Their second derivatives: what the equations of motion say of `x` as an acceleration, less what they say at rest.
+    /// Returns the second derivatives of the contracted equations: those of the equations of motion with `x`
+    /// as the acceleration, minus those at zero acceleration.
     fn curvature<M, const NQ: usize, const NU: usize, const NH: usize>(
         &self,
         m: &M,
@@ -50,7 +53,8 @@ impl<T: Real, const NV: usize, const NC: usize> Contracted<'_, T, NV, NC> {
     }
 }
 
-/// How multipliers change with a correction whose changes are given, where `M x − Jᵀ λ` changes by `forces` besides.
+/// Returns the derivatives of the multipliers, given those of the correction and additional derivatives
+/// `forces` of `M x − Jᵀ λ`.
 fn multiplier_changes<
     M,
     T,
@@ -78,7 +82,7 @@ where
     changes
 }
 
-/// The second derivatives of `factorsᵀ x` for a correction `x` of the configuration.
+/// Returns the second derivatives of `factorsᵀ x` for a correction `x` of the configuration.
 fn of_correction<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     t: T,
@@ -94,18 +98,18 @@ where
     let Correction { x, own, forces, change, .. } = found;
     let (still, none) = (SVector::zeros(), SVector::zeros());
     let equations = Contracted { x, lambda: own, w: &-w, z: &-z, y: &none }.curvature(m, t, q, &still);
-    // Those of the residuals are derivatives of the Jacobian's rows.
+    // The second derivatives of the residuals are derivatives of the Jacobian's rows.
     let of_residual = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
     let holonomic = SVector::from_fn(|k, _| of_residual(k));
     let residuals = m.balance(t, q, &still, &holonomic).0;
-    // Along body axes they are not symmetric, but those along `q ⊕ ε dq` are.
+    // Derivatives along body axes are not symmetric, but derivatives along `q ⊕ ε dq` are.
     let residuals = with_transpose(SMatrix::zeros(), &(residuals * constant::<T>(0.5)));
     let multipliers = multiplier_changes(m, t, q, change, forces);
     let mixed = product(&equations.qa, change) + product(&equations.q_lambda, &multipliers);
     with_transpose(equations.qq + residuals, &mixed)
 }
 
-/// The projection of a state, contracted with factors of the state after it.
+/// Returns the derivatives of the projection of a state, contracted with factors of the projected state.
 pub(super) fn curvature<
     M,
     T,
@@ -127,7 +131,8 @@ where
     let failed = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, q_free, v_free).map_err(failed)?;
     m.check_regular(t, &q)?;
-    // The configurations on the way, with how they move with the first; plain coordinates stay as they are where they are moved.
+    // Intermediate configurations of the projection, with their derivatives with respect to the first. In
+    // coordinates that are a vector space, the derivative of a displacement is the identity.
     let displaced = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::of(m, x));
     let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
     let (mut near, mut moved, mut count) = (*q_free, SMatrix::<T, NV, NV>::identity(), 0);

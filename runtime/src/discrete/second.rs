@@ -1,4 +1,5 @@
-//! Second derivatives of steps, contracted with factors: the curvature that differential dynamic programming adds to costs.
+//! Second derivatives of steps, contracted with factors: the curvature that differential dynamic programming
+//! adds to the costs.
 
 use super::curvature::{Curvature, Displacement};
 use super::explicit::{Sensitive, Start};
@@ -10,15 +11,16 @@ use crate::private::{constant, to_f64};
 use crate::{At, Derivatives, InputSecondOrder, Real, RheonomicSecondDerivatives, SecondDerivatives, at};
 use nalgebra::{SMatrix, SVector};
 
-/// The second derivatives of `λᵀ x⁺` by state and inputs, with `x⁺` the state after a step
-/// ([`transition`](super::transition)): `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)`, exact to rounding. The factors
-/// are those of the configuration and of the velocity after the step.
+/// Returns the second derivatives of `λᵀ x⁺` with respect to state and inputs, with `x⁺` the state after a
+/// step ([`transition`](super::transition)): `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂u, ∂²/∂v∂u, ∂²/∂u∂u)`, exact
+/// to rounding. `factors` multiply the configuration and the velocity after the step.
 ///
-/// Displacements of ball and free joints are in body axes, before the step and after it: where the state before moves by `x`, that
-/// after it moves by `A x + ½ xᵀ H x` beyond what it was, as [`difference`](crate::Mechanism::difference) measures, and `H` contracted with
-/// the factors is what this returns. That is what the costs to go of [`optimal`](crate::optimal) are functions of. Declared speeds do
-/// not compile here. Under constraints the method is [`Rk4`], and the derivatives are those of the whole step, with the projection
-/// that ends it.
+/// Displacements of ball and free joints are in body axes, before and after the step. A displacement `x` of
+/// the state before the step displaces the state after it by `A x + ½ xᵀ H x`, as measured by
+/// [`difference`](crate::Mechanism::difference). The function returns `H` contracted with the factors. The
+/// cost-to-go of [`optimal`](crate::optimal) is a function of the same displacements. Mechanisms with
+/// declared generalized speeds do not compile here. Under constraints only [`Rk4`] is supported, and the
+/// derivatives are those of the whole step, including the final projection.
 ///
 /// ```
 /// use linkwork::discrete;
@@ -45,8 +47,8 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// # Errors
 ///
-/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state that is not,
-/// [`Error::Constraint`] where constraints lose rank or cannot be fulfilled.
+/// [`Error::InvalidStep`] for a period that is zero, negative or not finite, [`Error::NotFinite`] for a state
+/// that is not, [`Error::Constraint`] where constraints lose rank or cannot be satisfied.
 pub fn second_order<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
@@ -87,7 +89,7 @@ where
     if finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
 
-/// A step under constraints with the factors of its end.
+/// Arguments of a step under constraints, with the factors of the state after it.
 struct Curved<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
     through: Through<'a, S, T, NQ, NV, NU>,
     factors: (&'a SVector<T, NV>, &'a SVector<T, NV>),
@@ -101,7 +103,8 @@ where
 {
     type Output = Result<InputSecondOrder<T, NV, NU>, Error>;
 
-    /// What the projection adds to the curvature of the step before it, along the Jacobians of that.
+    /// Adds the curvature of the projection, along the Jacobians of the unprojected step, to the curvature of
+    /// that step.
     fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
     where
         M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
@@ -120,20 +123,20 @@ where
     }
 }
 
-/// A method whose steps have second derivatives.
+/// Methods whose steps have second derivatives.
 #[diagnostic::on_unimplemented(
     message = "steps of `{Self}` have no second derivatives",
     note = "those of `Rk4` and `SemiImplicitEuler` have"
 )]
 pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
-    /// A step under constraints is one without them that is brought onto the constraints at its end, so that it has second
-    /// derivatives, too.
+    /// Whether steps under constraints have second derivatives: they do if the step ignores the constraints
+    /// and is projected onto them at its end.
     const UNDER_CONSTRAINTS: bool;
 
-    /// The period of a step, s.
+    /// Returns the period of a step, s.
     fn period(&self) -> T;
 
-    /// The second derivatives of a step, before it is brought onto constraints.
+    /// Returns the second derivatives of a step before its projection onto constraints.
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -184,7 +187,8 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
     }
 }
 
-/// A stage of a step: its displacement from the start, where it is evaluated, and the acceleration there.
+/// Stage of a step: its time and displacement after the start, the state of evaluation, and the linearised
+/// motion in that state.
 struct Stage<T, const NQ: usize, const NV: usize, const NU: usize> {
     after: T,
     displacement: Sensitive<T, NV, NU>,
@@ -232,7 +236,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
             let displacement = k1.plus(two, &k2).plus(two, &k3).plus(T::one(), &k4).scaled(sixth);
             of_end = add_displacement(mechanism, &displacement, by_q, &mut sum);
         }
-        // Backwards: what the end takes of each stage's rates, and what later stages do.
+        // Backwards: factors of each stage's rates, from the end of the step and from later stages.
         let (mut of_displacement, mut of_v) = (SVector::zeros(), SVector::zeros());
         for (stage, weight, reach) in [
             (&fourth, sixth, T::zero()),
@@ -261,8 +265,8 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
     }
 }
 
-/// Adds the second derivatives of `λᵀ ξ`, with `ξ` how a configuration moves that is displaced from the start; the gradient by the
-/// displacement.
+/// Adds the second derivatives of `λᵀ ξ`, with `ξ` the motion of a configuration displaced from the start.
+/// Returns the gradient with respect to the displacement.
 fn add_displacement<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     displacement: &Sensitive<T, NV, NU>,
@@ -298,7 +302,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         Self { after, displacement, q, v, motion }
     }
 
-    /// The rate of displacements from the start, and how it changes with the start of the step.
+    /// Returns the rate of displacements from the start, with its derivatives with respect to the start of
+    /// the step.
     fn rate<M>(&self, start: &Start<'_, M, T, NQ, NV, NU>) -> Sensitive<T, NV, NU>
     where
         M: RheonomicSecondDerivatives<NQ, NV, NU, Scalar = T>,
@@ -312,14 +317,14 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         Sensitive::of(value, (&by_way, way), (&by_v, v))
     }
 
-    /// The acceleration, and how it changes with the start of the step.
+    /// Returns the acceleration, with its derivatives with respect to the start of the step.
     fn acceleration(&self) -> Sensitive<T, NV, NU> {
         let LinearMotion { acceleration, by_q, by_v, by_u, .. } = &self.motion;
         let found = Sensitive::of(*acceleration, (by_q, &self.q.1), (by_v, &self.v));
         Sensitive { by_u: found.by_u + by_u, ..found }
     }
 
-    /// Adds the second derivatives of `λᵀ v̇` at this stage, by the start of the step.
+    /// Adds the second derivatives of `λᵀ v̇` at this stage with respect to the start of the step.
     fn add_curvature<M>(
         &self,
         start: &Start<'_, M, T, NQ, NV, NU>,

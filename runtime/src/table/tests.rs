@@ -6,7 +6,7 @@ static X: [f64; 5] = [-1.0, 0.0, 0.5, 2.0, 3.5];
 static Y: [f64; 4] = [0.0, 1.0, 1.5, 4.0];
 static Z: [f64; 3] = [-2.0, -1.0, 1.0];
 
-/// Quadratic in each variable.
+/// Returns a function that is quadratic in each variable.
 fn f(x: f64, y: f64, z: f64) -> f64 {
     (1.0 + 2.0 * x - 0.5 * x * x) * (0.3 - y + 0.2 * y * y) + x * z - 0.7 * z * z * y
 }
@@ -58,7 +58,7 @@ fn slopes_of_a_smooth_table_are_continuous() {
         assert!((before - after).abs() < 1e-6, "{before} and {after} at {x}");
         assert!((table.value::<f64>([x - 1e-12]) - table.value([x + 1e-12])).abs() < 1e-10);
     }
-    // Slopes are those of the values.
+    // The slopes agree with differences of the values.
     for x in [-1.7, -0.3, 0.2, 1.1, 2.9, 5.0] {
         let h = 1e-6;
         let change = (table.value::<f64>([x + h]) - table.value([x - h])) / (2.0 * h);
