@@ -1,15 +1,18 @@
-//! Many states of one mechanism at once, in the lanes of vector registers ([guide](crate::guide::batches)).
+//! Evaluation of many states of one mechanism at once, in the lanes of SIMD registers
+//! ([guide](crate::guide::batches)).
 //!
-//! The word `batch` among the arguments of `#[mechanism]` asks for them. Every method of the state then has a twin with
-//! `_lanes` behind its name, on vectors of [`Lanes`]; parameters are the same in all lanes. [`Batch`] is the trait for
-//! generic code, and [`Batch::lanes`] makes of the mechanism one whose scalars are lanes, for code that knows nothing
-//! of them.
+//! The option `batch` of `#[mechanism]` generates these functions. Every method of a state then has a
+//! counterpart with the suffix `_lanes`, on vectors of [`Lanes`]; parameters are the same in all lanes.
+//! [`Batch`] is the trait for generic code. [`Batch::lanes`] returns the mechanism with lanes as its scalar
+//! type, for code that is not written for lanes.
 //!
-//! On top of that a [`Lanewise`] mechanism evaluates whole arrays of states (`inverse_dynamics_all` and its like), and
-//! [rolls out](Lanewise::roll_out) the motions of thousands, with the feature `rayon` on all processors.
+//! A [`Lanewise`] mechanism evaluates whole arrays of states (`inverse_dynamics_all` and related functions),
+//! and [rolls out](Lanewise::roll_out) the motions of thousands of states, with the feature `rayon` on all
+//! processors.
 //!
-//! Each lane gives, bit for bit, what the function of a single state gives on the same machine; up to rounding where a
-//! single state has lanes of its own, for alike limbs or for columns of a matrix.
+//! On the same machine, each lane equals the result of the function of a single state bit for bit. The
+//! exceptions are functions of a single state that use lanes themselves, for identical limbs or for the
+//! columns of a matrix: they agree up to rounding.
 
 mod columns;
 mod differentiated;
@@ -27,19 +30,19 @@ pub use rollout::{Lockstep, Progress, Rollout, unwatched};
 use crate::{Lanes, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
-/// A column of lanes.
+/// Column vector of lanes.
 type Column<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
 
-/// A mechanism with functions of several states at once: what `#[mechanism(…, batch)]` implements. Shapes, units and
-/// conventions are those of [`Rheonomic`], for the state of every lane; where nothing depends on time, `t` has no
-/// effect.
+/// Mechanism with functions of several states at once, implemented by `#[mechanism(…, batch)]`. Shapes, units
+/// and conventions are those of [`Rheonomic`], for the state of every lane; `t` has no effect if the
+/// mechanism does not depend on time.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no functions of several states at once",
     label = "this needs the word `batch`",
     note = "add the word to the attribute: `#[mechanism(…, batch)]`"
 )]
 pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ, NV, NU> {
-    /// The mechanism with `L` lanes for scalars.
+    /// Returns the mechanism with `L` lanes as its scalar type.
     fn lanes<const L: usize>(&self) -> Lanewise<'_, Self, L>
     where
         Self: Sized,
@@ -47,28 +50,30 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         Lanewise::new(self)
     }
 
-    /// [`integrate`](Rheonomic::integrate): `q ⊕ dv`.
+    /// Returns [`integrate`](Rheonomic::integrate) of each lane: `q ⊕ dv`.
     fn integrate_lanes<const L: usize>(
         &self,
         q: &Column<Self::Scalar, L, NQ>,
         dv: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NQ>;
 
-    /// [`difference`](Rheonomic::difference): `to ⊖ from`.
+    /// Returns [`difference`](Rheonomic::difference) of each lane: `to ⊖ from`.
     fn difference_lanes<const L: usize>(
         &self,
         from: &Column<Self::Scalar, L, NQ>,
         to: &Column<Self::Scalar, L, NQ>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// [`tangent_rate`](Rheonomic::tangent_rate): rate of `dv` such that `q ⊕ dv` moves with velocity `v`.
+    /// Returns [`tangent_rate`](Rheonomic::tangent_rate) of each lane: the rate of `dv` such that `q ⊕ dv`
+    /// moves with velocity `v`.
     fn tangent_rate_lanes<const L: usize>(
         &self,
         dv: &Column<Self::Scalar, L, NV>,
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// [`displacement_rate`](Rheonomic::displacement_rate): rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from `q`.
+    /// Returns [`displacement_rate`](Rheonomic::displacement_rate) of each lane: the rate of `dv` such that
+    /// `q ⊕ dv` moves with velocity `v`, from `q`.
     fn displacement_rate_lanes<const L: usize>(
         &self,
         _q: &Column<Self::Scalar, L, NQ>,
@@ -78,14 +83,14 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         self.tangent_rate_lanes(dv, v)
     }
 
-    /// [`mass_matrix`](Rheonomic::mass_matrix): `M(t, q)`; kg, kg·m, kg·m².
+    /// Returns [`mass_matrix`](Rheonomic::mass_matrix) of each lane: `M(t, q)`; kg, kg·m, kg·m².
     fn mass_matrix_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
         q: &Column<Self::Scalar, L, NQ>,
     ) -> SMatrix<Lanes<Self::Scalar, L>, NV, NV>;
 
-    /// [`bias_forces`](Rheonomic::bias_forces): `h(t, q, v)`, N and N·m.
+    /// Returns [`bias_forces`](Rheonomic::bias_forces) of each lane: `h(t, q, v)`, N and N·m.
     fn bias_forces_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -93,7 +98,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// [`inverse_dynamics`](Rheonomic::inverse_dynamics): `τ = M a + h`, N and N·m.
+    /// Returns [`inverse_dynamics`](Rheonomic::inverse_dynamics) of each lane: `τ = M a + h`, N and N·m.
     fn inverse_dynamics_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -102,7 +107,8 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         a: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// [`forward_dynamics`](Rheonomic::forward_dynamics): `v̇ = M⁻¹ (τ − h)`, m/s² and rad/s².
+    /// Returns [`forward_dynamics`](Rheonomic::forward_dynamics) of each lane: `v̇ = M⁻¹ (τ − h)`, m/s² and
+    /// rad/s².
     fn forward_dynamics_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -111,7 +117,8 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         tau: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// [`generalized_forces`](Rheonomic::generalized_forces) of the inputs `u`, N and N·m.
+    /// Returns [`generalized_forces`](Rheonomic::generalized_forces) of the inputs `u` of each lane, N and
+    /// N·m.
     fn generalized_forces_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -120,7 +127,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         u: &Column<Self::Scalar, L, NU>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// [`kinetic_energy`](Rheonomic::kinetic_energy), J.
+    /// Returns [`kinetic_energy`](Rheonomic::kinetic_energy) of each lane, J.
     fn kinetic_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -128,14 +135,15 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Lanes<Self::Scalar, L>;
 
-    /// [`potential_energy`](Rheonomic::potential_energy), J.
+    /// Returns [`potential_energy`](Rheonomic::potential_energy) of each lane, J.
     fn potential_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
         q: &Column<Self::Scalar, L, NQ>,
     ) -> Lanes<Self::Scalar, L>;
 
-    /// [`generalized_momentum`](Rheonomic::generalized_momentum) `p`, kg·m/s and kg·m²/s.
+    /// Returns [`generalized_momentum`](Rheonomic::generalized_momentum) of each lane, `p`, kg·m/s and
+    /// kg·m²/s.
     fn generalized_momentum_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
@@ -143,7 +151,7 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Rheonomic<NQ
         v: &Column<Self::Scalar, L, NV>,
     ) -> Column<Self::Scalar, L, NV>;
 
-    /// [`momentum_rate`](Rheonomic::momentum_rate): `ṗ` without inputs, N and N·m.
+    /// Returns [`momentum_rate`](Rheonomic::momentum_rate) of each lane: `ṗ` without inputs, N and N·m.
     fn momentum_rate_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,

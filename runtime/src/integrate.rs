@@ -1,24 +1,25 @@
-//! Integrators: [`DormandPrince`], [`DormandPrince8`], [`Rodas`], [`Rk4`], [`ImplicitMidpoint`], [`Rosenbrock`], [`SemiImplicitEuler`], [`TimeStepping`], [`EventDriven`].
+//! Integrators: [`DormandPrince`], [`DormandPrince8`], [`Rodas`], [`Rk4`], [`ImplicitMidpoint`],
+//! [`Rosenbrock`], [`SemiImplicitEuler`], [`TimeStepping`], [`EventDriven`].
 //!
-//! | method | order | step | for |
+//! | method | order | step | use |
 //! | --- | --- | --- | --- |
-//! | [`DormandPrince`] | 5 | adaptive | the default: accuracy on request, dense output |
+//! | [`DormandPrince`] | 5 | adaptive | the default: error control, dense output |
 //! | [`DormandPrince8`] | 8 | adaptive | tight tolerances: orbits, references |
-//! | [`Rodas`] | 4 | adaptive | stiff mechanisms, accuracy on request |
+//! | [`Rodas`] | 4 | adaptive | stiff mechanisms, error control |
 //! | [`Rk4`] | 4 | fixed | real time, a known cost per step |
 //! | [`ImplicitMidpoint`] | 2 | fixed | long runs: energy and momenta do not drift |
 //! | [`Rosenbrock`] | 2 | fixed | stiff springs and dashpots: stable with any step |
 //! | [`SemiImplicitEuler`] | 1 | fixed | games and learning: one evaluation per step |
-//! | [`TimeStepping`] | 2, with impacts 1 | fixed | [contacts](crate::contact) that open and close |
-//! | [`EventDriven`] | 8 | adaptive | few contacts, every event located |
+//! | [`TimeStepping`] | 2, with impacts 1 | fixed | unilateral [contacts](crate::contact) |
+//! | [`EventDriven`] | 8 | adaptive | few contacts, all events located |
 //!
-//! [`simulate`](crate::simulate()) runs them: `.method(Rk4::step(1e-3))`. A method of your own implements [`Method`]; the other
-//! types here are what it works with.
+//! Pass a method to [`simulate`](crate::simulate()): `.method(Rk4::step(1e-3))`. User-defined methods
+//! implement [`Method`]; the other types of this module are its arguments and results.
 //!
-//! The state is (t, q, v). Within a step a method works in the tangent space at the step's start: `φ` with
-//! `q = q₀ ⊕ φ`, so `φ̇ = tangent_rate(φ, v)` and `v̇ = forward_dynamics(q, v, τ)`. Quaternions therefore stay unit
-//! and every method keeps its order for ball and free joints (Runge–Kutta–Munthe-Kaas methods: Hairer, Lubich and
-//! Wanner, *Geometric Numerical Integration* (2006), IV.8).
+//! The state is (t, q, v). Within a step a method works in the tangent space at the step's start: `φ` with `q
+//! = q₀ ⊕ φ`, so `φ̇ = tangent_rate(φ, v)` and `v̇ = forward_dynamics(q, v, τ)`. Quaternions therefore remain
+//! unit quaternions, and every method has its full order for ball and free joints (Runge–Kutta–Munthe-Kaas
+//! methods: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), IV.8).
 
 mod adaptive;
 mod constrained;
@@ -56,7 +57,7 @@ use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
 
-/// Where a mechanism is: time, s, configuration and velocity.
+/// State of a mechanism: time, s, configuration and velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T, const NQ: usize, const NV: usize> {
     /// Time, s.
@@ -68,15 +69,15 @@ pub struct State<T, const NQ: usize, const NV: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
-    /// The state, or [`Error::NotFinite`] if any of its numbers is infinite or NaN.
+    /// Returns the state, or [`Error::NotFinite`] if any of its numbers is infinite or NaN.
     pub(crate) fn finite(self) -> Result<Self, Error> {
         let finite = self.t.is_finite() && is_finite(&self.q) && is_finite(&self.v);
         if finite { Ok(self) } else { Err(Error::NotFinite { t: to_f64(self.t) }) }
     }
 }
 
-/// The end of a step, brought onto the constraints that it has drifted off; [`Error::NotFinite`] and
-/// [`Error::Constraint`] name the start `t`.
+/// Projects the end of a step onto the constraints, which remove the drift of the step. [`Error::NotFinite`]
+/// and [`Error::Constraint`] report the time `t` of the start.
 pub(crate) fn settled<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     end: State<T, NQ, NV>,
@@ -91,46 +92,48 @@ pub(crate) fn settled<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
     Ok(State { q, v, ..end })
 }
 
-/// What invalidates things that a method remembers from the step before.
+/// Discontinuity that invalidates the memory of a method from earlier steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jump {
-    /// The inputs changed at once; the state did not.
+    /// The inputs jumped; the state did not.
     Inputs,
-    /// The state (and perhaps the inputs) changed at once.
+    /// The state, and possibly the inputs, jumped.
     State,
 }
 
-/// A one-step method.
+/// One-step integration method.
 ///
-/// The method itself holds what the user sets (step, tolerance); what it carries from step to step is `Memory`.
+/// The method itself contains the user's settings (step, tolerance); `Memory` is its state between steps.
 pub trait Method<T: Real> {
-    /// What one step hands to the next.
+    /// Data passed from one step to the next.
     type Memory<const NV: usize>: Clone + core::fmt::Debug;
 
     /// Whether steps must end on sample times; otherwise samples are interpolated.
     const FIXED: bool;
 
-    /// Whether steps take part in impacts and friction of [contacts](crate::contact) that open and close.
+    /// Whether steps treat impacts and friction of unilateral [contacts](crate::contact).
     const CONTACTS: bool = false;
 
-    /// Whether events at contacts are located, which needs the mechanism itself ([`Dynamics::follow`]).
+    /// Whether contact events are located, which requires access to the mechanism itself
+    /// ([`Dynamics::follow`]).
     const LOCATES: bool = false;
 
-    /// Whether the settings make sense: [`Error::InvalidStep`] names the first that does not.
+    /// Checks the settings: [`Error::InvalidStep`] names the first invalid one.
     fn check(&self) -> Result<(), Error>;
 
-    /// Memory at the start of a run.
+    /// Returns the memory at the start of a run.
     fn memory<const NV: usize>(&self) -> Self::Memory<NV>;
 
-    /// Forgets what no longer holds after a jump of the inputs or the state.
+    /// Discards the memory that a jump of the inputs or the state invalidates.
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump);
 
-    /// One step from `start`, ending at `until` at the latest and exactly there if at all. With `dense` the
-    /// [`Step`] interpolates to the method's order (or order 3), without it perhaps only linearly.
+    /// Advances one step from `start`, not beyond `until`; a step that reaches `until` ends exactly there.
+    /// With `dense` the [`Step`] interpolates to the method's order (or order 3), otherwise possibly only
+    /// linearly.
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] where the dynamics are, and the method's own.
+    /// [`Error::NotFinite`] where the dynamics are not finite, and the method's own errors.
     fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
         memory: &mut Self::Memory<NV>,
@@ -145,17 +148,19 @@ pub(crate) fn is_finite<T: Real, const N: usize>(x: &SVector<T, N>) -> bool {
     x.iter().all(|x| x.is_finite())
 }
 
-/// The largest magnitude of the entries.
+/// Returns the largest magnitude of the entries.
 fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |largest, x| largest.max(x.abs()))
 }
 
-/// `Ok` for finite numbers that are not negative, otherwise [`Error::InvalidStep`] with the name of the setting.
+/// Checks that a number is finite and not negative; otherwise returns [`Error::InvalidStep`] with the name of
+/// the setting.
 pub(crate) fn not_negative<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
     if value == T::zero() { Ok(()) } else { positive(name, value) }
 }
 
-/// `Ok` for finite positive numbers, otherwise [`Error::InvalidStep`] with the name of the setting.
+/// Checks that a number is finite and positive; otherwise returns [`Error::InvalidStep`] with the name of the
+/// setting.
 pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
     if value.is_finite() && value > T::zero() {
         Ok(())
@@ -164,18 +169,18 @@ pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Erro
     }
 }
 
-/// The first of equal steps, none longer than `longest` by more than a millionth, that end exactly on `until`: its length
-/// and its end.
+/// Returns the length and end of the first of equal steps that end exactly at `until`, each at most a
+/// millionth longer than `longest`.
 ///
 /// # Errors
 ///
-/// [`Error::StepTooSmall`] if the step is lost in the rounding of `t`.
+/// [`Error::StepTooSmall`] if the step vanishes in the rounding of `t`.
 fn equal_step<T: Real>(longest: T, t: T, until: Option<T>) -> Result<(T, T), Error> {
     let (h, end) = match until {
         None => (longest, t + longest),
         Some(until) => {
             let remaining = until - t;
-            // Rounding of the times must not cost one more step.
+            // Rounding of the times must not cause an additional step.
             let slack = constant::<T>(8.0) * epsilon::<T>() * (t.abs() + until.abs() + remaining) / longest;
             let slack = slack.max(constant(1e-6));
             let count = (remaining / longest - slack).ceil();

@@ -1,27 +1,31 @@
-//! Structures of arrays: for every entry of a vector, its numbers in all states one after another.
+//! Structures of arrays: for every entry of a vector, its values in all states one after another.
 
 use super::Error;
 use crate::{Lanes, Real};
 use nalgebra::SMatrix;
 
-/// Lanes on lines of the cache of their own.
+/// Lanes aligned to cache lines.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Line<T>(pub(super) T);
 
-/// The numbers of many states to be read: entry `i` (column by column of a matrix) of state `k` is
+/// Read access to the values of many states: entry `i` (column by column of a matrix) of state `k` is
 /// `numbers[i * count + k]`.
 #[derive(Clone, Copy)]
 pub(super) struct Input<'a, T, const R: usize> {
     entries: [&'a [T]; R],
 }
 
-/// The same to be written.
+/// Write access to the values of many states, in the layout of [`Input`].
 pub(super) struct Output<'a, T, const R: usize, const C: usize> {
     entries: [[&'a mut [T]; R]; C],
 }
 
-/// The error for a slice of the wrong length.
+/// Checks the length of a slice.
+///
+/// # Errors
+///
+/// [`Error::Length`] unless it is `entries * count`.
 fn fits(name: &'static str, found: usize, entries: usize, count: usize) -> Result<(), Error> {
     match entries.checked_mul(count) {
         Some(expected) if expected == found => Ok(()),
@@ -29,7 +33,7 @@ fn fits(name: &'static str, found: usize, entries: usize, count: usize) -> Resul
     }
 }
 
-/// How many states there are by the first argument; its length need not be a multiple.
+/// Returns the number of states according to the first argument, rounded down.
 pub(super) fn count(numbers: usize, entries: usize) -> usize {
     numbers.checked_div(entries).unwrap_or(0)
 }
@@ -46,7 +50,7 @@ impl<'a, T: Real, const R: usize> Input<'a, T, R> {
         Ok(Self { entries })
     }
 
-    /// The states from `first` on; the last one stands in for those that there are not.
+    /// Loads the states from index `first` on; lanes beyond the last state contain the last state.
     #[inline(always)]
     pub(super) fn load<const L: usize>(&self, first: usize) -> Line<SMatrix<Lanes<T, L>, R, 1>> {
         Line(SMatrix::from_fn(|i, _| load(self.entries[i], first)))
@@ -78,7 +82,7 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
         Ok(Self { entries })
     }
 
-    /// The states before `at` and those from there on.
+    /// Splits into the states before index `at` and the states from `at` on.
     #[cfg(feature = "rayon")]
     pub(super) fn split(self, at: usize) -> (Self, Self) {
         let none = || core::array::from_fn(|_| core::array::from_fn(|_| <&'a mut [T]>::default()));
@@ -90,7 +94,7 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
         (Self { entries: before }, Self { entries: after })
     }
 
-    /// Writes the states from `first` on, as many as there are.
+    /// Stores the existing states from index `first` on.
     #[inline(always)]
     pub(super) fn store<const L: usize>(&mut self, first: usize, values: &SMatrix<Lanes<T, L>, R, C>) {
         for (entries, values) in self.entries.iter_mut().zip(&values.data.0) {
@@ -108,13 +112,13 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
 }
 
 impl<T: Real, const R: usize> Output<'_, T, R, 1> {
-    /// The states from `first` on; the last one stands in for those that there are not.
+    /// Loads the states from index `first` on; lanes beyond the last state contain the last state.
     #[inline(always)]
     pub(super) fn load<const L: usize>(&self, first: usize) -> Line<SMatrix<Lanes<T, L>, R, 1>> {
         Line(SMatrix::from_fn(|i, _| load(self.entries[0][i], first)))
     }
 
-    /// Writes a state from a lane.
+    /// Stores one state from a lane.
     pub(super) fn store_one<const L: usize>(
         &mut self,
         state: usize,

@@ -1,4 +1,4 @@
-//! Derivatives of several states in lanes: those of each.
+//! Derivatives of the states in lanes, computed lane by lane.
 
 use super::{Batch, Lanewise};
 use crate::blocks::zeros;
@@ -7,14 +7,14 @@ use crate::lanes::{lane, set_lane};
 use crate::{Lanes, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// A result that several states have side by side.
+/// Result of one state that is stored in a lane.
 trait Laned<T: Real, const L: usize> {
-    /// The results of all.
+    /// Type of the results in all lanes.
     type All;
 
     fn none() -> Self::All;
 
-    /// Puts it into lane `k`.
+    /// Writes the result to lane `k`.
     fn put(self, all: &mut Self::All, k: usize);
 }
 
@@ -57,7 +57,7 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> La
     }
 }
 
-/// What each state has.
+/// Returns the results of all lanes.
 fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::All {
     let mut all = R::none();
     for k in 0..L {
@@ -66,7 +66,7 @@ fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::
     all
 }
 
-/// Functions with `t` and the vectors that follow it.
+/// Defines functions of `t` and vectors that evaluate each lane separately.
 macro_rules! of_each {
     ($($name:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
         fn $name(&self, $($time: Self::Scalar,)? $($argument: &SVector<Self::Scalar, $of>),*) -> $result {
@@ -130,7 +130,7 @@ where
         acceleration
     }
 
-    /// Constraints of lanes are not at hand.
+    /// Returns `None`: constraints of lanes are not available.
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: crate::constraint::Visitor<Self::Scalar, NQ, NV, NU>,

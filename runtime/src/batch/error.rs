@@ -1,35 +1,35 @@
-//! Why a batch was not evaluated.
+//! Errors of batches.
 
 use crate::integrate;
 use core::fmt;
 
-/// Why a batch was not evaluated, or not to its end.
+/// Error for a batch that was not evaluated, or only partly.
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A slice that does not hold so many numbers for every state. Nothing was written.
+    /// The length of a slice does not match the number of states. Nothing was written.
     Length {
-        /// Which argument.
+        /// Name of the argument.
         name: &'static str,
-        /// How many numbers it must hold.
+        /// Expected length.
         expected: usize,
-        /// How many it holds.
+        /// Length of the slice.
         found: usize,
     },
-    /// A setting of the method that makes no sense. Nothing was written.
+    /// A setting of the method is invalid. Nothing was written.
     Method(integrate::Error),
-    /// States whose motion did not go on to the end; these were left as they were, and all others are done.
+    /// The motion of some states failed before the end. These states are unchanged; all others are done.
     Motion {
-        /// The first of them.
+        /// Index of the first failed state.
         state: usize,
-        /// How many there are.
+        /// Number of failed states.
         count: usize,
-        /// Why the first one stopped.
+        /// Error of the first failed state.
         source: integrate::Error,
     },
-    /// The caller asked to stop. Every state is either done or as it was.
+    /// The caller cancelled the rollout. Every state is either done or unchanged.
     Cancelled {
-        /// How many states are done.
+        /// Number of states that are done.
         done: usize,
     },
 }
@@ -56,5 +56,5 @@ impl fmt::Display for Error {
     }
 }
 
-// What an error has as its source is part of its text.
+// The text of an error includes that of its source, so `source()` returns none.
 impl core::error::Error for Error {}

@@ -1,11 +1,11 @@
-//! The functions of a mechanism for many states, from arrays to arrays.
+//! Functions of a mechanism for many states, from arrays to arrays.
 
 use super::columns::{Input, Line, Output, count};
 use super::{Batch, Error, Lanewise};
 use crate::{Lanes, Rheonomic};
 use nalgebra::SMatrix;
 
-/// Writes the method of one function: arguments by name with their numbers of entries, result likewise.
+/// Defines the method of one function, given the names and numbers of entries of its arguments and result.
 macro_rules! evaluations {
     ($(
         $(#[$doc:meta])*
@@ -38,31 +38,32 @@ macro_rules! evaluations {
     )+};
 }
 
-/// Many states, `L` at a time, in slices of the caller's: entry `i` of state `k` of `count` stands at `i * count + k` (a
-/// structure of arrays; matrices column by column), and the length of the first argument says how many states there
-/// are. Shapes, units and frames as in [`Rheonomic`]; `t` is the same for all states. Results do not depend on `L` or on
-/// how many states there are; nothing allocates.
+/// Evaluation of many states, `L` at a time, from and to slices of the caller. Entry `i` of state `k` of
+/// `count` is at index `i * count + k` (structure of arrays; matrices column by column). The length of the
+/// first argument determines the number of states. Shapes, units and frames are as in [`Rheonomic`]; `t` is
+/// the same for all states. Results do not depend on `L` or on the number of states; the functions allocate
+/// no memory.
 ///
 /// # Errors
 ///
-/// [`Error::Length`] for a slice that does not fit; nothing is written then.
+/// [`Error::Length`] for a slice of the wrong length; nothing is written then.
 impl<M, const L: usize> Lanewise<'_, M, L> {
     evaluations! {
-        /// `q ⊕ dv` ([`Rheonomic::integrate`]).
+        /// Computes `q ⊕ dv` ([`Rheonomic::integrate`]).
         integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, vector;
-        /// Mass matrices ([`Rheonomic::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
+        /// Computes mass matrices ([`Rheonomic::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
         mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, vector;
-        /// Bias forces ([`Rheonomic::bias_forces`]).
+        /// Computes bias forces ([`Rheonomic::bias_forces`]).
         bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, vector;
-        /// Inverse dynamics ([`Rheonomic::inverse_dynamics`]).
+        /// Computes inverse dynamics ([`Rheonomic::inverse_dynamics`]).
         inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, vector;
-        /// Forward dynamics ([`Rheonomic::forward_dynamics`]).
+        /// Computes forward dynamics ([`Rheonomic::forward_dynamics`]).
         forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, vector;
-        /// Generalized forces of inputs ([`Rheonomic::generalized_forces`]).
+        /// Computes generalized forces of inputs ([`Rheonomic::generalized_forces`]).
         generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, vector;
-        /// Kinetic energies ([`Rheonomic::kinetic_energy`]), one number per state.
+        /// Computes kinetic energies ([`Rheonomic::kinetic_energy`]), one number per state.
         kinetic_energy_all = kinetic_energy[t](q: NQ, v: NV) -> energy: 1 x 1, scalar;
-        /// Potential energies ([`Rheonomic::potential_energy`]), one number per state.
+        /// Computes potential energies ([`Rheonomic::potential_energy`]), one number per state.
         potential_energy_all = potential_energy[t](q: NQ) -> energy: 1 x 1, scalar;
     }
 }

@@ -1,4 +1,4 @@
-//! A mechanism whose scalars are lanes.
+//! Mechanisms with lanes as their scalar type.
 
 use super::Batch;
 use crate::blocks::zeros;
@@ -8,8 +8,9 @@ use crate::{ByMotion, ConstraintError, Lanes, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 use num_traits::Zero;
 
-/// A mechanism with `L` lanes for scalars, made by [`Batch::lanes`]: several states in one call. It is a
-/// [`Rheonomic`] mechanism itself, and at an instant ([`at`](crate::at())) a [`Mechanism`](crate::Mechanism).
+/// Mechanism with `L` lanes as its scalar type, made by [`Batch::lanes`], which evaluates several states in
+/// one call. It is itself a [`Rheonomic`] mechanism, and at an instant ([`at`](crate::at())) a
+/// [`Mechanism`](crate::Mechanism).
 #[derive(Debug)]
 pub struct Lanewise<'m, M, const L: usize> {
     pub(super) mechanism: &'m M,
@@ -24,13 +25,13 @@ impl<M, const L: usize> Clone for Lanewise<'_, M, L> {
 impl<M, const L: usize> Copy for Lanewise<'_, M, L> {}
 
 impl<'m, M, const L: usize> Lanewise<'m, M, L> {
-    /// `mechanism.lanes::<L>()`.
+    /// Returns `mechanism.lanes::<L>()`.
     pub fn new(mechanism: &'m M) -> Self {
         Self { mechanism }
     }
 }
 
-/// Functions with `t` and the vectors that follow it.
+/// Defines functions of `t` and vectors that call the counterpart for lanes.
 macro_rules! lanewise {
     ($($name:ident = $twin:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
         #[inline(always)]
@@ -63,7 +64,7 @@ where
         self.mechanism.neutral().map(Lanes::splat)
     }
 
-    /// Lane by lane; a lane without a state on its constraints is no number afterwards, and it is an error if all are so.
+    /// Projects lane by lane. A lane whose projection fails becomes NaN; it is an error if all lanes fail.
     fn project(
         &self,
         t: Self::Scalar,
@@ -85,7 +86,7 @@ where
         Ok((lane_by_lane(|k| state(k).0), lane_by_lane(|k| state(k).1)))
     }
 
-    /// True if the state of one lane is nearly singular: then all lanes go on by accelerations.
+    /// Whether the state of any lane is nearly singular; all lanes then use accelerations.
     fn is_nearly_singular(
         &self,
         t: Self::Scalar,
@@ -95,7 +96,7 @@ where
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
     }
 
-    /// Lane by lane.
+    /// Computes the derivatives lane by lane.
     fn acceleration_derivatives(
         &self,
         t: Self::Scalar,
@@ -114,7 +115,7 @@ where
         Some(all)
     }
 
-    /// Lane by lane.
+    /// Transports the velocity lane by lane.
     fn carry(
         &self,
         t: Self::Scalar,
@@ -125,7 +126,8 @@ where
         lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
-    /// Lane by lane; a lane whose surfaces overlap is an error of all.
+    /// Computes the start lane by lane; an error in any lane, such as overlapping surfaces, is an error of
+    /// all.
     fn contact_start(
         &self,
         t: Self::Scalar,
@@ -140,7 +142,8 @@ where
         Ok(lane_by_lane(|k| results[k].unwrap_or_else(|_| lane(q, k))))
     }
 
-    /// Lane by lane; a lane whose contacts have no impulses is no number afterwards, and it is an error if all are so.
+    /// Solves the contacts lane by lane. A lane whose contacts have no solution becomes NaN; it is an error
+    /// if all lanes fail.
     fn contact_step(
         &self,
         t: Self::Scalar,
@@ -172,7 +175,7 @@ where
         None
     }
 
-    /// Lanes in which the forces determine no acceleration are no numbers, as those of `forward_dynamics` are.
+    /// Returns NaN in lanes in which the forces determine no acceleration, as `forward_dynamics` does.
     fn try_forward_dynamics(
         &self,
         t: Self::Scalar,
@@ -183,7 +186,7 @@ where
         Ok(self.forward_dynamics(t, q, v, tau))
     }
 
-    /// Lane by lane where there are constraints.
+    /// Computes the impulse lane by lane if there are constraints.
     fn impulse(
         &self,
         t: Self::Scalar,

@@ -7,10 +7,10 @@ use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use nalgebra::SVector;
 
-/// Groups of lanes that one thread takes in one go.
+/// Number of groups of lanes that one thread processes without further splitting.
 const GRAIN: usize = 4;
 
-/// What all threads look at.
+/// Data shared by all threads.
 struct Shared<W> {
     watch: W,
     done: AtomicUsize,
@@ -19,15 +19,15 @@ struct Shared<W> {
 }
 
 impl<M, const L: usize> Lanewise<'_, M, L> {
-    /// [`roll_out`](Self::roll_out) on the threads of rayon's pool: the one that it is called in, or the global one.
-    /// Results do not depend on the number of threads.
+    /// Computes [`roll_out`](Self::roll_out) on the threads of rayon's pool: the pool in which it is called,
+    /// or the global one. Results do not depend on the number of threads.
     ///
-    /// `control` and `watch` are called by several threads at once; cancelling takes effect after the group of states that
-    /// each thread has at hand.
+    /// Several threads call `control` and `watch` concurrently. Cancelling takes effect after each thread's
+    /// current group of states.
     ///
     /// # Errors
     ///
-    /// Those of [`roll_out`](Self::roll_out); of several failures the first in the order of states.
+    /// The errors of [`roll_out`](Self::roll_out); of several failures the first in the order of states.
     pub fn roll_out_in_parallel<S, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
@@ -52,7 +52,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         self.divide(rollout, part, &control, &shared).result()
     }
 
-    /// Halves the states until they are few.
+    /// Splits the states into halves recursively, down to [`GRAIN`] groups.
     fn divide<S, C, W, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,

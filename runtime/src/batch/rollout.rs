@@ -1,4 +1,4 @@
-//! The motions of many states over a fixed number of steps.
+//! Motions of many states over a fixed number of steps.
 
 use super::columns::{Output, count};
 use super::{Batch, Error, Lanewise};
@@ -9,16 +9,16 @@ use crate::{Lanes, Real};
 use core::ops::ControlFlow;
 use nalgebra::{ComplexField, SVector};
 
-/// A method that does the same operations whatever the numbers are, so that states can go through it side by side: one
-/// with fixed steps and nothing that is iterated.
+/// Method whose sequence of operations does not depend on the values, so that states can be advanced together
+/// in lanes: one with fixed steps and without iteration.
 pub trait Lockstep<T: Real>: Method<T> {
-    /// Steps of constrained mechanisms are iterated: their states go one by one.
+    /// Whether steps of constrained mechanisms iterate, so that their states are advanced one by one.
     const ITERATES_CONSTRAINTS: bool = false;
 
-    /// The method with lanes for scalars.
+    /// Method with lanes as its scalar type.
     type Wide<const L: usize>: Method<Lanes<T, L>>;
 
-    /// The same steps in all lanes.
+    /// Returns the method with the same step in all lanes.
     fn wide<const L: usize>(&self) -> Self::Wide<L>;
 }
 
@@ -40,7 +40,7 @@ impl<T: Real> Lockstep<T> for SemiImplicitEuler<T> {
     }
 }
 
-/// How far and by which method states are rolled out.
+/// Method, number of steps and start time of a rollout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rollout<T, S> {
     method: S,
@@ -49,47 +49,47 @@ pub struct Rollout<T, S> {
 }
 
 impl<T: Real, S: Lockstep<T>> Rollout<T, S> {
-    /// So many steps of a method, from time zero: `Rollout::new(Rk4::step(1e-3), 500)`.
+    /// Returns a rollout of `steps` steps of a method, from time zero: `Rollout::new(Rk4::step(1e-3), 500)`.
     pub fn new(method: S, steps: usize) -> Self {
         Self { method, steps, start: T::zero() }
     }
 
-    /// Starts at the time `t`, s.
+    /// Sets the start time `t`, s.
     #[must_use]
     pub fn from_time(self, t: T) -> Self {
         Self { start: t, ..self }
     }
 }
 
-/// How far a rollout is.
+/// Progress of a rollout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// States that are done.
+    /// Number of states that are done.
     pub done: usize,
-    /// States in all.
+    /// Total number of states.
     pub count: usize,
 }
 
-/// For rollouts that nobody watches.
+/// Ignores the progress of a rollout and never cancels it.
 pub fn unwatched(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// What became of a part of the states.
+/// Outcome of a range of the states.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
-    /// States that are done, failed ones included.
+    /// Number of states that are done, including failed ones.
     pub(super) done: usize,
-    /// States that failed.
+    /// Number of states that failed.
     pub(super) failed: usize,
-    /// The first of them, and why.
+    /// Index of the first failed state, and its error.
     pub(super) first: Option<(usize, integrate::Error)>,
-    /// The caller asked to stop.
+    /// Whether the caller cancelled the rollout.
     pub(super) cancelled: bool,
 }
 
 impl Tally {
-    /// Together with that of the states behind these.
+    /// Returns the outcome combined with that of the states `behind` these.
     pub(super) fn and(self, behind: Tally) -> Tally {
         Tally {
             done: self.done + behind.done,
@@ -108,9 +108,9 @@ impl Tally {
     }
 }
 
-/// States to be rolled out: a part of all.
+/// Range of the states to be rolled out.
 pub(super) struct Part<'a, T, const NQ: usize, const NV: usize> {
-    /// Index of the first among all states.
+    /// Index of the first state of the range among all states.
     pub(super) first: usize,
     pub(super) q: Output<'a, T, NQ, 1>,
     pub(super) v: Output<'a, T, NV, 1>,
@@ -118,7 +118,11 @@ pub(super) struct Part<'a, T, const NQ: usize, const NV: usize> {
 }
 
 impl<'a, T: Real, const NQ: usize, const NV: usize> Part<'a, T, NQ, NV> {
-    /// All states, if the slices fit and the method makes sense.
+    /// Returns the range of all states.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Length`] and [`Error::Method`].
     pub(super) fn all<S: Lockstep<T>>(
         rollout: &Rollout<T, S>,
         q: &'a mut [T],
@@ -133,7 +137,7 @@ impl<'a, T: Real, const NQ: usize, const NV: usize> Part<'a, T, NQ, NV> {
 
 #[cfg(feature = "rayon")]
 impl<T: Real, const NQ: usize, const NV: usize> Part<'_, T, NQ, NV> {
-    /// The states before the one with index `at` and those from there on.
+    /// Splits into the states before index `at` and the states from `at` on.
     pub(super) fn split(self, at: usize) -> (Self, Self) {
         let ((q, other_q), (v, other_v)) = (self.q.split(at), self.v.split(at));
         let front = Self { first: self.first, q, v, count: at };
@@ -141,31 +145,32 @@ impl<T: Real, const NQ: usize, const NV: usize> Part<'_, T, NQ, NV> {
     }
 }
 
-/// One group of lanes after its last step, and the lanes that did not get there.
+/// Group of lanes after its last step, with the errors of the lanes that failed.
 struct Group<T, const L: usize, const NQ: usize, const NV: usize> {
     end: State<Lanes<T, L>, NQ, NV>,
     failures: [Option<integrate::Error>; L],
 }
 
 impl<M, const L: usize> Lanewise<'_, M, L> {
-    /// Rolls out many states: each goes so many steps of the method from where it is, and where it ends is written
-    /// in its place. Nothing allocates. Whether surfaces of contacts overlap at the start is not looked at: rollouts go on
-    /// where others have ended ([`contact::check`](crate::contact::check)).
+    /// Rolls out many states: advances each by the given number of steps of the method and overwrites it with
+    /// its final state. No memory is allocated. Penetration of contact surfaces at the start is not checked,
+    /// because rollouts may continue others ([`contact::check`](crate::contact::check)).
     ///
-    /// - `q`, `v`: the states, a structure of arrays: entry `i` of state `k` of `count` stands at `i * count + k`.
-    /// - `control(k, t, q, v)`: the inputs `u` of the states in the lanes, of which the first has index `k` (at the end
-    ///   of the arrays the last state stands in the lanes that are left over); asked whenever the method evaluates the
-    ///   dynamics.
-    /// - `watch`: told after every group of states how many are done; `ControlFlow::Break(())` cancels. [`unwatched`] if
-    ///   nobody cares.
+    /// - `q`, `v`: the states, a structure of arrays: entry `i` of state `k` of `count` is at index `i *
+    ///   count + k`.
+    /// - `control(k, t, q, v)`: returns the inputs `u` of the states in the lanes, the first of which has
+    ///   index `k`. At the end of the arrays, unused lanes contain the last state. Called at each evaluation
+    ///   of the dynamics.
+    /// - `watch`: called after every group of states with the number of states that are done;
+    ///   `ControlFlow::Break(())` cancels. Pass [`unwatched`] to ignore the progress.
     ///
-    /// What becomes of a state does not depend on the others, on their number or on `L`, as long as `control` keeps
-    /// lanes apart.
+    /// The result of a state does not depend on the other states, on their number or on `L`, provided that
+    /// `control` computes each lane independently.
     ///
     /// # Errors
     ///
     /// [`Error::Length`] and [`Error::Method`] before anything is written; [`Error::Motion`] if some motion
-    /// does not stay finite or on its constraints; [`Error::Cancelled`].
+    /// does not remain finite or on its constraints; [`Error::Cancelled`].
     pub fn roll_out<S, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
@@ -188,7 +193,8 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         self.roll_out_part(rollout, &mut part, &control, |done| watch(Progress { done, count })).result()
     }
 
-    /// One group of lanes after another; `watch` is told how many states of the part are done.
+    /// Rolls out one group of lanes after another; `watch` receives the number of states of the range that
+    /// are done.
     pub(super) fn roll_out_part<S, C, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
@@ -226,7 +232,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
                 }
             }
             if watch(tally.done).is_break() {
-                // What is done already cannot be cancelled.
+                // A completed rollout cannot be cancelled.
                 tally.cancelled = tally.done < part.count;
                 return tally;
             }
@@ -264,7 +270,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             match method.advance(&mut memory, &mut system, &begin, None, false) {
                 Ok(step) => group.end = step.end,
                 Err(error) => {
-                    // The step has failed for all that are left.
+                    // The step has failed for all lanes that had not failed before.
                     group.failures = group.failures.map(|failure| failure.or(Some(error)));
                     return group;
                 }
@@ -279,7 +285,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         group
     }
 
-    /// A group whose states go one after another.
+    /// Advances the states of a group one after another.
     fn one_by_one<S, C, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
@@ -299,7 +305,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     {
         let mut failures = [None; L];
         let ends: [_; L] = core::array::from_fn(|k| {
-            // `control` keeps lanes apart, so that what stands in the others does not matter.
+            // `control` computes lanes independently, so the contents of the other lanes do not matter.
             let inputs = ContinuousInputs(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| {
                 lane(&control(first, Lanes::splat(t), &q.map(Lanes::splat), &v.map(Lanes::splat)), k)
             });
@@ -326,7 +332,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     }
 }
 
-/// Zero in the lanes of a state that are finite, and not a number in the others.
+/// Returns zero in the lanes whose state is finite, and NaN in the others.
 fn lost<T: Real, const L: usize, const NQ: usize, const NV: usize>(
     state: &State<Lanes<T, L>, NQ, NV>,
 ) -> Lanes<T, L> {

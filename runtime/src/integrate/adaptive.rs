@@ -1,4 +1,4 @@
-//! Steps of the size that tolerances ask for, whatever the method that makes them.
+//! Step size control from error tolerances, common to all adaptive methods.
 
 use super::control::{Scale, first_step};
 use super::{Dynamics, Error, State, Step, is_finite, positive, settled};
@@ -6,7 +6,7 @@ use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
 
-/// What users set.
+/// Settings of the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Settings<T> {
     pub relative: T,
@@ -17,8 +17,9 @@ pub(super) struct Settings<T> {
     pub most_steps: u64,
 }
 
-/// How steps follow from errors: a step times `error` to the minus `exponent`, and the error of the step before to `beta`; it
-/// becomes no longer than by the first of `factors` and no shorter than by the second.
+/// Constants of the step size controller: the step is multiplied by `error` to the power `−exponent` and by
+/// the error of the previous step to the power `beta`. `factors` are the maximum increase and the maximum
+/// decrease of the step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Control {
     pub exponent: f64,
@@ -26,10 +27,11 @@ pub(super) struct Control {
     pub factors: [f64; 2],
 }
 
-/// What one adaptive step hands to the next.
+/// Data passed from one adaptive step to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct AdaptiveMemory<T, const NV: usize> {
-    /// Acceleration at the start of the step: it does not depend on the chart, so the last stage can be reused.
+    /// Acceleration at the start of the step. It does not depend on the coordinate chart, so the last stage
+    /// of the previous step can be reused.
     pub(super) acceleration: Option<SVector<T, NV>>,
     step: Option<T>,
     error: T,
@@ -42,22 +44,26 @@ impl<T: Real, const NV: usize> AdaptiveMemory<T, NV> {
     }
 
     /// Counts a trial.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::TooManySteps`] above the maximum number of trials.
     pub(super) fn tried(&mut self, settings: &Settings<T>, t: T) -> Result<(), Error> {
         self.trials += 1;
         if self.trials > settings.most_steps { Err(Error::TooManySteps { t: to_f64(t) }) } else { Ok(()) }
     }
 }
 
-/// A step that its error has still to accept.
+/// Step before its acceptance by the error test.
 pub(super) struct Trial<T, const NQ: usize, const NV: usize> {
     pub step: Step<T, NQ, NV>,
-    /// Acceleration at the end, where it is known.
+    /// Acceleration at the end, if the method computes it.
     pub acceleration: Option<SVector<T, NV>>,
-    /// The estimated error; acceptable up to one, NaN where the trial is.
+    /// Estimated error: acceptable up to one, NaN if the trial is NaN.
     pub error: T,
 }
 
-/// From where to when a step is tried.
+/// Start, length and end of a trial step.
 pub(super) struct Attempt<'a, T, const NQ: usize, const NV: usize> {
     pub start: &'a State<T, NQ, NV>,
     pub acceleration: &'a SVector<T, NV>,
@@ -87,7 +93,8 @@ impl<T: Real> Settings<T> {
         self.longest.map_or(Ok(()), |h| positive("the longest step", h))
     }
 
-    /// The step to try: at most `h`, ending on `until` without leaving a sliver.
+    /// Returns the length and end of the step to try: at most `h`, and without a tiny remainder before
+    /// `until`.
     fn fit(&self, h: T, t: T, until: Option<T>) -> (T, T) {
         let Some(until) = until else { return (h, t + h) };
         let remaining = until - t;
@@ -105,8 +112,8 @@ impl<T: Real> Settings<T> {
         self.longest.map_or(h, |longest| h.min(longest))
     }
 
-    /// Step sizes after an error estimate: the controller of DOPRI5 and its kin. The first for an accepted step, the second
-    /// for a rejected one.
+    /// Returns the next step sizes after an error estimate, for an accepted and for a rejected step: the
+    /// controller of DOPRI5 and related programs.
     fn next_steps(control: &Control, h: T, error: T, last: T) -> (T, T) {
         let ([longer, shorter], safety) = (control.factors, constant::<T>(0.9));
         let raw = error.powf(constant(control.exponent));
@@ -115,10 +122,12 @@ impl<T: Real> Settings<T> {
         (accepted, h / (raw / safety).min(constant(shorter)))
     }
 
-    /// Whether the step `h` from `t` to `end` can be taken; `wanted` is what it was cut from. If the trial before was
-    /// not finite, that is the reason for a small step.
+    /// Checks that the step `h` from `t` to `end` can be taken; `wanted` is its length before it was cut at
+    /// `until`. If the previous trial was not finite (`finite` is false), that is reported as the cause of a
+    /// small step.
     fn check_size(&self, [t, end]: [T; 2], h: T, wanted: T, finite: bool, now: T) -> Result<(), Error> {
-        // Steps count time from their start: only double precision's rounding of the whole run sets a limit.
+        // Steps count time from their start, so only double precision's rounding of the whole run limits
+        // them.
         let least = self.least.unwrap_or(T::zero()).max(constant::<T>(f64::EPSILON) * now.abs());
         let (t, possible) = (to_f64(t), end > t && h > T::zero() && wanted > least);
         match (possible, finite) {
@@ -128,7 +137,7 @@ impl<T: Real> Settings<T> {
         }
     }
 
-    /// One accepted step, of those that `attempt` makes.
+    /// Advances one accepted step; `attempt` computes the trials.
     pub fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
         control: &Control,
@@ -161,7 +170,7 @@ impl<T: Real> Settings<T> {
                 rejected = true;
                 continue;
             }
-            // A step that was cut short to end on time says little about longer ones.
+            // A step cut short at `until` gives little information about longer steps.
             let longer = if h < wanted { larger.max(wanted) } else { larger };
             memory.step = Some(self.limited(if rejected { larger.min(h) } else { longer }));
             memory.error = error.max(constant(1e-4));
@@ -172,36 +181,40 @@ impl<T: Real> Settings<T> {
     }
 }
 
-/// The functions by which users set an adaptive method, its defaults, and what all adaptive methods have in common.
+/// Builder functions and defaults of an adaptive method, common to all of them.
 macro_rules! adaptive {
     ($name:ident) => {
         impl<T: Real> $name<T> {
-            /// Relative and absolute tolerance 1e-9 (or 64 roundings of a less precise `T`), at most ten million steps.
+            /// Returns the method with relative and absolute tolerance 1e-9 (or 64 machine epsilons of a less
+            /// precise `T`) and at most ten million steps.
             pub fn new() -> Self {
                 Self { settings: Settings::new() }
             }
 
-            /// Error allowed per step: relative to the size of each coordinate and velocity, and absolute in SI units.
+            /// Sets the error allowed per step: relative to the magnitude of each coordinate and velocity,
+            /// and absolute in SI units.
             pub fn tolerance(self, relative: T, absolute: T) -> Self {
                 Self { settings: Settings { relative, absolute, ..self.settings } }
             }
 
-            /// First step tried, s; chosen by itself if not given.
+            /// Sets the first trial step, s; without this setting the method estimates it.
             pub fn initial_step(self, step: T) -> Self {
                 Self { settings: Settings { first: Some(step), ..self.settings } }
             }
 
-            /// Longest step, s; no limit if not given. Set it below the shortest thing that must not be stepped over.
+            /// Sets the longest step, s; without this setting there is no limit. Set it below the duration of
+            /// the shortest event that must not be stepped over.
             pub fn max_step(self, step: T) -> Self {
                 Self { settings: Settings { longest: Some(step), ..self.settings } }
             }
 
-            /// Shortest step, s: if the tolerance asks for less, the run ends with [`Error::StepTooSmall`].
+            /// Sets the shortest step, s: if the tolerance requires a shorter one, the run ends with
+            /// [`Error::StepTooSmall`].
             pub fn min_step(self, step: T) -> Self {
                 Self { settings: Settings { least: Some(step), ..self.settings } }
             }
 
-            /// Most steps tried in one run, accepted and rejected.
+            /// Sets the maximum number of trial steps in one run, accepted and rejected.
             pub fn max_steps(self, steps: u64) -> Self {
                 Self { settings: Settings { most_steps: steps, ..self.settings } }
             }

@@ -1,17 +1,20 @@
-//! Steps of constrained mechanisms: the constraints push at the start of a step, so that they hold at its end.
+//! Steps of constrained mechanisms: constraint impulses at the start of a step enforce the constraints at its
+//! end.
 //!
-//! Between two pushes the motion goes on as if it were free. The first push is such that the step ends on the
-//! constraints; the second, at the end, takes away what is left of velocities that these forbid. Pushes at the ends of a
-//! step join those of its neighbours, so that a free step which is symplectic, or the same backwards in time, makes a
-//! constrained one which is that, too: Andersen, *Rattle: a velocity version of the Shake algorithm*, J. Comput. Phys. 52
-//! (1983); Reich, *Symplectic integration of constrained Hamiltonian systems by composition methods*, SIAM J. Numer. Anal.
-//! 33 (1996); Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), VII.1. Constraints on velocities push in
-//! the same way and have to hold half-way, where they read the same forwards and backwards: Cortés and Martínez,
-//! *Non-holonomic integrators*, Nonlinearity 14 (2001); McLachlan and Perlmutter, *Integrators for nonholonomic mechanical
-//! systems*, J. Nonlinear Sci. 16 (2006).
+//! Between the impulses at both ends the motion is unconstrained. The first impulse is such that the step
+//! ends on the constraints; the second, at the end, removes the velocity components that violate the
+//! constraints. The impulses at the ends of a step combine with those of the neighbouring steps. A symplectic
+//! or time-reversible free step therefore yields a constrained step with the same property: Andersen,
+//! *Rattle: a velocity version of the Shake algorithm*, J. Comput. Phys. 52 (1983); Reich, *Symplectic
+//! integration of constrained Hamiltonian systems by composition methods*, SIAM J. Numer. Anal. 33 (1996);
+//! Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), VII.1. Constraints on velocities act
+//! through the same impulses and are enforced at the midpoint, where they are symmetric in time: Cortés and
+//! Martínez, *Non-holonomic integrators*, Nonlinearity 14 (2001); McLachlan and Perlmutter, *Integrators for
+//! nonholonomic mechanical systems*, J. Nonlinear Sci. 16 (2006).
 //!
-//! The equations of a step are solved by Newton's method with the derivatives at its start, which generated code
-//! holds as an elimination: each iteration gains a factor of about step · speed · curvature.
+//! The equations of a step are solved by a simplified Newton method with the derivatives at its start, which
+//! generated code provides as an elimination: each iteration reduces the error by a factor of about step ·
+//! velocity · curvature.
 
 use super::{Dynamics, Error, State, is_finite, largest, settled};
 use crate::Real;
@@ -19,10 +22,11 @@ use crate::private::{constant, epsilon, to_f64};
 use crate::speeds;
 use nalgebra::SVector;
 
-/// Iterations allowed for one step; a step well inside the region of convergence takes about ten.
+/// Maximum number of iterations of one step; a step well inside the region of convergence takes about ten.
 pub(super) const MOST_ITERATIONS: usize = 100;
 
-/// The displacement from `q` to a midpoint after a time `half`: there the configuration moves with the velocity `v`.
+/// Returns the displacement from `q` to a midpoint after a time `half`, at which the configuration moves with
+/// the velocity `v`.
 pub(super) fn way<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     q: &SVector<T, NQ>,
@@ -36,21 +40,22 @@ pub(super) fn way<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
     }
 }
 
-/// Whether iterations of a velocity have come to their end: changes are rounding.
+/// Convergence test for iterations of a velocity: whether changes are at rounding level.
 pub(super) struct Settling<T> {
     half: T,
     last: Option<T>,
 }
 
 impl<T: Real> Settling<T> {
-    /// For steps of twice `half`.
+    /// Returns the test for steps of length `2 half`.
     pub(super) fn new(half: T) -> Self {
         Self { half, last: None }
     }
 
-    /// Whether the change that has led to the velocity `v` was the last that matters: rounding itself, or no longer
-    /// shrinking and either small beside the velocity or too small to move anything. The latter holds at rest, where the
-    /// velocity itself is rounding.
+    /// Whether the change that led to the velocity `v` was the last significant one: it is at rounding level,
+    /// or it no longer decreases and is negligible. A change is negligible if it is small relative to the
+    /// velocity, or too small to move any coordinate; the latter applies at rest, where the velocity itself
+    /// is rounding.
     pub(super) fn is_done<const NQ: usize, const NV: usize>(
         &mut self,
         change: T,
@@ -65,37 +70,40 @@ impl<T: Real> Settling<T> {
     }
 }
 
-/// The error for an iteration that has lost all sense: at once, or on its way.
+/// Returns the error for a diverged iteration: [`Error::NotFinite`] at the first iteration, otherwise
+/// [`Error::NotConverged`].
 pub(super) fn lost<T: Real>(t: T, iterations: usize) -> Error {
     let t = to_f64(t);
     if iterations == 0 { Error::NotFinite { t } } else { Error::NotConverged { t, iterations } }
 }
 
-/// Iterations that steps take at most whose end is well in reach of the derivatives at their start, and those after which it
-/// is not.
+/// Maximum number of iterations of a reliable step, if it changed the velocity much (`FEW_ITERATIONS`) or
+/// little (`MANY_ITERATIONS`), see [`is_crossing`].
 const FEW_ITERATIONS: usize = 8;
 const MANY_ITERATIONS: usize = 24;
 
-/// Beyond this share of the velocity, what many iterations have changed in half a step is another motion.
+/// Maximum relative change of the velocity over half a step. After many iterations a larger change indicates
+/// another solution.
 const LEAP: f64 = 0.5;
 
-/// A solved midpoint.
+/// Solution of a midpoint.
 pub(super) struct Middle<T, const NV: usize> {
-    /// Its velocity.
+    /// Velocity of the midpoint.
     pub v: SVector<T, NV>,
-    /// The displacement of the whole step.
+    /// Displacement over the whole step.
     pub way: SVector<T, NV>,
-    /// The momentum after the step, before the push at its end.
+    /// Momentum after the step, before the impulse at its end.
     pub p: SVector<T, NV>,
     iterations: usize,
 }
 
-/// Whether the place where a step has ended is singular, if that is known.
+/// Whether the configuration at the end of the last step is singular; `None` if unknown.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Ended(Option<bool>);
 
-/// Whether a step cannot be trusted to have `found` its end since it begins or ends in a singular position or, if that took many
-/// iterations, led to another motion or failed, leads past one: it may begin well before and end well behind.
+/// Whether the step passes a singular configuration, so that its solution `found` is not reliable. This is
+/// tested at its start and end; if the iteration failed, took many iterations or changed the velocity much,
+/// also in between.
 pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     start: &State<T, NQ, NV>,
@@ -109,7 +117,8 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
         found.iterations <= if near(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
     };
     if let Some(found) = found.as_ref().ok().filter(quick) {
-        // Pushes in a singular end leave in the velocity what these constraints alone forbid.
+        // Constraint impulses at a singular end do not remove the velocities that only the constraints of
+        // that configuration forbid.
         let before = ended.0.unwrap_or_else(|| singular(start.t, &start.q));
         let after = singular(start.t + h, &system.integrate(&start.q, &found.way));
         ended.0 = Some(after);
@@ -123,21 +132,21 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
     })
 }
 
-/// How much of a change is made. Where constraints have turned at the end of a step by as much as they are away from a
-/// singular position, iterations with the derivatives at its start creep, or overshoot again and again in one direction;
-/// what two changes have in common tells by how much (Irons and Tuck, *A version of the Aitken accelerator for computer
-/// iteration*, Int. J. Numer. Meth. Eng. 1, 1969).
+/// Relaxation factor of an iteration. If the constraints rotate within a step by as much as their distance
+/// from a singular configuration, iterations with the derivatives at the start converge slowly or overshoot
+/// repeatedly in one direction. Two successive changes determine the factor (Irons and Tuck, *A version of
+/// the Aitken accelerator for computer iteration*, Int. J. Numer. Meth. Eng. 1, 1969).
 struct Pace<T, const NV: usize> {
     last: SVector<T, NV>,
     share: T,
 }
 
 impl<T: Real, const NV: usize> Pace<T, NV> {
-    /// The share of a change; all of it as long as changes become clearly smaller.
+    /// Returns the relaxation factor of a change: one as long as the changes decrease clearly.
     fn next(&mut self, change: &SVector<T, NV>) -> T {
         let (now, before) = (largest(change), largest(&self.last));
         let slow = before > T::zero() && now > before * constant(0.3) && now < before * constant(1e3);
-        // By their sizes, lest their squares overflow or vanish.
+        // Scaled by their magnitudes, so that the squares neither overflow nor underflow.
         let (own, last) = (change / before, self.last / before);
         let bend = own - last;
         let found = -self.share * last.dot(&bend) / bend.norm_squared();
@@ -147,9 +156,10 @@ impl<T: Real, const NV: usize> Pace<T, NV> {
     }
 }
 
-/// The velocity of the midpoint, from an estimate, and the momentum after the step before the push at its end: with the
-/// momentum `p` at the start and its `rate` `ṗ(t, q, v)`, `M(q_m) v = p + Jᵀ(q₀) λ + (h/2) ṗ(q_m, v)` where
-/// `q_m = q₀ ⊕ (h/2) v`, and constraints that hold at `q₀ ⊕ h v`.
+/// Returns the velocity of the midpoint, starting from an estimate, and the momentum after the step before
+/// the impulse at its end. With the momentum `p` at the start and its `rate` `ṗ(t, q, v)`, the midpoint
+/// satisfies `M(q_m) v = p + Jᵀ(q₀) λ + (h/2) ṗ(q_m, v)` where `q_m = q₀ ⊕ (h/2) v`, and the constraints are
+/// satisfied at `q₀ ⊕ h v`.
 pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     rate: impl Fn(&mut D, T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,
@@ -181,10 +191,11 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
     Err(Error::NotConverged { t: to_f64(start.t), iterations: MOST_ITERATIONS })
 }
 
-/// The end of a step near a singular position, and the displacement that leads there: with the velocity of the midpoint `v = v₀ + (h/2) v̇(q_m, v)` with
-/// `q_m = q₀ ⊕ (h/2) v`, where the midpoint is brought onto the constraints before its acceleration is taken. That is the one
-/// thing which is continuous there: pushes at the ends of a step are not, and their directions turn within it. Order 2.
-/// `None` where the iteration does not settle.
+/// Returns the end of a step near a singular configuration, and its displacement. The velocity of the
+/// midpoint is `v = v₀ + (h/2) v̇(q_m, v)` with `q_m = q₀ ⊕ (h/2) v`; the midpoint is projected onto the
+/// constraints before its acceleration is evaluated. This acceleration is continuous there; impulses at the
+/// ends of a step are not, because their directions rotate within the step. Order 2. `None` if the iteration
+/// does not converge.
 pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -200,7 +211,7 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
         let q = system.integrate(&start.q, &way);
         let (q, on) = system.project(middle, &q, &v).ok()?;
         let mut gain = system.acceleration(middle, &q, &on) * half;
-        // Rounding of the place may lead round in a circle.
+        // Rounding of the configuration can cause the iteration to cycle.
         let circles = iteration >= FEW_ITERATIONS;
         if circles {
             gain = (gain + v - start.v) * constant::<T>(0.5);
@@ -210,7 +221,7 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
         if !is_finite(&v) {
             return None;
         }
-        // Accelerations are not known better there.
+        // Accelerations near singular configurations have this relative accuracy at best.
         let known = epsilon::<T>().cbrt();
         let stalls = last.is_some_and(|last| change >= last);
         let settles = change <= known * largest(&gain)

@@ -1,4 +1,4 @@
-//! How large an error is, and how long the first step may be.
+//! Norm of the error, and estimate of the first step.
 
 use super::stages::Rates;
 use super::{Dynamics, State, Step};
@@ -6,13 +6,14 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// The tolerances.
+/// Relative and absolute tolerance.
 pub(super) struct Scale<T> {
     pub relative: T,
     pub absolute: T,
 }
 
-/// The size of every coordinate: its magnitude where configuration and tangent space have the same entries, else 1.
+/// Returns the scale of every coordinate: its magnitude if configuration and tangent space have the same
+/// number of entries, otherwise 1.
 fn sizes<T: Real, const NQ: usize, const NV: usize>(q: &SVector<T, NQ>) -> SVector<T, NV> {
     let mut sizes: SVector<T, NV> = SVector::repeat(T::one());
     if NQ == NV {
@@ -22,7 +23,7 @@ fn sizes<T: Real, const NQ: usize, const NV: usize>(q: &SVector<T, NQ>) -> SVect
 }
 
 impl<T: Real> Scale<T> {
-    /// `Σ (x / (absolute + relative · size))²`.
+    /// Returns `Σ (x / (absolute + relative · size))²`.
     fn squares<const N: usize>(&self, x: &SVector<T, N>, size: &SVector<T, N>) -> T {
         x.iter().zip(size.iter()).fold(T::zero(), |sum, (x, size)| {
             let part = *x / (self.absolute + self.relative * *size);
@@ -30,14 +31,15 @@ impl<T: Real> Scale<T> {
         })
     }
 
-    /// Root mean square over displacement and velocity, each measured by its tolerance.
+    /// Returns the root mean square over displacement and velocity, each relative to its tolerance.
     fn norm<const N: usize>(&self, x: [&SVector<T, N>; 2], sizes: [&SVector<T, N>; 2]) -> T {
         let ([x, v], [x_size, v_size]) = (x, sizes);
         let sum = self.squares(x, x_size) + self.squares(v, v_size);
         (sum / constant((2 * N.max(1)) as f64)).sqrt()
     }
 
-    /// The estimated error of a step, `error` its change; acceptable up to one, NaN where the step is.
+    /// Returns the estimated error of a step relative to the tolerance; `error` is the estimate for
+    /// displacement and velocity. Up to one is acceptable; NaN if the step is NaN.
     pub fn error<const NQ: usize, const NV: usize>(
         &self,
         step: &Step<T, NQ, NV>,
@@ -52,13 +54,13 @@ impl<T: Real> Scale<T> {
     }
 }
 
-/// The larger of every pair of entries.
+/// Returns the elementwise maximum.
 fn larger<T: Real, const N: usize>(a: &SVector<T, N>, b: &SVector<T, N>) -> SVector<T, N> {
     a.zip_map(b, |a, b| a.max(b))
 }
 
-/// A first step from the sizes of the state, its rate and the change of the rate: Hairer, Nørsett and Wanner, II.4,
-/// "Starting step size".
+/// Returns a first step from the magnitudes of the state, its rate and the change of the rate: Hairer,
+/// Nørsett and Wanner, II.4, "Starting step size".
 pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     scale: &Scale<T>,

@@ -8,14 +8,14 @@ mod stages;
 
 use stages::stages;
 
-/// DOPRI5's.
+/// Controller constants of DOPRI5.
 const CONTROL: Control = Control { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, factors: [10.0, 5.0] };
 
-/// The Dormand–Prince method of order 5 with an error estimate of order 4: steps of the size that the tolerance asks
-/// for, and interpolation of order 4 in between.
+/// The Dormand–Prince method of order 5 with an error estimate of order 4, adaptive steps and interpolation
+/// of order 4.
 ///
-/// A step is accepted when the root mean square over `φ` and `v` of `error / (absolute + relative · size)` is at
-/// most one. The size of a coordinate is its magnitude; where quaternions occur it is 1 rad or 1 m for all
+/// A step is accepted when the root mean square over `φ` and `v` of `error / (absolute + relative · size)` is
+/// at most one. The size of a coordinate is its magnitude; where quaternions occur it is 1 rad or 1 m for all
 /// coordinates. Six evaluations of the dynamics per step; proportional–integral step control.
 ///
 /// ```
@@ -24,8 +24,9 @@ const CONTROL: Control = Control { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, fact
 /// # let _: DormandPrince<f64> = method;
 /// ```
 ///
-/// Sources: Dormand and Prince, *A family of embedded Runge–Kutta formulae*, J. Comp. Appl. Math. 6 (1980); Hairer,
-/// Nørsett and Wanner, *Solving Ordinary Differential Equations I* (1993), II.4–6 and the program DOPRI5.
+/// Sources: Dormand and Prince, *A family of embedded Runge–Kutta formulae*, J. Comp. Appl. Math. 6 (1980);
+/// Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I* (1993), II.4–6 and the program
+/// DOPRI5.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DormandPrince<T> {
     settings: Settings<T>,

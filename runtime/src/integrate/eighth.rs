@@ -11,17 +11,18 @@ mod coefficients;
 
 use coefficients::{FIFTH, STAGES, TERMS, THIRD, TIMES};
 
-/// DOP853's.
+/// Controller constants of DOP853.
 pub(super) const CONTROL: Control = Control { exponent: 1.0 / 8.0, beta: 0.0, factors: [6.0, 3.0] };
 
 /// Index of the stage at the end of the step.
 const END: usize = 12;
 
-/// The Dormand–Prince method of order 8 with error estimates of orders 5 and 3: for tight tolerances, where its steps are many
-/// times longer than those of [`DormandPrince`](super::DormandPrince), and for references. Interpolation of order 7.
+/// The Dormand–Prince method of order 8 with error estimates of orders 5 and 3 and interpolation of order 7.
+/// Suited to reference solutions and tight tolerances, for which its steps are many times longer than those
+/// of [`DormandPrince`](super::DormandPrince).
 ///
-/// Twelve evaluations of the dynamics per step, three more where samples or events are within it. Errors are measured as
-/// [`DormandPrince`](super::DormandPrince) says.
+/// Twelve evaluations of the dynamics per step, and three more for a step that contains samples or events.
+/// The error norm is that of [`DormandPrince`](super::DormandPrince).
 ///
 /// ```
 /// # use linkwork::integrate::DormandPrince8;
@@ -29,8 +30,9 @@ const END: usize = 12;
 /// # let _: DormandPrince8<f64> = method;
 /// ```
 ///
-/// Sources: Prince and Dormand, *High order embedded Runge–Kutta formulae*, J. Comp. Appl. Math. 7 (1981); Hairer, Nørsett and
-/// Wanner, *Solving Ordinary Differential Equations I* (1993), II.5, II.6, II.10 and the program DOP853.
+/// Sources: Prince and Dormand, *High order embedded Runge–Kutta formulae*, J. Comp. Appl. Math. 7 (1981);
+/// Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I* (1993), II.5, II.6, II.10 and the
+/// program DOP853.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DormandPrince8<T> {
     settings: Settings<T>,
@@ -69,7 +71,7 @@ impl<T: Real> Method<T> for DormandPrince8<T> {
     }
 }
 
-/// A step, with its interpolating polynomial if that is wanted.
+/// Returns a step, with its interpolating polynomial if `dense`.
 pub(super) fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,

@@ -1,32 +1,32 @@
-//! Why a simulation stopped before its end.
+//! Errors of a simulation.
 
 use crate::ConstraintError;
 use core::fmt;
 
-/// Why a simulation stopped before its end. Times in seconds.
+/// Error that ends a simulation early. Times are in seconds.
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A step, duration or tolerance that is not finite and positive. Raised before the first step.
+    /// A step, duration or tolerance is not finite and positive. Reported before the first step.
     InvalidStep {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
-        /// What it was.
+        /// Value of the setting.
         value: f64,
     },
-    /// Neither a duration nor an event would end the run. Raised before the first step.
+    /// The run has no end: it has no duration and no event that stops it. Reported before the first step.
     Endless,
-    /// The state or its rate became infinite or NaN: a singular mass matrix, or a motion that escapes.
+    /// The state or its rate became infinite or NaN: a singular mass matrix, or a motion that diverges.
     NotFinite {
         /// Time at the start of the failed step.
         t: f64,
     },
-    /// The tolerance needs a step below the least step allowed, or below the rounding of time: a discontinuity, a
-    /// singularity, or a tolerance finer than the arithmetic.
+    /// The tolerance requires a step below the minimum allowed, or below the rounding of time: a
+    /// discontinuity, a singularity, or a tolerance finer than the arithmetic.
     StepTooSmall {
         /// Time at the start of the failed step.
         t: f64,
-        /// The step that would have been tried.
+        /// Step that would have been tried.
         h: f64,
     },
     /// The limit on the number of steps was reached: a stiff mechanism, or too long a run for the limit.
@@ -34,48 +34,50 @@ pub enum Error {
         /// Time reached.
         t: f64,
     },
-    /// The function of an event is not a number.
+    /// The function of an event is NaN.
     Event {
-        /// Time at the start of the step on which it is not, or of the run.
+        /// Time at the start of the step on which the function is NaN, or of the run.
         t: f64,
-        /// Which event, in the order of declaration.
+        /// Index of the event, in the order of declaration.
         event: usize,
     },
-    /// A quaternion at the start is not of unit length: divide it by its length, or start from `neutral()`.
+    /// A quaternion at the start does not have unit norm: divide it by its norm, or start from `neutral()`.
     Quaternion {
-        /// The entry of the configuration that is off most.
+        /// Name of the entry of the configuration with the largest error.
         coordinate: &'static str,
     },
-    /// The state at the start does not fulfil the constraints: bring it there by `assemble` and `project_velocity`.
+    /// The state at the start violates the constraints: correct it with `assemble` and `project_velocity`.
     OffConstraints {
         /// Time of the start.
         t: f64,
-        /// The entry of the configuration, or else of the velocity, that the constraints move most.
+        /// Name of the entry of the configuration, or otherwise of the velocity, that the constraints correct
+        /// most.
         entry: &'static str,
-        /// By how much, in the entry's unit.
+        /// Magnitude of the correction, in the entry's unit.
         by: f64,
     },
-    /// The constraints cannot be fulfilled: the mechanism is locked, its friction jams, or a step went too far.
+    /// The constraints cannot be satisfied: the mechanism is locked, its friction jams, or a step was too
+    /// long.
     Constraint {
-        /// Time.
+        /// Time of the failure.
         t: f64,
-        /// What is violated, or why the motion is not determined.
+        /// Violated constraint, or the reason why the motion is undetermined.
         reason: ConstraintError,
     },
-    /// An impact does not separate what has met, or impacts follow each other ever faster, as those of a ball that comes
-    /// to rest: nothing would hold it on the surface. End the run there (`until`), and go on with the contact as a
-    /// constraint.
+    /// An impact does not separate the colliding bodies, or impacts accumulate, as those of a ball that comes
+    /// to rest, which no contact constraint then supports. End the run there (`until`), and continue with the
+    /// contact as a constraint.
     Impacts {
         /// Time reached.
         t: f64,
-        /// Which event, in the order of declaration.
+        /// Index of the event, in the order of declaration.
         event: usize,
     },
-    /// The equations of an implicit step were not solved: take smaller steps.
+    /// The equations of an implicit step were not solved: use smaller steps.
     NotConverged {
         /// Time at the start of the failed step.
         t: f64,
-        /// Iterations made; none where the matrix of the step is singular.
+        /// Number of iterations; zero if the matrix of the step is singular.
         iterations: usize,
     },
 }
@@ -128,7 +130,7 @@ impl fmt::Display for Error {
 }
 
 impl Error {
-    /// The error with its time counted from `origin` seconds earlier.
+    /// Returns the error with `origin`, s, added to its time.
     pub(super) fn later(mut self, origin: f64) -> Self {
         match &mut self {
             Self::NotFinite { t }

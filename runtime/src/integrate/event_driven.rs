@@ -1,4 +1,4 @@
-//! Motion with contacts whose every event is located.
+//! Motion with contacts in which every event is located.
 
 use super::adaptive::{AdaptiveMemory, Attempt, Settings, adaptive};
 use super::control::Scale;
@@ -12,21 +12,23 @@ use crate::contact::{Contacts, Phase, Phased, Visitor, Watch, kept, separated};
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
 
-/// Steps of [`DormandPrince8`](super::DormandPrince8) between events at [contacts](crate::contact), which are located to rounding:
-/// impacts, release, the end of slip and of stiction.
+/// Integration by [`DormandPrince8`](super::DormandPrince8) between [contact](crate::contact) events, which
+/// are located to rounding: impacts, lift-off, the transitions from sliding to sticking and back.
 ///
-/// What contacts do between events follows from the complementarity of gaps and forces and from Coulomb's law
-/// ([`contact::acting`](crate::contact::acting)), and the mechanism moves under the forces that keep it so
-/// ([`contact::forward_dynamics`](crate::contact::forward_dynamics)). Impacts that follow each other ever faster end where rounding
-/// leaves nothing of them: a ball comes to rest after finitely many bounces, and stays. Where forces cannot tell what comes next
-/// (Painlevé's paradox, slip that ends and starts in the same instant) a short step of [`TimeStepping`] does.
+/// Between events, the contact modes follow from the complementarity of gaps and forces and from Coulomb's
+/// law ([`contact::acting`](crate::contact::acting)). The mechanism moves under the forces that enforce these
+/// modes ([`contact::forward_dynamics`](crate::contact::forward_dynamics)). A sequence of accumulating
+/// impacts ends when the rebounds are below rounding error: a ball comes to rest after finitely many bounces,
+/// and remains at rest. If forces do not determine the next contact mode (Painlevé's paradox, sliding that
+/// ends and starts in the same instant), a short step of [`TimeStepping`] determines it.
 ///
-/// Where each step is a sample, an impact has two of the same time: before it and after it.
+/// The method suits few contacts and tight tolerances: each event costs about ten steps. Events are searched
+/// at the quarters of each step, so that a contact that opens and closes within a quarter may be missed
+/// unless steps are short: see [`max_step`](Self::max_step). Use [`TimeStepping`] for mechanisms with dozens
+/// of contacts, for SIMD lanes, and for first-order states. For mechanisms without contacts the method is
+/// [`DormandPrince8`](super::DormandPrince8).
 ///
-/// For few contacts and tight tolerances: each event costs some ten steps. Steps are searched at their quarters, so a contact that
-/// opens and closes within a quarter may be missed where nothing else keeps steps short: see [`max_step`](Self::max_step). For
-/// mechanisms with dozens of contacts, for lanes, and for states of first order there is [`TimeStepping`]. Mechanisms without
-/// contacts move as by [`DormandPrince8`](super::DormandPrince8).
+/// If every step is a sample, an impact yields two samples at the same time: before and after it.
 ///
 /// ```
 /// use linkwork::integrate::EventDriven;
@@ -44,10 +46,10 @@ use nalgebra::SVector;
 ///
 /// # fn main() -> Result<(), Error> {
 /// let run = simulate(&Ball {}).from([1.0], [0.0]).method(EventDriven::new());
-/// // It falls for √(2 h / g), bounces for twice as long, and rests.
+/// // The ball falls for √(2 h / g), bounces for twice as long, and comes to rest.
 /// let fall = (2.0 / 9.81_f64).sqrt();
 /// let bouncing = run.clone().duration(2.0 * fall).finish()?;
-/// // The second apex is that of half the speed and half the time.
+/// // The first rebound has half the speed and lasts half the time.
 /// let s = bouncing.t - fall;
 /// assert!((bouncing.q[0] - s * (0.5 * 9.81 * fall - 0.5 * 9.81 * s)).abs() < 1e-12);
 /// let resting = run.duration(4.0 * fall).finish()?;
@@ -64,37 +66,38 @@ pub struct EventDriven<T> {
 
 adaptive!(EventDriven);
 
-/// What one step of [`EventDriven`] hands to the next.
+/// Data passed from one step of [`EventDriven`] to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct EventMemory<T, const NV: usize> {
     adaptive: AdaptiveMemory<T, NV>,
-    /// Steps of hardly any length that have followed each other.
+    /// Number of consecutive very short steps, weighted by [`FEWER`].
     short: u32,
-    /// Steps of time stepping among them, each twice as long as the one before.
+    /// Number of time-stepping steps among them; each is twice as long as the previous one.
     stretch: u32,
-    /// For how many more steps contacts are taken to slip whose forces the motion does not tell apart.
+    /// Number of further steps for which sliding contacts with indeterminate forces are assumed.
     shared: u32,
-    /// The last step was an impact.
+    /// Whether the last step was an impact.
     has_struck: bool,
 }
 
-/// Steps of hardly any length after which time stepping takes turns with them: more than the last bounces of a ball, fewer than slip
-/// in space takes to find its way where it has just begun, which is stiff.
+/// Number of very short steps after which steps of time stepping alternate with located steps. It is larger
+/// than the number of last bounces of a ball, and smaller than the number of steps that sliding in space
+/// needs to find its direction just after its onset, which is stiff.
 const SHORT_STEPS: u32 = 100;
-/// A step of hardly any length, in shortest steps of time stepping.
+/// Length below which a step counts as very short, in multiples of the shortest time-stepping step.
 const SHORT: f64 = 64.0;
-/// Likewise where contacts slip whose forces the motion does not tell apart: which of them is right is not known, and looking for
-/// the one that lasts does not end.
+/// Length below which a step counts as very short while sliding contacts have indeterminate forces. The
+/// correct distribution of these forces is unknown, and a search for one that persists may not end.
 const SHORT_SHARED: f64 = 8192.0;
-/// As how many short steps one then counts.
+/// Weight of a very short step while sliding contacts have indeterminate forces.
 const FEWER: u32 = 8;
-/// For how many steps that is so after the last of them.
+/// Number of steps after the last such step for which its limits apply.
 const LATELY: u32 = 16;
-/// Doublings of the shortest step of time stepping.
+/// Maximum number of doublings of the shortest time-stepping step.
 const LONGEST: u32 = 14;
 
 impl<T: Real, const NV: usize> EventMemory<T, NV> {
-    /// Counts a step of a length in shortest steps of time stepping.
+    /// Counts a step of the given length, in multiples of the shortest time-stepping step.
     fn count(&mut self, length: T, is_shared: bool) {
         self.shared = if is_shared { LATELY } else { self.shared.saturating_sub(1) };
         let (short, weight) = if self.shared > 0 { (SHORT_SHARED, FEWER) } else { (SHORT, 1) };
@@ -105,7 +108,7 @@ impl<T: Real, const NV: usize> EventMemory<T, NV> {
         }
     }
 
-    /// Whether it is time stepping's turn.
+    /// Whether the next step is one of time stepping.
     fn is_stuck(&mut self) -> bool {
         let is_stuck = self.short > SHORT_STEPS;
         if is_stuck {
@@ -159,25 +162,25 @@ impl<T: Real> Method<T> for EventDriven<T> {
     }
 }
 
-/// A step that is to be made.
+/// Arguments of a step: settings, memory, start and latest end.
 #[derive(Debug)]
 pub struct Section<'a, T, const NQ: usize, const NV: usize> {
     settings: Settings<T>,
     memory: &'a mut EventMemory<T, NV>,
     start: &'a State<T, NQ, NV>,
     until: Option<T>,
-    /// Since when times are counted.
+    /// Origin of the times of the step, s.
     origin: T,
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
-    /// The step with its time counted from `origin` seconds earlier.
+    /// Returns the step with `origin`, s, added to the origin of its times.
     pub(super) fn later(self, origin: T) -> Self {
         Self { origin: self.origin + origin, ..self }
     }
 }
 
-/// A step of a mechanism with contacts, under its inputs.
+/// Step of a mechanism with contacts, with its inputs.
 pub(super) struct Following<'a, T, I, const NQ: usize, const NV: usize> {
     pub(super) section: Section<'a, T, NQ, NV>,
     pub(super) inputs: &'a mut I,
@@ -202,13 +205,13 @@ where
         let begin = State { v, ..*start };
         memory.has_struck = v != start.v && !memory.has_struck;
         if memory.has_struck {
-            // An impact is a step of no duration, so that there are samples before and after it.
+            // An impact is a step of zero duration, so that there are samples before and after it.
             return Ok(Step::linear(*start, begin, SVector::zeros()));
         }
         let tau = mechanism.generalized_forces(now, &begin.q, &v, &inputs.at(now, &begin.q, &v));
         let (mut located, mut shared) = (None, false);
         if memory.is_stuck() {
-            // Then events have their turn again.
+            // The next step locates events again.
         } else if let Ok((phase, acceleration)) = Phase::of(mechanism, now, &begin.q, &v, &tau) {
             shared = phase.is_shared();
             let phased = Phased { mechanism, phase };
@@ -237,7 +240,7 @@ where
     }
 }
 
-/// A step within a phase.
+/// Step within a phase of constant contact modes.
 struct Within<'a, M, T, I, const NQ: usize, const NV: usize, const NK: usize, const NR: usize> {
     phased: &'a Phased<'a, M, T, NK, NR>,
     inputs: &'a mut I,
@@ -251,7 +254,7 @@ impl<M, T, I, const NQ: usize, const NV: usize, const NK: usize, const NR: usize
 where
     T: Real,
 {
-    /// What is left until the first event of the phase in a state that a step has led to.
+    /// Returns the value of the phase's event function after a step: negative past the first event.
     fn left<const NU: usize>(&mut self, state: &State<T, NQ, NV>) -> T
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -263,7 +266,7 @@ where
         Watch { s, t, q, v, tau: &tau }.left(self.phased)
     }
 
-    /// A step up to the first event at the latest; `None` where an event is at its start.
+    /// Advances a step that ends at the first event at the latest; `None` if an event occurs at its start.
     fn step<const NU: usize>(
         &mut self,
         settings: &Settings<T>,
@@ -304,13 +307,14 @@ where
         self.located(settings, past.t - begin.t, least).map(|step| self.ended(step))
     }
 
-    /// The step up to an event that is past after `h` seconds; `None` if it is past after `least`.
+    /// Returns the step that ends at an event, which lies before `h` seconds; `None` if it lies before
+    /// `least`.
     fn located<const NU: usize>(&mut self, settings: &Settings<T>, h: T, least: T) -> Option<Step<T, NQ, NV>>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
     {
-        // Each second trial halves what is left, so that these are enough for all digits.
+        // At least every third trial bisects the interval, so that this number suffices for all digits.
         const TRIALS: usize = 120;
         let half = constant::<T>(0.5);
         let (mut before, mut after) = ((T::zero(), None), (h, None));
@@ -330,13 +334,14 @@ where
             }
             let state = self.tried(settings, middle, false).end;
             let left = self.left(&state);
-            // The function is steep where one event follows another: what is past by nothing is it, too.
+            // The function is steep where one event follows another, so the smallest negative value counts as
+            // past the event.
             if left < T::zero() { after = (middle, Some(left)) } else { before = (middle, Some(left)) }
         }
         Some(self.tried(settings, after.0, true))
     }
 
-    /// A step of `h` seconds.
+    /// Returns a step of `h` seconds.
     fn tried<const NU: usize>(&mut self, settings: &Settings<T>, h: T, dense: bool) -> Step<T, NQ, NV>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -352,7 +357,7 @@ where
         trial(&mut local, &attempt, dense).step
     }
 
-    /// The step with its end where contacts and constraints hold it.
+    /// Returns the step with its end projected onto active contacts and constraints.
     fn ended<const NU: usize>(&mut self, step: Step<T, NQ, NV>) -> Result<Step<T, NQ, NV>, Error>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,

@@ -8,32 +8,34 @@ use nalgebra::SVector;
 
 /// The implicit midpoint rule, order 2, with fixed steps.
 ///
-/// With the velocity `v_m` and the configuration `q_m` of the midpoint unknown,
-/// `q_m = q₀ ⊕ (h/2) v_m`, `M(q_m) v_m = p₀ + (h/2) ṗ(q_m, v_m)`, then `q₁ = q_m ⊕ (h/2) v_m` and
-/// `p₁ = p₀ + h ṗ(q_m, v_m)`, where `p = M v` is the generalized momentum.
+/// With the velocity `v_m` and the configuration `q_m` of the midpoint unknown, `q_m = q₀ ⊕ (h/2) v_m`,
+/// `M(q_m) v_m = p₀ + (h/2) ṗ(q_m, v_m)`, then `q₁ = q_m ⊕ (h/2) v_m` and `p₁ = p₀ + h ṗ(q_m, v_m)`, where `p
+/// = M v` is the generalized momentum.
 ///
-/// Symplectic in (q, p) for plain coordinates and time-reversible for all joints: over long runs without friction the
-/// energy oscillates and does not drift. Momenta are kept from step to step; those of plain coordinates that the forces
-/// leave alone are conserved to rounding, those of ball and free joints, which are given in turning axes, to second order, and
-/// so are those of declared speeds, whose displacement to the midpoint is solved for along with its velocity.
-/// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), II.1, VI.3.
+/// Symplectic in (q, p) for plain coordinates and time-reversible for all joints: over long runs without
+/// friction the energy oscillates and does not drift. Momenta are stored from step to step. Momenta of plain
+/// coordinates without generalized forces are conserved to rounding. Momenta of ball and free joints,
+/// expressed in rotating axes, are conserved to second order. So are momenta of declared generalized speeds;
+/// their displacement to the midpoint is solved for together with the velocity of the midpoint. Source:
+/// Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), II.1, VI.3.
 ///
-/// The equation is solved by fixed-point iteration to rounding, which converges while `h ω < 2` for the stiffest
-/// frequency `ω` (in the same way `h c / m < 2` for damping).
-/// [`Error::NotConverged`] means that the step is too long.
+/// The equation is solved to rounding by fixed-point iteration, which converges while `h ω < 2` for the
+/// highest frequency `ω` (and `h c / m < 2` for damping). [`Error::NotConverged`] means that the step is too
+/// long.
 ///
-/// Under constraints their pushes `Jᵀ(q₀) λ` and `Jᵀ(q₁) μ` are added to the momentum at both ends of the step, such that
-/// the configuration `q₁` and the velocity there fulfil them: order 2 and symplectic or reversible as without. Constraints
-/// on velocities alone (rolling) hold at the midpoint and at the ends; the energy then oscillates by symmetry. Sources:
-/// Andersen, J. Comput. Phys. 52 (1983); Reich, SIAM J. Numer. Anal. 33 (1996); Hairer, Lubich and Wanner (2006), VII.1;
-/// McLachlan and Perlmutter, J. Nonlinear Sci. 16 (2006). Where constraints nearly lose rank, the midpoint is solved in
-/// velocities and accelerations, of order 2 still, though not symplectic in such a step.
+/// Under constraints, the constraint impulses `Jᵀ(q₀) λ` and `Jᵀ(q₁) μ` are added to the momentum at both
+/// ends of the step, so that the configuration `q₁` and the velocity there satisfy the constraints. The order
+/// remains 2, and the method remains symplectic or reversible. Constraints on velocities alone (rolling) are
+/// enforced at the midpoint and at the ends; the energy then oscillates by symmetry. Sources: Andersen, J.
+/// Comput. Phys. 52 (1983); Reich, SIAM J. Numer. Anal. 33 (1996); Hairer, Lubich and Wanner (2006), VII.1;
+/// McLachlan and Perlmutter, J. Nonlinear Sci. 16 (2006). Where constraints nearly lose rank, the midpoint is
+/// solved in velocities and accelerations; such a step has order 2 but is not symplectic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImplicitMidpoint<T> {
     step: T,
 }
 
-/// What the midpoint rule hands to the next step.
+/// Data passed from one step of the midpoint rule to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct MidpointMemory<T, const NV: usize> {
     momentum: Option<SVector<T, NV>>,
@@ -41,22 +43,24 @@ pub struct MidpointMemory<T, const NV: usize> {
     ended: Ended,
 }
 
-/// A solved midpoint: configuration and the displacement to it, velocity, rate of the momentum.
+/// Solution of the midpoint: configuration, then displacement to it, velocity, rate of the momentum.
 type Midpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, [SVector<T, NV>; 3]);
 
 impl<T: Real> ImplicitMidpoint<T> {
-    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
+    /// sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
 
-    /// The step.
+    /// Returns the length of a step, s.
     pub(crate) fn length(&self) -> T {
         self.step
     }
 }
 
-/// The displacement from `q` to the midpoint after a time `half`, improved from an estimate: its rate there is that of the velocity.
+/// Returns an improved estimate of the displacement from `q` to the midpoint after a time `half`: the
+/// displacement rate there times `half`.
 fn displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     q: &SVector<T, NQ>,
@@ -67,7 +71,7 @@ fn displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usiz
     if system.has_speeds() { system.displacement_rate(q, way, v) * half } else { v * half }
 }
 
-/// Iterates from the estimate `v` of the midpoint's velocity.
+/// Solves for the midpoint by iteration from the estimate `v` of its velocity.
 fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -140,7 +144,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
                     (way, settled(system, State { t, q, v: v1 }, start.t)?)
                 }
             };
-            // The push at the end changes the momentum.
+            // The constraint impulse at the end changes the momentum.
             (way, way / h, end, None)
         } else {
             let (q, [way, v, rate]) = solve(system, start, &p, half, guess)?;

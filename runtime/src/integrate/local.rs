@@ -1,4 +1,4 @@
-//! A system whose time is counted from the start of a step.
+//! System with time counted from the start of a step.
 
 use super::event_driven::Section;
 use super::{Dynamics, Error, State, Step};
@@ -7,8 +7,8 @@ use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
 use nalgebra::{SMatrix, SVector};
 
-/// A system `t` seconds after an origin of time: what single precision can tell apart within a step it can tell apart
-/// wherever the step is.
+/// System with time counted from `origin`. Times that single precision resolves within a step are then
+/// resolved at any time of the run.
 pub(super) struct Local<'a, D, T> {
     pub(super) system: &'a mut D,
     pub(super) origin: T,
@@ -130,7 +130,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
-    /// The state with time counted from another instant.
+    /// Returns the state at time `t` of another time origin.
     pub(crate) fn timed(self, t: T) -> Self {
         Self { t, ..self }
     }

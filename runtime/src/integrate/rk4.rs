@@ -15,21 +15,22 @@ pub struct Rk4<T> {
 }
 
 impl<T: Real> Rk4<T> {
-    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
+    /// sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
 
-    /// The step.
+    /// Returns the length of a step, s.
     pub(crate) fn length(&self) -> T {
         self.step
     }
 }
 
-/// `φ̇` and `v̇` at one stage.
+/// Rates `φ̇` and `v̇` of one stage.
 type Rates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
-/// Rates at the time `h` after `start`, reached with the mean rates `mean`.
+/// Returns the rates at time `h` after `start`, reached with the mean rates `mean`.
 fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -70,7 +71,7 @@ pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
 }
 
 impl<T: Real> Method<T> for Rk4<T> {
-    /// Acceleration at the end of the last step, if it was needed there.
+    /// Acceleration at the end of the last step, if that step computed it.
     type Memory<const NV: usize> = Option<SVector<T, NV>>;
 
     const FIXED: bool = true;

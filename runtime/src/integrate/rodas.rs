@@ -8,13 +8,14 @@ use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
-/// RODAS's.
+/// Controller constants of RODAS.
 const CONTROL: Control = Control { exponent: 0.25, beta: 0.0, factors: [6.0, 5.0] };
-/// How far each stage's matrix looks ahead, as a part of the step.
+/// Diagonal coefficient `γ` of the method, which multiplies the Jacobian in each stage.
 const GAMMA: f64 = 0.25;
-/// When the stages are, as parts of the step.
+/// Times of the stages, as fractions of the step.
 const TIMES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
-/// Which earlier stages each starts from; the last is also what the result starts from, without its own last stages.
+/// Weights of the earlier stages in the state at which each stage is evaluated. The last row is also the
+/// result without its own last stages.
 const STARTS: [&[f64]; 6] = [
     &[],
     &[1.544],
@@ -23,7 +24,7 @@ const STARTS: [&[f64]; 6] = [
     &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895],
     &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
 ];
-/// Which earlier stages are added to the rates of each, divided by the step.
+/// Weights of the earlier stages that are added to the rates of each stage, divided by the step.
 const ADDED: [&[f64]; 6] = [
     &[],
     &[-5.6688],
@@ -38,9 +39,9 @@ const ADDED: [&[f64]; 6] = [
         -6.058_818_238_834_054,
     ],
 ];
-/// Weights of the rates' slope in time, times the step.
+/// Weights of the time derivative of the rates, times the step.
 const IN_TIME: [f64; 6] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
-/// Third and fourth term of the interpolating polynomial.
+/// Third and fourth coefficient of the interpolating polynomial.
 const TERMS: [[f64; 5]; 2] = [
     [
         10.126_235_083_445_86,
@@ -58,15 +59,16 @@ const TERMS: [[f64; 5]; 2] = [
     ],
 ];
 
-/// The Rosenbrock method RODAS of order 4 with an error estimate of order 3, for stiff mechanisms: steps of the size that the
-/// tolerance asks for, however stiff springs and dashpots are, and interpolation of order 3.
+/// The Rosenbrock method RODAS of order 4 with an error estimate of order 3, for stiff mechanisms. Steps are
+/// adaptive and independent of the stiffness of springs and dashpots; interpolation has order 3.
 ///
-/// A step solves six linear systems with one matrix of size `NV`, and evaluates the dynamics eight times and their derivatives once:
-/// those that the word `derivatives` generates, or else differences, which are `2 NV` evaluations more. A trial that is repeated
-/// with a shorter step evaluates the dynamics five times. L-stable: what is fast and stiff is damped away. Errors are measured as
-/// [`DormandPrince`](super::DormandPrince) says, and constraints are kept as by [`Rosenbrock`](super::Rosenbrock), with derivatives along
-/// all motions. For
-/// tolerances of about 1e-3 to 1e-8; where nothing is stiff the explicit methods are faster.
+/// A step solves six linear systems with one matrix of size `NV`. It evaluates the dynamics eight times and
+/// their derivatives once. The option `derivatives` generates these derivatives; otherwise they are finite
+/// differences, with `2 NV` further evaluations. A trial repeated with a shorter step evaluates the dynamics
+/// five times. The method is L-stable: fast stiff modes are damped out. The error norm is that of
+/// [`DormandPrince`](super::DormandPrince), and constraints are enforced as by
+/// [`Rosenbrock`](super::Rosenbrock), with derivatives along all displacements. The method suits tolerances
+/// of about 1e-3 to 1e-8; explicit methods are faster for mechanisms that are not stiff.
 ///
 /// [`Error::NotConverged`] means that the matrix of a step is singular.
 ///
@@ -76,7 +78,8 @@ const TERMS: [[f64; 5]; 2] = [
 /// # let _: Rodas<f64> = method;
 /// ```
 ///
-/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II* (1996), IV.7 and VI.4, and the program RODAS.
+/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II* (1996), IV.7 and VI.4, and the
+/// program RODAS.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rodas<T> {
     settings: Settings<T>,
@@ -84,11 +87,11 @@ pub struct Rodas<T> {
 
 adaptive!(Rodas);
 
-/// What one step hands to the next.
+/// Data passed from one step to the next.
 #[derive(Clone, Copy, Debug)]
 pub struct RodasMemory<T, const NV: usize> {
     steps: AdaptiveMemory<T, NV>,
-    /// Those of the last step, for positions where branches of the motion part.
+    /// Derivatives of the last step, used at configurations where branches of the motion intersect.
     slopes: Option<Slopes<T, NV>>,
 }
 
@@ -120,7 +123,7 @@ impl<T: Real> Method<T> for Rodas<T> {
         until: Option<T>,
         _dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
-        // One set of slopes for all trials of a step.
+        // All trials of a step use the same derivatives.
         let (mut found, before) = (None, memory.slopes);
         let advanced =
             self.settings.advance(&CONTROL, &mut memory.steps, system, start, until, |system, attempt| {
@@ -134,11 +137,11 @@ impl<T: Real> Method<T> for Rodas<T> {
     }
 }
 
-/// The equations of motion, linear about the start of a step.
+/// Equations of motion linearised about the start of a step.
 #[derive(Clone, Copy)]
 struct Linear<T, const NV: usize> {
     slopes: Slopes<T, NV>,
-    /// Derivatives of the displacement's rate by the displacement.
+    /// Derivatives of the displacement's rate with respect to the displacement.
     turn: SMatrix<T, NV, NV>,
 }
 
@@ -149,7 +152,7 @@ fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 ) -> Linear<T, NV> {
     let Attempt { start, acceleration, h, .. } = *attempt;
     let mut slopes = slopes(system, start, acceleration, h, Along::All).or(before).unwrap_or(Slopes::zero());
-    // Order 4 asks for more than a forward difference in time; inputs may jump at the start.
+    // Order 4 requires a better time derivative than a forward difference; inputs may jump at the start.
     let later = shortly(system, start.t, h);
     let [first, second] = [later, later * constant(2.0)].map(|later| {
         let change = system.acceleration(start.t + later, &start.q, &start.v) - acceleration;
@@ -172,7 +175,7 @@ fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     Linear { slopes, turn }
 }
 
-/// A sum of stages by weights.
+/// Returns a weighted sum of stages.
 fn sum<T: Real, const NV: usize>(weights: &[f64], stages: &[Rates<T, NV>; 6]) -> Rates<T, NV> {
     let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (weight, stage) in weights.iter().zip(stages) {
@@ -182,7 +185,7 @@ fn sum<T: Real, const NV: usize>(weights: &[f64], stages: &[Rates<T, NV>; 6]) ->
     total
 }
 
-/// A step; `None` where its matrix is singular.
+/// Returns a step; `None` if its matrix is singular.
 fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
@@ -190,7 +193,7 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 ) -> Option<Trial<T, NQ, NV>> {
     let Attempt { start, acceleration, scale, h, t } = *attempt;
     let Linear { slopes, turn } = linear;
-    // Of (c − P) a − b = r and (c − Fv) b − Fφ a = s: one system for a.
+    // (c − P) a − b = r and (c − Fv) b − Fφ a = s are reduced to one system for a.
     let c = T::one() / (h * constant(GAMMA));
     let scaled = SMatrix::<T, NV, NV>::identity() * c;
     let (of_a, of_b) = (scaled - turn, scaled - slopes.by_v);
@@ -233,16 +236,16 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     Some(Trial { step, acceleration: None, error })
 }
 
-/// A matrix after Gaussian elimination with row pivots.
+/// LU factorisation of a matrix with row pivoting.
 struct Factored<T, const N: usize> {
-    /// The triangles: multipliers below the diagonal.
+    /// Triangular factors in one matrix, with the multipliers below the diagonal.
     both: SMatrix<T, N, N>,
-    /// Which row each was exchanged with.
+    /// Row with which each row was exchanged.
     exchanged: [usize; N],
 }
 
 impl<T: Real, const N: usize> Factored<T, N> {
-    /// `None` for a matrix that is singular, or has an entry that is not finite in the way.
+    /// Factorises a matrix; `None` if it is singular or a pivot is not finite.
     fn of(mut both: SMatrix<T, N, N>) -> Option<Self> {
         let mut exchanged = [0; N];
         for (k, place) in exchanged.iter_mut().enumerate() {

@@ -5,17 +5,18 @@ use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
-/// The Rosenbrock method ROS2 with fixed steps: order 2, and stable however stiff springs and dashpots are.
+/// The Rosenbrock method ROS2 with fixed steps: order 2, and stable for any stiffness of springs and
+/// dashpots.
 ///
-/// `(1 − γ h J) k₁ = f(y₀)`, `(1 − γ h J) k₂ = f(y₀ + h k₁) − 2 k₁`, `y₁ = y₀ + (3 k₁ + k₂) h / 2` with
-/// `γ = 1 + 1/√2`: L-stable, and of order 2 for any matrix `J`, so that differences of the accelerations serve as
-/// derivatives where the word `derivatives` has generated none. A step costs three evaluations of the dynamics, their derivatives (or
-/// `2 NV` evaluations more) and one factorisation of a matrix of size `NV`;
-/// what is fast and stiff is damped away, and so is energy that is not. Constraints are kept as by the other methods; where
-/// they nearly lose rank the derivatives are those of the last step before, or zero. Derivatives are taken along what the
-/// constraints let through.
-/// Source: Verwer, Spee, Blom and Hundsdorfer, *A second-order Rosenbrock method applied to photochemical dispersion
-/// problems*, SIAM J. Sci. Comput. 20 (1999).
+/// `(1 − γ h J) k₁ = f(y₀)`, `(1 − γ h J) k₂ = f(y₀ + h k₁) − 2 k₁`, `y₁ = y₀ + (3 k₁ + k₂) h / 2` with `γ =
+/// 1 + 1/√2`. The method is L-stable, and of order 2 for any matrix `J`: without the option `derivatives`,
+/// `J` is computed from finite differences of the accelerations. A step costs three evaluations of the
+/// dynamics, their derivatives (or `2 NV` further evaluations) and one factorisation of a matrix of size
+/// `NV`. Fast stiff modes are damped out; slow modes lose energy, too. Constraints are enforced as by the
+/// other methods; where they nearly lose rank, the derivatives are those of the previous step, or zero.
+/// Derivatives are taken along the displacements that the constraints allow. Source: Verwer, Spee, Blom and
+/// Hundsdorfer, *A second-order Rosenbrock method applied to photochemical dispersion problems*, SIAM J. Sci.
+/// Comput. 20 (1999).
 ///
 /// [`Error::NotConverged`] means that the matrix of a step is singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +25,14 @@ pub struct Rosenbrock<T> {
 }
 
 impl<T: Real> Rosenbrock<T> {
-    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
+    /// sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
 }
 
-/// Derivatives of the acceleration by displacement, velocity and time, by differences.
+/// Derivatives of the acceleration with respect to displacement, velocity and time.
 #[derive(Clone, Copy, Debug)]
 pub struct Slopes<T, const NV: usize> {
     pub(super) by_q: SMatrix<T, NV, NV>,
@@ -44,18 +46,18 @@ impl<T: Real, const NV: usize> Slopes<T, NV> {
     }
 }
 
-/// Along which motions derivatives are taken.
+/// Displacements along which derivatives are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Along {
-    /// Those that constraints let through: for methods whose order does not depend on the matrix.
+    /// Displacements that the constraints allow: for methods whose order does not depend on the matrix.
     Allowed,
-    /// All: stages leave the constraints as their curvature and centripetal accelerations have it, and a method that takes the matrix
-    /// for the derivatives has its order by all of them.
+    /// All displacements: for methods whose order requires the exact Jacobian. Their stages leave the
+    /// constraints, because of curvature and centripetal accelerations.
     All,
 }
 
-/// Slopes at the start of a step, those in time left zero; `None` in singular positions and so near to them that branches of the
-/// motion part there.
+/// Returns the derivatives at the start of a step, with a zero time derivative. `None` in and near singular
+/// configurations, where branches of the motion intersect.
 pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -81,7 +83,8 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
         let mut direction = SVector::<T, NV>::zeros();
         direction[k] = T::one();
         if is_part {
-            // What constraints let through of it: elsewhere branches that the motion is not on part from its own.
+            // The component of the direction that the constraints allow: elsewhere, other branches of the
+            // motion diverge from the actual one.
             let p = system.momentum(*t, q, &(v + direction)) - momentum;
             direction = system.impulse(*t, q, v, T::zero(), &p);
         }
@@ -99,8 +102,8 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     Some(out)
 }
 
-/// How long after the start of a step of `h` seconds samples in time are taken: a thousandth of it, and some roundings of the clock at
-/// least, which has run for long.
+/// Returns the delay after the start of a step of `h` seconds at which time derivatives are sampled: a
+/// thousandth of the step, and at least several rounding units of the run's clock.
 pub(super) fn shortly<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     start: T,
@@ -110,7 +113,8 @@ pub(super) fn shortly<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
     (h * constant(1e-3)).max(tick * constant(8.0)).min(h * constant(0.5))
 }
 
-/// The time from the start of a step to a moment `later`, as the clock shows it: what accelerations are functions of.
+/// Returns the time from the start of a step to `later`, rounded as on the run's clock, of which
+/// accelerations are functions.
 pub(super) fn elapsed<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     start: T,
@@ -119,7 +123,7 @@ pub(super) fn elapsed<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
     system.time(start + later) - system.time(start)
 }
 
-/// `x` with `m x = b` by Gaussian elimination with row pivots; `None` for a singular matrix.
+/// Solves `m x = b` by Gaussian elimination with row pivoting; `None` for a singular matrix.
 fn solve<T: Real, const N: usize>(mut m: SMatrix<T, N, N>, mut b: SVector<T, N>) -> Option<SVector<T, N>> {
     for k in 0..N {
         let best = (k..N).max_by(|i, j| {
@@ -150,7 +154,7 @@ fn solve<T: Real, const N: usize>(mut m: SMatrix<T, N, N>, mut b: SVector<T, N>)
 }
 
 impl<T: Real> Method<T> for Rosenbrock<T> {
-    /// The slopes of the last step.
+    /// Derivatives of the last step.
     type Memory<const NV: usize> = Option<Slopes<T, NV>>;
 
     const FIXED: bool = true;
@@ -188,7 +192,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         }
         let gamma = constant::<T>(1.0 + core::f64::consts::FRAC_1_SQRT_2);
         let part = gamma * h;
-        // Of (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv]: kφ = a + γh kv, and one system for kv.
+        // (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv] reduces to kφ = a + γh kv and one system for kv.
         let matrix = SMatrix::identity() - slopes.by_v * part - slopes.by_q * (part * part);
         let stage = |a: SVector<T, NV>, b: SVector<T, NV>| {
             let kv = solve(matrix, b + slopes.by_q * a * part)?;

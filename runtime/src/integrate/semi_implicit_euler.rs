@@ -8,37 +8,40 @@ use nalgebra::SVector;
 
 /// The semi-implicit Euler method, order 1: velocity first, then configuration with the new velocity.
 ///
-/// `v₁ = v₀ + h v̇(t₀, q₀, v₀)`, `q₁ = q₀ ⊕ h v₁`. One evaluation of the dynamics per step. Symplectic for constant
-/// mass matrices and forces that depend on the configuration only; Coriolis and gyroscopic terms are explicit, so that
-/// fast spins gain energy. Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), I.1.2.
+/// `v₁ = v₀ + h v̇(t₀, q₀, v₀)`, `q₁ = q₀ ⊕ h v₁`. One evaluation of the dynamics per step. Symplectic for
+/// constant mass matrices and forces that depend on the configuration only; Coriolis and gyroscopic terms are
+/// explicit, so that fast rotations gain energy. Source: Hairer, Lubich and Wanner, *Geometric Numerical
+/// Integration* (2006), I.1.2.
 ///
-/// Under constraints forces that do not depend on velocities, and inputs, push at the start of a step, and the motion goes
-/// on under inertia, dashpots and constraints alone, by one step of the constrained
-/// [`ImplicitMidpoint`](super::ImplicitMidpoint). For plain coordinates and constant mass matrices this is SHAKE with
-/// velocities that fulfil the constraints. It is symplectic as that method is, and what a time-reversible method shows
-/// half a push earlier: the energy of loops, ball joints and rolling bodies oscillates and does not drift. A step takes
-/// some ten evaluations of momenta. Sources: Ryckaert, Ciccotti and Berendsen, J. Comput. Phys. 23 (1977); Andersen, J.
-/// Comput. Phys. 52 (1983); Reich, SIAM J. Numer. Anal. 33 (1996); McLachlan and Perlmutter, J. Nonlinear Sci. 16 (2006).
-/// [`Error::NotConverged`] means that the step is too long. Where constraints nearly lose rank, the motion goes on by
-/// accelerations, with half a push before and after.
+/// Under constraints, forces that do not depend on velocities, and inputs, act as an impulse at the start of
+/// a step. One step of the constrained [`ImplicitMidpoint`](super::ImplicitMidpoint) under inertia, dashpots
+/// and constraints alone follows. For plain coordinates and constant mass matrices this is SHAKE with
+/// velocities that satisfy the constraints, and equally symplectic. The method is conjugate to a
+/// time-reversible one by half an impulse: the energy of loops, ball joints and rolling bodies oscillates and
+/// does not drift. A step takes about ten evaluations of momenta. Sources: Ryckaert, Ciccotti and Berendsen,
+/// J. Comput. Phys. 23 (1977); Andersen, J. Comput. Phys. 52 (1983); Reich, SIAM J. Numer. Anal. 33 (1996);
+/// McLachlan and Perlmutter, J. Nonlinear Sci. 16 (2006). [`Error::NotConverged`] means that the step is too
+/// long. Where constraints nearly lose rank, a time-reversible step in accelerations replaces the midpoint
+/// rule, with half an impulse added before it and subtracted after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SemiImplicitEuler<T> {
     step: T,
 }
 
 impl<T: Real> SemiImplicitEuler<T> {
-    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
+    /// sample time.
     pub const fn step(step: T) -> Self {
         Self { step }
     }
 
-    /// The step.
+    /// Returns the length of a step, s.
     pub(crate) fn length(&self) -> T {
         self.step
     }
 }
 
-/// The forces that do not depend on velocities, and inputs.
+/// Returns the generalized forces that do not depend on velocities, including inputs.
 fn force<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     state: &State<T, NQ, NV>,
@@ -47,7 +50,8 @@ fn force<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system.momentum_rate(*t, q, v) - system.inertial_rate(*t, q, v)
 }
 
-/// A step near a singular position: as elsewhere it is what a time-reversible one shows half a push earlier.
+/// Advances a step near a singular configuration. As elsewhere, the method is a time-reversible one observed
+/// half an impulse earlier.
 fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -56,7 +60,8 @@ fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 ) -> Option<(SVector<T, NV>, State<T, NQ, NV>)> {
     let half = h * constant(0.5);
     let pushed = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
-        // Of forces, not impulses: beside stiff springs short pushes would be rounding.
+        // Responses to forces, not to impulses: next to stiff springs, impulses of short steps would be lost
+        // in rounding.
         let force = force(system, state);
         let v = state.v + system.response(state.t, &state.q, &state.v, &force) * h;
         settled(system, State { v, ..*state }, state.t).ok()

@@ -5,14 +5,14 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// `φ̇` and `v̇` at one stage.
+/// Rates `φ̇` and `v̇` of one stage.
 #[derive(Clone, Copy)]
 pub(super) struct Rates<T, const NV: usize> {
     pub displacement: SVector<T, NV>,
     pub velocity: SVector<T, NV>,
 }
 
-/// `h Σ weight · rates`.
+/// Returns `h Σ weight · rates`.
 pub(super) fn sum<T: Real, const NV: usize, const N: usize>(
     h: T,
     terms: [(f64, &Rates<T, NV>); N],
@@ -26,7 +26,7 @@ pub(super) fn sum<T: Real, const NV: usize, const N: usize>(
     total
 }
 
-/// The rates at time `t`, after the change `change` from `start`; the state there.
+/// Returns the rates at time `t` after the change `change` from `start`, and the state there.
 pub(super) fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -40,7 +40,7 @@ pub(super) fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: 
     (Rates { displacement, velocity }, State { t, q, v })
 }
 
-/// `h Σ weight · rates`, of the stages of these numbers.
+/// Returns `h Σ weight · rates` over the stages with the given indices.
 pub(super) fn weighted<T: Real, const NV: usize, const K: usize>(
     h: T,
     weights: &[(usize, f64)],

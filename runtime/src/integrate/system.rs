@@ -1,4 +1,4 @@
-//! A mechanism together with its inputs: the ordinary differential equation that integrators see.
+//! A mechanism with its inputs: the ordinary differential equation to be integrated.
 
 use super::event_driven::{Following, Section};
 use super::local::Local;
@@ -9,12 +9,12 @@ use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
-/// The inputs `u` of a mechanism over time. Implemented for what `simulate` accepts.
+/// Inputs `u` of a mechanism over time, implemented for all input types that `simulate` accepts.
 pub trait Inputs<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// The inputs at a time and state.
+    /// Returns the inputs at a time and state.
     fn at(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NU>;
 
-    /// The control period, s, of inputs that are held constant in between.
+    /// Returns the control period, s, of inputs that are constant within each period.
     fn period(&self) -> Option<T> {
         None
     }
@@ -23,7 +23,7 @@ pub trait Inputs<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     fn renew(&mut self, _t: T, _q: &SVector<T, NQ>, _v: &SVector<T, NV>) {}
 }
 
-/// Inputs that are zero.
+/// Zero inputs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoInputs;
 
@@ -33,10 +33,10 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Inputs<T, NQ, N
     }
 }
 
-/// Inputs that are a function of time and state, evaluated whenever an integrator asks.
+/// Inputs as a function of time and state, evaluated at each evaluation of the dynamics.
 #[derive(Clone, Copy, Debug)]
 pub struct ContinuousInputs<F>(
-    /// `|t, q, v| u`.
+    /// Function `|t, q, v| u`.
     pub F,
 );
 
@@ -50,7 +50,7 @@ where
     }
 }
 
-/// Inputs of a digital controller: a function evaluated once per control period and held in between.
+/// Inputs of a digital controller: a function evaluated once per control period, with zero-order hold.
 #[derive(Clone, Copy, Debug)]
 pub struct SampledInputs<T, F, const NU: usize> {
     period: T,
@@ -59,7 +59,7 @@ pub struct SampledInputs<T, F, const NU: usize> {
 }
 
 impl<T: Real, F, const NU: usize> SampledInputs<T, F, NU> {
-    /// Evaluates `control(t, q, v)` every `period` seconds.
+    /// Returns inputs that evaluate `control(t, q, v)` every `period` seconds.
     pub fn new(period: T, control: F) -> Self {
         Self { period, control, u: SVector::zeros() }
     }
@@ -84,22 +84,23 @@ where
     }
 }
 
-/// What integrators need of a mechanism whose inputs are given. Shapes, units and frames as in
+/// Functions of a mechanism under its inputs that integrators use. Shapes, units and frames as in
 /// [`Mechanism`](crate::Mechanism).
 pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
-    /// The time since which methods count, as the run counts it.
+    /// Returns the time `t` of the method as time of the run.
     fn time(&self, t: T) -> T {
         t
     }
 
-    /// `q ⊕ dv`.
+    /// Returns `q ⊕ dv`.
     fn integrate(&self, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> SVector<T, NQ>;
 
-    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`.
+    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`.
     fn tangent_rate(&self, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`: that of [`tangent_rate`](Self::tangent_rate) unless
-    /// speeds were declared ([`Mechanism::displacement_rate`](crate::Mechanism::displacement_rate)).
+    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`. It equals
+    /// [`tangent_rate`](Self::tangent_rate) unless generalized speeds are declared
+    /// ([`Mechanism::displacement_rate`](crate::Mechanism::displacement_rate)).
     fn displacement_rate(
         &self,
         _q: &SVector<T, NQ>,
@@ -109,23 +110,23 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         self.tangent_rate(dv, v)
     }
 
-    /// Whether speeds were declared ([`Mechanism::SPEEDS`](crate::Mechanism::SPEEDS)): a displacement with a constant velocity `v` is
-    /// not `h v` then.
+    /// Whether generalized speeds are declared ([`Mechanism::SPEEDS`](crate::Mechanism::SPEEDS)); a
+    /// displacement with a constant velocity `v` then differs from `h v`.
     fn has_speeds(&self) -> bool {
         false
     }
 
-    /// `v̇` under the inputs at time `t`.
+    /// Returns `v̇` under the inputs at time `t`.
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// Whether constraints restrict the state.
     fn is_constrained(&self) -> bool;
 
-    /// The state nearest to a given one that fulfils the constraints.
+    /// Projects a state onto the constraints: returns the nearest state that satisfies them.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError`] if there is none.
+    /// [`ConstraintError`] if no such state is found.
     fn project(
         &self,
         t: T,
@@ -133,21 +134,24 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         v: &SVector<T, NV>,
     ) -> Result<Projected<T, NQ, NV>, ConstraintError>;
 
-    /// Generalized momentum `p`; where constraints are kept by feedback the velocity itself stands for it.
+    /// Returns the generalized momentum `p`; for constraints enforced by feedback, the velocity.
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// `ṗ` under the inputs at time `t`, without the forces of constraints but where friction follows from them.
+    /// Returns `ṗ` under the inputs at time `t`, without constraint forces, except if friction depends on
+    /// them.
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// What the velocity contributes to `ṗ`, inputs apart: inertia and dashpots.
+    /// Returns the contribution of the velocity to `ṗ`, without inputs: inertia and dashpots.
     fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// The velocity with the generalized momentum `p`, improved from the estimate `v`: exact up to rounding for any
-    /// `v`, best for a near one. Where there are constraints it fulfils them, and their impulses have made it so.
+    /// Returns the velocity with the generalized momentum `p`, refined from the estimate `v`: exact up to
+    /// rounding for any `v`, most accurate for a close one. With constraints, the velocity satisfies them
+    /// through constraint impulses.
     fn velocity(&self, t: T, q: &SVector<T, NQ>, p: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// The change of the velocity `v` by the generalized impulse `p` and by those of the constraints, which hold, to first
-    /// order, when the new velocity has lasted for `h` seconds ([`Mechanism::impulse`](crate::Mechanism::impulse)).
+    /// Returns the change of the velocity `v` due to the generalized impulse `p` and the constraint impulses.
+    /// The constraints are satisfied to first order after the new velocity has lasted for `h` seconds
+    /// ([`Mechanism::impulse`](crate::Mechanism::impulse)).
     fn impulse(
         &self,
         t: T,
@@ -157,8 +161,8 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         p: &SVector<T, NV>,
     ) -> SVector<T, NV>;
 
-    /// The change of `v̇` by the generalized forces `p`, in singular positions of constraints too: by those of the motion that
-    /// passes through with the velocity `v`.
+    /// Returns the change of `v̇` due to the generalized forces `p`. In singular configurations, the
+    /// constraints are those of the motion that passes through with the velocity `v`.
     fn response(
         &mut self,
         t: T,
@@ -169,15 +173,17 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         self.impulse(t, q, v, T::zero(), p)
     }
 
-    /// The velocity `v` in the axes that ball and free joints have after the displacement `dv`, where there are contacts.
+    /// Returns the velocity `v` expressed in the axes of ball and free joints after the displacement `dv`,
+    /// for mechanisms with contacts.
     fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
-    /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity.
+    /// Applies the contact impulses of a step of `h` seconds. The step starts at the configuration and
+    /// velocity `start`; without contacts it ends at the configuration and velocity `end`, and during it
+    /// contacts were assumed to add `given` to the velocity.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Contact`] of mechanisms with contacts.
+    /// [`ConstraintError::Contact`] for mechanisms with contacts.
     fn contact_step(
         &self,
         t: T,
@@ -187,19 +193,21 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError>;
 
-    /// A step of a mechanism with contacts whose events are located; `None` where there are none.
+    /// Advances a step of a mechanism with contacts and locates its events; `None` for mechanisms without
+    /// contacts.
     fn follow(&mut self, _section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
         None
     }
 
-    /// Whether constraints lose rank near `q`, beside how a step by `dv` changes them
+    /// Whether constraints nearly lose rank at `q`, relative to their change over a displacement by `dv`
     /// ([`Mechanism::is_nearly_singular`](crate::Mechanism::is_nearly_singular)).
     fn is_nearly_singular(&self, _t: T, _q: &SVector<T, NQ>, _dv: &SVector<T, NV>) -> bool {
         false
     }
 
-    /// `(∂v̇/∂q, ∂v̇/∂v)` under the inputs at time `t`, where the mechanism has generated derivatives; methods take differences
-    /// elsewhere. A derivative by `q` is along motions of the configuration ([`Derivatives`](crate::Derivatives)).
+    /// Returns `(∂v̇/∂q, ∂v̇/∂v)` under the inputs at time `t`, if the mechanism has generated derivatives;
+    /// otherwise methods use finite differences. Derivatives with respect to `q` are along displacements of
+    /// the configuration ([`Derivatives`](crate::Derivatives)).
     fn acceleration_derivatives(
         &mut self,
         _t: T,
@@ -210,14 +218,14 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     }
 }
 
-/// A mechanism and its inputs.
+/// Mechanism with its inputs.
 #[derive(Debug)]
 pub struct System<'m, M, I, const NU: usize> {
-    /// The mechanism.
+    /// Mechanism to be integrated.
     pub mechanism: &'m M,
-    /// Its inputs.
+    /// Inputs of the mechanism.
     pub inputs: I,
-    /// Why an acceleration that was asked for is not determined.
+    /// Reason why the last requested acceleration is undetermined.
     undetermined: Option<ConstraintError>,
 }
 
@@ -228,17 +236,18 @@ impl<M, I: Clone, const NU: usize> Clone for System<'_, M, I, NU> {
 }
 
 impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
-    /// A mechanism under inputs.
+    /// Returns the system of a mechanism and its inputs.
     pub fn new(mechanism: &'m M, inputs: I) -> Self {
         Self { mechanism, inputs, undetermined: None }
     }
 
-    /// A step of a method, which counts time from `origin`, as do its start, its end and `until`; errors do not. Where it
-    /// fails because forces determine no acceleration, the error says why.
+    /// Advances a step of a method, which counts time from `origin`, as do its start, its end and `until`;
+    /// the times of errors count from zero. If the step fails because forces determine no acceleration, the
+    /// error contains the reason.
     ///
     /// # Errors
     ///
-    /// Those of [`Method::advance`], and [`Error::Constraint`].
+    /// The errors of [`Method::advance`], and [`Error::Constraint`].
     pub(crate) fn advance<T: Real, S: Method<T>, const NQ: usize, const NV: usize>(
         &mut self,
         method: &S,
@@ -349,7 +358,8 @@ where
         }
         let rate = self.mechanism.momentum_rate(t, q, v);
         if M::SLIPPING {
-            // The forces at this acceleration: inputs, constraints, and the friction that follows from these.
+            // Forces at this acceleration: inputs, constraints, and the friction that depends on the
+            // constraint forces.
             let acceleration = self.acceleration(t, q, v);
             return rate + self.mechanism.inverse_dynamics(t, q, v, &acceleration);
         }
@@ -364,8 +374,8 @@ where
         if M::FEEDBACK {
             return *p;
         }
-        // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the solution
-        // a = M⁻¹ (p − b) − v.
+        // The momentum is M v + b: with τ = h + p − (M v + b) the equation of motion M a + h = τ has the
+        // solution a = M⁻¹ (p − b) − v.
         let missing = p - self.mechanism.generalized_momentum(t, q, v);
         v + self.mechanism.impulse(t, q, v, T::zero(), &missing)
     }
@@ -420,7 +430,8 @@ where
         M::CONSTRAINED && self.mechanism.is_nearly_singular(t, q, dv)
     }
 
-    /// The chain rule: inputs may depend on the state, and are all that differences are taken of.
+    /// Returns the derivatives by the chain rule: only the inputs, which may depend on the state, are
+    /// differentiated by finite differences.
     fn acceleration_derivatives(
         &mut self,
         t: T,

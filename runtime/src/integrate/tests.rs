@@ -10,22 +10,23 @@ const SYMMETRIC: Vector3<f64> = Vector3::new(1.0, 1.0, 0.4);
 const TUMBLING: Vector3<f64> = Vector3::new(1.0, 2.0, 2.7);
 const SPIN: [f64; 3] = [0.8, -0.5, 1.2];
 
-/// A Dormand–Prince method with equal steps.
+/// Returns a Dormand–Prince method with equal steps.
 fn equal_steps(h: f64) -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
 
-/// The method of order 8 with equal steps.
+/// Returns the method of order 8 with equal steps.
 fn eighth(h: f64) -> DormandPrince8<f64> {
     DormandPrince8::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
 
-/// log₂ of the ratio of the errors with a step and half of it.
+/// Returns the observed order: log₂ of the ratio of the errors with step `h` and step `h / 2`.
 fn order(error: impl Fn(f64) -> f64, h: f64) -> f64 {
     (error(h) / error(h / 2.0)).log2()
 }
 
-/// Error of the driven, damped oscillator `q̈ = −q − v/5 + sin 2t` at t = 3, whose closed form is fitted to rest.
+/// Returns the error of the driven, damped oscillator `q̈ = −q − v/5 + sin 2t` at t = 3, whose closed-form
+/// solution starts at rest.
 fn driven_error<S: Method<f64>>(method: S) -> f64 {
     let mechanism = OneDof { damping: 0.2, ..oscillator::<f64>() };
     let end = simulate(&mechanism)
@@ -43,7 +44,7 @@ fn driven_error<S: Method<f64>>(method: S) -> f64 {
     (end.q[0] - (a * (2.0 * t).sin() + b * (2.0 * t).cos() + free)).abs()
 }
 
-/// Error of attitude and angular velocity of the free symmetric top at t = 2.
+/// Returns the error of attitude and angular velocity of the free symmetric top at t = 2.
 fn top_error<S: Method<f64>>(method: S) -> f64 {
     let top = Top { inertia: SYMMETRIC };
     let end = simulate(&top).from(top.neutral(), SPIN).duration(2.0).method(method).finish().unwrap();
@@ -52,7 +53,7 @@ fn top_error<S: Method<f64>>(method: S) -> f64 {
     turn.norm() + (end.v - w).norm()
 }
 
-/// Error of the pose of a thrown symmetric body at t = 2: the centre of mass follows a parabola.
+/// Returns the error of the pose of a thrown symmetric body at t = 2: the centre of mass follows a parabola.
 fn thrown_error<S: Method<f64>>(method: S) -> f64 {
     let body = FreeBody { mass: 2.0, inertia: SYMMETRIC, gravity: 1.5 };
     let [x, y, z] = SPIN;
@@ -98,7 +99,8 @@ orders! {
     rodas_has_order_four: |h| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h), 4.0, 2.0 / 32.0;
 }
 
-/// Steps that are short enough for the order to show leave little of the error: orders are within a half.
+/// Steps short enough to show the order leave little error above rounding, so the observed orders are
+/// accurate to one half.
 #[test]
 fn dormand_prince_8_has_order_eight() {
     let cases: [&dyn Fn(f64) -> f64; 3] =
@@ -158,7 +160,7 @@ fn tolerance_is_met() {
     }
 }
 
-/// Evaluations of the forces, of a pendulum that swings ten times to 1e-12.
+/// Compares the evaluations of the forces for a pendulum that swings ten times, to 1e-12.
 #[test]
 fn order_eight_takes_fewer_evaluations_where_tolerances_are_tight() {
     let calls = core::cell::Cell::new(0_u32);
@@ -173,8 +175,9 @@ fn order_eight_takes_fewer_evaluations_where_tolerances_are_tight() {
     assert!(calls.get() * 2 < fifth, "{} for {fifth}", calls.get());
 }
 
-/// Van der Pol's oscillator, `q̈ = μ (1 − q²) q̇ − q` with μ = 1000, after 2000 s, beyond its second jump: problem VDPOL of the
-/// *Test Set for IVP Solvers* (Mazzia and Magherini, 2008), whose time is scaled by μ and whose `y₁(2)` is 1.706 167 732 170 48.
+/// Checks the solution of van der Pol's oscillator, `q̈ = μ (1 − q²) q̇ − q` with μ = 1000, after 2000 s,
+/// beyond its second jump: problem VDPOL of the *Test Set for IVP Solvers* (Mazzia and Magherini, 2008),
+/// whose time is scaled by μ and whose `y₁(2)` is 1.706 167 732 170 48.
 #[test]
 fn rodas_follows_a_stiff_oscillator() {
     let calls = core::cell::Cell::new(0_u32);
@@ -198,7 +201,7 @@ fn pendulum_swings_with_the_elliptic_period() {
     assert!((end.q[0] - 2.5).abs() < 1e-10 && end.v[0].abs() < 1e-10, "{end:?}");
 }
 
-/// Momentum in the ground's frame and energy of a free top.
+/// Returns momentum in the ground frame and kinetic energy of a free top.
 fn invariants(top: &Top<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> (Vector3<f64>, f64) {
     (turned(q.into(), top.generalized_momentum(&q, &v)), top.kinetic_energy(&q, &v))
 }
@@ -315,7 +318,7 @@ fn failures_are_errors() {
     assert_eq!(run.method(ImplicitMidpoint::step(0.1)).finish(), lost);
     assert_eq!(simulate(&oscillator::<f64>()).from([f64::NAN], [0.0]).duration(1.0).finish(), lost);
 
-    // q̈ = 2 q³ from q = v = 1 is 1/(1 − t): it leaves the line of real numbers at t = 1.
+    // The solution of q̈ = 2 q³ from q = v = 1 is 1/(1 − t), which diverges at t = 1.
     let escaping = OneDof { force: |q: f64| 2.0 * q.powi(3), ..oscillator::<f64>() };
     let end = simulate(&escaping).from([1.0], [1.0]).duration(2.0).finish();
     let at = |t: f64| (t - 1.0).abs() < 1e-3;
@@ -332,8 +335,8 @@ fn failures_are_errors() {
     assert!(matches!(end, Err(Error::StepTooSmall { .. })), "{end:?}");
 }
 
-/// A mass on a spring and a dashpot a million times faster than the force that moves it follows that force, with steps a
-/// thousand times longer than an explicit method survives.
+/// Checks that a mass on a spring and a dashpot a million times faster than the applied force follows that
+/// force, with steps a thousand times longer than the stability limit of an explicit method.
 #[test]
 fn rosenbrock_is_stable_where_springs_are_stiff() {
     let mechanism = OneDof { damping: 2e3, force: |q: f64| -1e8 * q, ..oscillator() };
@@ -355,7 +358,7 @@ fn rodas_is_stable_where_springs_are_stiff() {
         .inputs(|t: f64, _, _| SVector::from([1e4 * t.sin()]))
         .duration(3.0);
     let end = run.method(Rodas::new().tolerance(1e-4, 1e-7).max_steps(1000)).finish().unwrap();
-    // In series of the two times: q = (sin t − 2e-5 cos t + …) / 1e4.
+    // Two-scale expansion: q = (sin t − 2e-5 cos t + …) / 1e4.
     let slow = (3.0_f64.sin() - 2e-5 * 3.0_f64.cos()) / 1e4;
     assert!((end.q[0] - slow).abs() < 1e-8, "{} for {slow}", end.q[0]);
 }

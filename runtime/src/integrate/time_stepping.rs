@@ -8,48 +8,52 @@ use crate::contact::Touched;
 use crate::private::{constant, to_f64};
 use nalgebra::SVector;
 
-/// Time stepping after Moreau and Jean, for mechanisms with [contacts](crate::contact): impacts are not located, so that any
-/// number of them costs nothing.
+/// Time stepping after Moreau and Jean, for mechanisms with [contacts](crate::contact). Impacts are not
+/// located, so that their number does not increase the cost.
 ///
-/// A step of [`Rk4`](super::Rk4) leads to the configuration `q_f` and the velocity `v_f`, under the impulses `Λ₀` that hold those
-/// surfaces together which touch at its start. Then the impulses `Λ` of the whole step replace them:
+/// A step of [`Rk4`](super::Rk4) under the impulses `Λ₀`, which enforce the contacts closed at its start,
+/// results in the configuration `q_f` and the velocity `v_f`. The impulses `Λ` of the whole step then replace
+/// `Λ₀`:
 ///
 /// ```text
 /// v₁ = v_f + M⁻¹ Gᵀ Λ − w₀ + c,   q₁ = q_f ⊕ (h/2) (v₁ − v_f)
 /// ```
 ///
 /// `w₀` is the change of velocity by `Λ₀`, and `c` makes the sum a trapezoidal rule for contact forces that
-/// rotate: half of the part of `w₀` that no impulses at the end of the step can give, and half of the part of
-/// `Λ₀` that is not opposite to the slip there. Without it the directions of the end would hold for the whole
-/// step, which is of order 1 and brakes what rolls.
+/// rotate: half of the component of `w₀` that no impulses at the end of the step can produce, and half of the
+/// component of `Λ₀` that is not opposite to the slip there. Without `c` the directions at the end would
+/// apply to the whole step, which is of order 1 and brakes rolling bodies.
 ///
-/// Between impacts the order is 4, under lasting contact 2 and through impacts 1. The impulses satisfy
+/// The order is 4 between impacts, 2 under sustained contact and 1 through impacts. The impulses satisfy
 /// Coulomb's and Newton's laws to rounding ([`contact::solve`](crate::contact::solve)): at the end of a step
-/// surfaces that stick have no slip, and bodies at rest do not creep under any load that friction holds. No
-/// impulse of an impact gives energy. Under lasting contact the energy is exact to order 2: a bob of 1 kg in
-/// a smooth bowl of 1 m is off by `3e-6` of its energy after 2 s in steps of 1 ms. The order is 1 where slip
-/// turns at contacts that share forces in more than one way, such as the corners of a box.
+/// sticking contacts have no slip velocity, and bodies at rest do not creep under any load that friction
+/// supports. Impact impulses add no energy. Under sustained contact the energy is accurate to order 2: for a
+/// bob of 1 kg in a frictionless bowl of 1 m, its relative error is `3e-6` after 2 s in steps of 1 ms. The
+/// order is 1 if the slip direction rotates at contacts with indeterminate forces, such as the corners of a
+/// box.
 ///
-/// Surfaces overlap by what
-/// they approach in a step when they meet, at most. Where they stay together the overlap is taken away by
-/// displacements of the bodies in proportion to how easily they move (Acary, *Projected event-capturing
-/// time-stepping schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013), as far as the energy allows that
-/// impacts and friction take in the step: contacts do not lift what rests in each other. Restitution is
-/// lowered where a step would end with more energy than without contacts. What the energy still gains is the
-/// error of the order above: in drops of boxes of some kilograms that turn about their edges `25 h²` J in a
-/// step of `h` seconds at most, and `35 h²` J without friction.
+/// When surfaces collide, their penetration is at most their approach in one step. In sustained contact, the
+/// penetration is removed by displacements of the bodies weighted with the inverse inertia (Acary, *Projected
+/// event-capturing time-stepping schemes*, Comput. Methods Appl. Mech. Eng. 256, 2013), as far as the energy
+/// dissipated by impacts and friction in the step allows: contacts do not lift bodies that penetrate each
+/// other at rest. Restitution is reduced in steps that would otherwise end with more energy than without
+/// contacts. The remaining energy gain is the integration error of the order above: in drops of boxes of a
+/// few kilograms that tumble about their edges, at most `25 h²` J in a step of `h` seconds, and `35 h²` J
+/// without friction.
 ///
-/// `Λ₀` are those of the step before if they have hardly changed, and are computed again otherwise.
+/// `Λ₀` are the impulses of the previous step if these have hardly changed; otherwise they are computed
+/// again.
 ///
-/// A step takes four evaluations of the dynamics, or [two](Self::midpoint), and with contacts that are closed
-/// one of gaps, Jacobian and mass matrix and two of rates, or twice as many if the contacts have changed. Its
-/// matrices are on the stack, up to six of `R × R` numbers for the `R` rates of all contacts, open ones too,
-/// and several times that in unoptimised builds: 5 KiB for two feet, 2.5 MiB for the 240 rates of ten boxes
-/// on each other, where a thread needs [more
-/// stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than it has by default.
+/// A step takes four evaluations of the dynamics, or [two](Self::midpoint). With closed contacts, it also
+/// takes one evaluation of gap functions, Jacobian and mass matrix and two of contact velocities, or twice as
+/// many if the contact modes have changed. Its matrices are on the stack: up to six of `R × R` numbers for
+/// the `R` contact velocities of all contacts, including separated ones, and several times that in
+/// unoptimised builds. This is 5 KiB for two feet, and 2.5 MiB for the 240 contact velocities of a stack of
+/// ten boxes, for which a thread needs [more
+/// stack](https://doc.rust-lang.org/std/thread/struct.Builder.html#method.stack_size) than the default.
 ///
-/// Constraints hold at the end of each step. Source: Jean, *The non-smooth contact dynamics method*, Comput. Methods Appl. Mech.
-/// Eng. 177 (1999).
+/// Constraints are satisfied at the end of each step. Source: Jean, *The non-smooth contact dynamics method*,
+/// Comput. Methods Appl. Mech. Eng. 177 (1999).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeStepping<T> {
     step: T,
@@ -57,24 +61,26 @@ pub struct TimeStepping<T> {
 }
 
 impl<T: Real> TimeStepping<T> {
-    /// Steps of `step` seconds; a little shorter where they have to end on a sample time.
+    /// Returns the method with steps of `step` seconds; steps are slightly shorter where they must end on a
+    /// sample time.
     pub const fn step(step: T) -> Self {
         Self { step, midpoint: false }
     }
 
-    /// Steps with two evaluations of the dynamics in place of four: as in Moreau's own scheme half a step along the velocity at its start
-    /// to the midpoint, the accelerations `a` there, and half a step along the velocity at its end. Of a step of `h` seconds from the
-    /// configuration `q` and the velocity `v` this makes
+    /// Selects steps with two evaluations of the dynamics instead of four. As in Moreau's own scheme, half a
+    /// step along the velocity at the start leads to the midpoint, where the accelerations `a` are evaluated,
+    /// and half a step along the velocity at the end follows. A step of `h` seconds from the configuration
+    /// `q` and the velocity `v` is
     ///
     /// ```text
     /// q_m = q ⊕ (h/2) v,   v_m = v + (h/2) a(q, v),   v_f = v + h a(q_m, v_m),   q_f = q_m ⊕ (h/2) v_f
     /// ```
     ///
-    /// to which `Λ₀` adds as to the velocities of any step of [`TimeStepping`]; what follows, `v₁` and `q₁`, is the same. Between impacts
-    /// the order is 2, with declared speeds 1; where forces and inertia do not depend on velocities, the method is the leapfrog, whose
-    /// energy does not drift. `Λ₀` acts in its direction at the midpoint. Source: Moreau,
-    /// *Numerical aspects of the sweeping process*, Comput. Methods Appl. Mech. Eng. 177 (1999), with `v_m` in place of `v` in the
-    /// accelerations.
+    /// `Λ₀` is added to the velocities as in any step of [`TimeStepping`], in its direction at the midpoint,
+    /// and `v₁` and `q₁` follow in the same way. The order is 2 between impacts, and 1 with declared
+    /// generalized speeds. If forces and inertia do not depend on velocities, the method is the leapfrog
+    /// method, whose energy does not drift. Source: Moreau, *Numerical aspects of the sweeping process*,
+    /// Comput. Methods Appl. Mech. Eng. 177 (1999), with `v_m` in place of `v` in the accelerations.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -89,7 +95,7 @@ impl<T: Real> TimeStepping<T> {
     ///     bounce: Contact,
     /// }
     ///
-    /// // Dropped from 1 m, it has bounced to 0.25 m after 1.5 times the fall.
+    /// // Dropped from 1 m, the ball has bounced to 0.25 m after 1.5 times the duration of the fall.
     /// let fall = (2.0 / 9.81_f64).sqrt();
     /// let run = simulate(&Ball {}).from([1.0], [0.0]).method(TimeStepping::step(1e-4).midpoint());
     /// let end = run.duration(1.5 * fall).finish().expect("it bounces");
@@ -100,15 +106,15 @@ impl<T: Real> TimeStepping<T> {
     }
 }
 
-/// What contacts have done to the velocity in the last step, per second.
+/// Contribution of the contacts to the velocity in the last step, per second.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchMemory<T, const NV: usize> {
     rate: SVector<T, NV>,
-    /// It is about what it was in the step before.
+    /// Whether the contribution is about that of the previous step.
     steady: bool,
 }
 
-/// The part of what contacts do that may change from step to step where they are taken to go on.
+/// Maximum relative change of the contacts' contribution between two steps for which it counts as steady.
 const STEADY: f64 = 0.125;
 
 impl<T: Real, const NV: usize> TouchMemory<T, NV> {
@@ -116,7 +122,7 @@ impl<T: Real, const NV: usize> TouchMemory<T, NV> {
         Self { rate, steady: false }
     }
 
-    /// Takes note of what contacts have done in a step.
+    /// Records the contribution of the contacts in a step.
     fn note(&mut self, rate: SVector<T, NV>) {
         let least = |size: T, x: &T| size.max(x.abs());
         let size = rate.iter().fold(T::zero(), least);
@@ -140,7 +146,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
     }
 
     fn disturb<const NV: usize>(&self, memory: &mut Self::Memory<NV>, jump: Jump) {
-        // Inputs change what contacts do by as much as they move.
+        // A jump of the inputs changes the contribution of the contacts only by the motion it causes.
         memory.steady &= matches!(jump, Jump::Inputs);
     }
 
@@ -177,8 +183,8 @@ impl<T: Real> Method<T> for TimeStepping<T> {
     }
 }
 
-/// What the impulses that hold surfaces together at the start of a step of `h` seconds add to the velocity, per second; `before` are
-/// the accelerations without them.
+/// Returns the contribution to the velocity, per second, of the impulses that enforce the contacts closed at
+/// the start of a step of `h` seconds; `before` are the accelerations without these impulses.
 pub(crate) fn holding<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -187,13 +193,13 @@ pub(crate) fn holding<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
 ) -> Result<SVector<T, NV>, ConstraintError> {
     let state = (&start.q, &start.v);
     let free = start.v + *before * h;
-    // Without a duration nothing moves.
+    // With zero duration the configuration does not change.
     let held = system.contact_step(start.t, state, (&start.q, &free), &SVector::zeros(), T::zero())?;
     Ok((held.v - free) / h)
 }
 
-/// Where a step of [`Rk4`](super::Rk4) leads from the accelerations `before`, under impulses that add `rate` to the velocity per
-/// second, and what they add in all.
+/// Returns the end of a step of [`Rk4`](super::Rk4) with the accelerations `before` at its start, under
+/// impulses that add `rate` to the velocity per second, and their total contribution to the velocity.
 pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -208,8 +214,9 @@ pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
     (end, at_end.map_or(still, |rate| rate * h))
 }
 
-/// Where a step through the [midpoint](TimeStepping::midpoint) leads from the accelerations `before`, under impulses that add `rate` to
-/// the velocity per second, and what they add in all.
+/// Returns the end of a step through the [midpoint](TimeStepping::midpoint) with the accelerations `before`
+/// at its start, under impulses that add `rate` to the velocity per second, and their total contribution to
+/// the velocity.
 fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,

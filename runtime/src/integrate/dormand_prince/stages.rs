@@ -6,7 +6,7 @@ use crate::integrate::stages::{Rates, stage, sum};
 use crate::integrate::{Dynamics, Step};
 use crate::private::constant;
 
-/// One step of length `h` that ends at `t`. Hairer, Nørsett and Wanner, II, table 5.2 and (6.12).
+/// Returns one step of length `h` that ends at `t`. Hairer, Nørsett and Wanner, II, table 5.2 and (6.12).
 pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,

@@ -1,7 +1,7 @@
-//! Coefficients of DOP853: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I* (1993), II.5 and II.6, and the
-//! program of that name; rounded to double precision. Stages count from zero.
+//! Coefficients of DOP853: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I* (1993),
+//! II.5 and II.6, and the program of that name; rounded to double precision. Stages count from zero.
 
-/// When the stages are, as parts of the step.
+/// Times of the stages, as fractions of the step.
 pub static TIMES: [f64; 16] = [
     0.0,
     0.05260015195876773,
@@ -21,7 +21,8 @@ pub static TIMES: [f64; 16] = [
     0.7777777777777778,
 ];
 
-/// Which earlier stages each is made of, and by which weights, from the second on. The thirteenth is the result.
+/// Earlier stages and their weights from which each stage is computed, starting with the second stage. The
+/// thirteenth is the result of the step.
 pub static STAGES: [&[(usize, f64)]; 15] = [
     &[(0, 0.05260015195876773)],
     &[(0, 0.0197250569845379), (1, 0.0591751709536137)],
@@ -116,7 +117,7 @@ pub static STAGES: [&[(usize, f64)]; 15] = [
     ],
 ];
 
-/// The error of fifth order.
+/// Coefficients of the error of fifth order.
 pub static FIFTH: &[(usize, f64)] = &[
     (0, 0.01312004499419488),
     (5, -1.2251564463762044),
@@ -128,7 +129,7 @@ pub static FIFTH: &[(usize, f64)] = &[
     (11, -0.022355307863886294),
 ];
 
-/// The error of third order.
+/// Coefficients of the error of third order.
 pub static THIRD: &[(usize, f64)] = &[
     (0, -0.18980075407240762),
     (5, 4.450312892752409),
@@ -140,7 +141,7 @@ pub static THIRD: &[(usize, f64)] = &[
     (11, 0.02265179219836082),
 ];
 
-/// The last four terms of the interpolating polynomial.
+/// Coefficients of the last four terms of the interpolating polynomial.
 pub static TERMS: [&[(usize, f64)]; 4] = [
     &[
         (0, -8.428938276109013),
