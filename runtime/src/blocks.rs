@@ -1,5 +1,5 @@
-//! Products of matrices of fixed sizes for loops of the runtime, without copies. nalgebra's own add columns one by one, and
-//! multiply transposed matrices entry by entry.
+//! Products of fixed-size matrices for loops of the runtime, without copies. nalgebra's own products add
+//! columns one by one, and multiply transposed matrices entry by entry.
 
 use crate::Real;
 use crate::arithmetic::dispatch::{Evaluate, dispatch};
@@ -17,7 +17,7 @@ mod tests;
 pub use nearly::NearlyIdentity;
 pub use solve::{factors, solve, solve_rows_into};
 
-/// `C += A B`. A function of its own for each size: a few dozen products written out one after another are longer than the
+/// Computes `C += A B`. There is a separate function for each size: a few dozen inlined products exceed the
 /// instruction cache.
 #[inline(never)]
 pub fn add_product<T: Real, const R: usize, const K: usize, const C: usize>(
@@ -28,7 +28,7 @@ pub fn add_product<T: Real, const R: usize, const K: usize, const C: usize>(
     dispatch::<0, T, _, _>(&Product { a, b }, sum);
 }
 
-/// [`add_product`] with these columns of `A` and rows of `B` alone.
+/// Computes [`add_product`] with the given columns of `A` and rows of `B` alone.
 #[inline(never)]
 pub fn add_product_of_some<T: Real, const R: usize, const K: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
@@ -39,7 +39,7 @@ pub fn add_product_of_some<T: Real, const R: usize, const K: usize, const C: usi
     dispatch::<2, T, _, _>(&Chosen { places, a, b }, sum);
 }
 
-/// What is multiplied.
+/// Factors of a product.
 struct Product<'a, T, const R: usize, const K: usize, const C: usize> {
     a: &'a SMatrix<T, R, K>,
     b: &'a SMatrix<T, K, C>,
@@ -60,7 +60,7 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
     }
 }
 
-/// What is multiplied of some columns.
+/// Factors of a product restricted to some columns.
 struct Chosen<'a, T, const R: usize, const K: usize, const C: usize> {
     places: &'a [usize],
     a: &'a SMatrix<T, R, K>,
@@ -79,8 +79,8 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<2, &mut S
     }
 }
 
-/// Adds the product of columns, with their numbers, with as many rows of four columns at a time as registers hold with room for what is
-/// added.
+/// Adds the product of the given columns, with their indices. It processes four columns at a time, and as
+/// many rows as fit in registers together with the operands.
 #[inline(always)]
 fn add_columns<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
@@ -96,19 +96,21 @@ fn add_columns<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const
     }
 }
 
-/// A list whose length the compiler does not know: it would write out its loops.
+/// Returns a slice whose length is hidden from the compiler, so that it does not unroll loops over it.
 #[inline(always)]
 fn rolled<T>(list: &[T]) -> &[T] {
     core::hint::black_box(list)
 }
 
-/// How many numbers are left for a last strip of more than one register and at most three, in strips of two registers of `W`.
+/// Returns the number of rows left for a last strip of more than one and at most three registers, after
+/// strips of two registers of width `W`.
 const fn left(rows: usize, w: usize) -> usize {
     if rows > 3 * w { (rows - w - 1) % (2 * w) + w + 1 } else { rows }
 }
 
-/// All rows, in registers of so many: two registers at a time, and at last as many as are left, up to three. The last of these begins
-/// as much earlier as it would be too long; all are read before any is written.
+/// Computes all rows in registers of width `W`: two registers at a time, and finally the remaining up to
+/// three. The last register overlaps the previous one if fewer rows remain; all rows are read before any is
+/// written.
 #[inline(always)]
 fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
@@ -129,8 +131,8 @@ fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: 
     }
 }
 
-/// [`rows_of`] eight, with a register of four at the end where that holds the rest: half as long an instruction on processors that execute
-/// those of eight in two parts.
+/// Computes [`rows_of`] with registers of eight, and one register of four at the end if it can hold the
+/// remaining rows: instructions on four are half as long on processors that split instructions on eight.
 #[inline(always)]
 fn wide_rows<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
@@ -152,7 +154,7 @@ fn wide_rows<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C
     }
 }
 
-/// Adds the product in `V` registers of rows and `F` of four, from a given row on, in all columns.
+/// Adds the product in `V` registers of rows and `F` registers of four, from a given row on, in all columns.
 #[inline(always)]
 fn strip<
     'a,
@@ -191,7 +193,7 @@ fn strip<
     }
 }
 
-/// Rows of a column in registers: `V` of `W`, then `F` of four.
+/// Rows of a column in registers: `V` of width `W`, then `F` of four.
 #[derive(Clone, Copy)]
 struct Rows<A, T, const W: usize, const V: usize, const F: usize> {
     whole: [Vector<A, T, W>; V],
@@ -237,7 +239,7 @@ impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Row
     }
 }
 
-/// Adds the product in some registers of rows, from a given row on, in some columns.
+/// Adds the product in several registers of rows, from a given row on, in several columns.
 #[inline(always)]
 fn tile<
     'a,
@@ -273,7 +275,7 @@ fn tile<
     }
 }
 
-/// `A B`.
+/// Returns `A B`.
 #[inline]
 pub fn product<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &SMatrix<T, R, K>,
@@ -287,17 +289,17 @@ pub fn product<T: Real, const R: usize, const K: usize, const C: usize>(
 /// Whether all entries are zero.
 #[inline]
 pub fn is_zero<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> bool {
-    // Without a way out early a column is compared at once.
+    // Comparing without early exit lets a column be compared at once.
     a.data.0.iter().all(|column| column.iter().fold(true, |zero, x| zero & (*x == T::zero())))
 }
 
-/// Zeros, without nalgebra's own construction entry by entry.
+/// Returns a zero matrix, without nalgebra's construction entry by entry.
 #[inline]
 pub fn zeros<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::from_array_storage(ArrayStorage([[T::zero(); R]; C]))
 }
 
-/// `Aᵀ`.
+/// Returns `Aᵀ`.
 #[inline]
 pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> SMatrix<T, C, R> {
     let mut turned = zeros();
@@ -305,7 +307,7 @@ pub fn transposed<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>)
     turned
 }
 
-/// Puts `Aᵀ` into a matrix, in squares of four, whose rows are put together in registers.
+/// Writes `Aᵀ` to a matrix, in blocks of four by four, transposed in registers.
 #[inline(never)]
 pub fn transpose_into<T: Real, const R: usize, const C: usize>(
     a: &SMatrix<T, R, C>,
@@ -338,7 +340,7 @@ pub fn transpose_into<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// `A B`, where most of `B` is zero.
+/// Returns `A B` for a mostly zero `B`.
 pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &SMatrix<T, R, K>,
     b: &SMatrix<T, K, C>,
@@ -354,7 +356,7 @@ pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>
     out
 }
 
-/// `A += s (B + Bᵀ)`.
+/// Computes `A += s (B + Bᵀ)`.
 #[inline(never)]
 pub fn add_with_transpose<T: Real, const N: usize>(sum: &mut SMatrix<T, N, N>, s: T, b: &SMatrix<T, N, N>) {
     let mut turned = zeros();
@@ -365,7 +367,7 @@ pub fn add_with_transpose<T: Real, const N: usize>(sum: &mut SMatrix<T, N, N>, s
     }
 }
 
-/// Puts `A + s B` into a matrix.
+/// Writes `A + s B` to a matrix.
 #[inline]
 pub fn sum_into<T: Real, const R: usize, const C: usize>(
     a: &SMatrix<T, R, C>,
@@ -379,13 +381,13 @@ pub fn sum_into<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// `A *= s`.
+/// Computes `A *= s`.
 #[inline]
 pub fn scale<T: Real, const R: usize, const C: usize>(matrix: &mut SMatrix<T, R, C>, s: T) {
     matrix.data.0.as_flattened_mut().iter_mut().for_each(|x| *x *= s);
 }
 
-/// Puts `s A` into a matrix.
+/// Writes `s A` to a matrix.
 #[inline]
 pub fn multiple_into<T: Real, const R: usize, const C: usize>(
     s: T,
@@ -397,7 +399,7 @@ pub fn multiple_into<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// `A += s B`.
+/// Computes `A += s B`.
 #[inline]
 pub fn add_multiple<T: Real, const R: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
@@ -409,7 +411,7 @@ pub fn add_multiple<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// `Σ s A` of several factors and matrices.
+/// Returns `Σ s A` over several factors and matrices.
 #[inline]
 pub fn combined<T: Real, const R: usize, const C: usize, const N: usize>(
     factors: &[T; N],
@@ -422,7 +424,8 @@ pub fn combined<T: Real, const R: usize, const C: usize, const N: usize>(
     sum
 }
 
-/// Puts the mean of a matrix and its transpose into another: rounding must not grow from instant to instant.
+/// Writes the mean of a matrix and its transpose to another matrix, so that asymmetry due to rounding does
+/// not accumulate over the steps of a recursion.
 #[inline(never)]
 pub fn symmetric_into<T: Real, const N: usize>(m: &SMatrix<T, N, N>, into: &mut SMatrix<T, N, N>) {
     let half = crate::private::constant::<T>(0.5);

@@ -1,4 +1,4 @@
-//! States of first order: lags of engines and actuators, filters.
+//! First-order states: lags of engines and actuators, filters.
 
 use crate::derivatives::ByMotion;
 use crate::{Real, Rheonomic, RheonomicDerivatives};
@@ -11,11 +11,13 @@ mod outputs;
 pub use extended::Extended;
 pub use outputs::OutputsByStates;
 
-/// A mechanism with `NX` states of first order, [`State`](crate::elements::State), beside its configuration and velocity.
+/// Mechanism with `NX` first-order states, [`State`](crate::elements::State), in addition to its
+/// configuration and velocity.
 ///
-/// `#[mechanism]` implements it. States are fields of the struct: the functions of the mechanism hold for the values there, and their
-/// signatures are those of any mechanism. [`extended`](Self::extended) is the mechanism with its states among the velocities, which
-/// is what is integrated and linearised; `NE` is `NV + NX`.
+/// `#[mechanism]` implements the trait. States are fields of the struct: the functions of the mechanism use
+/// the values of these fields, and have the same signatures as for any mechanism.
+/// [`extended`](Self::extended) returns the mechanism with its states among the velocities, for integration
+/// and linearisation; `NE` is `NV + NX`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no states of first order",
     note = "`#[state(rate = expression)] level: State` declares one"
@@ -25,17 +27,17 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
 {
     /// Name of every state.
     const STATES: [&'static str; NX];
-    /// Unit of every state, as [`Mechanism::VELOCITY_UNITS`](crate::Mechanism::VELOCITY_UNITS) says.
+    /// Unit of every state, in the format of [`Mechanism::VELOCITY_UNITS`](crate::Mechanism::VELOCITY_UNITS).
     const STATE_UNITS: [&'static str; NX] = [""; NX];
 
-    /// The states as they are, each in its own unit.
+    /// Returns the current states, each in its own unit.
     fn states(&self) -> SVector<Self::Scalar, NX>;
 
-    /// The mechanism in other states.
+    /// Returns the mechanism with other values of the states.
     fn with_states(&self, x: &SVector<Self::Scalar, NX>) -> Self;
 
-    /// The rates of the states, in their units per second, at the time `t` (which matters where a function of the mechanism
-    /// depends on it).
+    /// Returns the rates of the states, in their units per second, at time `t` (which matters only if a
+    /// function of the mechanism depends on it).
     fn state_rates(
         &self,
         t: Self::Scalar,
@@ -44,8 +46,9 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
         u: &SVector<Self::Scalar, NU>,
     ) -> SVector<Self::Scalar, NX>;
 
-    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the mechanism with its states as the
-    /// last of its velocities, whatever the states of the struct are; `None` without [`FirstOrderDerivatives`].
+    /// Returns [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the
+    /// mechanism with its states as the last velocities; the states stored in the struct have no effect.
+    /// `None` without [`FirstOrderDerivatives`].
     fn extended_derivatives(
         &self,
         _t: Self::Scalar,
@@ -56,13 +59,13 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
         None
     }
 
-    /// The mechanism with its states as the last of its velocities, for methods of integration, controllers and linear systems:
-    /// `v` is `[v, x]`, and `v̇` has the rates of the states behind the accelerations.
+    /// Returns the mechanism with its states as the last velocities, for integration methods, controllers and
+    /// linear systems: `v` is `[v, x]`, and `v̇` consists of the accelerations, then the rates of the states.
     ///
     /// ```
     /// use linkwork::prelude::*;
     ///
-    /// /// A rocket sled whose thrust follows the throttle late.
+    /// /// A rocket sled whose thrust lags behind the throttle.
     /// #[mechanism]
     /// struct Sled {
     ///     mass: f64,
@@ -93,8 +96,8 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
     }
 }
 
-/// Derivatives by states of first order, and of their rates. `#[mechanism(…, derivatives)]` implements it for mechanisms with such
-/// states and without constraints.
+/// Derivatives with respect to first-order states, and of their rates. `#[mechanism(…, derivatives)]`
+/// implements the trait for mechanisms with such states and without constraints.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives by states of first order",
     note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms with constraints have none"
@@ -107,7 +110,7 @@ pub trait FirstOrderDerivatives<
     const NE: usize,
 >: FirstOrder<NQ, NV, NU, NX, NE> + RheonomicDerivatives<NQ, NV, NU>
 {
-    /// The derivatives of [`state_rates`](FirstOrder::state_rates).
+    /// Returns the derivatives of [`state_rates`](FirstOrder::state_rates).
     fn state_rate_derivatives(
         &self,
         t: Self::Scalar,
@@ -116,7 +119,7 @@ pub trait FirstOrderDerivatives<
         u: &SVector<Self::Scalar, NU>,
     ) -> RateDerivatives<Self::Scalar, NV, NU, NX>;
 
-    /// `∂τ/∂x` of [`inverse_dynamics`](Rheonomic::inverse_dynamics).
+    /// Returns `∂τ/∂x` of [`inverse_dynamics`](Rheonomic::inverse_dynamics).
     fn inverse_dynamics_by_states(
         &self,
         t: Self::Scalar,
@@ -125,7 +128,7 @@ pub trait FirstOrderDerivatives<
         a: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NX>;
 
-    /// `∂v̇/∂x` of [`forward_dynamics`](Rheonomic::forward_dynamics).
+    /// Returns `∂v̇/∂x` of [`forward_dynamics`](Rheonomic::forward_dynamics).
     fn forward_dynamics_by_states(
         &self,
         t: Self::Scalar,
@@ -134,7 +137,7 @@ pub trait FirstOrderDerivatives<
         tau: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NX>;
 
-    /// `∂τ/∂x` of the inputs' [`generalized_forces`](Rheonomic::generalized_forces).
+    /// Returns `∂τ/∂x` of the inputs' [`generalized_forces`](Rheonomic::generalized_forces).
     fn generalized_forces_by_states(
         &self,
         t: Self::Scalar,
@@ -144,22 +147,22 @@ pub trait FirstOrderDerivatives<
     ) -> SMatrix<Self::Scalar, NV, NX>;
 }
 
-/// Derivatives of the rates of `NX` states of first order. Column `i` of the one by `q` is along `q ⊕ ε eᵢ`, for ball and free joints
-/// in body axes.
+/// Derivatives of the rates of `NX` first-order states. Column `i` of `by_q` is the derivative along `q ⊕ ε
+/// eᵢ`, in body axes for ball and free joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateDerivatives<T, const NV: usize, const NU: usize, const NX: usize> {
-    /// By configuration, per m and rad.
+    /// Derivative with respect to the configuration, per m and rad.
     pub by_q: SMatrix<T, NX, NV>,
-    /// By velocity, per m/s and rad/s.
+    /// Derivative with respect to the velocity, per m/s and rad/s.
     pub by_v: SMatrix<T, NX, NV>,
-    /// By the states, 1/s where both have one unit.
+    /// Derivative with respect to the states, 1/s between states of the same unit.
     pub by_x: SMatrix<T, NX, NX>,
-    /// By inputs.
+    /// Derivative with respect to the inputs.
     pub by_u: SMatrix<T, NX, NU>,
 }
 
 impl<T: Real, const NV: usize, const NU: usize, const NX: usize> RateDerivatives<T, NV, NU, NX> {
-    /// All zero.
+    /// Returns zero derivatives.
     pub fn zeros() -> Self {
         Self {
             by_q: SMatrix::zeros(),
@@ -170,7 +173,7 @@ impl<T: Real, const NV: usize, const NU: usize, const NX: usize> RateDerivatives
     }
 }
 
-/// Some columns of a matrix; those that are not there are zero.
+/// Returns the columns of a matrix with the given indices; columns that do not exist are zero.
 pub fn columns<T: Real, const R: usize, const C: usize, const N: usize>(
     all: &SMatrix<T, R, C>,
     which: [usize; N],

@@ -1,4 +1,5 @@
-//! Named frames: the trait that generated code implements once for each of them, and what those implementations call.
+//! Named frames: the trait that generated code implements for each frame, and functions that these
+//! implementations call.
 
 mod unknown;
 
@@ -10,13 +11,14 @@ use nalgebra::{
     UnitQuaternion, Vector3,
 };
 
-/// The name of a frame, checked at compile time: made by [`frame!`](crate::frame!).
+/// Index of a frame, checked at compile time: made by [`frame!`](crate::frame!).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameIndex<const I: usize>;
 
-/// Names a frame of a mechanism, checked at compile time: `frame!(Panda, "panda_link8")`.
+/// Returns the index of a frame by name, checked at compile time: `frame!(Panda, "panda_link8")`.
 ///
-/// Bodies, particles and points are frames; a name that the mechanism does not have does not compile. For a generic mechanism any scalar type will do: `frame!(Arm<f64>, "hand")`.
+/// Bodies, particles and points are frames. A name that the mechanism does not have is a compile error. For a
+/// generic mechanism, any scalar type may be used: `frame!(Arm<f64>, "hand")`.
 #[macro_export]
 macro_rules! frame {
     ($mechanism:ty, $name:expr) => {
@@ -39,10 +41,10 @@ macro_rules! frame {
     };
 }
 
-/// The index of an entry of `q`, `v`, `u` or of another list of names, checked at compile time:
-/// `index!(Panda::VELOCITIES, "panda_joint4")`. A name that the list does not have does not compile, and the message has the
-/// nearest ones. In a function that is generic over mechanisms the names are not known yet: [`index_of`](crate::index_of) finds them
-/// there.
+/// Returns the index of an entry of `q`, `v`, `u` or of another list of names, checked at compile time:
+/// `index!(Panda::VELOCITIES, "panda_joint4")`. A name that the list does not contain is a compile error, and
+/// the message lists the most similar names. Editors and `cargo check` report the error if the index is a
+/// constant; builds always report it, also in generic functions.
 ///
 /// ```
 /// use linkwork::{index, prelude::*};
@@ -92,18 +94,18 @@ macro_rules! index {
     };
 }
 
-/// An index that is computed at compile time, made by [`index!`](crate::index!). As an argument of a type it is evaluated by
-/// `cargo check` as well, which a constant expression in a function is not.
+/// Index computed at compile time, made by [`index!`](crate::index!). As a const argument of a type, the
+/// index is evaluated by `cargo check` too, unlike a constant expression in a function.
 pub struct Index<const I: usize>;
 
 impl<const I: usize> Index<I> {
-    /// The index.
+    /// Value of the index.
     pub const VALUE: usize = I;
 }
 
-/// Frame number `I` of a mechanism with `NQ` configuration numbers and `NV` velocities. Implemented by generated code;
-/// `t` counts only for a mechanism that is driven in time. Its figures are reached through `frame_placement`,
-/// `frame_velocity`, `frame_acceleration` and `frame_jacobian`.
+/// Frame number `I` of a mechanism with `NQ` configuration numbers and `NV` velocities. Generated code
+/// implements the trait; `t` matters only for driven motion. Users call `frame_placement`, `frame_velocity`,
+/// `frame_acceleration` and `frame_jacobian` instead.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no such frame",
     label = "this frame is another mechanism's",
@@ -113,10 +115,11 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;
 
-    /// Rotation matrix by rows (columns are the frame's axes in ground axes), then the position of the origin, m.
+    /// Returns the rotation matrix by rows (columns are the frame's axes in ground axes), then the position
+    /// of the origin, m.
     fn placement(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> [Self::Scalar; 12];
 
-    /// Velocity of the origin (m/s), then angular velocity (rad/s), in ground axes.
+    /// Returns the velocity of the origin (m/s), then the angular velocity (rad/s), in ground axes.
     fn twist(
         &self,
         t: Self::Scalar,
@@ -124,7 +127,8 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> [Self::Scalar; 6];
 
-    /// Acceleration of the origin (m/s²), then angular acceleration (rad/s²), in ground axes, without gravity.
+    /// Returns the acceleration of the origin (m/s²), then the angular acceleration (rad/s²), in ground axes,
+    /// without gravity.
     fn acceleration(
         &self,
         t: Self::Scalar,
@@ -133,11 +137,11 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> [Self::Scalar; 6];
 
-    /// Twist per unit of each velocity, 6 × `NV`.
+    /// Returns the Jacobian: the twist per unit of each velocity, 6 × `NV`.
     fn jacobian(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
 }
 
-/// The name of a frame of the mechanism `M`, made by [`frame!`](crate::frame!).
+/// Name of a frame of the mechanism `M`, made by [`frame!`](crate::frame!).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no frame of `{M}`",
     label = "a frame is named by `frame!`",
@@ -147,7 +151,7 @@ pub trait FrameName<M, const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;
 
-    /// Placement in the ground.
+    /// Returns the placement in the ground frame.
     fn placement(
         self,
         m: &M,
@@ -155,7 +159,7 @@ pub trait FrameName<M, const NQ: usize, const NV: usize> {
         q: &SVector<Self::Scalar, NQ>,
     ) -> IsometryMatrix3<Self::Scalar>;
 
-    /// Velocity of the origin (m/s), then angular velocity (rad/s), in ground axes.
+    /// Returns the velocity of the origin (m/s), then the angular velocity (rad/s), in ground axes.
     fn velocity(
         self,
         m: &M,
@@ -164,7 +168,8 @@ pub trait FrameName<M, const NQ: usize, const NV: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, 6>;
 
-    /// Acceleration of the origin (m/s²), then angular acceleration (rad/s²), in ground axes, without gravity.
+    /// Returns the acceleration of the origin (m/s²), then the angular acceleration (rad/s²), in ground axes,
+    /// without gravity.
     fn acceleration(
         self,
         m: &M,
@@ -174,7 +179,7 @@ pub trait FrameName<M, const NQ: usize, const NV: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, 6>;
 
-    /// Twist per unit of each velocity, 6 × `NV`.
+    /// Returns the Jacobian: the twist per unit of each velocity, 6 × `NV`.
     fn jacobian(self, m: &M, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
 }
 
@@ -218,17 +223,18 @@ where
     }
 }
 
-/// The frames of a mechanism with `NQ` configuration numbers and `NV` velocities by number, for code that learns at run time
-/// which it is about, such as from a file of settings: number `k` is `FRAMES[k]`, and [`index_of`] finds it by name. Where the
-/// name is known when the program is compiled, [`frame!`](crate::frame!) is faster to write and checked.
+/// Frames of a mechanism with `NQ` configuration numbers and `NV` velocities, accessed by index, for programs
+/// that select the frame at run time, for example from a configuration file. Index `k` is the frame
+/// `FRAMES[k]`, and [`index_of`] finds an index by name. For names known at compile time,
+/// [`frame!`](crate::frame!) is shorter and checked.
 ///
-/// Time `t`, s, counts only for a mechanism that is driven in time. `None` is for a number that no frame has.
+/// Time `t`, s, matters only for driven motion. The functions return `None` if the index is out of range.
 ///
 /// ```
 /// use linkwork::prelude::*;
 /// use linkwork::{Frames, index_of};
 ///
-/// /// How high a frame is.
+/// /// Height of a frame.
 /// fn height<M, const NQ: usize, const NV: usize>(m: &M, name: &str, q: &SVector<f64, NQ>) -> Option<f64>
 /// where
 ///     M: Frames<NQ, NV, Scalar = f64>,
@@ -258,10 +264,10 @@ pub trait Frames<const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;
 
-    /// Names of the frames, in the order of their numbers.
+    /// Names of the frames, in the order of their indices.
     const FRAMES: &'static [&'static str];
 
-    /// Placement in the ground: the frame's axes and its origin, m.
+    /// Returns the placement in the ground frame: the frame's axes and its origin, m.
     fn placement_of(
         &self,
         frame: usize,
@@ -269,7 +275,8 @@ pub trait Frames<const NQ: usize, const NV: usize> {
         q: &SVector<Self::Scalar, NQ>,
     ) -> Option<IsometryMatrix3<Self::Scalar>>;
 
-    /// Velocity of the origin (m/s), then angular velocity (rad/s), relative to the ground, in ground axes.
+    /// Returns the velocity of the origin (m/s), then the angular velocity (rad/s), relative to the ground,
+    /// in ground axes.
     fn velocity_of(
         &self,
         frame: usize,
@@ -278,8 +285,9 @@ pub trait Frames<const NQ: usize, const NV: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> Option<SVector<Self::Scalar, 6>>;
 
-    /// Acceleration of the origin (m/s²), then angular acceleration (rad/s²), relative to the ground, in ground axes, without
-    /// gravity. With `a` zero it is what the rate of the Jacobian contributes, `J̇ v`.
+    /// Returns the acceleration of the origin (m/s²), then the angular acceleration (rad/s²), relative to the
+    /// ground, in ground axes, without gravity. With zero `a` the result is `J̇ v`, the contribution of the
+    /// Jacobian's rate.
     fn acceleration_of(
         &self,
         frame: usize,
@@ -289,7 +297,7 @@ pub trait Frames<const NQ: usize, const NV: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> Option<SVector<Self::Scalar, 6>>;
 
-    /// Jacobian: the velocity is this times `v` (and, of a frame that is driven in time, what drives it).
+    /// Returns the Jacobian `J`: the velocity is `J v`, plus the velocity of the driven motion, if any.
     fn jacobian_of(
         &self,
         frame: usize,
@@ -298,12 +306,12 @@ pub trait Frames<const NQ: usize, const NV: usize> {
     ) -> Option<SMatrix<Self::Scalar, 6, NV>>;
 }
 
-/// What leads from one placement to another: the way of the origin, m, then the rotation vector, rad, in ground axes. So it is in
-/// the order and the axes of a frame's velocity and Jacobian: to first order `J dq` for a motion by `dq`. Controllers of a pose
-/// feed it back.
+/// Returns the difference between two placements: the displacement of the origin, m, then the rotation
+/// vector, rad, in ground axes. Order and axes are those of a frame's velocity and Jacobian: to first order,
+/// a displacement `dq` yields `J dq`. Pose controllers use this difference as their error.
 ///
-/// Exact to rounding for angles of any size (the angle by the cosine of the rotation matrix would lose small ones); of both ways
-/// round the shorter one.
+/// The result is exact to rounding for angles of any magnitude, including small ones, which are inaccurate if
+/// computed from the trace of the rotation matrix. The rotation is the one by at most π.
 ///
 /// ```
 /// use linkwork::placement_difference;
@@ -327,8 +335,9 @@ pub fn placement_difference<T: Real>(from: &IsometryMatrix3<T>, to: &IsometryMat
     six([way.x, way.y, way.z, turn.x, turn.y, turn.z])
 }
 
-/// The index of a name in a list of names, at run time or in a constant: `index_of(&Panda::VELOCITIES, name)` of a name that stands in
-/// a file of settings. [`index!`](crate::index!) checks a name that is written in the program.
+/// Returns the index of a name in a list of names, at run time or in a constant:
+/// `index_of(&Panda::VELOCITIES, name)` for a name from a configuration file. [`index!`](crate::index!)
+/// checks a name that is a literal.
 ///
 /// ```
 /// use linkwork::index_of;
@@ -362,7 +371,7 @@ const fn same(a: &[u8], b: &[u8]) -> bool {
     true
 }
 
-/// A placement as nalgebra's type.
+/// Returns a placement as nalgebra's type.
 #[inline(always)]
 pub fn placement<T: Real>(p: &[T; 12]) -> IsometryMatrix3<T> {
     let [a, b, c, d, e, f, g, h, i, x, y, z] = *p;
@@ -373,41 +382,41 @@ pub fn placement<T: Real>(p: &[T; 12]) -> IsometryMatrix3<T> {
     )
 }
 
-/// The placement of the ground in itself.
+/// Returns the identity placement, that of the ground.
 #[inline(always)]
 pub fn identity_placement<T: Real>() -> [T; 12] {
     let (o, i) = (T::zero(), T::one());
     [i, o, o, o, i, o, o, o, i, o, o, o]
 }
 
-/// The position of a placement.
+/// Returns the position of a placement.
 #[inline(always)]
 pub fn origin<T: Real>(p: &[T; 12]) -> [T; 3] {
     let [.., x, y, z] = *p;
     [x, y, z]
 }
 
-/// The twist of a motion, which is its twist and its acceleration.
+/// Returns the twist of a motion, which consists of twist and acceleration.
 #[inline(always)]
 pub fn twist<T: Real>(motion: &[T; 12]) -> [T; 6] {
     let [a, b, c, d, e, f, ..] = *motion;
     [a, b, c, d, e, f]
 }
 
-/// The sum of two motions.
+/// Returns the sum of two motions.
 #[inline(always)]
 pub fn sum<T: Real>(a: &[T; 6], b: &[T; 6]) -> [T; 6] {
     let ([a0, a1, a2, a3, a4, a5], [b0, b1, b2, b3, b4, b5]) = (*a, *b);
     [a0 + b0, a1 + b1, a2 + b2, a3 + b3, a4 + b4, a5 + b5]
 }
 
-/// Six numbers as nalgebra's type.
+/// Returns six numbers as nalgebra's type.
 #[inline(always)]
 pub fn six<T: Real>(s: [T; 6]) -> SVector<T, 6> {
     SVector::from_array_storage(ArrayStorage([s]))
 }
 
-/// Two arrays one after the other; `N` is the sum of their lengths.
+/// Concatenates two arrays; `N` is the sum of their lengths.
 #[inline(always)]
 pub fn join<T: Real, const A: usize, const B: usize, const N: usize>(a: &[T; A], b: &[T; B]) -> [T; N] {
     let mut out = [T::zero(); N];

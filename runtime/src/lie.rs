@@ -1,8 +1,8 @@
 //! Exponential, logarithm and their derivatives on SO(3) and SE(3), for ball and free joints.
 //!
-//! Quaternions are stored x y z w and turn child components into parent components; velocities are resolved in the
-//! child (body) frame; SE(3) vectors hold the linear part first (m), then the angular part (rad). Conventions of
-//! Pinocchio's `JointModelSpherical` and `JointModelFreeFlyer`.
+//! Quaternions are stored x y z w and map child components to parent components; velocities are resolved in
+//! the child (body) frame; SE(3) vectors hold the linear part first (m), then the angular part (rad).
+//! Conventions of Pinocchio's `JointModelSpherical` and `JointModelFreeFlyer`.
 
 pub mod curvature;
 pub mod jacobians;
@@ -12,7 +12,7 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 use core::cmp::Ordering;
 
-/// `|B₂ₖ| / (2k)!` for k = 1, 2, …: `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
+/// Coefficients `|B₂ₖ| / (2k)!` for k = 1, 2, …: `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
 const BERNOULLI: [f64; 8] = [
     1.0 / 12.0,
     1.0 / 720.0,
@@ -40,7 +40,7 @@ fn scale<T: Real>([a, b, c]: [T; 3], s: T) -> [T; 3] {
     [a * s, b * s, c * s]
 }
 
-/// The Hamilton product of two quaternions.
+/// Returns the Hamilton product of two quaternions.
 fn product<T: Real>([ax, ay, az, aw]: [T; 4], [bx, by, bz, bw]: [T; 4]) -> [T; 4] {
     let [x, y, z] = cross([ax, ay, az], [bx, by, bz]);
     [
@@ -60,15 +60,15 @@ fn normalised<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
     [x / norm, y / norm, z / norm, w / norm]
 }
 
-/// `a` turned by the unit quaternion: `a + 2 u × (u × a + w a)`.
+/// Returns `a` rotated by the unit quaternion: `a + 2 u × (u × a + w a)`.
 fn rotated<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
     let u = [x, y, z];
     let inner = add(cross(u, a), scale(a, w));
     add(a, scale(cross(u, inner), constant(2.0)))
 }
 
-/// `small(x)` below the limit, else `large(x)`. Where lanes differ both are evaluated, each on its own side of the limit,
-/// and every lane gets exactly the one that it would get alone.
+/// Returns `small(x)` below the limit and `large(x)` otherwise. If lanes differ, both are evaluated, each at
+/// arguments on its own side of the limit, and every lane has exactly the result that it would have alone.
 fn choose<T: Real, const K: usize>(
     x: T,
     limit: T,
@@ -89,23 +89,24 @@ fn choose<T: Real, const K: usize>(
     values
 }
 
-/// Below this `θ²` six terms of the series of sine and cosine are exact to rounding, and a step is no farther as a rule.
+/// Limit of `θ²` below which six terms of the series of sine and cosine are exact to rounding; it exceeds
+/// that of most integration steps.
 const SMALL_TURN: f64 = 0.05;
-/// Below this `tan²(θ/2)` seven terms of the series of the arc tangent are exact to rounding.
+/// Limit of `tan²(θ/2)` below which seven terms of the series of the arc tangent are exact to rounding.
 const SMALL_TANGENT: f64 = 0.0025;
 
-/// `1/d₀ − x/d₁ + x²/d₂ − …`
+/// Returns `1/d₀ − x/d₁ + x²/d₂ − …`
 fn polynomial<T: Real, const N: usize>(x: T, divisors: [f64; N]) -> T {
     divisors.iter().rev().fold(T::zero(), |sum, d| constant::<T>(1.0 / d) - x * sum)
 }
 
-/// The unit quaternion of the rotation vector `dv`: `(dv sin(θ/2)/θ, cos(θ/2))`.
+/// Returns the unit quaternion of the rotation vector `dv`: `(dv sin(θ/2)/θ, cos(θ/2))`.
 pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
     let square = dot(dv, dv);
     let [factor, w] = choose(
         square,
         constant(SMALL_TURN),
-        // The first neglected terms are of (θ/2)¹².
+        // The first neglected terms are of order (θ/2)¹².
         |square| {
             let half = square * constant(0.25);
             [
@@ -123,7 +124,7 @@ pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
     [x, y, z, w]
 }
 
-/// The rotation vector of shortest length of a quaternion of any length but zero.
+/// Returns the shortest rotation vector of a quaternion of any nonzero norm.
 pub(crate) fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
     let sign = T::one().copysign(w);
     let u = scale([x, y, z], sign);
@@ -131,7 +132,7 @@ pub(crate) fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
     let [factor] = choose(
         dot(u, u),
         w * w * constant(SMALL_TANGENT),
-        // The first neglected term is of tan¹⁴.
+        // The first neglected term is of order tan¹⁴.
         |square| {
             let inverse = T::one() / w;
             let tangent = square * inverse * inverse;
@@ -145,7 +146,7 @@ pub(crate) fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
     scale(u, factor)
 }
 
-/// `Σ weight(k) cₖ x^(k − from)` over k ≥ `from`, with the Bernoulli coefficients `cₖ`.
+/// Returns `Σ weight(k) cₖ x^(k − from)` over k ≥ `from`, with the Bernoulli coefficients `cₖ`.
 fn series<T: Real>(x: T, from: usize, weight: impl Fn(f64) -> f64) -> T {
     let terms = (1_u8..).zip(BERNOULLI).skip(from - 1);
     let (sum, _) = terms.fold((T::zero(), T::one()), |(sum, power), (k, c)| {
@@ -154,11 +155,12 @@ fn series<T: Real>(x: T, from: usize, weight: impl Fn(f64) -> f64) -> T {
     sum
 }
 
-/// Below this `θ²` the eight terms of the series are exact to rounding; above it the closed forms are.
+/// Limit of `θ²`: below it the eight terms of the series are exact to rounding, above it the closed forms
+/// are.
 const SERIES_ANGLE: f64 = 0.25;
 
-/// `(1 − (θ/2) cot(θ/2)) / θ²` of `θ²`: the factor of `[φ, [φ, ·]]` in the inverse Jacobians of SO(3).
-/// Not finite at the full turns, where the exponential cannot be inverted.
+/// Returns `(1 − (θ/2) cot(θ/2)) / θ²` as a function of `θ²`: the factor of `[φ, [φ, ·]]` in the inverse
+/// Jacobians of SO(3). Not finite at full rotations, where the exponential cannot be inverted.
 fn second_bracket<T: Real>(square: T) -> T {
     let [factor] = choose(
         square,
@@ -172,10 +174,10 @@ fn second_bracket<T: Real>(square: T) -> T {
     factor
 }
 
-/// Factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3), of `θ²`.
+/// Returns the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3), as functions of `θ²`.
 ///
-/// `ad` has the minimal polynomial `ad (ad² + θ²)²`, so `(ad/2) coth(ad/2)` is the even polynomial of degree four
-/// that agrees with it at `iθ` in value and slope (Selig, *Geometric Fundamentals of Robotics*, §4.6).
+/// `ad` has the minimal polynomial `ad (ad² + θ²)²`, so `(ad/2) coth(ad/2)` is the even polynomial of degree
+/// four that agrees with it at `iθ` in value and slope (Selig, *Geometric Fundamentals of Robotics*, §4.6).
 fn even_brackets<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
@@ -191,7 +193,7 @@ fn even_brackets<T: Real>(square: T) -> [T; 2] {
     )
 }
 
-/// The bracket `[a, b]` of SE(3) for body velocities, linear part first.
+/// Returns the bracket `[a, b]` of SE(3) for body velocities, linear part first.
 fn bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
     let [ax, ay, az, arx, ary, arz] = a;
     let [bx, by, bz, brx, bry, brz] = b;
@@ -201,12 +203,13 @@ fn bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
     [x, y, z, rx, ry, rz]
 }
 
-/// `a + s b`.
+/// Returns `a + s b`.
 fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5]: [T; 6]) -> [T; 6] {
     [a0 + s * b0, a1 + s * b1, a2 + s * b2, a3 + s * b3, a4 + s * b4, a5 + s * b5]
 }
 
-/// `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` of `θ²`: the left Jacobian of SO(3) is `1 + a [φ]ₓ + b [φ]ₓ²`.
+/// Returns `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` as functions of `θ²`: the left Jacobian of SO(3) is `1 + a
+/// [φ]ₓ + b [φ]ₓ²`.
 pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
@@ -225,22 +228,22 @@ pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
     )
 }
 
-/// `q ⊕ dv` of a ball joint: the quaternion `q exp(dv)`, normalised.
+/// Returns `q ⊕ dv` of a ball joint: the quaternion `q exp(dv)`, normalised.
 ///
-/// - `q`: x y z w, of any length but zero; `dv`: rotation vector in the child frame, rad, of any size.
+/// - `q`: x y z w, of any nonzero norm; `dv`: rotation vector in the child frame, rad, of any magnitude.
 pub fn ball_integrate<T: Real>(q: [T; 4], dv: [T; 3]) -> [T; 4] {
     normalised(product(q, exponential(dv)))
 }
 
-/// The rotation vector `dv`, child frame of `q0`, rad, with `q0 ⊕ dv = ±q1`: the shortest turn, `|dv| ≤ π`.
+/// Returns the rotation vector `dv`, in the child frame of `q0`, rad, with `q0 ⊕ dv = ±q1` and `|dv| ≤ π`.
 ///
-/// At half a turn either of the two shortest answers is returned. Quaternions need not be normalised.
+/// For a rotation by π, either of the two shortest solutions is returned. Quaternions need not be normalised.
 pub fn ball_difference<T: Real>(q0: [T; 4], q1: [T; 4]) -> [T; 3] {
     logarithm(product(conjugate(normalised(q0)), normalised(q1)))
 }
 
-/// Rate of `dv` for which `q ⊕ dv` turns with the body-frame angular velocity `v`, rad/s: the inverse right Jacobian
-/// of SO(3), `v + ½ dv × v + c dv × (dv × v)`. Not finite at `|dv|` = 2π.
+/// Returns the rate of `dv` such that `q ⊕ dv` rotates with the body-frame angular velocity `v`, rad/s: the
+/// inverse right Jacobian of SO(3), `v + ½ dv × v + c dv × (dv × v)`. Not finite at `|dv|` = 2π.
 ///
 /// Source: Iserles et al., *Lie-group methods*, Acta Numerica 9 (2000), appendix B.
 pub fn ball_tangent_rate<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
@@ -249,10 +252,11 @@ pub fn ball_tangent_rate<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
     add(add(v, scale(first, constant(0.5))), second)
 }
 
-/// `q ⊕ dv` of a free joint: the exponential of SE(3).
+/// Returns `q ⊕ dv` of a free joint: the exponential of SE(3).
 ///
-/// - `q`: position in the parent frame, m, then quaternion x y z w; the quaternion of the result is normalised.
-/// - `dv`: displacement, m, then rotation vector, rad, both in the child frame, of any size.
+/// - `q`: position in the parent frame, m, then quaternion x y z w; the quaternion of the result is
+///   normalised.
+/// - `dv`: displacement, m, then rotation vector, rad, both in the child frame, of any magnitude.
 pub fn free_integrate<T: Real>(q: [T; 7], dv: [T; 6]) -> [T; 7] {
     let [px, py, pz, qx, qy, qz, qw] = q;
     let [x, y, z, rx, ry, rz] = dv;
@@ -266,7 +270,8 @@ pub fn free_integrate<T: Real>(q: [T; 7], dv: [T; 6]) -> [T; 7] {
     [px, py, pz, qx, qy, qz, qw]
 }
 
-/// The `dv`, child frame of `q0`, m and rad, with `q0 ⊕ dv = q1`: the logarithm of SE(3), shortest turn.
+/// Returns the `dv`, in the child frame of `q0`, m and rad, with `q0 ⊕ dv = q1`: the logarithm of SE(3) with
+/// the smallest rotation angle.
 pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
     let [x0, y0, z0, qx0, qy0, qz0, qw0] = q0;
     let [x1, y1, z1, qx1, qy1, qz1, qw1] = q1;
@@ -280,8 +285,9 @@ pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
     [x, y, z, rx, ry, rz]
 }
 
-/// Rate of `dv` for which `q ⊕ dv` moves with the body-frame velocity `v` (linear, m/s, then angular, rad/s):
-/// `v + ½ [dv, v] + 1/12 [dv, [dv, v]] − …`, summed in closed form. Not finite at an angular part of 2π.
+/// Returns the rate of `dv` such that `q ⊕ dv` moves with the body-frame velocity `v` (linear, m/s, then
+/// angular, rad/s): `v + ½ [dv, v] + 1/12 [dv, [dv, v]] − …`, summed in closed form. Not finite at an angular
+/// part of 2π.
 ///
 /// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), III.4.
 pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
@@ -294,12 +300,13 @@ pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     plus(plus(plus(v, constant(0.5), first), second, twice), fourth, four_times)
 }
 
-/// The velocity `v`, child frame of `q`, in the child frame of `q ⊕ dv`.
+/// Returns the velocity `v`, in the child frame of `q`, expressed in the child frame of `q ⊕ dv`.
 pub fn ball_carry<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
     rotated(conjugate(exponential(dv)), v)
 }
 
-/// The velocity `v` (linear, then angular), child frame of `q`, in the child frame of `q ⊕ dv`.
+/// Returns the velocity `v` (linear, then angular), in the child frame of `q`, expressed in the child frame
+/// of `q ⊕ dv`.
 pub fn free_carry<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let [x, y, z, wx, wy, wz] = v;

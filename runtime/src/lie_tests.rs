@@ -63,7 +63,8 @@ fn free_difference_inverts_integrate() {
 
 #[test]
 fn free_exponential_of_a_screw() {
-    // Along and about z by a quarter of a turn: the tip of a circular arc, radius v / ω.
+    // A screw motion along and about z by a quarter rotation: the end point of a circular arc of radius v /
+    // ω.
     let quarter = core::f64::consts::FRAC_PI_2;
     let q = free_integrate([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 3.0, 0.0, 0.0, quarter]);
     let half = core::f64::consts::FRAC_1_SQRT_2;
@@ -80,7 +81,7 @@ fn free_exponential_is_a_flow() {
     }
 }
 
-/// The path φ(t) = dv + t rate must leave `q ⊕ dv` with the velocity `v`.
+/// Checks that along the path φ(t) = dv + t rate the configuration `q ⊕ φ(t)` has the velocity `v` at t = 0.
 #[test]
 fn tangent_rates_give_the_velocity() {
     let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];

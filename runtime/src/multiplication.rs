@@ -1,5 +1,5 @@
-//! The inverse of a mass matrix and products with it, for generated code. They never allocate, as nalgebra's own do for large
-//! matrices, and skip what is known to be zero.
+//! Inverse of a mass matrix and products with it, for generated code. The functions never allocate, unlike
+//! nalgebra's own for large matrices, and skip structural zeros.
 
 mod column;
 pub(crate) use column::{part, put};
@@ -20,12 +20,13 @@ pub use inverse::{complete, invert};
 use nalgebra::SMatrix;
 pub use tile::{Tile, Tiling};
 
-/// Whether a list of this many numbers fills several registers of eight.
+/// Whether a column of this length occupies several registers of eight.
 const fn is_long(numbers: usize) -> bool {
     registers_of_eight(numbers, true) > 1
 }
 
-/// How many of so many rows of a matrix are calculated together: all if they leave registers for several columns.
+/// Returns the number of rows of a matrix that are computed together: all rows, if they leave registers for
+/// several columns.
 #[must_use]
 pub const fn rows(numbers: usize, wide: bool) -> usize {
     let most = if wide { 48 } else { 24 };
@@ -36,18 +37,19 @@ pub const fn rows(numbers: usize, wide: bool) -> usize {
     numbers.div_ceil(blocks).next_multiple_of(4)
 }
 
-/// Neighbouring rows or columns, from one up to another.
+/// Half-open range of neighbouring rows or columns.
 type Range = (usize, usize);
 
-/// Neighbouring columns, the rows of the trunk where their factors are not zero, and the place of the first one's factors.
+/// Neighbouring columns, the rows of the trunk in which their factors are nonzero, and the index of the first
+/// column's factors.
 pub type Run = (Range, Range, usize);
 
-/// A matrix with which another is multiplied; column and row of what has to be made zero in it; and its columns, from one up to
-/// another, outside whose given rows there are zeros. All other columns are zero.
+/// Matrix to be multiplied by another; column and row of the entries to set to zero in it; and half-open
+/// ranges of its columns with the rows that can be nonzero. All other columns are zero.
 pub type Factor<'a, T, const N: usize, const M: usize> =
     (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(Range, &'a [usize])]);
 
-/// Puts minus the products of a matrix with others in the place of these.
+/// Replaces matrices by minus their products with a matrix.
 #[inline]
 pub fn minus_products<
     A: Arithmetic,
@@ -86,7 +88,7 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usiz
     }
 }
 
-/// Makes entries zero.
+/// Sets entries, given by column and row, to zero.
 #[inline(always)]
 fn clear<T: Real, const N: usize, const M: usize>(matrix: &mut SMatrix<T, N, M>, zeros: &[(usize, usize)]) {
     for (column, row) in zeros {

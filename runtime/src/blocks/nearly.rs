@@ -1,4 +1,5 @@
-//! Products with matrices that are nearly the identity: how configurations with few ball and free joints are displaced.
+//! Products with matrices that are nearly the identity: derivatives of displaced configurations with few ball
+//! and free joints.
 
 use super::zeros;
 use crate::Real;
@@ -6,7 +7,7 @@ use crate::arithmetic::{Arithmetic, Compiled, Vector};
 use crate::multiplication::part;
 use nalgebra::SMatrix;
 
-/// A matrix with the columns and rows of the identity but for some neighbouring ones.
+/// Matrix that equals the identity outside one contiguous range of rows and columns.
 pub struct NearlyIdentity<'a, T, const N: usize> {
     matrix: &'a SMatrix<T, N, N>,
     first: usize,
@@ -14,11 +15,11 @@ pub struct NearlyIdentity<'a, T, const N: usize> {
 }
 
 impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
-    /// Finds the columns of a matrix that are not those of the identity.
+    /// Finds the range of columns in which a matrix differs from the identity.
     pub fn of(matrix: &'a SMatrix<T, N, N>) -> Self {
         let (mut first, mut end) = (N, 0);
         for (j, column) in matrix.data.0.iter().enumerate() {
-            // Without a way out early a column is compared at once.
+            // Comparing without early exit lets a column be compared at once.
             let others = column.iter().fold(0, |count, x| count + u64::from(*x != T::zero()));
             let (above, rest) = column.split_at(j);
             let Some((diagonal, below)) = rest.split_first() else { continue };
@@ -33,17 +34,17 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         Self { matrix, first, end }
     }
 
-    /// One whose columns that are not those of the identity are known.
+    /// Returns the matrix with a known range in which it differs from the identity.
     pub fn known(matrix: &'a SMatrix<T, N, N>, (first, end): (usize, usize)) -> Self {
         Self { matrix, first, end }
     }
 
-    /// The columns that are not those of the identity, from one up to another.
+    /// Returns the half-open range of columns that differ from the identity.
     pub fn others(&self) -> (usize, usize) {
         (self.first, self.end)
     }
 
-    /// `Dᵀ`, whose columns that are not those of the identity go into a matrix.
+    /// Returns `Dᵀ`; its columns that differ from the identity are written to `into`.
     pub fn transposed<'b>(&self, into: &'b mut SMatrix<T, N, N>) -> NearlyIdentity<'b, T, N> {
         let some = self.first..self.end;
         let rows = self.matrix.data.0.get(some.clone()).unwrap_or(&[]);
@@ -55,7 +56,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         NearlyIdentity { matrix: into, first: self.first, end: self.end }
     }
 
-    /// `A D` in the place of `A`.
+    /// Replaces `A` by `A D`.
     pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
         if self.end - self.first.min(self.end) > 8 {
             self.follow_by::<R, N>(a)
@@ -64,7 +65,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// With room for so many columns.
+    /// Replaces `A` by `A D`, with storage for `C` columns that differ from the identity.
     fn follow_by<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
         let mut sums = zeros::<T, R, C>();
         let some = self.first..self.end;
@@ -82,7 +83,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// `D A` in the place of `A`.
+    /// Replaces `A` by `D A`.
     pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         if self.end - self.first.min(self.end) > 8 {
             return self.lead_many(a);
@@ -93,7 +94,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// Puts `s D A` into a matrix.
+    /// Writes `s D A` to a matrix.
     pub fn lead_multiple_into<const C: usize>(
         &self,
         s: T,
@@ -113,20 +114,20 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// Where eight rows begin that are at a time, or those before the end, and which of them are others: all that is beside them is zero
-    /// in these columns.
+    /// Returns the first of eight rows that contain the range, and which of the eight rows belong to it. All
+    /// other rows are zero in these columns.
     #[inline(always)]
     fn eight(&self) -> (usize, [bool; 8]) {
         let start = self.first.min(N - N.min(8));
         (start, core::array::from_fn(|k| (self.first..self.end).contains(&(start + k))))
     }
 
-    /// A column of [`lead`](Self::lead).
+    /// Replaces a column for [`lead`](Self::lead).
     #[inline(always)]
     fn lead_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
         let sum = self.rows(column, start);
         if let Some(places) = column.get_mut(start..).and_then(<[T]>::first_chunk_mut::<8>) {
-            // Eight at once, each the sum or what it was.
+            // Eight entries at once, each either the sum or its previous value.
             let given = *places;
             let chosen = given.iter().zip(sum.numbers()).zip(is_other);
             places.iter_mut().zip(chosen).for_each(|(place, ((given, sum), is_other))| {
@@ -142,7 +143,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// Rows from one on of the product with a column.
+    /// Returns eight rows, from `start` on, of the product with a column.
     #[inline(always)]
     fn rows(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
         let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
@@ -154,7 +155,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         sum
     }
 
-    /// [`lead`](Self::lead) of matrices of more than eight rows.
+    /// Computes [`lead`](Self::lead) for a range of more than eight rows.
     fn lead_many<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         let length = N.min(8);
         for column in &mut a.data.0 {

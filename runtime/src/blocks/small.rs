@@ -1,13 +1,13 @@
-//! Products with a small matrix, all of which is in registers.
+//! Products with a small matrix that is stored entirely in registers.
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Vector};
 use crate::multiplication::{part, put};
 
-/// Most rows and columns of a small matrix: it fills half of 32 registers of four numbers.
+/// Maximum number of rows and columns of a small matrix: it occupies half of 32 registers of four numbers.
 pub(super) const MOST: usize = 8;
 
-/// `C += A B`, column by column of `B`.
+/// Computes `C += A B`, column by column of `B`.
 #[inline(always)]
 pub(super) fn add_product<A: Arithmetic, T: Real, const R: usize, const K: usize>(
     sums: &mut [[T; R]],
@@ -17,8 +17,8 @@ pub(super) fn add_product<A: Arithmetic, T: Real, const R: usize, const K: usize
     if R > 4 { columns::<A, T, 2, R, K>(sums, a, b) } else { columns::<A, T, 1, R, K>(sums, a, b) }
 }
 
-/// With the rows in `V` registers of four. The last begins as much earlier as it would be too long; all are read before any is
-/// written.
+/// Computes the product with rows in `V` registers of four. The last register overlaps the previous one if
+/// fewer rows remain; all rows are read before any is written.
 #[inline(always)]
 fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usize>(
     sums: &mut [[T; R]],
@@ -43,7 +43,7 @@ fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usiz
     }
 }
 
-/// A column in registers.
+/// Reads a column into registers.
 #[inline(always)]
 fn read<A: Arithmetic, T: Real, const V: usize>(column: &[T]) -> [Vector<A, T, 4>; V] {
     let mut registers = [A::splat(T::zero()); V];

@@ -1,4 +1,4 @@
-//! Solutions of symmetric equations for many right-hand sides, a register of them at a time.
+//! Solution of symmetric linear systems for many right-hand sides, one register of them at a time.
 
 use super::{transposed, zeros};
 use crate::Real;
@@ -7,8 +7,8 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::multiplication::{part, put, registers_of_eight, registers_of_four};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// `L` below the diagonal and `1/D` of `H + r = L D Lᵀ`, with ones on the diagonal of `L`; which pivot is not positive
-/// otherwise.
+/// Returns `L` (below the diagonal) and `1/D` of the factorisation `H + r = L D Lᵀ`, with ones on the
+/// diagonal of `L`; the error is the index of a pivot that is not positive.
 pub fn factors<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,
     regularisation: T,
@@ -23,7 +23,7 @@ pub fn factors<T: Real, const N: usize>(
         inverse[j] = T::one() / pivot;
         let mut scaled = column;
         scaled.iter_mut().for_each(|x| *x *= inverse[j]);
-        // Whole columns: what stands above the diagonal is read by nothing.
+        // Whole columns: entries above the diagonal are never read.
         for k in j + 1..N {
             for (entry, x) in l[k].iter_mut().zip(&column) {
                 *entry = Compiled::neg_mul_add(*x, scaled[k], *entry);
@@ -35,7 +35,7 @@ pub fn factors<T: Real, const N: usize>(
     Ok((storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
 }
 
-/// Puts `−(L D Lᵀ)⁻¹ B` in the place of `B`.
+/// Replaces `B` by `−(L D Lᵀ)⁻¹ B`.
 pub fn solve<T: Real, const N: usize, const C: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -44,7 +44,7 @@ pub fn solve<T: Real, const N: usize, const C: usize>(
     *b = transposed(&solved_rows(l, inverse, &transposed(b)));
 }
 
-/// `−B (L D Lᵀ)⁻¹`.
+/// Returns `−B (L D Lᵀ)⁻¹`.
 fn solved_rows<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -55,7 +55,7 @@ fn solved_rows<T: Real, const N: usize, const R: usize>(
     solved
 }
 
-/// Puts `−B (L D Lᵀ)⁻¹` into a matrix.
+/// Writes `−B (L D Lᵀ)⁻¹` to a matrix.
 #[inline(never)]
 pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
@@ -66,7 +66,7 @@ pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
     dispatch::<1, T, _, _>(&Solve { l, inverse, b }, into);
 }
 
-/// What is solved.
+/// Factors and right-hand sides of a linear system.
 pub(super) struct Solve<'a, T, const N: usize, const R: usize> {
     pub(super) l: &'a SMatrix<T, N, N>,
     pub(super) inverse: &'a SVector<T, N>,
@@ -79,7 +79,7 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
     #[inline(always)]
     fn evaluate<A: Arithmetic>(&self, out: &mut SMatrix<T, R, N>) {
         let out = &mut out.data.0;
-        // The last rows begin as much earlier as they would be too long, and are solved twice.
+        // The last register overlaps the previous one if fewer rows remain; the common rows are solved twice.
         if A::WIDE && R >= 8 {
             let eights = registers_of_eight(R, true);
             (0..eights).for_each(|k| self.some::<A, 8>(out, 8 * k));
@@ -112,7 +112,8 @@ impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
         for (x, inverse) in x.iter_mut().zip(inverse) {
             *x = *x * A::splat(-*inverse);
         }
-        // Each unknown goes into all others at once: sums of their own would wait for one addition after another.
+        // Each unknown is substituted into all remaining equations at once: a sum for each unknown would wait
+        // for one addition after another.
         for j in (0..N).rev() {
             let own = x[j];
             for i in 0..j {

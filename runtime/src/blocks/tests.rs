@@ -1,10 +1,10 @@
-//! Products and solutions against nalgebra's, for all widths of registers and whatever their last rows leave of one.
+//! Products and solutions compared with nalgebra's, for all register widths and numbers of remaining rows.
 
 use super::solve::Solve;
 use super::*;
 use crate::multiplication::testing::numbers;
 
-/// A product of `R` rows, added to what is there, and solutions of as many right-hand sides.
+/// Checks a product of `R` rows, added to a matrix, and solutions for `R` right-hand sides.
 fn check<A: Arithmetic, const R: usize, const C: usize>() {
     let (a, b, start) = (numbers::<R, 5>(0.0), numbers::<5, C>(1.0), numbers::<R, C>(2.0));
     let mut found = start;
@@ -26,7 +26,7 @@ fn all_rows<A: Arithmetic>() {
             $($(check::<A, $rows, $columns>();)*)*
         };
     }
-    // Whatever is left of four columns, and then of registers of rows.
+    // All remainders of groups of four columns and of registers of rows.
     each! {
         4: 1 4 9 18 25 41;
         5: 1 4 9 18 25 41;

@@ -1,4 +1,4 @@
-//! Derivatives of mechanisms whose states of first order stand among their velocities.
+//! Derivatives of mechanisms with first-order states among their velocities.
 
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, apart, with_diagonal};
@@ -6,7 +6,8 @@ use crate::derivatives::{ByMotion, unknown};
 use crate::{Real, RheonomicDerivatives};
 use nalgebra::{SMatrix, SVector};
 
-/// A matrix of velocities with something for the states below and beside it.
+/// Returns the block matrix of `block` (velocities) with rows for the states below it and columns for the
+/// states next to it.
 fn bordered<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     block: &SMatrix<T, NV, NV>,
     below: &SMatrix<T, NX, NV>,
@@ -156,7 +157,7 @@ where
         )
     }
 
-    /// Not known: nothing tells how momenta change with the states.
+    /// Returns NaN: derivatives of momenta with respect to the states are not available.
     fn generalized_momentum_derivatives(
         &self,
         _t: M::Scalar,
@@ -166,7 +167,7 @@ where
         unknown()
     }
 
-    /// Nor is this.
+    /// Returns NaN: derivatives of momenta with respect to the states are not available.
     fn momentum_rate_derivatives(
         &self,
         _t: M::Scalar,

@@ -1,4 +1,4 @@
-//! A mechanism whose states of first order stand among its velocities.
+//! Mechanism with its first-order states among its velocities.
 
 use super::FirstOrder;
 use crate::constraint::{ConstraintError, Projected};
@@ -9,18 +9,18 @@ use crate::private::put_block;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
-/// A mechanism with its states of first order among its velocities ([`FirstOrder::extended`]): `v` is `[v, x]`.
+/// Mechanism with its first-order states among its velocities ([`FirstOrder::extended`]): `v` is `[v, x]`.
 ///
-/// A state is a velocity without a place: it has no entry of `q`, `q ⊕ dv` does not depend on its displacement, the mass matrix has
-/// a one on its diagonal, and its bias force is its rate without inputs with the sign turned. `M v̇ + h = τ`, its inverse and their
-/// derivatives hold as for any mechanism; energies are those of the mechanism alone. Its number of states is
-/// [`Rheonomic::FIRST_ORDER`].
+/// A state is a velocity without a coordinate: it has no entry in `q`, and `q ⊕ dv` does not depend on its
+/// displacement. Its diagonal entry of the mass matrix is one, and its bias force is its negative rate
+/// without inputs. `M v̇ + h = τ`, the inverse of this equation and their derivatives are valid as for any
+/// mechanism. Energies are those of the mechanism alone. The number of states is [`Rheonomic::FIRST_ORDER`].
 #[derive(Clone, Copy, Debug)]
 pub struct Extended<'m, M, const NV: usize, const NX: usize, const NE: usize> {
     pub(super) mechanism: &'m M,
 }
 
-/// Velocities and states apart.
+/// Splits a vector into velocities and states.
 pub fn apart<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     all: &SVector<T, NE>,
 ) -> (SVector<T, NV>, SVector<T, NX>) {
@@ -28,7 +28,7 @@ pub fn apart<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     (SVector::from_fn(|k, _| at(k)), SVector::from_fn(|k, _| at(NV + k)))
 }
 
-/// Velocities and states in one vector.
+/// Joins velocities and states to one vector.
 pub fn together<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     v: &SVector<T, NV>,
     x: &SVector<T, NX>,
@@ -36,7 +36,7 @@ pub fn together<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     SVector::from_fn(|k, _| v.get(k).or(x.get(k.wrapping_sub(NV))).copied().unwrap_or(T::zero()))
 }
 
-/// A square matrix of velocities, and `diagonal` times the identity for the states.
+/// Returns a square matrix with a block for the velocities, and `diagonal` times the identity for the states.
 pub fn with_diagonal<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     block: &SMatrix<T, NV, NV>,
     diagonal: T,
@@ -46,7 +46,7 @@ pub fn with_diagonal<T: Real, const NV: usize, const NX: usize, const NE: usize>
     all
 }
 
-/// The names, or the units, of all velocities.
+/// Joins the names, or the units, of velocities and states.
 const fn names<const NV: usize, const NX: usize, const NE: usize>(
     velocities: [&'static str; NV],
     states: [&'static str; NX],
@@ -69,7 +69,7 @@ impl<'m, M, const NV: usize, const NX: usize, const NE: usize> Extended<'m, M, N
         Extended { mechanism }
     }
 
-    /// The mechanism in the states among these velocities, and the others.
+    /// Returns the mechanism with the states contained in `all`, and the velocities of `all`.
     pub(super) fn at<T: Real, const NQ: usize, const NU: usize>(
         &self,
         all: &SVector<T, NE>,
@@ -139,7 +139,7 @@ where
         together(&self.mechanism.displacement_rate(q, &dv, &v), &x)
     }
 
-    /// Of the states that the struct holds, should masses depend on them.
+    /// Returns the mass matrix; masses that depend on states use the values stored in the struct.
     fn mass_matrix(&self, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> SMatrix<M::Scalar, NE, NE> {
         with_diagonal::<_, NV, NX, NE>(&self.mechanism.mass_matrix(t, q), nalgebra::one())
     }
@@ -212,7 +212,7 @@ where
         m.kinetic_energy(t, q, &v)
     }
 
-    /// Of the states that the struct holds, should it depend on them.
+    /// Returns the potential energy; terms that depend on states use the values stored in the struct.
     fn potential_energy(&self, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> M::Scalar {
         self.mechanism.potential_energy(t, q)
     }

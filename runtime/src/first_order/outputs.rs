@@ -1,12 +1,12 @@
-//! Outputs of mechanisms with states of first order.
+//! Outputs of mechanisms with first-order states.
 
 use super::FirstOrder;
 use super::extended::{Extended, apart};
 use crate::{OutputDerivatives, OutputJacobians, Outputs, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Derivatives of all outputs by states of first order. `#[mechanism(…, derivatives)]` implements it for mechanisms with such states and
-/// [`Outputs`], without constraints.
+/// Derivatives of all outputs with respect to first-order states. `#[mechanism(…, derivatives)]` implements
+/// the trait for mechanisms with such states and [`Outputs`], without constraints.
 #[diagnostic::on_unimplemented(
     message = "the outputs of `{Self}` have no derivatives by states of first order",
     note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms with constraints have none"
@@ -14,7 +14,7 @@ use nalgebra::{SMatrix, SVector};
 pub trait OutputsByStates<const NQ: usize, const NV: usize, const NU: usize, const NX: usize, const NY: usize>:
     OutputDerivatives<NQ, NV, NU, NY>
 {
-    /// `∂y/∂x` of [`outputs`](Outputs::outputs), while configuration, velocity, acceleration and inputs stay.
+    /// Returns the partial derivatives `∂y/∂x` of [`outputs`](Outputs::outputs).
     fn outputs_by_states(
         &self,
         t: Self::Scalar,
@@ -25,7 +25,7 @@ pub trait OutputsByStates<const NQ: usize, const NV: usize, const NU: usize, con
     ) -> SMatrix<Self::Scalar, NY, NX>;
 }
 
-/// The outputs in the states among the velocities.
+/// Returns outputs that use the states contained in the velocities.
 impl<
     M,
     T,
@@ -91,7 +91,7 @@ where
     }
 }
 
-/// Columns of the velocities, then those of the states.
+/// Joins the columns of the velocities and those of the states.
 fn beside<T: Real, const R: usize, const NV: usize, const NX: usize, const NE: usize>(
     left: &SMatrix<T, R, NV>,
     right: &SMatrix<T, R, NX>,

@@ -1,22 +1,24 @@
-//! What is said of a name that no frame has, at compile time, where nothing allocates: the name, and the names nearest to it.
+//! Compile-time error messages for unknown names, built without allocation: the name, and the names most
+//! similar to it.
 
-/// A message that grows at compile time.
+/// Message assembled at compile time.
 pub struct Message {
     text: [u8; Message::CAPACITY],
     length: usize,
 }
 
-/// Most letters of names that are compared.
+/// Maximum length of names that are compared.
 const LETTERS: usize = 64;
-/// Most edits by which a name is near another.
+/// Maximum edit distance between similar names.
 const EDITS: usize = 3;
-/// Most names that are listed.
+/// Maximum number of names that are listed.
 const LISTED: usize = 8;
 
 impl Message {
     const CAPACITY: usize = 1024;
 
-    /// That a mechanism has no frame of this name, with the names nearest to it, or all if they are few.
+    /// Returns the message that a mechanism has no frame of this name, with the most similar names, or all
+    /// names if there are few.
     pub const fn unknown_frame(mechanism: &str, frames: &[&str], name: &str) -> Message {
         let start = Message::empty().with("`").with(mechanism).with("` has no frame `").with(name).with("`");
         match start.nearest(frames, name) {
@@ -25,7 +27,8 @@ impl Message {
         }
     }
 
-    /// That a list has no such name, with the names nearest to it, or all if they are few.
+    /// Returns the message that a list does not contain this name, with the most similar names, or all names
+    /// if there are few.
     pub const fn unknown_name(list: &str, names: &[&str], name: &str) -> Message {
         let start = Message::empty().with("`").with(list).with("` has no entry `").with(name).with("`");
         start.nearest(names, name).0
@@ -35,7 +38,8 @@ impl Message {
         Message { text: [0; Message::CAPACITY], length: 0 }
     }
 
-    /// With the names nearest to one, or all if they are few; whether there was something to say.
+    /// Appends the names most similar to `name`, or all names if there are few; the flag states whether
+    /// anything was appended.
     const fn nearest(self, names: &[&str], name: &str) -> (Message, bool) {
         let mut message = self;
         let mut first = true;
@@ -49,7 +53,7 @@ impl Message {
                 }
                 k += 1;
             }
-            // Further ones are not listed where there are near ones.
+            // Only names at the smallest distance are listed.
             edits = if first { edits + 1 } else { EDITS + 2 };
         }
         if !first {
@@ -66,9 +70,9 @@ impl Message {
         (if names.is_empty() { message } else { message.with("`") }, true)
     }
 
-    /// Its text.
+    /// Returns the text of the message.
     pub const fn text(&self) -> &str {
-        // What is too long ends at the end of a piece.
+        // A message that is too long ends at the end of a piece.
         match core::str::from_utf8(self.text.split_at(self.length).0) {
             Ok(text) => text,
             Err(_) => "no frame has this name",
@@ -90,8 +94,8 @@ impl Message {
     }
 }
 
-/// How many letters of one name are to be changed, added or left out for the other, capitals apart, if at most three and at
-/// most a third of them; one more if one is a part of the other; else more than that.
+/// Returns the edit distance of two names, ignoring case, if it is at most three and at most a third of the
+/// length; otherwise `EDITS + 1` if one name contains the other, and `EDITS + 2` if not.
 const fn distance(a: &[u8], b: &[u8]) -> usize {
     let least = if a.len() < b.len() { a.len() } else { b.len() };
     let mut limit = b.len() / 3;
@@ -106,7 +110,7 @@ const fn distance(a: &[u8], b: &[u8]) -> usize {
     if a.len() > LETTERS || b.len() > LETTERS || a.len().abs_diff(b.len()) > limit {
         return far;
     }
-    // By rows of the table of Levenshtein's distance, as far from its diagonal as counts.
+    // Rows of the Levenshtein table, restricted to the relevant band around its diagonal.
     let mut row = [EDITS + 1; LETTERS + 2];
     let mut j = 0;
     while j <= b.len() && j <= limit {
@@ -147,7 +151,7 @@ const fn distance(a: &[u8], b: &[u8]) -> usize {
     }
 }
 
-/// True if the letters of the second stand one after another in the first.
+/// Whether `b` is a substring of `a`.
 const fn contains(a: &[u8], b: &[u8]) -> bool {
     let mut start = 0;
     while start + b.len() <= a.len() {

@@ -1,5 +1,5 @@
-//! Second derivatives of `tangent_rate(dv, v)` of ball and free joints, contracted with factors. Blocks are given as lists of
-//! columns.
+//! Second derivatives of `tangent_rate(dv, v)` of ball and free joints, contracted with factors. Blocks are
+//! lists of columns.
 
 use super::jacobians::{ball_tangent_rate_derivatives, even_slopes, free_tangent_rate_derivatives};
 use super::{SERIES_ANGLE, bracket, choose, cross, dot, even_brackets, second_bracket, series};
@@ -7,10 +7,11 @@ use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
-/// A square block, column by column.
+/// Square block, column by column.
 type Block<T, const N: usize> = [[T; N]; N];
 
-/// Second derivatives by `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3).
+/// Returns the second derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse
+/// Jacobian of SE(3).
 fn even_curvatures<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
@@ -27,7 +28,7 @@ fn even_curvatures<T: Real>(square: T) -> [T; 2] {
             let number = constant::<T>;
             let along = half * cos / sin;
             let over = half * half / (sin * sin);
-            // c = along, and x c', x (x c')', x (x (x c')')' by x = θ².
+            // c = along, and x c', x (x c')', x (x (x c')')' with respect to x = θ².
             let value = T::one() - along;
             let first = (along - over) * number(0.5);
             let second = (along - number(3.0) * over + number(2.0) * over * along) * number(0.25);
@@ -42,11 +43,11 @@ fn even_curvatures<T: Real>(square: T) -> [T; 2] {
     )
 }
 
-/// A factor of a power of `ad` as a function of `θ²`: its value, slope and curvature.
+/// Value, first and second derivative of a factor of a power of `ad`, as a function of `θ²`.
 type Factor<T> = [T; 3];
 
-/// The second derivatives by `dv` of `λᵀ (f ad² v + g ad⁴ v)`, with `ad` the bracket with `dv`, whose last three numbers are the
-/// rotation vector.
+/// Returns the second derivatives with respect to `dv` of `λᵀ (f ad² v + g ad⁴ v)`, with `ad` the bracket
+/// with `dv`. The last three numbers of `dv` are the rotation vector.
 fn of_brackets<T: Real, const N: usize>(
     dv: [T; N],
     v: [T; N],
@@ -58,7 +59,7 @@ fn of_brackets<T: Real, const N: usize>(
     let along = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
     let unit = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
     let sum = |a: [T; N], b: [T; N]| core::array::from_fn(|k| a[k] + b[k]);
-    // adᵏ v, and how it changes along each direction.
+    // adᵏ v, and its derivatives along each direction.
     let mut powers = [v; 5];
     let mut changes = [[[T::zero(); N]; N]; 5];
     for k in 1..5 {
@@ -67,7 +68,7 @@ fn of_brackets<T: Real, const N: usize>(
             changes[k][j] = sum(bracket(unit(j), powers[k - 1]), bracket(dv, changes[k - 1][j]));
         }
     }
-    // θ² changes by 2 dvⱼ along a direction of the rotation vector.
+    // The derivative of θ² along a direction of the rotation vector is 2 dvⱼ.
     let by_square = |j: usize| if j + 3 < N { T::zero() } else { two * dv[j] };
     let entry = |i: usize, j: usize| {
         let mut second = [T::zero(); N];
@@ -97,7 +98,7 @@ fn of_brackets<T: Real, const N: usize>(
     block
 }
 
-/// `λᵀ` of derivatives by `dv` for every unit of `v`.
+/// Returns `λᵀ` times the derivatives with respect to `dv`, for every unit vector of `v`.
 fn contracted<T: Real, const N: usize>(lambda: [T; N], by_dv: impl Fn([T; N]) -> Block<T, N>) -> Block<T, N> {
     core::array::from_fn(|j| {
         let columns = by_dv(core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }));
@@ -105,14 +106,15 @@ fn contracted<T: Real, const N: usize>(lambda: [T; N], by_dv: impl Fn([T; N]) ->
     })
 }
 
-/// The second derivatives of `λᵀ tangent_rate(dv, v)` of a ball joint by `dv` twice, and by `dv` (rows) and `v`.
+/// Returns the second derivatives of `λᵀ tangent_rate(dv, v)` of a ball joint: with respect to `dv` twice,
+/// and to `dv` (rows) and `v`.
 pub fn ball_tangent_rate_second_derivatives<T: Real>(
     dv: [T; 3],
     v: [T; 3],
     lambda: [T; 3],
 ) -> (Block<T, 3>, Block<T, 3>) {
     let square = dot(dv, dv);
-    // The factor falls with θ² by that of the fourth bracket of SE(3).
+    // The derivative of the factor with respect to θ² is the negative factor of the fourth bracket of SE(3).
     let ([_, fall], [_, slope]) = (even_brackets(square), even_slopes(square));
     let factors = [[second_bracket(square), -fall, -slope], [T::zero(); 3]];
     (
@@ -121,7 +123,8 @@ pub fn ball_tangent_rate_second_derivatives<T: Real>(
     )
 }
 
-/// The second derivatives of `λᵀ tangent_rate(dv, v)` of a free joint by `dv` twice, and by `dv` (rows) and `v`; linear parts first.
+/// Returns the second derivatives of `λᵀ tangent_rate(dv, v)` of a free joint, linear parts first: with
+/// respect to `dv` twice, and to `dv` (rows) and `v`.
 pub fn free_tangent_rate_second_derivatives<T: Real>(
     dv: [T; 6],
     v: [T; 6],
@@ -140,12 +143,12 @@ pub fn free_tangent_rate_second_derivatives<T: Real>(
 mod tests {
     use super::*;
 
-    /// Numbers between −1 and 1 that repeat nothing.
+    /// Returns pseudorandom numbers between `−size` and `size`.
     fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
 
-    /// Central differences of fourth order, column by column, of `λᵀ` of a block of columns.
+    /// Returns central differences of fourth order, column by column, of `λᵀ` times a block of columns.
     fn slope<const N: usize>(lambda: [f64; N], f: impl Fn([f64; N]) -> Block<f64, N>) -> Block<f64, N> {
         let h = 1e-3;
         core::array::from_fn(|j| {
@@ -192,7 +195,7 @@ mod tests {
         }
     }
 
-    /// On both sides of the limit series and closed form agree.
+    /// Checks that series and closed form agree on both sides of the limit.
     #[test]
     fn the_series_meets_the_closed_form() {
         let [below, above] = [1.0 - 1e-12, 1.0 + 1e-12].map(|x| even_curvatures(SERIES_ANGLE * x));

@@ -1,5 +1,5 @@
-//! Jacobians of the exponentials of SO(3) and SE(3): how `q ⊕ dv` and `tangent_rate(dv, v)` of ball and free joints change to
-//! first order. Blocks are given as lists of columns; displacements are measured in body axes, as everywhere.
+//! Jacobians of the exponentials of SO(3) and SE(3): first derivatives of `q ⊕ dv` and `tangent_rate(dv, v)`
+//! of ball and free joints. Blocks are lists of columns; displacements are expressed in body axes.
 
 use super::{
     add, ball_tangent_rate, bracket, choose, cross, dot, even_brackets, exponential, free_integrate,
@@ -9,10 +9,11 @@ use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
-/// A square block, column by column.
+/// Square block, column by column.
 type Block<T, const N: usize> = [[T; N]; N];
 
-/// The columns that a linear function makes of the unit vectors. No `map` of the standard library, which is not always inlined.
+/// Returns the columns of a linear function. The standard library's `map` is not used, because it is not
+/// always inlined.
 #[inline(always)]
 fn columns<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N> {
     let mut all = [[T::zero(); N]; N];
@@ -24,8 +25,9 @@ fn columns<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N>
     all
 }
 
-/// The columns that a linear function of SE(3) makes of the unit vectors, linear parts first. What it makes of an angular part it makes of a
-/// linear one likewise, and nothing else: motions are angular ones with dual numbers (Selig, *Geometric Fundamentals of Robotics*, § 7.5).
+/// Returns the columns of a linear function of SE(3), linear parts first. The linear columns follow from the
+/// angular ones, because motions of SE(3) are rotations with dual numbers (Selig, *Geometric Fundamentals of
+/// Robotics*, § 7.5).
 #[inline(always)]
 fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
     let mut all = [[T::zero(); 6]; 6];
@@ -40,9 +42,9 @@ fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
     all
 }
 
-/// How the result of `q ⊕ dv` of a ball joint moves, in its body axes, with `q` moved in body axes and with `dv`:
-/// `exp(−dv)` and the right Jacobian of SO(3) (Chirikjian, *Stochastic Models, Information Theory, and Lie Groups*, vol. 2,
-/// 2012, § 10.6).
+/// Returns the derivatives of `q ⊕ dv` of a ball joint, in body axes, with respect to displacements of `q`
+/// and to `dv`: `exp(−dv)` and the right Jacobian of SO(3) (Chirikjian, *Stochastic Models, Information
+/// Theory, and Lie Groups*, vol. 2, 2012, § 10.6).
 pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
     let back = exponential(dv.map(|x| -x));
     let [a, b] = left_jacobian(dot(dv, dv));
@@ -53,11 +55,11 @@ pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T,
     (columns(|e| rotated(back, e)), columns(right))
 }
 
-/// How `tangent_rate(dv, v)` of a ball joint changes with `dv` and with `v`.
+/// Returns the derivatives of `tangent_rate(dv, v)` of a ball joint with respect to `dv` and to `v`.
 pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
     let square = dot(dv, dv);
     let second = second_bracket(square);
-    // The factor of the second bracket falls with θ² by that of the fourth.
+    // The derivative of the second bracket's factor with respect to θ² is the negative factor of the fourth.
     let [_, slope] = even_brackets(square);
     let first = cross(dv, v);
     let twice = cross(dv, first);
@@ -70,14 +72,16 @@ pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T
     (columns(by_dv), columns(|e| ball_tangent_rate(dv, e)))
 }
 
-/// Factors of `ad`, `ad²`, `ad³` and `ad⁴` in the left Jacobian of SE(3), `Σ adᵏ / (k + 1)!`, of `θ²`: `ad` has the minimal
-/// polynomial `ad (ad² + θ²)²` (Selig, *Geometric Fundamentals of Robotics*, § 4.6).
+/// Returns the factors of `ad`, `ad²`, `ad³` and `ad⁴` in the left Jacobian of SE(3), `Σ adᵏ / (k + 1)!`, as
+/// functions of `θ²`: `ad` has the minimal polynomial `ad (ad² + θ²)²` (Selig, *Geometric Fundamentals of
+/// Robotics*, § 4.6).
 fn jacobian_factors<T: Real>(square: T) -> [T; 4] {
     choose(
         square,
         constant(1.0),
         |square| {
-            // adᵐ⁺²ⁿ is, by the double root, n (−θ²)ⁿ⁻¹ adᵐ⁺² − (n − 1) (−θ²)ⁿ adᵐ: 1 / (2 n + 2)! and 1 / (2 n + 3)! of these.
+            // Because of the double root, adᵐ⁺²ⁿ is n (−θ²)ⁿ⁻¹ adᵐ⁺² − (n − 1) (−θ²)ⁿ adᵐ; its weights are 1
+            // / (2 n + 2)! and 1 / (2 n + 3)!.
             let mut factors = [constant::<T>(0.5), constant(1.0 / 6.0), T::zero(), T::zero()];
             let (mut power, mut odd, mut even) = (T::one(), 0.5, 1.0 / 6.0);
             for n in 1_u8..=9 {
@@ -112,8 +116,8 @@ fn jacobian_factors<T: Real>(square: T) -> [T; 4] {
     )
 }
 
-/// How the result of `q ⊕ dv` of a free joint moves, in its body axes, with `q` moved in body axes and with `dv`: the adjoint
-/// of `exp(−dv)` and the right Jacobian of SE(3); linear parts first.
+/// Returns the derivatives of `q ⊕ dv` of a free joint, in body axes, with respect to displacements of `q`
+/// and to `dv`: the adjoint of `exp(−dv)` and the right Jacobian of SE(3); linear parts first.
 pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
@@ -135,7 +139,8 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
     (dual_columns(carried), dual_columns(right))
 }
 
-/// Derivatives by `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of SE(3).
+/// Returns the derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of
+/// SE(3).
 pub(super) fn even_slopes<T: Real>(square: T) -> [T; 2] {
     choose(
         square,
@@ -148,7 +153,7 @@ pub(super) fn even_slopes<T: Real>(square: T) -> [T; 2] {
             let over = half * half / (sin * sin);
             let value = T::one() - along;
             let slope = (along - over) * constant(0.5);
-            // By θ², times it: value and slope.
+            // Derivatives with respect to θ², times θ²: of value and slope.
             let value_by = -slope;
             let slope_by = (along - constant::<T>(3.0) * over + two * over * along) * constant(0.25);
             let second = two * value_by + slope_by - (two * value + slope);
@@ -158,7 +163,8 @@ pub(super) fn even_slopes<T: Real>(square: T) -> [T; 2] {
     )
 }
 
-/// How `tangent_rate(dv, v)` of a free joint changes with `dv` and with `v`; linear parts first.
+/// Returns the derivatives of `tangent_rate(dv, v)` of a free joint with respect to `dv` and to `v`; linear
+/// parts first.
 pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
@@ -171,7 +177,7 @@ pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T
     let b4 = bracket(dv, b3);
     let by_dv = |e: [T; 6]| {
         let [_, _, _, x, y, z] = e;
-        // θ² changes by twice this.
+        // Derivative of θ² along `e`.
         let along = constant::<T>(2.0) * dot(turn, [x, y, z]);
         let c1 = bracket(e, v);
         let c2 = plus(bracket(e, b1), T::one(), bracket(dv, c1));
@@ -189,12 +195,12 @@ mod tests {
     use super::*;
     use crate::lie::{ball_difference, ball_integrate, free_difference};
 
-    /// Numbers between −1 and 1 that repeat nothing.
+    /// Returns pseudorandom numbers between `−size` and `size`.
     fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
 
-    /// Central differences of fourth order, column by column.
+    /// Returns central differences of fourth order, column by column.
     fn slope<const N: usize, const M: usize>(f: impl Fn([f64; N]) -> [f64; M]) -> [[f64; M]; N] {
         let h = 1e-3;
         core::array::from_fn(|j| {
@@ -252,7 +258,7 @@ mod tests {
         }
     }
 
-    /// On both sides of the limits series and closed forms agree.
+    /// Checks that series and closed forms agree on both sides of the limits.
     #[test]
     fn series_meet_closed_forms() {
         let near = |f: fn(f64) -> [f64; 2], x: f64| {

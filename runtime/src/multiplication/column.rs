@@ -1,28 +1,29 @@
-//! Columns of matrices in registers.
+//! Columns of matrices in SIMD registers.
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Vector};
 
-/// How many registers of eight numbers hold most of a column of so many, where there are such registers.
+/// Returns the number of registers of eight numbers for a column of this length; zero without such registers.
 #[must_use]
 pub const fn registers_of_eight(numbers: usize, wide: bool) -> usize {
     if !wide || numbers < 8 { 0 } else { numbers / 8 + (numbers % 8 > 4) as usize }
 }
 
-/// How many registers of four numbers hold the rest.
+/// Returns the number of registers of four numbers for the remainder of the column.
 #[must_use]
 pub const fn registers_of_four(numbers: usize, wide: bool) -> usize {
     numbers.saturating_sub(8 * registers_of_eight(numbers, wide)).div_ceil(4)
 }
 
-/// A column in `E` registers of eight numbers, then `F` of four. The last begins as much earlier as it would be too long.
+/// Column in `E` registers of eight numbers, then `F` of four. The last register overlaps the previous one if
+/// fewer numbers remain.
 #[derive(Clone, Copy)]
 pub struct Column<A, T, const E: usize, const F: usize> {
     eights: [Vector<A, T, 8>; E],
     fours: [Vector<A, T, 4>; F],
 }
 
-/// Columns of a matrix, beginning where lines of the cache do.
+/// Columns of a matrix, aligned to cache lines.
 #[repr(align(64))]
 pub struct Columns<A, T, const E: usize, const F: usize, const K: usize> {
     eights: [[Vector<A, T, 8>; E]; K],
@@ -30,13 +31,13 @@ pub struct Columns<A, T, const E: usize, const F: usize, const K: usize> {
 }
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Columns<A, T, E, F, K> {
-    /// All zero.
+    /// Returns zero columns.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { eights: [[A::splat(T::zero()); E]; K], fours: [[A::splat(T::zero()); F]; K] }
     }
 
-    /// Reads a column where it is to be: a whole one would be moved once more.
+    /// Reads a column directly into its position, which avoids a copy of the whole column.
     #[inline(always)]
     pub fn set(&mut self, k: usize, column: &[T]) {
         if let (Some(eights), Some(fours)) = (self.eights.get_mut(k), self.fours.get_mut(k)) {
@@ -59,22 +60,22 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Sou
     }
 }
 
-// No function of the standard library that takes closures: those are not always inlined.
+// No functions of the standard library that take closures: they are not always inlined.
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> {
-    /// Zero in every row.
+    /// Returns a zero column.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { eights: [A::splat(T::zero()); E], fours: [A::splat(T::zero()); F] }
     }
 
-    /// The same number in every row.
+    /// Returns a column with the same number in every row.
     #[inline(always)]
     pub fn all(x: T) -> Self {
         Self { eights: [A::splat(x); E], fours: [A::splat(x); F] }
     }
 
-    /// One minus this.
+    /// Returns one minus this column, in every row.
     #[inline(always)]
     pub fn complement(&self) -> Self {
         let mut rest = Self::all(T::one());
@@ -82,7 +83,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         rest
     }
 
-    /// Row by row.
+    /// Multiplies by another column, row by row.
     #[inline(always)]
     pub fn multiply(&mut self, other: &Self) {
         for (x, y) in self.eights.iter_mut().zip(&other.eights) {
@@ -93,14 +94,14 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         }
     }
 
-    /// Adds a multiple of another, or subtracts it.
+    /// Adds a multiple of another column, or subtracts it.
     #[inline(always)]
     pub fn add_multiple<const MINUS: bool>(&mut self, factor: T, other: &Self) {
         add_multiples::<A, T, 8, MINUS>(&mut self.eights, factor, &other.eights);
         add_multiples::<A, T, 4, MINUS>(&mut self.fours, factor, &other.fours);
     }
 
-    /// A column of as many rows as the registers hold, or fewer.
+    /// Reads a column of at most as many rows as the registers hold.
     #[inline(always)]
     pub fn read(column: &[T]) -> Self {
         let mut all = Self::zero();
@@ -108,7 +109,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         all
     }
 
-    /// Into a column of as many rows as it was read from.
+    /// Writes to a column of as many rows as it was read from.
     #[inline(always)]
     pub fn write(&self, column: &mut [T]) {
         for (k, register) in self.eights.iter().enumerate() {
@@ -120,7 +121,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
     }
 }
 
-/// Adds multiples of others, or subtracts them.
+/// Adds multiples of other columns, or subtracts them.
 #[inline(always)]
 fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
     sums: &mut [Vector<A, T, W>],
@@ -133,7 +134,7 @@ fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
     }
 }
 
-/// Reads a column.
+/// Reads a column into registers.
 #[inline(always)]
 fn read<A: Arithmetic, T: Real, const E: usize, const F: usize>(
     column: &[T],
@@ -148,7 +149,7 @@ fn read<A: Arithmetic, T: Real, const E: usize, const F: usize>(
     }
 }
 
-/// So many numbers from one on, or as many earlier as there are too few.
+/// Reads `W` numbers from index `from` on, or the last `W` numbers if fewer remain.
 #[inline(always)]
 pub fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -> Vector<A, T, W> {
     let rest = column.get(from.min(column.len().saturating_sub(W))..).unwrap_or(&[]);
@@ -163,7 +164,7 @@ pub fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -
     A::lanes(numbers)
 }
 
-/// The same for writing.
+/// Writes `W` numbers from index `from` on, or to the last `W` entries if fewer remain.
 #[inline(always)]
 pub fn put<A: Arithmetic, T: Real, const W: usize>(
     register: &Vector<A, T, W>,
@@ -181,12 +182,12 @@ pub fn put<A: Arithmetic, T: Real, const W: usize>(
     }
 }
 
-/// Columns that multiples are taken of.
+/// Columns of which multiples are added.
 pub trait Source<A, T, const E: usize, const F: usize> {
-    /// How many there are.
+    /// Number of columns.
     const COUNT: usize;
 
-    /// One of them; zeros if there is none.
+    /// Returns a column; zeros if the index is out of range.
     fn column(&self, k: usize) -> Column<A, T, E, F>;
 }
 

@@ -1,5 +1,6 @@
-//! The inverse of a mass matrix in parts (`mechanics/derivatives/trunk.rs` of the compiler), as loops: for a large mechanism
-//! straight lines of these products would be longer than what the processor can fetch in the time.
+//! Inverse of a block-structured mass matrix (`mechanics/derivatives/trunk.rs` of the compiler), in loops:
+//! for a large mechanism, straight-line code of these products would exceed the processor's instruction fetch
+//! rate.
 
 use super::column::Column;
 use super::{Range, Run, Tiling, is_long};
@@ -10,9 +11,9 @@ use core::marker::PhantomData;
 use core::slice::from_ref;
 use nalgebra::SMatrix;
 
-/// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`: the matrix has `H` in the columns of the trunk and `C⁻¹` in the others, whose
-/// `factors` are columns of `Gᵀ`. Columns are read in parts as for [`minus_products`](super::minus_products), but all rows
-/// together.
+/// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`: on entry, the matrix contains `H` in the columns of the trunk and
+/// `C⁻¹` in the others, whose `factors` are columns of `Gᵀ`. Columns are read in tiles as for
+/// [`minus_products`](super::minus_products), but with all rows together.
 #[inline]
 pub fn complete<A: Arithmetic, T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, N>,
@@ -42,17 +43,18 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize> V
     }
 }
 
-/// Columns that begin where lines of the cache do if their lengths allow it: registers that are read right after they were
-/// written must not be in two lines.
+/// Columns aligned to cache lines, if their lengths allow it: registers that are read right after they were
+/// written must not cross a cache line.
 #[repr(align(64))]
 struct Lines<X>(X);
 
-/// Runs of the velocities of a limb.
+/// Ranges of the velocities of a limb.
 pub type Limb<'a> = &'a [Range];
 
-/// Inverts a mass matrix `M = [A B; Bᵀ C]`: the matrix has `C⁻¹` in the columns of the limbs, whatever in those of the trunk;
-/// `borders` are the rows of the trunk in `M` by column, filled up with zeros; the runs have their factors by column. Then it
-/// multiplies given columns with the inverse. `P` and `Q` tell how columns of `N` and of `L` numbers are read.
+/// Inverts a mass matrix `M = [A B; Bᵀ C]`. On entry, the matrix contains `C⁻¹` in the columns of the limbs;
+/// those of the trunk are ignored. `borders` are the rows of the trunk in `M` by column, padded with zeros;
+/// the runs contain their factors by column. The function then multiplies the columns `solved` by the
+/// inverse. `P` and `Q` define how columns of `N` and of `L` numbers are read.
 #[inline]
 pub fn invert<
     A: Arithmetic,
@@ -100,7 +102,7 @@ impl<
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
         let Inversion { matrix, trunk, borders, limbs, runs, solved, .. } = self;
-        // Gᵀ = −B C⁻¹ by columns, and S = A + B G, which begins with A.
+        // Gᵀ = −B C⁻¹ by columns, and the Schur complement S = A + B G, which is initialised with A.
         let mut g = Lines([[T::zero(); L]; N]);
         let mut inner = Lines([[T::zero(); L]; L]);
         for (column, k) in inner.0.iter_mut().zip(trunk) {
@@ -144,7 +146,8 @@ impl<
             let mut x = [[T::zero(); N]];
             P::add_multiples::<A, N, N, false>(&mut x, &matrix.data.0, from_ref(column), (0, N));
             if limbs.is_empty() {
-                // The inverse of an ill-conditioned matrix is exact enough for what is left over, not for the whole.
+                // The inverse of an ill-conditioned matrix is accurate enough for the residual, but not for
+                // the whole solution (iterative refinement).
                 let (mut rest, mut left) = ([[T::zero(); L]], [T::zero(); N]);
                 for (rest, k) in rest[0].iter_mut().zip(trunk) {
                     *rest = column.get(k).copied().unwrap_or(T::zero());
@@ -160,7 +163,7 @@ impl<
     }
 }
 
-/// The rows of a matrix as columns, four by four: so they are turned round in registers.
+/// Returns the rows of a matrix as columns, in blocks of four by four, transposed in registers.
 #[inline(always)]
 fn transposed<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) -> [[T; N]; L] {
     let mut rows = [[T::zero(); N]; L];
@@ -187,9 +190,9 @@ fn set<T, const N: usize>(row: &mut [T; N], k: usize, x: T) {
     }
 }
 
-/// Puts the inverse of a symmetric positive definite matrix, which begins the columns, in its place by Gauss–Jordan elimination
-/// without interchanges (Golub and Van Loan 2013, ch. 3.2; such a matrix needs none). Rows are divided by their pivots at the
-/// end, so that no row differs from the others on the way.
+/// Replaces the leading columns, a symmetric positive definite matrix, by its inverse through Gauss–Jordan
+/// elimination without interchanges (Golub and Van Loan 2013, ch. 3.2; such a matrix needs none). Rows are
+/// divided by their pivots at the end, so that all rows are treated equally during the elimination.
 #[inline(always)]
 pub(super) fn eliminate<
     A: Arithmetic,
@@ -202,7 +205,7 @@ pub(super) fn eliminate<
     columns: &mut [[T; N]; N],
 ) {
     let columns = columns.split_at_mut(K.min(N)).0;
-    // A one among zeros: read from an earlier place it stands in a later row.
+    // A one among zeros: reading from an earlier index yields a unit vector of a later row.
     let mut one = [[T::zero(); N]; 2];
     set(&mut one[1], 0, T::one());
     let mut divisors = [T::zero(); N];
@@ -268,7 +271,7 @@ mod tests {
         everywhere!(completed by N, (&start, &factors, &runs, &expected));
     }
 
-    /// The rows of a trunk in a mass matrix, by column.
+    /// Returns the rows of a trunk in a mass matrix, by column.
     fn borders<const N: usize, const K: usize, const L: usize>(
         mass: &SMatrix<f64, N, N>,
         trunk: [usize; K],
@@ -277,14 +280,14 @@ mod tests {
         core::array::from_fn(|k| core::array::from_fn(|t| entry(t, k)))
     }
 
-    /// A mass matrix of two limbs with a trunk, and what is expected of it.
+    /// Returns a mass matrix of two limbs with a trunk.
     fn branched<const N: usize>(trunk: [usize; 3], limbs: &[&[usize]]) -> SMatrix<f64, N, N> {
         let limb = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
         let a = numbers::<N, N>(6.0);
         SMatrix::from_fn(|i, j| match (limb(i), limb(j)) {
             _ if i == j => 10.0 + a[(i, i)],
             (Some(one), Some(other)) if one != other => 0.0,
-            // The first limb does not move the trunk's last.
+            // The first limb does not depend on the last coordinate of the trunk.
             (Some(0), None) if j == trunk[2] => 0.0,
             (None, Some(0)) if i == trunk[2] => 0.0,
             _ => a[(i.min(j), i.max(j))],
@@ -295,7 +298,7 @@ mod tests {
     fn a_mass_matrix_is_inverted_in_parts() {
         const N: usize = 14;
         const TRUNK: [usize; 3] = [9, 1, 7];
-        // The second limb is not in one piece.
+        // The second limb is not contiguous.
         const LIMBS: [&[usize]; 2] = [&[2, 3, 4, 5, 6], &[0, 8, 10, 11, 12, 13]];
         fn inverted<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
@@ -354,7 +357,7 @@ mod tests {
         type Inner = (rows_of!(16, true), rows_of!(16, false));
         let factor = numbers::<N, N>(9.0);
         let mass = factor * factor.transpose() + SMatrix::identity();
-        // Pivots whose sizes differ by orders of magnitude.
+        // Pivots whose magnitudes differ by orders of magnitude.
         let scale = SMatrix::<f64, N, 1>::from_fn(|k, _| 4.0_f64.powi(k as i32 - 6));
         everywhere!(inverted by N, (&mass, &scale));
     }
@@ -381,7 +384,7 @@ mod tests {
             assert!(error < 1e-13);
         }
         type Inner = (rows_of!(16, true), rows_of!(16, false));
-        // Of rank two but for small numbers in the diagonal.
+        // Rank two, except for small numbers on the diagonal.
         let factor = numbers::<N, N>(9.0);
         let mass = factor * factor.transpose() + SMatrix::identity() * 1e-8;
         everywhere!(solved by N, (&mass, &numbers::<N, 2>(10.0)));

@@ -6,13 +6,13 @@ use crate::Real;
 use crate::arithmetic::Arithmetic;
 use nalgebra::SMatrix;
 
-/// How many registers hold sums at a time. The others are for what is added.
+/// Returns the number of registers that store sums; the others store operands.
 const fn sums(wide: bool) -> usize {
     if wide { 24 } else { 12 }
 }
 
-/// Puts minus the products of a matrix with columns in the place of these, `C` at a time if there are registers enough; returns
-/// those that are left. A single sum has to wait for every addition.
+/// Replaces columns by minus their products with a matrix, `C` at a time if there are enough registers;
+/// returns the remaining columns. Several sums at a time hide the latency of the additions.
 #[inline(always)]
 pub fn multiply<
     'a,
@@ -48,7 +48,7 @@ pub fn multiply<
     rest
 }
 
-/// Minus the rows from one on of the products with columns.
+/// Returns minus the products with columns, for the rows from a given one on.
 #[inline(always)]
 pub fn minus_sums<
     A: Arithmetic,
@@ -77,7 +77,7 @@ pub fn minus_sums<
     sums
 }
 
-/// Reads columns.
+/// Reads several columns into registers.
 #[inline(always)]
 pub fn read_each<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const C: usize>(
     columns: &[[T; N]; C],
@@ -89,7 +89,7 @@ pub fn read_each<A: Arithmetic, T: Real, const E: usize, const F: usize, const N
     all
 }
 
-/// Writes sums to the rows of columns from one on.
+/// Writes sums to the rows of columns from a given row on.
 #[inline(always)]
 pub fn write<
     A: Arithmetic,
@@ -111,7 +111,7 @@ pub fn write<
     }
 }
 
-/// Adds multiples to columns, or subtracts them, `C` at a time if there are registers enough.
+/// Adds multiples to columns, or subtracts them, `C` at a time if there are enough registers.
 #[inline(always)]
 pub fn add_all<
     A: Arithmetic,
@@ -134,7 +134,7 @@ pub fn add_all<
     add::<A, T, S, E, F, N, V, MINUS, 1>(sums, source, factors, range);
 }
 
-/// Adds multiples to as many columns as are left to be taken `C` at a time; returns the others with their factors.
+/// Adds multiples to the remaining columns, `C` at a time; returns the other columns with their factors.
 #[inline(always)]
 pub fn add<
     'a,
@@ -175,7 +175,7 @@ pub fn add<
     (columns_left, factors_left)
 }
 
-/// Adds products of columns and rows, to so many columns at a time.
+/// Adds products of columns and rows, to `C` columns at a time.
 #[inline(always)]
 pub fn add_products<
     A: Arithmetic,

@@ -1,4 +1,4 @@
-//! What the tests of products and inverses have in common.
+//! Helpers common to the tests of products and inverses.
 
 use nalgebra::SMatrix;
 
@@ -6,14 +6,15 @@ pub fn numbers<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> 
     SMatrix::from_fn(|i, j| (seed + (i * 7 + 5 * j) as f64).sin())
 }
 
-/// The tile of a given number of rows, in registers of eight numbers or of four.
+/// Expands to the tile of a given number of rows, in registers of eight numbers or of four.
 macro_rules! rows_of {
     ($rows:expr, $wide:literal) => {
         Tile<{ $rows }, { registers_of_eight($rows, $wide) }, { registers_of_four($rows, $wide) }>
     };
 }
 
-/// Calls a function for the compilation's target, with both ways to read a matrix, and for what the processor has.
+/// Calls a function for the compilation target with both tilings, and for the instruction sets of the
+/// processor.
 macro_rules! everywhere {
     ($function:ident by $rows:expr, $arguments:tt) => {
         $function::<Compiled, rows_of!($rows, true), _, _> $arguments;

@@ -1,10 +1,10 @@
-//! Products against nalgebra's, for all widths of registers.
+//! Products compared with nalgebra's, for all register widths.
 
 use super::testing::{everywhere, numbers, rows_of};
 use super::*;
 use crate::arithmetic::Compiled;
 
-/// Compares two products with minus one that is given.
+/// Compares minus the product of two matrices with nalgebra's.
 fn product<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
     a: &SMatrix<f64, N, N>,
     b: &SMatrix<f64, N, M>,

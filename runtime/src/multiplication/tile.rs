@@ -1,4 +1,4 @@
-//! Tiles: how many rows of a matrix are calculated together, and in which registers.
+//! Tiles: the number of rows of a matrix computed together, and their registers.
 
 use super::column::Columns;
 use super::kernels::{add_all, add_products, multiply};
@@ -7,13 +7,13 @@ use crate::Real;
 use crate::arithmetic::Arithmetic;
 use nalgebra::SMatrix;
 
-/// How the columns of a matrix are read.
+/// Tiling of the columns of a matrix.
 pub trait Tiling<T: Real, const N: usize> {
-    /// Puts minus the products of a matrix with columns in the place of these, outside whose given rows there are zeros.
+    /// Replaces columns by minus their products with a matrix; the columns are zero outside the given rows.
     fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
 
-    /// Adds to each of some columns its multiples of vectors, or subtracts them; of the vectors and their factors only some
-    /// neighbouring ones are taken.
+    /// Adds multiples of vectors to columns, or subtracts them; only the vectors and factors in `range` are
+    /// used.
     fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
         sums: &mut [[T; N]],
         vectors: &[[T; N]; W],
@@ -21,7 +21,8 @@ pub trait Tiling<T: Real, const N: usize> {
         range: Range,
     );
 
-    /// Adds the products of columns `vectors` with rows `factors`, some neighbouring ones of both. `N` is a multiple of four.
+    /// Adds the products of the columns `vectors` and the rows `factors` in `range`. `N` is a multiple of
+    /// four.
     fn add_products<A: Arithmetic, const W: usize>(
         sums: &mut [[T; N]; N],
         vectors: &[[T; N]; W],
@@ -29,7 +30,7 @@ pub trait Tiling<T: Real, const N: usize> {
         range: Range,
     );
 
-    /// Does what [`complete`] says.
+    /// Computes [`complete`] for this tiling.
     fn complete<A: Arithmetic, const K: usize, const V: usize>(
         matrix: &mut SMatrix<T, N, N>,
         trunk: [usize; K],
@@ -37,11 +38,11 @@ pub trait Tiling<T: Real, const N: usize> {
         runs: &[Run],
     );
 
-    /// Puts the inverse of a symmetric positive definite matrix of `K` rows, which begins the columns, in its place.
+    /// Replaces the leading columns, a symmetric positive definite matrix of `K` rows, by its inverse.
     fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]);
 }
 
-/// `R` rows at a time, in `E` registers of eight numbers and `F` of four.
+/// Tile of `R` rows, in `E` registers of eight numbers and `F` of four.
 #[derive(Clone, Copy, Debug)]
 pub struct Tile<const R: usize, const E: usize, const F: usize>;
 
@@ -100,7 +101,7 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
     }
 }
 
-/// The first where registers hold eight numbers, else the second.
+/// Selects the first tiling if registers hold eight numbers, otherwise the second.
 impl<T: Real, Wide: Tiling<T, N>, Narrow: Tiling<T, N>, const N: usize> Tiling<T, N> for (Wide, Narrow) {
     #[inline(always)]
     fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
