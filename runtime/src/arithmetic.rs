@@ -1,55 +1,57 @@
-//! The arithmetic of generated functions: that of the target they are compiled for, or that of the processor they run on.
+//! Arithmetic of generated functions: that of the compilation target, or that of the processor at run time.
 //!
-//! A generated body is written once, generic over [`Arithmetic`]: [`Compiled`] has the instructions of the compilation's
-//! target; large functions may run with more of them ([`dispatch`](dispatch::dispatch)). Everything of a body is inlined, so that it is compiled
-//! with the features of the function that it ends up in. Without optimisation nothing here has to be inlined: each call would
-//! keep its arguments on the stack of the body, which is then twice as large.
+//! A generated body is generic over [`Arithmetic`]. [`Compiled`] uses the instructions of the compilation
+//! target; large functions may be dispatched at run time to more instructions
+//! ([`dispatch`](dispatch::dispatch)). A body and all functions that it calls are inlined, so that they are
+//! compiled with the target features of the enclosing function. Without optimisation, inlining is not forced:
+//! each inlined call would store its arguments on the stack of the body and double its size.
 
-/// Gives the elementary functions to a macro, which makes something of each.
+/// Passes the list of elementary functions to the macro `$make`.
 macro_rules! elementary_functions {
     ($make:ident) => {
         $make! {
-            /// The square root; NaN for `x < 0`.
+            /// Returns the square root; NaN for `x < 0`.
             sqrt(x);
-            /// The sine of `x`, rad.
+            /// Returns the sine of `x`, rad.
             sin(x);
-            /// The cosine of `x`, rad.
+            /// Returns the cosine of `x`, rad.
             cos(x);
-            /// The tangent of `x`, rad.
+            /// Returns the tangent of `x`, rad.
             tan(x);
-            /// The arc sine, rad; NaN outside [−1, 1].
+            /// Returns the arc sine, rad; NaN outside [−1, 1].
             asin(x);
-            /// The arc cosine, rad; NaN outside [−1, 1].
+            /// Returns the arc cosine, rad; NaN outside [−1, 1].
             acos(x);
-            /// The arc tangent, rad.
+            /// Returns the arc tangent, rad.
             atan(x);
-            /// The angle of the point (`x`, `y`), rad: `atan2(y, x)` as in the standard library.
+            /// Returns the angle of the point (`x`, `y`), rad: `atan2(y, x)` as in the standard library.
             atan2(y, x);
-            /// The hyperbolic sine.
+            /// Returns the hyperbolic sine.
             sinh(x);
-            /// The hyperbolic cosine.
+            /// Returns the hyperbolic cosine.
             cosh(x);
-            /// The hyperbolic tangent.
+            /// Returns the hyperbolic tangent.
             tanh(x);
-            /// The exponential.
+            /// Returns the exponential.
             exp(x);
-            /// The natural logarithm; NaN for `x < 0`.
+            /// Returns the natural logarithm; NaN for `x < 0`.
             ln(x);
-            /// The power `x` to `y`; NaN for `x < 0` and a `y` that is no integer.
+            /// Returns `x` to the power `y`; NaN for `x < 0` and noninteger `y`.
             powf(x, y);
-            /// The smaller one; the other one if one is NaN.
+            /// Returns the smaller number; the other number if one is NaN.
             min(x, y);
-            /// The larger one; the other one if one is NaN.
+            /// Returns the larger number; the other number if one is NaN.
             max(x, y);
-            /// The magnitude.
+            /// Returns the magnitude.
             abs(x);
-            /// 1 or −1 with the sign of `x`, also for zeros.
+            /// Returns 1 or −1 with the sign of `x`, also for zeros.
             signum(x);
-            /// The temperature of the standard atmosphere at a geopotential height, m: K.
+            /// Returns the temperature, K, of the standard atmosphere at a geopotential height, m.
             isa_temperature(h);
-            /// By how much it changes with the height, K/m.
+            /// Returns the derivative, K/m, of the standard atmosphere's temperature with respect to the
+            /// height.
             isa_lapse_rate(h);
-            /// The pressure of the standard atmosphere at a geopotential height, m: Pa.
+            /// Returns the pressure, Pa, of the standard atmosphere at a geopotential height, m.
             isa_pressure(h);
         }
     };
@@ -64,7 +66,7 @@ use crate::{Lanes, Real, Table};
 pub use number::{Elementary, Number};
 pub use vector::Vector;
 
-/// The instructions of the compilation's target.
+/// Arithmetic with the instructions of the compilation target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compiled;
 
@@ -79,51 +81,51 @@ macro_rules! elementary {
     )+};
 }
 
-/// What generated bodies call: operations on numbers (every [`Real`](crate::Real)) and on lanes (`Vector`).
+/// Operations that generated bodies call, on numbers (every [`Real`](crate::Real)) and on lanes (`Vector`).
 pub trait Arithmetic: Registers {
-    /// `a b + c`, fused where the hardware can.
+    /// Returns `a b + c`, fused if the hardware supports it.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_add<X: Number<Self>>(a: X, b: X, c: X) -> X {
         if Self::FUSED { X::fused(a, b, c) } else { a * b + c }
     }
 
-    /// `a b - c`, fused where the hardware can.
+    /// Returns `a b - c`, fused if the hardware supports it.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_sub<X: Number<Self>>(a: X, b: X, c: X) -> X {
         if Self::FUSED { X::fused(a, b, -c) } else { a * b - c }
     }
 
-    /// `c - a b`, fused where the hardware can.
+    /// Returns `c - a b`, fused if the hardware supports it.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg_mul_add<X: Number<Self>>(a: X, b: X, c: X) -> X {
         if Self::FUSED { X::fused(-a, b, c) } else { c - a * b }
     }
 
-    /// Numbers as lanes.
+    /// Returns a vector of these lanes.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn lanes<T, const N: usize>(numbers: [T; N]) -> Vector<Self, T, N> {
         Vector::from(Lanes(numbers))
     }
 
-    /// The same number in every lane.
+    /// Returns a vector with the same number in every lane.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn splat<T: Copy, const N: usize>(x: T) -> Vector<Self, T, N> {
         Vector::from(Lanes([x; N]))
     }
 
-    /// `x a`.
+    /// Returns `x a`.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn scale<T: Real, const N: usize>(x: T, a: Vector<Self, T, N>) -> Vector<Self, T, N> {
         Vector::splat(x) * a
     }
 
-    /// `x a + c`, fused where the hardware can.
+    /// Returns `x a + c`, fused if the hardware supports it.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn scale_add<T: Real, const N: usize>(
@@ -134,7 +136,7 @@ pub trait Arithmetic: Registers {
         Self::mul_add(Vector::splat(x), a, c)
     }
 
-    /// `x a - c`, fused where the hardware can.
+    /// Returns `x a - c`, fused if the hardware supports it.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn scale_sub<T: Real, const N: usize>(
@@ -145,7 +147,7 @@ pub trait Arithmetic: Registers {
         Self::mul_sub(Vector::splat(x), a, c)
     }
 
-    /// `c - x a`, fused where the hardware can.
+    /// Returns `c - x a`, fused if the hardware supports it.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg_scale_add<T: Real, const N: usize>(
@@ -156,7 +158,7 @@ pub trait Arithmetic: Registers {
         Self::neg_mul_add(Vector::splat(x), a, c)
     }
 
-    /// The lanes of one vector, then those of another. Does not compile if `M` is not `2 N`.
+    /// Concatenates the lanes of two vectors. Does not compile if `M` is not `2 N`.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn join<T: Copy, const N: usize, const M: usize>(
@@ -166,8 +168,8 @@ pub trait Arithmetic: Registers {
         Vector::joined(&a, &b)
     }
 
-    /// Puts lane `I` of one vector and lane `J` of another into rows `ROW` and `ROW + 1` of a column. Does not compile if
-    /// there are fewer lanes or rows.
+    /// Stores lane `I` of one vector and lane `J` of another to rows `ROW` and `ROW + 1` of a column. Does
+    /// not compile if there are fewer lanes or rows.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn store_two<
@@ -192,7 +194,8 @@ pub trait Arithmetic: Registers {
         }
     }
 
-    /// Puts all lanes of a vector into the rows of a column from `ROW` on. Does not compile if there are fewer rows.
+    /// Stores all lanes of a vector to the rows of a column from `ROW` on. Does not compile if there are
+    /// fewer rows.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn store_rows<const ROW: usize, T: Real, const N: usize, const R: usize>(
@@ -205,8 +208,9 @@ pub trait Arithmetic: Registers {
         }
     }
 
-    /// Puts the lanes of one vector into row `ROW` of the columns from `COLUMN` on, and those of another into the row below.
-    /// Does not compile if there are fewer rows or columns, or more than eight lanes.
+    /// Stores the lanes of one vector to row `ROW` of the columns from `COLUMN` on, and those of another
+    /// vector to the row below. Does not compile if there are fewer rows or columns, or more than eight
+    /// lanes.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn store_columns<
@@ -225,7 +229,7 @@ pub trait Arithmetic: Registers {
         const { assert!(N <= 8, "there are more lanes") };
         let columns = columns.get_mut(COLUMN..).and_then(<[_]>::first_chunk_mut::<N>);
         let Some(columns) = columns else { return };
-        // Not a loop: lanes with numbers that change are kept in memory until it is unrolled.
+        // Not a loop: lanes with a variable index are stored in memory until the loop is unrolled.
         macro_rules! store {
             ($($lane:literal)+) => {$(
                 if let Some(two) = a.pair($lane, &b, $lane)
@@ -239,14 +243,14 @@ pub trait Arithmetic: Registers {
         store!(0 1 2 3 4 5 6 7);
     }
 
-    /// Arguments in lanes.
+    /// Returns arguments in lanes as vectors.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn each<T, const N: usize, const R: usize>(numbers: &[Lanes<T, N>; R]) -> &[Vector<Self, T, N>; R] {
         Vector::from_lanes(numbers)
     }
 
-    /// Sine and cosine of an angle, or of one in each lane, rad.
+    /// Returns sine and cosine of an angle, or of the angle in each lane, rad.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sin_cos<X: Elementary<Self>>(x: X) -> (X, X) {
@@ -254,14 +258,14 @@ pub trait Arithmetic: Registers {
         (s, c)
     }
 
-    /// Sines and cosines of several angles, rad. Of numbers it is fastest for a multiple of eight.
+    /// Returns sines and cosines of several angles, rad. For numbers, multiples of eight angles are fastest.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sin_cos_all<X: Elementary<Self>, const N: usize>(x: [X; N]) -> ([X; N], [X; N]) {
         X::sin_cos_all(x)
     }
 
-    /// The value of a table, or its derivative of these orders.
+    /// Returns the value of a table, or its derivative of these orders.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn tabulated<X: Elementary<Self>, const N: usize>(table: &Table<N>, x: [X; N], orders: [u8; N]) -> X {

@@ -1,9 +1,10 @@
 //! Bodies, joints and forces: the types of the fields of a `#[mechanism]` struct.
 //!
-//! A field's type says what it is, its attribute how it is placed; [`mechanism`](macro@crate::mechanism) shows an example.
-//! The compiler reads these types and removes the fields: there are no values of them.
+//! The type of a field defines the kind of element, its attribute the placement and properties;
+//! [`mechanism`](macro@crate::mechanism) shows an example. The compiler reads these types and removes the
+//! fields: the types have no values.
 //!
-//! | what | types |
+//! | kind | types |
 //! | --- | --- |
 //! | bodies | [`Body`], [`Particle`] |
 //! | joints with one degree of freedom | [`Pin`] (revolute), [`Sleeve`] (prismatic), [`Screw`] (helical) |
@@ -13,39 +14,44 @@
 //! | force elements | [`Spring`], [`Dashpot`] (damper), [`Inerter`], [`Friction`], [`Gravity`], [`Attraction`] |
 //! | inputs, and forces with a value | [`Force`], [`Torque`], [`Input`] |
 //! | constraints | [`Holonomic`], [`Nonholonomic`], [`Rolling`], [`Slipping`] |
-//! | contacts that open and close | [`Contact`] |
+//! | unilateral contacts | [`Contact`] |
 //! | bounds, stops | [`Limit`] |
-//! | states of first order | [`State`] |
-//! | configurations at rest | [`Equilibrium`] |
-//! | places | [`Point`], [`Frame`], [`Coordinate`] |
+//! | first-order states | [`State`] |
+//! | equilibria | [`Equilibrium`] |
+//! | points, frames, coordinates | [`Point`], [`Frame`], [`Coordinate`] |
 //! | expressions | [`Scalar`], [`Vector`], [`Matrix`], [`FreeBody`], [`Potential`], [`Rayleigh`], [`Speed`] |
 //!
-//! # Vectors and places
+//! # Vectors and points
 //!
-//! In the attributes, vectors are written with the axes `x`, `y`, `z` of the frame that the attribute belongs to: the
-//! body's own in `#[body(…)]` and `.at(…)`, the parent's for a joint's axis, the ground's for gravity. `cart.x` is an axis
-//! of `cart`. Joints and force elements are attached to bodies, to the `ground`, or to places on them:
-//! `body.at(l / 2 * y)`, or with axes of its own `body.at(l * x).rotated(z(angle), x(tilt))`; rotations are carried out in
-//! order, each about an axis that the earlier ones have turned.
+//! In the attributes, vectors are written with the axes `x`, `y`, `z` of the frame that the attribute belongs
+//! to: the body's own in `#[body(…)]` and `.at(…)`, the parent's for a joint's axis, the ground's for
+//! gravity. `cart.x` is an axis of `cart`. Joints and force elements are attached to bodies, to the `ground`,
+//! or to points on them: `body.at(l / 2 * y)`, or with rotated axes `body.at(l * x).rotated(z(angle),
+//! x(tilt))`. Rotations are applied in order, each about an axis of the frame that the earlier ones have
+//! rotated.
 //!
 //! # Joints
 //!
-//! A joint carries its child. A joint to a body that another one carries already closes a loop: it has no coordinate, and its
-//! constraints are solved with multipliers, or with `#[mechanism(formulation = speeds)]` (or `independent = (joint, …)`) in
-//! independent speeds. In a plane, a Pin that closes a loop between two bodies on Pins, or on a Pin and a Sleeve, may
-//! say `branch = 1` or `branch = -1`: then its loop is solved in closed form, and the dependent coordinates drop out.
-//! `reaction_force(joint)` and `reaction_torque(joint)` in an output are what the joint's parent exerts on its child.
+//! A joint moves its child relative to its parent. A joint whose child already is the child of another joint
+//! closes a kinematic loop: it has no coordinate. Its constraints are solved with multipliers, or with
+//! `#[mechanism(formulation = speeds)]` (or `independent = (joint, …)`) in independent speeds. In a plane, a
+//! Pin that closes a loop between two bodies on Pins, or on a Pin and a Sleeve, may have the option `branch =
+//! 1` or `branch = -1`, which selects the assembly mode: the loop is then solved in closed form, and the
+//! dependent coordinates are eliminated. In an output, `reaction_force(joint)` and `reaction_torque(joint)`
+//! are the force and torque of the joint's parent on its child.
 //!
 //! # Units
 //!
-//! Units are SI, angles in radians, or `degrees(90)`. Units of parameters are inferred: `mass = m` makes `m` a mass, `com = l / 2 * y` makes
-//! `l` a length, and a parameter that would have to be two things at once is a compile error. A number has any unit:
-//! `-9.81 * y` is an acceleration, `l + 0.1` a length. But ½, 2 or π beside a parameter are plain factors, and an expression
-//! without parameters is held to nothing. `#[unit(N * m / rad)]` on a parameter says its unit where nothing else does. The
-//! struct's documentation lists all.
+//! Units are SI, angles in radians, or `degrees(90)`. Units of parameters are inferred: `mass = m` makes `m`
+//! a mass, `com = l / 2 * y` makes `l` a length, and a parameter with contradictory units is a compile error.
+//! A number may have any unit: `-9.81 * y` is an acceleration, `l + 0.1` a length. However, factors such as
+//! ½, 2 or π of a parameter are dimensionless, and expressions without parameters are not checked.
+//! `#[unit(N * m / rad)]` on a parameter specifies a unit that cannot be inferred. The documentation of the
+//! struct lists all units.
 
-/// There are no values to clone, compare or show. A `#[derive(…)]` above `#[mechanism]` asks for that all the same: with
-/// these it is told that it stands in the wrong place, and nothing else.
+/// Implements derivable traits for types without values. Without these implementations, a `#[derive(…)]`
+/// placed above `#[mechanism]` would report missing traits of the elements in addition to the error about the
+/// order of the attributes.
 macro_rules! derivable {
     ($($element:ident)*) => { $(
         #[doc(hidden)]

@@ -1,8 +1,9 @@
-//! Numbers of several states side by side: the lanes of vector registers.
+//! Numbers of several states in the lanes of SIMD registers.
 //!
-//! A mechanism whose scalars are [`Lanes`] is evaluated for several states (or several equal limbs) at once. Each lane
-//! holds, bit for bit, what the same operations give for its numbers alone: nothing is reassociated, fused
-//! multiplication and addition are used where scalars use them, and nothing depends on the neighbours.
+//! A mechanism whose scalars are [`Lanes`] is evaluated for several states (or several identical limbs) at
+//! once. Each lane equals, bit for bit, the result of the same operations on its numbers alone: no operation
+//! is reassociated, fused multiply-add is used exactly where scalars use it, and lanes do not depend on each
+//! other.
 
 #[cfg(feature = "std")]
 pub(crate) mod angles;
@@ -26,22 +27,24 @@ use core::ops::{
 use nalgebra::{ArrayStorage, SMatrix};
 pub(crate) use registers::{Registers, VectorLoop};
 
-/// `N` numbers, with all arithmetic and all elementary functions from lane to lane.
+/// `N` numbers with lane-by-lane arithmetic and elementary functions.
 ///
-/// It is a [`Real`], so that a generic mechanism can be instantiated with it. Three things are not done lane by lane:
+/// The type is a [`Real`], so that a generic mechanism can be instantiated with it. Three operations do not
+/// act lane by lane:
 ///
-/// - Comparisons ask for all lanes: `a < b` where it is so in every lane, and neither `a < b` nor `b < a` where lanes
-///   differ. Algorithms that branch (factorisations with pivots, adaptive steps) are therefore not meant for lanes;
-///   [`select`](Self::select) chooses lane by lane.
-/// - `is_finite` asks for any lane, since integrators stop where it is false: lanes that are not finite do not stop the others.
+/// - Comparisons combine all lanes: `a < b` is true if it is true in every lane, and both `a < b` and `b < a`
+///   are false if lanes differ. Algorithms that branch (factorisations with pivots, adaptive steps) are
+///   therefore unsuitable for lanes; [`select`](Self::select) chooses lane by lane.
+/// - `is_finite` is true if any lane is finite, because integrators stop if it is false: lanes that are not
+///   finite do not stop the others.
 /// - [`sum`](Self::sum) adds the lanes to one another, in a fixed order.
 ///
-/// The angles of [`sin_cos`](Self::sin_cos) may be of any size.
+/// The angles of [`sin_cos`](Self::sin_cos) may be of any magnitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
-// Two lanes or more in registers of 16 or 32 bytes never cross a line of the cache.
+// With this alignment, registers of 16 or 32 bytes of two lanes or more never cross a cache line.
 #[repr(align(32))]
 pub struct Lanes<T, const N: usize>(
-    /// The numbers, lane by lane.
+    /// Numbers, lane by lane.
     pub [T; N],
 );
 
@@ -59,21 +62,21 @@ pub type f32x8 = Lanes<f32, 8>;
 pub type f32x16 = Lanes<f32, 16>;
 
 impl<T: Copy, const N: usize> Lanes<T, N> {
-    /// The same number in every lane.
+    /// Returns lanes with the same number in every lane.
     #[inline(always)]
     #[must_use]
     pub fn splat(x: T) -> Self {
         Self([x; N])
     }
 
-    /// The number of each lane from its index.
+    /// Returns lanes computed from the index of each lane.
     #[inline(always)]
     #[must_use]
     pub fn from_fn(f: impl FnMut(usize) -> T) -> Self {
         Self(core::array::from_fn(f))
     }
 
-    /// The first `M` lanes. Does not compile if there are fewer.
+    /// Returns the first `M` lanes. Does not compile if there are fewer.
     #[inline(always)]
     #[must_use]
     pub fn first<const M: usize>(self) -> Lanes<T, M> {
@@ -81,21 +84,21 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
         Lanes::from_fn(|k| self.0[k])
     }
 
-    /// A function of each lane.
+    /// Applies a function to each lane.
     #[inline(always)]
     #[must_use]
     pub fn map<U: Copy>(self, f: impl FnMut(T) -> U) -> Lanes<U, N> {
         Lanes(self.0.map(f))
     }
 
-    /// A function of each lane and the same lane of another.
+    /// Applies a function to each lane and the same lane of `other`.
     #[inline(always)]
     #[must_use]
     pub fn zip<U: Copy, V: Copy>(self, other: Lanes<U, N>, mut f: impl FnMut(T, U) -> V) -> Lanes<V, N> {
         Lanes::from_fn(|k| f(self.0[k], other.0[k]))
     }
 
-    /// In each lane the number of `a` where the mask is true, else that of `b`.
+    /// Selects lane by lane: the number of `a` where the mask is true, otherwise that of `b`.
     #[inline(always)]
     #[must_use]
     pub fn select(mask: [bool; N], a: Self, b: Self) -> Self {
@@ -104,8 +107,9 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
 }
 
 impl<T: Real, const N: usize> Lanes<T, N> {
-    /// The sum of all lanes: the upper half of the lanes is added to the lower half until one is left, the middle of an
-    /// odd number waiting for the next turn. Four lanes are summed as `(x₀ + x₂) + (x₁ + x₃)`.
+    /// Returns the sum of all lanes. The upper half of the lanes is added to the lower half until one lane is
+    /// left; for an odd number, the middle lane is carried over to the next round. Four lanes are summed as
+    /// `(x₀ + x₂) + (x₁ + x₃)`.
     #[inline(always)]
     #[must_use]
     pub fn sum(self) -> T {
@@ -121,7 +125,7 @@ impl<T: Real, const N: usize> Lanes<T, N> {
         x.first().copied().unwrap_or(T::zero())
     }
 
-    /// Sines and cosines, rad, of angles of any size.
+    /// Returns sines and cosines, rad, of angles of any magnitude.
     #[inline(always)]
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
@@ -129,7 +133,7 @@ impl<T: Real, const N: usize> Lanes<T, N> {
         (s.lanes(), c.lanes())
     }
 
-    /// `self * b + c`, fused where the hardware can.
+    /// Returns `self * b + c`, fused if the hardware supports it.
     #[inline(always)]
     #[must_use]
     pub fn mul_add(self, b: Self, c: Self) -> Self {
@@ -137,13 +141,13 @@ impl<T: Real, const N: usize> Lanes<T, N> {
     }
 }
 
-/// A constant or parameter in all lanes, for generated code.
+/// Returns a constant or parameter in all lanes, for generated code.
 #[inline(always)]
 pub fn splat<T: Copy, const N: usize>(x: T) -> Lanes<T, N> {
     Lanes::splat(x)
 }
 
-/// One lane of a column, for generated code.
+/// Returns one lane of a matrix, for generated code.
 #[inline]
 pub fn lane<T: Real, const N: usize, const R: usize, const C: usize>(
     x: &SMatrix<Lanes<T, N>, R, C>,
@@ -152,8 +156,8 @@ pub fn lane<T: Real, const N: usize, const R: usize, const C: usize>(
     x.map(|x| x.0.get(k).copied().unwrap_or(T::zero()))
 }
 
-/// A matrix from the matrices of its lanes, for generated code. One after another: in a debug build each takes its place on the
-/// stack.
+/// Returns a matrix from the matrices of its lanes, for generated code. The matrices are computed one after
+/// another, because in a debug build each occupies stack.
 #[inline]
 pub fn lane_by_lane<T: Real, const N: usize, const R: usize, const C: usize>(
     mut f: impl FnMut(usize) -> SMatrix<T, R, C>,
@@ -165,7 +169,7 @@ pub fn lane_by_lane<T: Real, const N: usize, const R: usize, const C: usize>(
     all
 }
 
-/// Puts a matrix into lane `k` of one, for generated code.
+/// Writes a matrix to lane `k` of another, for generated code.
 #[inline]
 pub fn set_lane<T: Real, const N: usize, const R: usize, const C: usize>(
     all: &mut SMatrix<Lanes<T, N>, R, C>,
@@ -198,7 +202,7 @@ impl<T: Real, const N: usize> Default for Lanes<T, N> {
     }
 }
 
-/// A lane; panics for one that is not there.
+/// Accesses a lane; panics if the index is out of range.
 impl<T, const N: usize> Index<usize> for Lanes<T, N> {
     type Output = T;
 
@@ -238,7 +242,7 @@ macro_rules! operators {
             }
         }
 
-        /// With the same number in every lane.
+        /// Combines each lane with the same number.
         impl<T: Real, const N: usize> $operator<T> for Lanes<T, N> {
             type Output = Self;
 

@@ -1,8 +1,8 @@
 //! Rotations and their rates: Euler angles, quaternions, rotation vectors and other parameters.
 //!
-//! Euler angles of all 24 sequences, rotation vectors, Euler parameters, Gibbs and modified Rodrigues vectors, their
-//! conversions and their rate kinematics, on nalgebra's [`Rotation3`](nalgebra::Rotation3) and
-//! [`UnitQuaternion`](nalgebra::UnitQuaternion). For your own code: mechanisms need none of it.
+//! Euler angles of all 24 sequences, rotation vectors, Euler parameters, Gibbs and modified Rodrigues
+//! vectors, their conversions and their rate kinematics, on nalgebra's [`Rotation3`](nalgebra::Rotation3) and
+//! [`UnitQuaternion`](nalgebra::UnitQuaternion). These types serve user code; mechanisms do not need them.
 //!
 //! | parameters | type | cannot represent | rates fail |
 //! | --- | --- | --- | --- |
@@ -13,23 +13,25 @@
 //! | Gibbs vector | [`Gibbs`] | half a turn | nowhere |
 //! | modified Rodrigues vector | [`Mrp`] | a full turn | nowhere |
 //!
-//! **Conventions.** Angles in rad, angular velocities in rad/s. The columns of a rotation matrix `R` are the body axes
-//! in space axes: `v_space = R v_body`. Angular velocities are of the body relative to space, resolved in body axes
-//! (`…_body`) or in space axes (`…_space`), with `ω_space = R ω_body`. The product `R₁ R₂` turns by `R₂` first if both
-//! are read in space axes, by `R₁` first if each is read in the axes that the turns before it have carried along. The
-//! quaternion `(u, w) = (n sin(θ/2), cos(θ/2))`, stored x y z w, turns by `θ` about the unit vector `n`.
+//! **Conventions.** Angles in rad, angular velocities in rad/s. The columns of a rotation matrix `R` are the
+//! body axes in space axes: `v_space = R v_body`. Angular velocities are of the body relative to space,
+//! resolved in body axes (`…_body`) or in space axes (`…_space`), with `ω_space = R ω_body`. The product `R₁
+//! R₂` rotates by `R₂` first if both are interpreted in space axes, and by `R₁` first if each is interpreted
+//! in the axes rotated by the previous ones. The quaternion `(u, w) = (n sin(θ/2), cos(θ/2))`, stored x y z
+//! w, rotates by `θ` about the unit vector `n`.
 //!
-//! The orientation matrix `O_{B/A}` of Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*, which
-//! resolves in B a vector that was resolved in A, is the transpose of the rotation matrix `R` of B relative to A; the
-//! attitude matrix of Shuster and of Hughes is that transpose too. Products of orientation matrices run the other way.
+//! The orientation matrix `O_{B/A}` of Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and
+//! Dynamics*, which resolves in B a vector that was resolved in A, is the transpose of the rotation matrix
+//! `R` of B relative to A; the attitude matrix of Shuster and of Hughes is that transpose too. Products of
+//! orientation matrices are in reverse order.
 //!
-//! **Sources**, by name in what follows: Shuster, *A survey of attitude representations*, Journal of the Astronautical
-//! Sciences 41 (1993) 439; Kane, Likins and Levinson, *Spacecraft Dynamics* (1983), ch. 1 and appendices I, II; Hughes,
-//! *Spacecraft Attitude Dynamics* (1986), ch. 2; Schaub and Junkins, *Stereographic orientation parameters*, Journal of
-//! the Astronautical Sciences 44 (1996) 1.
+//! **Sources**, by name in what follows: Shuster, *A survey of attitude representations*, Journal of the
+//! Astronautical Sciences 41 (1993) 439; Kane, Likins and Levinson, *Spacecraft Dynamics* (1983), ch. 1 and
+//! appendices I, II; Hughes, *Spacecraft Attitude Dynamics* (1986), ch. 2; Schaub and Junkins, *Stereographic
+//! orientation parameters*, Journal of the Astronautical Sciences 44 (1996) 1.
 //!
-//! **Singular cases** are told, by [`Singular`], by `None` or by [`Angles::singular`]; no function makes a NaN of finite
-//! arguments whose squares do not overflow. Nothing allocates or panics.
+//! **Singular cases** are reported by [`Singular`], by `None` or by [`Angles::singular`]; no function returns
+//! NaN for finite arguments whose squares do not overflow. The functions neither allocate nor panic.
 //!
 //! ```
 //! use linkwork::rotation::{EulerSequence, Mrp};

@@ -1,10 +1,11 @@
-//! Sines and cosines of all angles of a mechanism at once: branch-free over arrays, so that the compiler turns them into
-//! vector instructions. Within one unit in the last place for |x| ≤ 10⁵; larger angles and infinities take the functions of the
-//! standard library (or of `libm`), each for itself: a result never depends on the other angles. Those of `libm` are as
-//! good; those of glibc are off by up to 2e-28 more, which counts where the result is nearly zero. NaN counts as small: it
-//! goes through all operations.
+//! Sines and cosines of all angles of a mechanism at once. The code is branch-free over arrays, so that the
+//! compiler vectorises it. Results are within one unit in the last place for |x| ≤ 10⁵. Larger angles and
+//! infinities use the functions of the standard library (or of `libm`), one by one, so that a result never
+//! depends on the other angles. The functions of `libm` are equally accurate; those of glibc have up to 2e-28
+//! of additional error, which matters if the result is nearly zero. NaN counts as small and passes through
+//! all operations.
 //!
-//! Without optimisation everything that is inlined takes room on the stack of its own, for every call: there nothing is.
+//! Without optimisation no function is forced inline, because every inlined call would occupy its own stack.
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Number};
@@ -13,10 +14,10 @@ use core::any::Any;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use nalgebra::ComplexField;
 
-/// Largest angle that the three-part reduction is exact for.
+/// Largest angle for which the three-part reduction is exact.
 pub(crate) const LARGEST: f64 = 1e5;
 
-/// Sines and cosines of several angles, rad. Fastest for a multiple of eight.
+/// Returns sines and cosines of several angles, rad. Multiples of eight angles are fastest.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
@@ -39,12 +40,12 @@ pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N],
     one_by_one(&x)
 }
 
-/// Numbers that fill lines of the cache. A function that keeps some on its stack aligns all that it keeps there: no register
-/// that has to wait in memory then crosses a line.
+/// Numbers aligned to cache lines. A function with such a value on its stack aligns its whole stack frame, so
+/// that spilled registers never cross a cache line.
 #[repr(align(64))]
 pub(crate) struct Aligned<T>(pub(crate) T);
 
-/// A reference as a type that it may have; decided at compile time.
+/// Returns a reference as another type if both types are the same; decided at compile time.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn same<A: 'static, B: 'static>(a: &A) -> Option<&B> {
@@ -69,14 +70,15 @@ fn doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
         (*s, *c) = small_angle::<A>(*x);
     }
     if large {
-        // A copy: if the angles themselves were passed on, they would have to go through memory even where none is large.
+        // A copy: passing the angles themselves would force them through memory even if none is large.
         let copy = Aligned(*x);
         (s, c) = A::sin_cos_of_large(&copy.0);
     }
     (s, c)
 }
 
-/// Takes the library's values where angles are large: each result depends on its own angle alone.
+/// Returns sines and cosines with the library's values for large angles, so that each result depends on its
+/// own angle alone.
 #[inline(always)]
 pub(crate) fn with_large<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
@@ -86,7 +88,7 @@ pub(crate) fn with_large<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N
     (s, c)
 }
 
-/// Within the range of the reduction.
+/// Returns sine and cosine of an angle within the range of the reduction.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
@@ -94,7 +96,8 @@ fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
     turned(s, c, shifted)
 }
 
-/// Coefficients of `(sin r - r) / r³` by powers of `r²`: those of fdlibm's `__kernel_sin` (Sun Microsystems 1993).
+/// Coefficients of `(sin r - r) / r³` by powers of `r²`: those of fdlibm's `__kernel_sin` (Sun Microsystems
+/// 1993).
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
 const SINE: [f64; 6] = [
     -1.666_666_666_666_663_243_48e-1,
@@ -105,7 +108,7 @@ const SINE: [f64; 6] = [
     1.589_690_995_211_550_102_21e-10,
 ];
 
-/// Coefficients of `(cos r - 1 + r² / 2) / r⁴` by powers of `r²`: those of its `__kernel_cos`.
+/// Coefficients of `(cos r - 1 + r² / 2) / r⁴` by powers of `r²`: those of fdlibm's `__kernel_cos`.
 #[expect(clippy::excessive_precision, reason = "the constants of the source, digit for digit")]
 const COSINE: [f64; 6] = [
     4.166_666_666_666_660_190_37e-2,
@@ -116,14 +119,15 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_482_65e-11,
 ];
 
-/// Sine and cosine of the reduced angle, and the number whose last bits are the quadrant.
+/// Returns sine and cosine of the reduced angle, and the number whose last bits are the quadrant.
 ///
-/// Cody and Waite's reduction by quarter turns, with what the reduced angle lacks carried along; Taylor-like
-/// polynomials in double precision. Where products are not rounded before they are added, fewer operations are as good.
+/// Cody and Waite's reduction by multiples of π/2, with the rounding error of the reduced angle as a
+/// correction term; Taylor-like polynomials in double precision. With fused multiply-add, fewer operations
+/// suffice for the same accuracy.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
-    // Adding 1.5 · 2⁵² rounds to a whole number, whose last bits then are the quadrant.
+    // Adding 1.5 · 2⁵² rounds to an integer, whose last bits are the quadrant.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     let shifted = A::mul_add(x, X::constant(FRAC_2_PI), X::constant(ROUND));
     let (r, low) = reduced::<A, _>(x, shifted - X::constant(ROUND));
@@ -132,7 +136,7 @@ pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     let fourth = square * square;
     let [s0, s1, s2, s3, s4, s5] = SINE;
     let [c0, c1, c2, c3, c4, c5] = COSINE;
-    // Neighbours are added up first, so that few operations wait for each other.
+    // Neighbouring terms are added first, to shorten the chain of dependent operations.
     let sine = A::mul_add(fourth, X::constant(s5), cubic::<A, _>(z, square, [s1, s2, s3, s4]));
     let sine = A::mul_add(z, sine, X::constant(s0));
     let cosine = A::mul_add(fourth, linear::<A, _>(z, c4, c5), cubic::<A, _>(z, square, [c0, c1, c2, c3]));
@@ -150,14 +154,14 @@ pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     (s, c, shifted)
 }
 
-/// An angle without so many quarter turns, fewer than 2¹⁶, as the sum of two numbers. Both may be as small as the second: then
-/// the sine is their sum, and the cosine one.
+/// Returns `x` minus `quarters` times π/2, fewer than 2¹⁶ of them, as the sum of two numbers. Both may be as
+/// small as the second: then the sine is their sum, and the cosine one.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn reduced<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
     if A::FUSED {
-        // π / 2 as the nearest number, of which a multiple is subtracted without error since what is left has fewer digits;
-        // 36 bits, whose products with whole numbers are exact, and the rest.
+        // π / 2 as the nearest number, a multiple of which is subtracted without error because the difference
+        // has fewer digits; then 36 bits, whose products with integers are exact; then the remainder.
         const PARTS: [f64; 3] = [FRAC_PI_2, 6.123_233_995_707_727e-17, 2.903_855_973_979_360_5e-28];
         let [nearest, next, rest] = [X::constant(PARTS[0]), X::constant(PARTS[1]), X::constant(PARTS[2])];
         let first = A::neg_mul_add(quarters, nearest, x);
@@ -165,7 +169,7 @@ fn reduced<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
         let low = A::neg_mul_add(quarters, next, first - r);
         return (r, A::neg_mul_add(quarters, rest, low));
     }
-    // π / 2 in two parts of 33 bits, whose products are exact, and the rest.
+    // π / 2 in two parts of 33 bits, whose products are exact, and the remainder.
     const PARTS: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
     let [most, next, rest] = [X::constant(PARTS[0]), X::constant(PARTS[1]), X::constant(PARTS[2])];
     let first = A::neg_mul_add(quarters, most, x);
@@ -174,7 +178,8 @@ fn reduced<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
     (r, A::neg_mul_add(quarters, rest, (first - r) - second))
 }
 
-/// An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs.
+/// Rotates sine and cosine by the quadrant: an odd quadrant exchanges them, and bits of the quadrant are
+/// their signs.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
@@ -187,14 +192,14 @@ pub(crate) fn turned(s: f64, c: f64, shifted: f64) -> (f64, f64) {
     (f64::from_bits(s ^ s_sign), f64::from_bits(c ^ c_sign))
 }
 
-/// `a + b z`.
+/// Returns `a + b z`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn linear<A: Registers, X: Number<A>>(z: X, a: f64, b: f64) -> X {
     A::mul_add(X::constant(b), z, X::constant(a))
 }
 
-/// `a + b z + c z² + d z³`.
+/// Returns `a + b z + c z² + d z³`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn cubic<A: Registers, X: Number<A>>(z: X, square: X, [a, b, c, d]: [f64; 4]) -> X {

@@ -1,23 +1,23 @@
-//! Which arithmetic a body runs with.
+//! Selection of a body's arithmetic at run time.
 //!
-//! Where the target is x86-64 without fused multiplication and addition, large functions are compiled twice: for the
-//! target, and for processors with AVX2 and FMA, which are asked for once. Loops of the runtime in them are compiled for AVX-512
-//! besides. Not so in debug builds, where time of compilation matters more, and not without the standard library, which asks the
-//! processor.
+//! If the target is x86-64 without fused multiply-add, large functions are compiled twice: for the target,
+//! and for processors with AVX2 and FMA, which are detected once. Runtime loops in these functions are also
+//! compiled for AVX-512. Debug builds are excluded, because compilation time matters more there, and so are
+//! builds without the standard library, which detects the features.
 
 use super::{Arithmetic, Compiled};
 use crate::Real;
 
-/// The body of function number `K` of a mechanism, which takes `Arguments`.
+/// Body of function number `K` of a mechanism, which takes `Arguments`.
 pub trait Evaluate<const K: usize, Arguments> {
-    /// What it returns.
+    /// Type of the result.
     type Output;
 
-    /// The body, always inlined.
+    /// Evaluates the body; always inlined.
     fn evaluate<A: Arithmetic>(&self, arguments: Arguments) -> Self::Output;
 }
 
-/// Runs a body on numbers of type `T` with the best instructions that there are.
+/// Evaluates a body on numbers of type `T` with the best instructions available.
 #[inline(always)]
 pub fn dispatch<const K: usize, T: Real, M: Evaluate<K, Arguments>, Arguments>(
     mechanism: &M,

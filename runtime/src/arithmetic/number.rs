@@ -1,4 +1,4 @@
-//! What bodies compute with: numbers and vectors of them.
+//! Operand types of bodies: numbers and vectors of them.
 
 use super::Vector;
 use crate::atmosphere::Atmosphere;
@@ -7,13 +7,13 @@ use crate::trigonometry;
 use crate::{Real, Table};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number, or one in each lane.
+/// A number, or a vector with a number in each lane.
 pub trait Number<A: Registers>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// The nearest number to `x`.
+    /// Returns the nearest number to `x`.
     fn constant(x: f64) -> Self;
-    /// `a b + c`, rounded once.
+    /// Returns `a b + c`, rounded once.
     fn fused(a: Self, b: Self, c: Self) -> Self;
 }
 
@@ -43,15 +43,15 @@ impl<A: Registers, T: Real, const N: usize> Number<A> for Vector<A, T, N> {
 
 macro_rules! elementary {
     ($($(#[$doc:meta])* $name:ident($x:ident $(, $y:ident)?);)+) => {
-        /// A number with elementary functions, in lanes one by one.
+        /// A number with elementary functions, which are evaluated lane by lane.
         pub trait Elementary<A: Registers>: Number<A> {
             $(
                 $(#[$doc])*
                 fn $name($x: Self $(, $y: Self)?) -> Self;
             )+
-            /// Sines and cosines of several angles.
+            /// Returns sines and cosines of several angles, rad.
             fn sin_cos_all<const N: usize>(x: [Self; N]) -> ([Self; N], [Self; N]);
-            /// The value of a table, or its derivative of these orders.
+            /// Returns the value of a table, or its derivative of these orders.
             fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self;
         }
 

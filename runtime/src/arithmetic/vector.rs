@@ -7,7 +7,7 @@ use crate::{Lanes, Real};
 use core::marker::PhantomData;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Lanes that are calculated with by the registers of `A`.
+/// Vector of lanes whose arithmetic uses the registers of `A`.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct Vector<A, T, const N: usize>(Lanes<T, N>, PhantomData<A>);
@@ -20,7 +20,7 @@ impl<A, T, const N: usize> From<Lanes<T, N>> for Vector<A, T, N> {
 }
 
 impl<A, T, const N: usize> Vector<A, T, N> {
-    /// Lanes as vectors.
+    /// Returns lanes as vectors.
     #[inline(always)]
     pub fn from_lanes<const R: usize>(lanes: &[Lanes<T, N>; R]) -> &[Self; R] {
         #[expect(unsafe_code, reason = "no safe function converts references to transparent types")]
@@ -47,20 +47,21 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         &self.0.0
     }
 
-    /// As a result.
+    /// Returns the lanes, as the result of a function.
     #[inline(always)]
     pub fn lanes(self) -> Lanes<T, N> {
         self.0
     }
 
-    /// One lane. Does not compile if there are fewer. Takes a reference: without optimisation every copy needs stack.
+    /// Returns one lane. Does not compile if there are fewer. Takes a reference, because without optimisation
+    /// every copy needs stack.
     #[inline(always)]
     pub fn lane<const K: usize>(&self) -> T {
         const { assert!(K < N, "there are not so many lanes") };
         self.0.0[K]
     }
 
-    /// The lanes of one, then those of another. Does not compile if `M` is not `2 N`.
+    /// Concatenates the lanes of two vectors. Does not compile if `M` is not `2 N`.
     #[inline]
     pub(crate) fn joined<const M: usize>(a: &Vector<A, T, N>, b: &Vector<A, T, N>) -> Vector<A, T, M> {
         const { assert!(N > 0 && M == 2 * N, "half of the lanes come from either") };
@@ -75,7 +76,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         Vector::of(numbers)
     }
 
-    /// The first `M` lanes. Does not compile if there are fewer.
+    /// Returns the first `M` lanes. Does not compile if there are fewer.
     #[inline]
     pub fn first<const M: usize>(&self) -> Vector<A, T, M> {
         Vector::from(self.0.first())
@@ -83,11 +84,11 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
 }
 
 impl<A, T: Real, const N: usize> Vector<A, T, N> {
-    /// A lane, and one of another vector, if both exist. What is said of lanes is known when this is inlined.
+    /// Returns a lane and a lane of another vector, if both exist. The indices are constant after inlining.
     #[inline(always)]
     pub(crate) fn pair<const M: usize>(&self, i: usize, other: &Vector<A, T, M>, j: usize) -> Option<[T; 2]> {
         let (a, b) = (self.numbers(), other.numbers());
-        // By registers: lanes that are used more than once would be stored one by one.
+        // Through registers: lanes used more than once would otherwise be stored one by one.
         #[cfg(feature = "std")]
         if i % 2 == j % 2
             && i < N
@@ -106,7 +107,7 @@ impl<A, T: Real, const N: usize> Vector<A, T, N> {
         Some([*a.get(i)?, *b.get(j)?])
     }
 
-    /// The sum of all lanes, in the order of [`Lanes::sum`].
+    /// Returns the sum of all lanes, in the order of [`Lanes::sum`].
     #[inline]
     pub fn sum(&self) -> T {
         self.0.sum()

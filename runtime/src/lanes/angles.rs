@@ -6,14 +6,14 @@ use crate::arithmetic::Vector;
 use crate::trigonometry::{Aligned, kernel, same};
 use core::any::Any;
 
-/// Sines and cosines of small angles.
+/// Returns sines and cosines of small angles.
 #[inline(always)]
 pub(super) fn of_small<A: Registers, const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
     let (s, c, shifted) = kernel::<A, _>(Vector::<A, f64, L>::of(*x));
     A::turned(s.numbers(), c.numbers(), shifted.numbers())
 }
 
-/// Puts the sines in the place of the angles and returns the cosines.
+/// Replaces the angles by their sines and returns the cosines.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn replace<A: Registers, const L: usize, const N: usize>(
@@ -22,7 +22,7 @@ fn replace<A: Registers, const L: usize, const N: usize>(
     let mut c = [Vector::splat(0.0); N];
     if !A::are_small(&x.map(|x| *x.numbers())) {
         for (x, c) in x.iter_mut().zip(&mut c) {
-            // A copy, so that the angles themselves need not be in memory.
+            // A copy, so that the angles themselves need not be stored in memory.
             let angles = Aligned(*x.numbers());
             let (sines, cosines) = A::sin_cos_of_large(&angles.0);
             (*x, *c) = (Vector::of(sines), Vector::of(cosines));
@@ -39,7 +39,7 @@ fn replace<A: Registers, const L: usize, const N: usize>(
 /// Sines and cosines.
 type Both<X> = (X, X);
 
-/// Sines and cosines, if the lanes fill a register.
+/// Returns sines and cosines if the lanes fill a register, otherwise `None`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn sin_cos_all<A: Registers, T: Real, const L: usize, const N: usize>(
@@ -59,7 +59,7 @@ pub(crate) fn sin_cos_all<A: Registers, T: Real, const L: usize, const N: usize>
     None
 }
 
-/// The same of numbers that are lanes.
+/// Returns sines and cosines of numbers that are lanes themselves, if those fill a register.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn of_lanes<A: Registers, T: Real, const N: usize>(x: &[T; N]) -> Option<Both<[T; N]>> {

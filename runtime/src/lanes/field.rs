@@ -1,4 +1,4 @@
-//! Lanes as a real field of nalgebra: every function from lane to lane.
+//! Lanes as a real field of nalgebra, with lane-by-lane functions.
 
 use super::{Lanes, Registers};
 use crate::Real;
@@ -134,13 +134,13 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
         self.map(|x| x.powi(n))
     }
 
-    /// True while any lane is finite: what one lane holds must not stop the others.
+    /// Whether any lane is finite: lanes that are not finite must not stop the others.
     #[inline(always)]
     fn is_finite(&self) -> bool {
         self.0.iter().any(T::is_finite)
     }
 
-    /// Nothing if any lane has no square root.
+    /// Returns `None` if any lane has no square root.
     #[inline(always)]
     fn try_sqrt(self) -> Option<Self> {
         self.0.iter().all(|x| *x >= T::zero()).then(|| self.sqrt())
@@ -148,13 +148,13 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
 }
 
 impl<T: Real, const N: usize> RealField for Lanes<T, N> {
-    /// True if all lanes are positive.
+    /// Whether all lanes are positive.
     #[inline(always)]
     fn is_sign_positive(&self) -> bool {
         self.0.iter().all(T::is_sign_positive)
     }
 
-    /// True if all lanes are negative.
+    /// Whether all lanes are negative.
     #[inline(always)]
     fn is_sign_negative(&self) -> bool {
         self.0.iter().all(T::is_sign_negative)

@@ -1,4 +1,5 @@
-//! What nalgebra's fields ask of a number besides arithmetic: order, zero and one, conversions, approximate equality.
+//! Traits that nalgebra's fields require of a number in addition to arithmetic: order, zero and one,
+//! conversions, approximate equality.
 
 use super::Lanes;
 use crate::Real;
@@ -8,7 +9,7 @@ use nalgebra::{Field, SimdValue};
 use num_traits::{FromPrimitive, Num, One, Signed, Zero};
 use simba::scalar::SubsetOf;
 
-/// Less, equal or greater if that is so in every lane.
+/// Compares lanes: less, equal or greater if this is true in every lane.
 impl<T: PartialOrd, const N: usize> PartialOrd for Lanes<T, N> {
     #[inline(always)]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
@@ -134,7 +135,7 @@ impl<T: Real, const N: usize> UlpsEq for Lanes<T, N> {
 
 impl<T: Real, const N: usize> Field for Lanes<T, N> {}
 
-/// For nalgebra, lanes are one number: it must not take them apart.
+/// Presents lanes to nalgebra as a single number, so that nalgebra does not split them.
 impl<T: Real, const N: usize> SimdValue for Lanes<T, N> {
     const LANES: usize = 1;
     type Element = Self;
@@ -173,7 +174,7 @@ impl<T: Real, const N: usize> SimdValue for Lanes<T, N> {
     }
 }
 
-/// Lanes hold a number if they all do.
+/// Implements conversions to lanes, and from lanes that all contain the same kind of number.
 macro_rules! numbers_in_lanes {
     ($($number:ty)+) => {$(
         impl<T: Real, const N: usize> SubsetOf<Lanes<T, N>> for $number {

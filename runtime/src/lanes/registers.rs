@@ -1,8 +1,8 @@
 //! Arithmetic of lanes in vector registers.
 //!
-//! The compiler's own vectorisation finds isolated loops, but not the vectors of a long straight-line program. `wide`,
-//! which nalgebra brings along with the standard library, names the registers of the compilation's target; without it every
-//! operation is a loop.
+//! The compiler's automatic vectorisation covers isolated loops, but not the vectors of a long straight-line
+//! program. The crate `wide`, on which nalgebra depends with the standard library, provides the registers of
+//! the compilation target; without it every operation is a loop.
 
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
@@ -10,56 +10,58 @@ use crate::trigonometry;
 #[cfg(feature = "std")]
 use crate::trigonometry::{LARGEST, same};
 
-/// Loops that a generated body leaves to the runtime.
+/// Loop that a generated body delegates to the runtime.
 pub trait VectorLoop {
-    /// It fills several registers of eight numbers at a time.
+    /// Whether the loop fills several registers of eight numbers at a time.
     const IS_LONG: bool;
 
-    /// Runs the loop. Always inlined, with everything in it, so that it has the features of the function that it ends up in.
+    /// Runs the loop. The function and all its callees are inlined, so that they have the target features of
+    /// the enclosing function.
     fn run<A: Arithmetic>(self);
 }
 
-/// The instructions that there are: for numbers one after another, and for those of several lanes at once.
+/// Available instructions, for single numbers and for several lanes at once.
 pub trait Registers: Copy + 'static {
-    /// One instruction multiplies and adds; elsewhere `mul_add` would be a slow library call.
+    /// Whether one instruction multiplies and adds; otherwise `mul_add` would be a slow library call.
     const FUSED: bool;
-    /// Registers hold eight numbers of double precision, and there are 32 of them; elsewhere four, and 16.
+    /// Whether there are 32 registers of eight double-precision numbers; otherwise there are 16 of four.
     const WIDE: bool;
 
     /// Runs a loop in a function that has the instructions.
     fn run_loop<L: VectorLoop>(body: L);
 
-    /// `a + b`, lane by lane.
+    /// Returns `a + b`, lane by lane.
     fn add<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// `a - b`, lane by lane.
+    /// Returns `a - b`, lane by lane.
     fn sub<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// `a b`, lane by lane.
+    /// Returns `a b`, lane by lane.
     fn mul<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// `a / b`, lane by lane.
+    /// Returns `a / b`, lane by lane.
     fn div<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// `-a`, lane by lane.
+    /// Returns `-a`, lane by lane.
     fn neg<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
-    /// The magnitude, lane by lane.
+    /// Returns the magnitude, lane by lane.
     fn magnitude<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
-    /// The square root, lane by lane.
+    /// Returns the square root, lane by lane.
     fn root<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
-    /// `a b + c`, rounded once, lane by lane.
+    /// Returns `a b + c`, rounded once, lane by lane.
     fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N];
 
-    /// Sines and cosines from those of the reduced angles: the last bits of `shifted` are the quadrants.
+    /// Returns sines and cosines, given those of the reduced angles; the last bits of `shifted` are the
+    /// quadrants.
     #[cfg(feature = "std")]
     fn turned<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2];
-    /// Sines and cosines of angles within the range of the reduction.
+    /// Returns sines and cosines of angles within the range of the reduction.
     #[cfg(feature = "std")]
     fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2];
-    /// All angles are within the range of the reduction.
+    /// Whether all angles are within the range of the reduction.
     #[cfg(feature = "std")]
     fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool;
-    /// Sines and cosines of angles that are not all within the range of the reduction.
+    /// Returns sines and cosines of angles of which some are outside the range of the reduction.
     fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]);
 }
 
-/// Returns the result if the lanes fill this register.
+/// Returns from the enclosing function with the result, if the lanes fill this register.
 #[cfg(not(feature = "std"))]
 macro_rules! register {
     ($($anything:tt)*) => {};
@@ -90,7 +92,7 @@ macro_rules! operations {
             register!(f32 4 f32x4: ($($a)+) => $f);
             register!(f32 8 f32x8: ($($a)+) => $f);
             register!(f32 16 f32x16: ($($a)+) => $f);
-            // Plain loops are unrolled where functions of arrays are not always inlined.
+            // Plain loops are unrolled, whereas array functions are not always inlined.
             let mut result = [T::zero(); N];
             for (k, result) in result.iter_mut().enumerate() {
                 $(let $a = $a[k];)+
@@ -195,7 +197,7 @@ impl Registers for Compiled {
     }
 }
 
-/// The remainder, for which there are no instructions.
+/// Returns the remainder, for which there are no instructions.
 #[inline]
 pub(super) fn rem<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
     core::array::from_fn(|k| a[k] % b[k])

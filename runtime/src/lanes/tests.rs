@@ -5,7 +5,7 @@ use core::cmp::Ordering;
 use nalgebra::{ComplexField, Matrix3, RealField, SVector, Vector3};
 use std::format;
 
-/// Numbers in (0.05, 0.95), and their negatives where the lane is odd.
+/// Returns numbers in (0.05, 0.95), negated in odd lanes.
 fn numbers<const N: usize>(seed: u64) -> Lanes<f64, N> {
     let mut state = seed;
     Lanes::from_fn(|k| {
@@ -15,7 +15,7 @@ fn numbers<const N: usize>(seed: u64) -> Lanes<f64, N> {
     })
 }
 
-/// The bits of every lane are those of the function of the lane.
+/// Checks that every lane equals the function of that lane, bit for bit.
 fn check<const N: usize>(
     wide: impl Fn(Lanes<f64, N>, Lanes<f64, N>, Lanes<f64, N>) -> Lanes<f64, N>,
     narrow: impl Fn(f64, f64, f64) -> f64,
@@ -110,7 +110,7 @@ fn a_large_angle_does_not_disturb_its_neighbours() {
 #[test]
 fn sums_have_a_fixed_order() {
     let tiny = f64::EPSILON / 4.0;
-    // (1 + tiny) + (tiny + tiny) and so on: what is added first decides.
+    // (1 + tiny) + (tiny + tiny) and so on: the order of the additions determines the result.
     assert_eq!(Lanes([1.0, 0.1, tiny, 0.2]).sum(), (1.0 + tiny) + (0.1 + 0.2));
     assert_eq!(Lanes([0.1, 0.2, 0.3]).sum(), (0.1 + 0.3) + 0.2);
     let x: f64x8 = numbers(5);
@@ -165,7 +165,8 @@ fn lanes_of_lanes() {
     assert_eq!(ComplexField::sin_cos(x).0[0][3], A::sin_cos(x[0][3]).0);
 }
 
-/// In the arithmetic of `R` every lane of a vector holds what its numbers alone give, to the bit.
+/// Checks that in the arithmetic of `R` every lane of a vector equals the result of its numbers alone, bit
+/// for bit.
 fn vectors_are_their_lanes<R: Registers, const N: usize>() {
     fn several<R: Registers, X: Elementary<R>>(a: X, b: X, c: X) -> X {
         let (s, c) = R::sin_cos(R::mul_add(a, X::constant(9.0), c));
@@ -213,7 +214,7 @@ fn vectors_compute_lane_by_lane() {
     }
 }
 
-/// Lanes `I` and `J` of two vectors end up in rows 1 and 2, and nothing else changes.
+/// Checks that lanes `I` and `J` of two vectors are stored to rows 1 and 2, and that no other row changes.
 fn stored<T: crate::Real, const I: usize, const J: usize, const N: usize, const M: usize>(
     number: fn(usize) -> T,
 ) {

@@ -1,6 +1,6 @@
-//! Instructions of x86-64 processors that the compilation's target does not promise.
+//! Instructions of x86-64 processors beyond those of the compilation target.
 
-/// Methods that call functions with target features, of the same names.
+/// Defines methods that call the functions of the same names with target features.
 macro_rules! methods {
     ($($name:ident($($a:ident)+) $(= $doubles:expr, $singles:expr)?;)+) => {$(
         #[inline(always)]

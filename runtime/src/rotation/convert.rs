@@ -1,4 +1,4 @@
-//! Conversions between the parameters, each by way of the Euler parameters.
+//! Conversions between the rotation parameters, through the Euler parameters.
 
 use super::euler_parameters::quaternion_of_rotation;
 use super::{Gibbs, Mrp, RotationVector, Singular};

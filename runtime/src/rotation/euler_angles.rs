@@ -1,4 +1,4 @@
-//! Euler angles to rotations and back.
+//! Conversions between Euler angles and rotations.
 
 use super::sequence::EulerSequence;
 use super::standard::{Standard, parallel};
@@ -6,13 +6,13 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-/// Euler angles found from a rotation.
+/// Euler angles of a rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angles<T> {
-    /// The angles in the order of the turns, rad.
+    /// Angles in the order of the rotations, rad.
     pub angles: [T; 3],
-    /// Whether the first and the third axis are parallel, so that only the sum or the difference of their angles is
-    /// known: the third angle is zero then.
+    /// Whether the first and the third axis are parallel, so that only the sum or the difference of their
+    /// angles is determined; the third angle is then set to zero.
     pub singular: bool,
 }
 
@@ -21,14 +21,14 @@ impl EulerSequence {
         Standard::of(self)
     }
 
-    /// The rotation matrix of Euler angles `[t₁, t₂, t₃]`, rad, of any size.
+    /// Returns the rotation matrix of Euler angles `[t₁, t₂, t₃]`, rad, of any magnitude.
     ///
-    /// body-abc: `R_a(t₁) R_b(t₂) R_c(t₃)`; space-abc: `R_c(t₃) R_b(t₂) R_a(t₁)`. Columns are the body axes in space
-    /// axes. Kane, Likins and Levinson, appendix I. Never singular.
+    /// body-abc: `R_a(t₁) R_b(t₂) R_c(t₃)`; space-abc: `R_c(t₃) R_b(t₂) R_a(t₁)`. Columns are the body axes
+    /// in space axes. Kane, Likins and Levinson, appendix I. Never singular.
     pub fn rotation<T: Real>(self, angles: [T; 3]) -> Rotation3<T> {
         let standard = self.standard();
         let [(sa, ca), (sb, cb), (sc, cc)] = standard.standardised(angles).map(|t| t.sin_cos());
-        // By columns.
+        // Stored by columns.
         let own = if standard.symmetric {
             [
                 [cb, sa * sb, -ca * sb],
@@ -46,8 +46,8 @@ impl EulerSequence {
         Rotation3::from_matrix_unchecked(axes * Matrix3::from(own) * axes.transpose())
     }
 
-    /// The Euler parameters of Euler angles, rad, of any size: the product of the half-angle quaternions of the turns,
-    /// continuous in the angles, so that `w` takes either sign.
+    /// Returns the Euler parameters of Euler angles, rad, of any magnitude: the product of the half-angle
+    /// quaternions of the three rotations. They are continuous in the angles, so that `w` has either sign.
     ///
     /// Source: Shuster. Never singular.
     pub fn quaternion<T: Real>(self, angles: [T; 3]) -> UnitQuaternion<T> {
@@ -69,15 +69,15 @@ impl EulerSequence {
         UnitQuaternion::new_unchecked(Quaternion::from_parts(w, u))
     }
 
-    /// The Euler angles of a rotation, rad: the inverse of [`Self::rotation`].
+    /// Returns the Euler angles of a rotation, rad: the inverse of [`Self::rotation`].
     ///
-    /// - Ranges: first and third angle in [−π, π]; middle angle in [−π/2, π/2] (asymmetric) or [0, π] (symmetric).
-    ///   [`Self::other_angles`] gives the second solution.
-    /// - Singular at the ends of the middle range, where the first and the third axis are parallel within 4 ε: the third
-    ///   angle is zero, the first holds all of the turn about both, and `singular` is set.
-    /// - Accuracy: the angles give the rotation back to rounding everywhere. Close to the singularity the first and the
-    ///   third angle are known only to ε / sin(angle between their axes), but with errors that cancel: the third is
-    ///   found from what is left of the rotation after the first is undone.
+    /// - Ranges: first and third angle in [−π, π]; middle angle in [−π/2, π/2] (asymmetric) or [0, π]
+    ///   (symmetric). [`Self::other_angles`] gives the second solution.
+    /// - Singular at the ends of the middle range, where the first and the third axis are parallel within 4
+    ///   ε: the third angle is zero, the first is the whole rotation about both axes, and `singular` is set.
+    /// - Accuracy: the angles reproduce the rotation to rounding everywhere. Close to the singularity the
+    ///   errors of the first and the third angle are ε / sin(angle between their axes), but they cancel: the
+    ///   third angle is computed from the rotation with the first one removed.
     pub fn angles<T: Real>(self, rotation: &Rotation3<T>) -> Angles<T> {
         let standard = self.standard();
         let axes = standard.own_axes::<T>();
@@ -103,11 +103,11 @@ impl EulerSequence {
         Angles { angles: standard.restored([a, middle, c]), singular }
     }
 
-    /// The other Euler angles of the same rotation, rad: `[t₁ ± π, ±π − t₂, t₃ ± π]` (asymmetric) or
+    /// Returns the other Euler angles of the same rotation, rad: `[t₁ ± π, ±π − t₂, t₃ ± π]` (asymmetric) or
     /// `[t₁ ± π, −t₂, t₃ ± π]` (symmetric).
     ///
-    /// From angles in [−π, π] the results are in [−π, π] too. No rotation has other solutions but these two and
-    /// multiples of 2π, except where [`Angles::singular`] is set.
+    /// From angles in [−π, π] the results are in [−π, π] too. There are no solutions other than these two, up
+    /// to multiples of 2π, unless [`Angles::singular`] is set.
     pub fn other_angles<T: Real>(self, [a, b, c]: [T; 3]) -> [T; 3] {
         let opposite = |t: T| if t > T::zero() { t - T::pi() } else { t + T::pi() };
         let middle = if self.is_symmetric() { -b } else { -opposite(b) };

@@ -1,4 +1,4 @@
-//! Euler angle rates to angular velocity and back.
+//! Conversions between Euler angle rates and angular velocity.
 
 use super::sequence::EulerSequence;
 use super::singular::Singular;
@@ -7,10 +7,11 @@ use crate::Real;
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
 impl EulerSequence {
-    /// `B` with `ω_body = B (ṫ₁, ṫ₂, ṫ₃)` at these angles, rad: the axes of the three turns, resolved in body axes.
+    /// Returns the matrix `B` with `ω_body = B (ṫ₁, ṫ₂, ṫ₃)` at these angles, rad: the axes of the three
+    /// rotations, resolved in body axes.
     ///
-    /// Kane, Likins and Levinson, appendix II. Singular, without an inverse, where the first and the third axis are
-    /// parallel; correct there too.
+    /// Kane, Likins and Levinson, appendix II. If the first and the third axis are parallel, the matrix is
+    /// correct, but has no inverse.
     pub fn body_rate_matrix<T: Real>(self, angles: [T; 3]) -> Matrix3<T> {
         let standard = self.standard();
         let [_, (sb, cb), (sc, cc)] = standard.standardised(angles).map(|t| t.sin_cos());
@@ -23,7 +24,8 @@ impl EulerSequence {
         standard.own_axes::<T>() * Matrix3::from_columns(&standard.restored(columns))
     }
 
-    /// `B` with `ω_space = B (ṫ₁, ṫ₂, ṫ₃)` at these angles, rad: the axes of the three turns, resolved in space axes.
+    /// Returns the matrix `B` with `ω_space = B (ṫ₁, ṫ₂, ṫ₃)` at these angles, rad: the axes of the three
+    /// rotations, resolved in space axes.
     ///
     /// Source and singular case as for [`Self::body_rate_matrix`].
     pub fn space_rate_matrix<T: Real>(self, angles: [T; 3]) -> Matrix3<T> {
@@ -35,12 +37,12 @@ impl EulerSequence {
         standard.own_axes::<T>() * Matrix3::from_columns(&standard.restored(columns))
     }
 
-    /// The inverse of [`Self::body_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_body`.
+    /// Returns the inverse of [`Self::body_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_body`.
     ///
     /// # Errors
     ///
-    /// [`Singular::ParallelAxes`] where `cos t₂` (asymmetric) or `sin t₂` (symmetric) is below 4 ε max(1, |t₂|): zero to
-    /// the rounding of the angle.
+    /// [`Singular::ParallelAxes`] where `cos t₂` (asymmetric) or `sin t₂` (symmetric) is below 4 ε max(1,
+    /// |t₂|): zero to the rounding of the angle.
     pub fn inverse_body_rate_matrix<T: Real>(self, angles: [T; 3]) -> Result<Matrix3<T>, Singular> {
         let standard = self.standard();
         let [_, b, c] = standard.standardised(angles);
@@ -58,11 +60,11 @@ impl EulerSequence {
         Ok(Matrix3::from_rows(&standard.restored(rows)) * standard.own_axes::<T>().transpose())
     }
 
-    /// The inverse of [`Self::space_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_space`.
+    /// Returns the inverse of [`Self::space_rate_matrix`]: `(ṫ₁, ṫ₂, ṫ₃) = B⁻¹ ω_space`.
     ///
     /// # Errors
     ///
-    /// As [`Self::inverse_body_rate_matrix`].
+    /// The errors of [`Self::inverse_body_rate_matrix`].
     pub fn inverse_space_rate_matrix<T: Real>(self, angles: [T; 3]) -> Result<Matrix3<T>, Singular> {
         let standard = self.standard();
         let [a, b, _] = standard.standardised(angles);
@@ -77,38 +79,41 @@ impl EulerSequence {
         Ok(Matrix3::from_rows(&standard.restored(rows)) * standard.own_axes::<T>().transpose())
     }
 
-    /// Angular velocity in body axes, rad/s, at these angles, rad, and rates, rad/s.
+    /// Returns the angular velocity in body axes, rad/s, at these angles, rad, and rates, rad/s.
     pub fn omega_body<T: Real>(self, angles: [T; 3], rates: [T; 3]) -> Vector3<T> {
         self.body_rate_matrix(angles) * Vector3::from(rates)
     }
 
-    /// Angular velocity in space axes, rad/s, at these angles, rad, and rates, rad/s.
+    /// Returns the angular velocity in space axes, rad/s, at these angles, rad, and rates, rad/s.
     pub fn omega_space<T: Real>(self, angles: [T; 3], rates: [T; 3]) -> Vector3<T> {
         self.space_rate_matrix(angles) * Vector3::from(rates)
     }
 
-    /// The rates of the angles, rad/s, at these angles, rad, for an angular velocity in body axes, rad/s.
+    /// Returns the rates of the angles, rad/s, at these angles, rad, for an angular velocity in body axes,
+    /// rad/s.
     ///
     /// # Errors
     ///
-    /// As [`Self::inverse_body_rate_matrix`].
+    /// The errors of [`Self::inverse_body_rate_matrix`].
     pub fn rates_from_body<T: Real>(self, angles: [T; 3], omega: &Vector3<T>) -> Result<[T; 3], Singular> {
         Ok((self.inverse_body_rate_matrix(angles)? * omega).into())
     }
 
-    /// The rates of the angles, rad/s, at these angles, rad, for an angular velocity in space axes, rad/s.
+    /// Returns the rates of the angles, rad/s, at these angles, rad, for an angular velocity in space axes,
+    /// rad/s.
     ///
     /// # Errors
     ///
-    /// As [`Self::inverse_body_rate_matrix`].
+    /// The errors of [`Self::inverse_body_rate_matrix`].
     pub fn rates_from_space<T: Real>(self, angles: [T; 3], omega: &Vector3<T>) -> Result<[T; 3], Singular> {
         Ok((self.inverse_space_rate_matrix(angles)? * omega).into())
     }
 }
 
-/// The sine of the angle between the first and the third axis, unless it is zero to the rounding of the middle angle.
+/// Returns the sine of the angle between the first and the third axis, unless it is zero to the rounding of
+/// the middle angle.
 fn apart<T: Real>(sine: T, middle: T) -> Result<T, Singular> {
-    // Written so that NaN passes: it is the caller's, and no singularity.
+    // NaN passes this test: it comes from the caller and is not a singularity.
     if sine.abs() <= parallel::<T>() * middle.abs().max(T::one()) {
         Err(Singular::ParallelAxes)
     } else {

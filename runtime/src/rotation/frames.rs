@@ -1,10 +1,11 @@
-//! Vectors and matrices in components: wedge products, vectorised matrices, frames whose axes are neither perpendicular nor of unit
-//! length. Kronecker products are nalgebra's own `kronecker`.
+//! Vectors and matrices in components: wedge products, vectorised matrices, frames whose axes are neither
+//! perpendicular nor of unit length. For Kronecker products use nalgebra's `kronecker`.
 
 use crate::Real;
 use nalgebra::{ArrayStorage, Matrix3, SVector, Vector3};
 
-/// The wedge product `a ∧ b = b aᵀ − a bᵀ` as a matrix: that of the cross product, `(a × b)ₓ`.
+/// Returns the wedge product `a ∧ b = b aᵀ − a bᵀ` as a matrix: the cross-product matrix of `a × b`, `(a ×
+/// b)ₓ`.
 ///
 /// ```
 /// use linkwork::nalgebra::Vector3;
@@ -17,7 +18,8 @@ pub fn wedge<T: Real>(a: &Vector3<T>, b: &Vector3<T>) -> Matrix3<T> {
     b * a.transpose() - a * b.transpose()
 }
 
-/// The columns of a matrix, one below the other: `vec M`. With it `vec(A M B) = (Bᵀ ⊗ A) vec M`.
+/// Returns the columns of a matrix, one below the other: `vec M`, which satisfies `vec(A M B) = (Bᵀ ⊗ A) vec
+/// M`.
 ///
 /// ```
 /// use linkwork::nalgebra::Matrix3;
@@ -34,14 +36,15 @@ pub fn vectorized<T: Real>(matrix: &Matrix3<T>) -> SVector<T, 9> {
     SVector::from([a, b, c, d, e, f, g, h, i])
 }
 
-/// The matrix whose columns stand one below the other, the inverse of [`vectorized`].
+/// Returns the matrix with these columns, one below the other: the inverse of [`vectorized`].
 pub fn unvectorized<T: Real>(columns: &SVector<T, 9>) -> Matrix3<T> {
     let ArrayStorage([[a, b, c, d, e, f, g, h, i]]) = columns.data;
     Matrix3::from_array_storage(ArrayStorage([[a, b, c], [d, e, f], [g, h, i]]))
 }
 
-/// The reciprocal frame of three vectors, the columns `f₁, f₂, f₃`: columns `g₁, g₂, g₃` with `gᵢ·fⱼ = 1` for `i = j`, else zero.
-/// The components of a vector `v` in the frame are `gᵢ·v`: `v = Σ (gᵢ·v) fᵢ`. `None` for vectors in a plane.
+/// Returns the reciprocal frame of three vectors, the columns `f₁, f₂, f₃`: columns `g₁, g₂, g₃` with `gᵢ·fⱼ
+/// = 1` for `i = j` and zero otherwise. The components of a vector `v` in the frame are `gᵢ·v`: `v = Σ (gᵢ·v)
+/// fᵢ`. `None` for coplanar vectors.
 ///
 /// ```
 /// use linkwork::nalgebra::{Matrix3, Vector3};

@@ -6,26 +6,28 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-/// The modified Rodrigues vector `σ = n tan(θ/4) = u / (1 + w)`: infinite at a full turn; the same in space and in body
-/// axes.
+/// Modified Rodrigues vector `σ = n tan(θ/4) = u / (1 + w)`: infinite for a rotation by 2π, the same in space
+/// and in body axes.
 ///
-/// Every rotation but the identity has two, `σ` and its shadow `−σ / σ²`, which belong to `q` and to `−q`. One of them
-/// is inside the unit ball, where a turn is by at most π; both are on its surface at half a turn. Whoever integrates
-/// `σ̇` and takes the shadow whenever `|σ| > 1` ([`Self::switched`]) never meets a singularity. Schaub and Junkins.
+/// Every rotation except the identity has two such vectors, `σ` and its shadow `−σ / σ²`, which belong to `q`
+/// and to `−q`. One of them is inside the unit ball and corresponds to a rotation by at most π; for a
+/// rotation by π, both are on the unit sphere. An integration of `σ̇` that switches to the shadow whenever
+/// `|σ| > 1` ([`Self::switched`]) avoids all singularities. Schaub and Junkins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mrp<T>(pub Vector3<T>);
 
 impl<T: Real> Mrp<T> {
-    /// The rotation matrix `1 + (8 [σ]ₓ² + 4 (1 − σ²) [σ]ₓ) / (1 + σ²)²`.
+    /// Returns the rotation matrix `1 + (8 [σ]ₓ² + 4 (1 − σ²) [σ]ₓ) / (1 + σ²)²`.
     pub fn rotation(&self) -> Rotation3<T> {
         self.quaternion().to_rotation_matrix()
     }
 
-    /// The Euler parameters `(2 σ, 1 − σ²) / (1 + σ²)`: `w < 0` outside the unit ball, so that the shadow gives `−q`.
+    /// Returns the Euler parameters `(2 σ, 1 − σ²) / (1 + σ²)`: `w < 0` outside the unit ball, so that the
+    /// shadow yields `−q`.
     pub fn quaternion(&self) -> UnitQuaternion<T> {
         let square = self.0.norm_squared();
         let two = constant::<T>(2.0);
-        // Outside the ball by the inverse square: the square itself may overflow.
+        // Outside the ball the inverse square is used, because the square itself may overflow.
         let q = if square > T::one() {
             let inverse = T::one() / square;
             let sum = T::one() + inverse;
@@ -37,23 +39,23 @@ impl<T: Real> Mrp<T> {
         UnitQuaternion::new_unchecked(q)
     }
 
-    /// The vector of a rotation matrix inside or on the unit ball. Never singular.
+    /// Returns the vector of a rotation matrix, inside or on the unit ball. Never singular.
     pub fn from_rotation(rotation: &Rotation3<T>) -> Self {
         Self::from_quaternion(&quaternion_of_rotation(rotation))
     }
 
-    /// The vector of Euler parameters inside or on the unit ball, the same for `q` and `−q`, but at half a turn. Never
-    /// singular.
+    /// Returns the vector of Euler parameters, inside or on the unit ball. It is the same for `q` and `−q`,
+    /// except for rotations by π. Never singular.
     pub fn from_quaternion(q: &UnitQuaternion<T>) -> Self {
         let q = shorter(q);
         Self(q.imag() / (T::one() + q.w))
     }
 
-    /// The other vector of the same rotation, `−σ / σ²`.
+    /// Returns the other vector of the same rotation, `−σ / σ²`.
     ///
     /// # Errors
     ///
-    /// [`Singular::FullTurn`] where it is not finite: at zero.
+    /// [`Singular::FullTurn`] if it is not finite, for the zero vector.
     pub fn shadow(&self) -> Result<Self, Singular> {
         let largest = self.0.amax();
         let scaled = self.0 / largest;
@@ -61,29 +63,31 @@ impl<T: Real> Mrp<T> {
         if shadow.iter().all(|x| x.is_finite()) { Ok(Self(shadow)) } else { Err(Singular::FullTurn) }
     }
 
-    /// The rate of the shadow, 1/s, from the rate `σ̇` of this vector, 1/s: `(2 σ (σ · σ̇) / σ² − σ̇) / σ²`.
+    /// Returns the rate of the shadow, 1/s, given the rate `σ̇` of this vector, 1/s: `(2 σ (σ · σ̇) / σ² −
+    /// σ̇) / σ²`.
     ///
     /// # Errors
     ///
-    /// [`Singular::FullTurn`] where the square of the shadow is not finite.
+    /// [`Singular::FullTurn`] if the square of the shadow is not finite.
     pub fn shadow_rate(&self, rate: &Vector3<T>) -> Result<Vector3<T>, Singular> {
         let shadow = self.shadow()?.0;
         let square = shadow.norm_squared();
         if !square.is_finite() {
             return Err(Singular::FullTurn);
         }
-        // −s / s² = σ of the shadow s.
+        // The shadow s satisfies −s / s² = σ.
         Ok(shadow * (constant::<T>(2.0) * shadow.dot(rate)) - rate * square)
     }
 
-    /// The shorter of the vector and its shadow: the vector itself up to `|σ| = 1`.
+    /// Returns the shorter of the vector and its shadow: the vector itself up to `|σ| = 1`.
     pub fn switched(&self) -> Self {
         if self.0.norm_squared() > T::one() { self.shadow().unwrap_or(*self) } else { *self }
     }
 
-    /// The vector, inside or on the unit ball, of the product `R R'` of the rotation of `self` and that of `other`:
-    /// `((1 − σ'²) σ + (1 − σ²) σ' + 2 σ × σ') / (1 + σ² σ'² − 2 σ · σ')` or its shadow, which has the denominator
-    /// `|σ + σ'|²` and the opposite sign. Never singular: the larger denominator is taken, at least `½ (1 + σ²)(1 + σ'²)`.
+    /// Returns the vector, inside or on the unit ball, of the product `R R'` of the rotation of `self` and
+    /// that of `other`: `((1 − σ'²) σ + (1 − σ²) σ' + 2 σ × σ') / (1 + σ² σ'² − 2 σ · σ')` or its shadow,
+    /// which has the denominator `|σ + σ'|²` and the opposite sign. Never singular: the larger denominator is
+    /// used, which is at least `½ (1 + σ²)(1 + σ'²)`.
     pub fn compose(&self, other: &Self) -> Self {
         let (a, b) = (self.switched().0, other.switched().0);
         let (square, other_square) = (a.norm_squared(), b.norm_squared());
@@ -94,14 +98,15 @@ impl<T: Real> Mrp<T> {
         Self(if direct >= shadow { sum / direct } else { -sum / shadow })
     }
 
-    /// The vector `−σ` of the inverse rotation.
+    /// Returns the vector `−σ` of the inverse rotation.
     pub fn inverse(&self) -> Self {
         Self(-self.0)
     }
 
-    /// `σ̇ = ¼ ((1 − σ²) ω + 2 σ × ω + 2 σ (σ · ω))`, 1/s, of the angular velocity in body axes, rad/s.
+    /// Returns the rate `σ̇ = ¼ ((1 − σ²) ω + 2 σ × ω + 2 σ (σ · ω))`, 1/s, for an angular velocity in body
+    /// axes, rad/s.
     ///
-    /// Schaub and Junkins; Shuster. Finite wherever `σ` is.
+    /// Schaub and Junkins; Shuster. Finite if `σ` is.
     pub fn rate_from_body(&self, omega: &Vector3<T>) -> Vector3<T> {
         let s = self.0;
         let two = constant::<T>(2.0);
@@ -109,12 +114,14 @@ impl<T: Real> Mrp<T> {
         (omega * (T::one() - s.norm_squared()) + doubled * two) * constant::<T>(0.25)
     }
 
-    /// `σ̇ = ¼ ((1 − σ²) ω − 2 σ × ω + 2 σ (σ · ω))`, 1/s, of the angular velocity in space axes, rad/s.
+    /// Returns the rate `σ̇ = ¼ ((1 − σ²) ω − 2 σ × ω + 2 σ (σ · ω))`, 1/s, for an angular velocity in space
+    /// axes, rad/s.
     pub fn rate_from_space(&self, omega: &Vector3<T>) -> Vector3<T> {
         -self.inverse().rate_from_body(&-omega)
     }
 
-    /// Angular velocity in body axes, rad/s: `ω = 4 ((1 − σ²) σ̇ − 2 σ × σ̇ + 2 σ (σ · σ̇)) / (1 + σ²)²`. Never singular.
+    /// Returns the angular velocity in body axes, rad/s:
+    /// `ω = 4 ((1 − σ²) σ̇ − 2 σ × σ̇ + 2 σ (σ · σ̇)) / (1 + σ²)²`. Never singular.
     pub fn omega_body(&self, rate: &Vector3<T>) -> Vector3<T> {
         let s = self.0;
         let (square, two) = (s.norm_squared(), constant::<T>(2.0));
@@ -123,7 +130,8 @@ impl<T: Real> Mrp<T> {
         (rate * (T::one() - square) + doubled * two) * (constant::<T>(4.0) / (sum * sum))
     }
 
-    /// Angular velocity in space axes, rad/s: `ω = 4 ((1 − σ²) σ̇ + 2 σ × σ̇ + 2 σ (σ · σ̇)) / (1 + σ²)²`. Never singular.
+    /// Returns the angular velocity in space axes, rad/s:
+    /// `ω = 4 ((1 − σ²) σ̇ + 2 σ × σ̇ + 2 σ (σ · σ̇)) / (1 + σ²)²`. Never singular.
     pub fn omega_space(&self, rate: &Vector3<T>) -> Vector3<T> {
         -self.inverse().omega_body(&-rate)
     }

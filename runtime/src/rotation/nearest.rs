@@ -4,14 +4,17 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion};
 
-/// The rotation nearest to a matrix `M`, in the sum of squares of the entries of `R − M`: orthonormalises a rotation
-/// matrix that carries noise or the drift of an integration, and solves Wahba's problem for `M = Σ aₖ v_space v_bodyᵀ`.
+/// Returns the rotation nearest to a matrix `M`, in the sum of squares of the entries of `R − M`. It
+/// orthonormalises a rotation matrix with noise or integration drift, and solves Wahba's problem for `M = Σ
+/// aₖ v_space v_bodyᵀ`.
 ///
-/// - Method: `R` makes `tr(Mᵀ R)` largest, which is a quadratic form of the Euler parameters, so they are the eigenvector
-///   of its largest eigenvalue (Davenport's q-method; Shuster and Oh, Journal of Guidance and Control 4 (1981) 70).
-///   Jacobi's method finds it. Reflections and scalings are no obstacle.
-/// - `None` if the entries are not finite, or if several rotations are nearest to rounding: with the singular values
-///   `s₁ ≥ s₂ ≥ s₃`, if `s₂ + s₃ sign(det M)` is zero, as for matrices of rank one and for reflections.
+/// - Method: `R` maximises `tr(Mᵀ R)`, a quadratic form in the Euler parameters, which are therefore the
+///   eigenvector of its largest eigenvalue (Davenport's q-method; Shuster and Oh, Journal of Guidance and
+///   Control 4 (1981) 70). The eigenvector is computed by Jacobi's method. `M` may contain reflections and
+///   scalings.
+/// - `None` if the entries are not finite, or if the nearest rotation is not unique to rounding: with the
+///   singular values `s₁ ≥ s₂ ≥ s₃`, if `s₂ + s₃ sign(det M)` is zero, as for matrices of rank one and for
+///   reflections.
 /// - Accuracy: a few ε (s₁ / (s₂ ± s₃)).
 pub fn nearest_rotation<T: Real>(matrix: &Matrix3<T>) -> Option<Rotation3<T>> {
     let scale = matrix.amax();
@@ -27,14 +30,15 @@ pub fn nearest_rotation<T: Real>(matrix: &Matrix3<T>) -> Option<Rotation3<T>> {
     ];
     let ([x, y, z, w], gap) = dominant(form);
     let unit = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
-    // NaN counts as no gap.
+    // A gap of NaN fails the test.
     if gap > constant::<T>(32.0) * epsilon::<T>() { Some(unit.to_rotation_matrix()) } else { None }
 }
 
-/// Sweeps of Jacobi's method, more than enough: it converges quadratically, in about six for `f64`.
+/// Number of sweeps of Jacobi's method. It converges quadratically, in about six sweeps for `f64`.
 const SWEEPS: usize = 16;
 
-/// The eigenvector of the largest eigenvalue of a symmetric matrix, and the distance to the next eigenvalue.
+/// Returns the eigenvector of the largest eigenvalue of a symmetric matrix, and the distance to the next
+/// eigenvalue.
 fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
     let (o, i) = (T::zero(), T::one());
     let mut vectors = [[i, o, o, o], [o, i, o, o], [o, o, i, o], [o, o, o, i]];
@@ -49,7 +53,7 @@ fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
     let [[a, ..], [_, b, ..], [_, _, c, _], [.., d]] = form;
     let [mut best, others @ ..] = [a, b, c, d];
     let [mut vector, other_vectors @ ..] = vectors;
-    // Below every eigenvalue of a form of a matrix with entries in [−1, 1].
+    // Lower bound of the eigenvalues of the form of a matrix with entries in [−1, 1].
     let mut next = constant::<T>(-16.0);
     for (value, candidate) in others.into_iter().zip(other_vectors) {
         if value > best {
@@ -61,7 +65,8 @@ fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
     (vector, best - next)
 }
 
-/// Turns rows and columns `P` and `Q` so that their entry vanishes; the eigenvectors are the rows of `vectors`.
+/// Rotates rows and columns `P` and `Q` so that their common off-diagonal entry vanishes; the eigenvectors
+/// are the rows of `vectors`.
 ///
 /// Golub and Van Loan, *Matrix Computations* (2013), §8.5.
 fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], vectors: &mut [[T; 4]; 4]) {
@@ -84,7 +89,7 @@ fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], v
     }
 }
 
-/// `a p + b q`.
+/// Returns `a p + b q`.
 fn combined<T: Real>(a: T, [p0, p1, p2, p3]: [T; 4], b: T, [q0, q1, q2, q3]: [T; 4]) -> [T; 4] {
     [a * p0 + b * q0, a * p1 + b * q1, a * p2 + b * q2, a * p3 + b * q3]
 }

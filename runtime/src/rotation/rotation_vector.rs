@@ -1,4 +1,4 @@
-//! The exponential and the logarithm of rotations, and the rates of rotation vectors.
+//! Exponential and logarithm of rotations, and rates of rotation vectors.
 
 use super::euler_parameters::quaternion_of_rotation;
 use super::singular::Singular;
@@ -8,56 +8,62 @@ use crate::lie::{ball_tangent_rate, exponential, left_jacobian, logarithm};
 use crate::private::constant;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-/// The rotation vector `φ = θ n`, rad: eigenaxis times angle, of any length; the same in space and in body axes.
+/// Rotation vector `φ = θ n`, rad: eigenaxis times angle, of any magnitude; the same in space and in body
+/// axes.
 ///
-/// Source: Shuster. Vectors longer than π are turns the long way round, or several.
+/// Source: Shuster. Vectors longer than π are rotations by more than half a revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RotationVector<T>(pub Vector3<T>);
 
 impl<T: Real> RotationVector<T> {
-    /// The rotation matrix, the exponential of `[φ]ₓ`: `1 + (sin θ / θ) [φ]ₓ + ((1 − cos θ) / θ²) [φ]ₓ²`.
+    /// Returns the rotation matrix, the exponential of `[φ]ₓ`: `1 + (sin θ / θ) [φ]ₓ + ((1 − cos θ) / θ²)
+    /// [φ]ₓ²`.
     ///
-    /// By way of the Euler parameters; accurate at zero, where their factor is a series. Never singular.
+    /// It is computed through the Euler parameters, and accurate near zero, where their factor is a series.
+    /// Never singular.
     pub fn rotation(&self) -> Rotation3<T> {
         self.quaternion().to_rotation_matrix()
     }
 
-    /// The Euler parameters `(n sin(θ/2), cos(θ/2))`, with `w < 0` for `θ` between π and 3π.
+    /// Returns the Euler parameters `(n sin(θ/2), cos(θ/2))`, with `w < 0` for `θ` between π and 3π.
     pub fn quaternion(&self) -> UnitQuaternion<T> {
         let [x, y, z, w] = exponential(self.0.into());
         UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
     }
 
-    /// The shortest rotation vector of a rotation matrix, `|φ| ≤ π`: its logarithm.
+    /// Returns the shortest rotation vector of a rotation matrix, `|φ| ≤ π`: its logarithm.
     ///
-    /// By way of the Euler parameters, so accurate at zero and at π, where the skew part of the matrix tells nothing.
-    /// At half a turn either of two opposite vectors is returned.
+    /// It is computed through the Euler parameters, and therefore accurate near zero and near π, where the
+    /// skew-symmetric part of the matrix contains no information. For an angle of π, either of two opposite
+    /// vectors is returned.
     pub fn from_rotation(rotation: &Rotation3<T>) -> Self {
         Self::from_quaternion(&quaternion_of_rotation(rotation))
     }
 
-    /// The shortest rotation vector of Euler parameters, `|φ| ≤ π`; `q` and `−q` give the same, but at half a turn.
+    /// Returns the shortest rotation vector of Euler parameters, `|φ| ≤ π`; `q` and `−q` yield the same
+    /// vector, except for an angle of π.
     pub fn from_quaternion(q: &UnitQuaternion<T>) -> Self {
         let u = q.imag();
         Self(logarithm([u.x, u.y, u.z, q.w]).into())
     }
 
-    /// The length `|φ|`, rad: the angle of the turn.
+    /// Returns the magnitude `|φ|`, rad: the rotation angle.
     pub fn angle(&self) -> T {
         let largest = self.0.amax();
         if largest > T::zero() { (self.0 / largest).norm() * largest } else { T::zero() }
     }
 
-    /// The rotation vector of the same rotation the other way round, `φ (1 − 2π / |φ|)`, whose quaternion is the
-    /// antipode; for a vector shorter than 2π the only other shorter than 2π.
+    /// Returns the rotation vector of the same rotation in the opposite direction, `φ (1 − 2π / |φ|)`, whose
+    /// quaternion is the antipode. If this vector is shorter than 2π, the result is the only other one
+    /// shorter than 2π.
     ///
     /// # Errors
     ///
-    /// [`Singular::FullTurn`] at zero: the other vector is a full turn about any axis.
+    /// [`Singular::FullTurn`] for the zero vector, whose shadow is a rotation by 2π about any axis.
     pub fn shadow(&self) -> Result<Self, Singular> {
         let angle = self.angle();
         if angle > T::zero() {
-            // The direction first: 2π / |φ| may be infinite.
+            // The direction is computed first, because 2π / |φ| may be infinite.
             let direction = self.0 / angle;
             Ok(Self(direction * (angle - T::two_pi())))
         } else {
@@ -65,13 +71,14 @@ impl<T: Real> RotationVector<T> {
         }
     }
 
-    /// `φ̇ = ω + ½ φ × ω + ((1 − (θ/2) cot(θ/2)) / θ²) φ × (φ × ω)`, rad/s, of the angular velocity in body axes, rad/s.
+    /// Returns the rate `φ̇ = ω + ½ φ × ω + ((1 − (θ/2) cot(θ/2)) / θ²) φ × (φ × ω)`, rad/s, for an angular
+    /// velocity in body axes, rad/s.
     ///
     /// Source: Shuster (Bortz's equation). The factor is a series near zero.
     ///
     /// # Errors
     ///
-    /// [`Singular::FullTurn`] where `|φ|` is a multiple of 2π, but zero, to rounding.
+    /// [`Singular::FullTurn`] if `|φ|` is a nonzero multiple of 2π, to rounding.
     pub fn rate_from_body(&self, omega: &Vector3<T>) -> Result<Vector3<T>, Singular> {
         let half = self.angle() * constant(0.5);
         if half > T::one() && half.sin().abs() <= parallel::<T>() * half {
@@ -80,24 +87,24 @@ impl<T: Real> RotationVector<T> {
         Ok(ball_tangent_rate(self.0.into(), (*omega).into()).into())
     }
 
-    /// `φ̇ = ω − ½ φ × ω + …`, rad/s, of the angular velocity in space axes, rad/s.
+    /// Returns the rate `φ̇ = ω − ½ φ × ω + …`, rad/s, for an angular velocity in space axes, rad/s.
     ///
     /// # Errors
     ///
-    /// As [`Self::rate_from_body`].
+    /// The errors of [`Self::rate_from_body`].
     pub fn rate_from_space(&self, omega: &Vector3<T>) -> Result<Vector3<T>, Singular> {
-        // Of the inverse rotation, −φ, the angular velocity in its body axes is −ω.
+        // The inverse rotation −φ has the angular velocity −ω in its body axes.
         Ok(-Self(-self.0).rate_from_body(&-omega)?)
     }
 
-    /// Angular velocity in body axes, rad/s:
-    /// `ω = φ̇ − ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ) / θ³) φ × (φ × φ̇)`. Never singular.
+    /// Returns the angular velocity in body axes, rad/s: `ω = φ̇ − ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ) /
+    /// θ³) φ × (φ × φ̇)`. Never singular.
     pub fn omega_body(&self, rate: &Vector3<T>) -> Vector3<T> {
         -Self(-self.0).omega_space(&-rate)
     }
 
-    /// Angular velocity in space axes, rad/s:
-    /// `ω = φ̇ + ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ) / θ³) φ × (φ × φ̇)`. Never singular.
+    /// Returns the angular velocity in space axes, rad/s: `ω = φ̇ + ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ)
+    /// / θ³) φ × (φ × φ̇)`. Never singular.
     pub fn omega_space(&self, rate: &Vector3<T>) -> Vector3<T> {
         let [versine, cubic] = left_jacobian(self.0.norm_squared());
         let first = self.0.cross(rate);

@@ -16,7 +16,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// The elementary rotation `R_axis(angle)`, rad, right-handed: an Euler rotation.
+    /// Returns the elementary rotation `R_axis(angle)` about this axis, rad, right-handed: an Euler rotation.
     pub fn rotation<T: Real>(self, angle: T) -> Rotation3<T> {
         let (s, c) = angle.sin_cos();
         let (o, i) = (T::zero(), T::one());
@@ -32,26 +32,27 @@ impl Axis {
     }
 }
 
-/// Which axes the turns of a sequence are about.
+/// Frame in which the rotation axes of a sequence are fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FixedIn {
-    /// Axes fixed in the body, carried along by the turns before.
+    /// Axes fixed in the body, rotated by the previous rotations.
     Body,
     /// Axes fixed in space.
     Space,
 }
 
-/// A sequence of three turns about coordinate axes, no two successive ones equal: one of twelve about body axes and
-/// twelve about space axes.
+/// Sequence of three rotations about coordinate axes, no two successive ones equal: one of twelve about body
+/// axes and twelve about space axes.
 ///
-/// With the angles `t₁, t₂, t₃`, rad, in the order of the turns and of the name:
+/// With the angles `t₁, t₂, t₃`, rad, in the order of the rotations and of the name:
 ///
 /// - body-abc: `R = R_a(t₁) R_b(t₂) R_c(t₃)`;
-/// - space-abc: `R = R_c(t₃) R_b(t₂) R_a(t₁)`, which is body-cba of the angles in reverse.
+/// - space-abc: `R = R_c(t₃) R_b(t₂) R_a(t₁)`, which is body-cba with the angles in reverse order.
 ///
-/// A sequence is *asymmetric* with three different axes (Tait–Bryan, Cardan angles), *symmetric* if the first is
-/// repeated (proper Euler angles). Source: Kane, Likins and Levinson, §1.7 and appendix I. [`Self::BODY_ZYX`] is yaw,
-/// pitch and roll, the 3–2–1 angles of flight dynamics; [`Self::BODY_ZXZ`] precession, nutation and spin.
+/// A sequence is *asymmetric* with three different axes (Tait–Bryan, Cardan angles), *symmetric* if the first
+/// is repeated (proper Euler angles). Source: Kane, Likins and Levinson, §1.7 and appendix I.
+/// [`Self::BODY_ZYX`] is yaw, pitch and roll, the 3–2–1 angles of flight dynamics; [`Self::BODY_ZXZ`]
+/// precession, nutation and spin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EulerSequence {
     fixed_in: FixedIn,
@@ -60,7 +61,8 @@ pub struct EulerSequence {
 
 macro_rules! sequences {
     ($($body:ident $space:ident = $a:ident $b:ident $c:ident;)+) => {
-        /// The twelve sequences of body axes, each followed by the one of space axes with the same name.
+        /// The twelve sequences of body axes, each followed by the sequence of space axes with the same
+        /// letters.
         impl EulerSequence {
             $(
                 #[doc = concat!(
@@ -97,24 +99,25 @@ sequences! {
 }
 
 impl EulerSequence {
-    /// The sequence of these axes; `None` if two successive ones are equal, since such angles do not reach every
-    /// rotation.
+    /// Returns the sequence of these axes; `None` if two successive ones are equal, because such angles do
+    /// not reach every rotation.
     pub const fn new(fixed_in: FixedIn, axes: [Axis; 3]) -> Option<Self> {
         let [first, second, third] = axes;
         if first.is(second) || second.is(third) { None } else { Some(Self { fixed_in, axes }) }
     }
 
-    /// Which axes the turns are about.
+    /// Returns the frame in which the rotation axes are fixed.
     pub const fn fixed_in(self) -> FixedIn {
         self.fixed_in
     }
 
-    /// The axes in the order of the turns.
+    /// Returns the axes in the order of the rotations.
     pub const fn axes(self) -> [Axis; 3] {
         self.axes
     }
 
-    /// Whether the third axis is the first again: singular at middle angles 0 and π, not ±π/2.
+    /// Whether the third axis equals the first: such sequences are singular at middle angles 0 and π, others
+    /// at ±π/2.
     pub const fn is_symmetric(self) -> bool {
         let [first, _, third] = self.axes;
         first.is(third)
@@ -122,7 +125,7 @@ impl EulerSequence {
 }
 
 impl fmt::Display for EulerSequence {
-    /// As in `body-zyx`.
+    /// Writes the name of the sequence, such as `body-zyx`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self.fixed_in {
             FixedIn::Body => "body-",

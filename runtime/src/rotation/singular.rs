@@ -1,17 +1,18 @@
-//! Why a vector or a rate does not exist.
+//! Errors of singular rotation parameters.
 
 use core::fmt;
 
-/// Why parameters or their rates do not exist.
+/// Reason why rotation parameters or their rates do not exist.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Singular {
-    /// The first and the third axis of a sequence of Euler angles are parallel ("gimbal lock"): the middle angle is an
-    /// odd multiple of π/2 (three different axes) or a multiple of π (first axis repeated), to rounding.
+    /// The first and the third axis of a sequence of Euler angles are parallel ("gimbal lock"): the middle
+    /// angle is an odd multiple of π/2 (three different axes) or a multiple of π (first axis repeated), to
+    /// rounding.
     ParallelAxes,
-    /// A turn by π, or an odd multiple, to rounding: the Gibbs vector is infinite.
+    /// A rotation by π, or an odd multiple, to rounding: the Gibbs vector is infinite.
     HalfTurn,
-    /// A turn by 2π, or another multiple but zero, to rounding: the rotation vector has no rate for most angular
+    /// A rotation by a nonzero multiple of 2π, to rounding: the rotation vector has no rate for most angular
     /// velocities, and the modified Rodrigues vector is infinite.
     FullTurn,
 }

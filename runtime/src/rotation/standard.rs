@@ -1,4 +1,5 @@
-//! Every sequence of Euler angles as one of two: body-xyz or body-xyx in the sequence's own axes.
+//! Reduction of every sequence of Euler angles to one of two: body-xyz or body-xyx in the sequence's own
+//! axes.
 
 use super::sequence::{Axis, EulerSequence, FixedIn};
 use crate::Real;
@@ -6,11 +7,11 @@ use crate::private::{constant, epsilon};
 use core::ops::Neg;
 use nalgebra::{Matrix3, Vector3};
 
-/// A sequence as body-xyz (asymmetric) or body-xyx (symmetric) in its own axes: the first axis of the body-fixed
-/// sequence, the second, and the cross product of both.
+/// Sequence as body-xyz (asymmetric) or body-xyx (symmetric) in its own axes: the first and the second axis
+/// of the body-fixed sequence, and their cross product.
 ///
-/// Space-fixed sequences are body-fixed ones in reverse. Where the third axis is opposite to the cross product, the
-/// third angle changes its sign.
+/// Space-fixed sequences are body-fixed ones in reverse order. If the third axis is opposite to the cross
+/// product, the third angle changes sign.
 #[derive(Clone, Copy)]
 pub(super) struct Standard {
     first: Axis,
@@ -27,29 +28,29 @@ impl Standard {
         Self { first, second, symmetric: sequence.is_symmetric(), reversed }
     }
 
-    /// Whether the cross product of the first and the second axis is a coordinate axis, not opposite to one.
+    /// Whether the cross product of the first and the second axis is a positive coordinate axis.
     fn cyclic(self) -> bool {
         matches!((self.first, self.second), (Axis::X, Axis::Y) | (Axis::Y, Axis::Z) | (Axis::Z, Axis::X))
     }
 
-    /// Turns the third one round if the third axis is opposite to the third own axis.
+    /// Negates the third value if the third axis is opposite to the third own axis.
     fn signed<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
         if self.symmetric || self.cyclic() { [a, b, c] } else { [a, b, -c] }
     }
 
-    /// Angles or rates of the sequence as those of the standard one.
+    /// Converts angles or rates of the sequence to those of the standard sequence.
     pub(super) fn standardised<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
         self.signed(if self.reversed { [c, b, a] } else { [a, b, c] })
     }
 
-    /// Angles or rates of the standard sequence as those of the sequence itself; the same for the columns by which
-    /// rates are multiplied.
+    /// Converts angles or rates of the standard sequence, or the columns that multiply rates, to those of the
+    /// sequence itself.
     pub(super) fn restored<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
         let [a, b, c] = self.signed(standard);
         if self.reversed { [c, b, a] } else { [a, b, c] }
     }
 
-    /// The own axes in columns: a right-handed permutation with signs, so products with it are exact.
+    /// Returns the own axes as columns: a right-handed signed permutation, so products with it are exact.
     pub(super) fn own_axes<T: Real>(self) -> Matrix3<T> {
         let [first, second] = [self.first, self.second].map(|axis| match axis {
             Axis::X => Vector3::new(T::one(), T::zero(), T::zero()),
@@ -60,8 +61,8 @@ impl Standard {
     }
 }
 
-/// The sine of the angle between the first and the third axis below which they count as parallel: what rounding may
-/// leave of zero in a rotation matrix.
+/// Returns the sine of the angle between the first and the third axis below which they count as parallel: the
+/// rounding error of a zero in a rotation matrix.
 pub(super) fn parallel<T: Real>() -> T {
     constant::<T>(4.0) * epsilon::<T>()
 }

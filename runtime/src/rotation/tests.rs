@@ -1,4 +1,4 @@
-//! Random rotations and measures of error for the tests of rotations.
+//! Random rotations and error measures for the tests of rotations.
 
 mod angles;
 mod nearest;
@@ -9,11 +9,11 @@ mod table;
 use crate::Real;
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 
-/// Steele, Lea and Flood's SplitMix64: the same numbers on every run.
+/// SplitMix64 generator (Steele, Lea and Flood), with the same numbers on every run.
 struct Random(u64);
 
 impl Random {
-    /// Uniform in [−1, 1).
+    /// Returns a number uniform in [−1, 1).
     fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -29,7 +29,7 @@ impl Random {
         self.numbers().into()
     }
 
-    /// Uniform over all rotations, with `w` of either sign.
+    /// Returns a quaternion uniform over all rotations, with `w` of either sign.
     fn quaternion(&mut self) -> UnitQuaternion<f64> {
         loop {
             let q = Quaternion::from(self.numbers::<4>());
@@ -48,23 +48,23 @@ impl Random {
     }
 }
 
-/// The largest difference of two entries.
+/// Returns the largest difference of two entries.
 fn far<const N: usize, const M: usize>(a: &SMatrix<f64, N, M>, b: &SMatrix<f64, N, M>) -> f64 {
     (a - b).iter().fold(0.0, |far: f64, x| if x.is_nan() { f64::INFINITY } else { far.max(x.abs()) })
 }
 
-/// The largest difference of two numbers.
+/// Returns the largest difference of two numbers.
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     far(&Vector3::from(a), &Vector3::from(b))
 }
 
-/// The largest entry of `Rᵀ R − 1`.
+/// Returns the largest entry of `Rᵀ R − 1`.
 fn skewed(rotation: &Rotation3<f64>) -> f64 {
     far(&(rotation.matrix().transpose() * rotation.matrix()), &Matrix3::identity())
 }
 
-/// The derivative of `f` at zero, by differences of order eight: error of order 1e-13 for `f` and its derivatives of
-/// order one.
+/// Returns the derivative of `f` at zero, by differences of order eight; the error is of order 1e-13 if `f`
+/// and its derivatives are of order one.
 fn slope<const N: usize, const M: usize>(f: impl Fn(f64) -> SMatrix<f64, N, M>) -> SMatrix<f64, N, M> {
     let h = 0.01;
     [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0]
@@ -75,12 +75,12 @@ fn slope<const N: usize, const M: usize>(f: impl Fn(f64) -> SMatrix<f64, N, M>) 
         })
 }
 
-/// Asserts that an error is below a bound, and says where it was not.
+/// Asserts that an error is below a bound; the message contains `place`.
 fn below(error: f64, bound: f64, place: impl core::fmt::Debug) {
     assert!(error <= bound, "{error:e} > {bound:e} at {place:?}");
 }
 
-/// For tests of `f32` and of generic code.
+/// Returns a constant of type `T`, for tests of `f32` and of generic code.
 fn narrow<T: Real>(x: f64) -> T {
     crate::private::constant(x)
 }

@@ -4,7 +4,7 @@ mod large;
 use super::*;
 use crate::arithmetic::Compiled as A;
 
-/// With every arithmetic that there is.
+/// Checks an angle with every available arithmetic.
 fn check(x: f64) {
     check_with::<A>(x);
     #[cfg(all(
@@ -22,7 +22,7 @@ fn check(x: f64) {
 
 fn check_with<A: Arithmetic>(x: f64) {
     let (s, c) = A::sin_cos(x);
-    // Of small angles the sine is the angle itself; large ones are the library's.
+    // The sine of a small angle is the angle itself; large angles use the library.
     if !(1e-8..=LARGEST).contains(&x.abs()) {
         assert_eq!((s, c), ComplexField::sin_cos(x), "of {x:e}");
         return;

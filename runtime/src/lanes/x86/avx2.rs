@@ -1,4 +1,4 @@
-//! The registers and the fused operations of processors with AVX2 and FMA, whatever the compilation's target.
+//! Registers and fused operations of processors with AVX2 and FMA, independent of the compilation target.
 #![expect(unsafe_code, reason = "instructions that the target does not promise")]
 
 use super::avx512::{self, Avx512};
@@ -10,24 +10,25 @@ use core::any::TypeId;
 use core::arch::x86_64::*;
 use core::mem::transmute;
 
-/// Bodies with these instructions run within a function that has the target features, where the processor has them. The
-/// type is known to this crate alone, so that nobody else can run one.
+/// Arithmetic with AVX2 and FMA. Bodies with this arithmetic run within a function that has the target
+/// features, if the processor supports them. The type is private to this crate, so that no other code can use
+/// it without that check.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2;
 
-/// The processor has the instructions.
+/// Whether the processor has the instructions.
 #[inline(always)]
 pub(crate) fn is_available() -> bool {
     std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma")
 }
 
-/// Numbers of this type profit.
+/// Whether numbers of this type benefit.
 #[inline(always)]
 pub(crate) fn serves<T: Real>() -> bool {
     TypeId::of::<T>() == TypeId::of::<f64>() || TypeId::of::<T>() == TypeId::of::<f32>()
 }
 
-/// Returns the result if the lanes fill so many registers.
+/// Returns from the enclosing function with the result, if the lanes fill this number of registers.
 macro_rules! registers {
     ([$number:ident; $lanes:literal] as [$register:ident; $count:literal]: ($($a:ident)+) => $f:expr) => {
         if N == $lanes
@@ -50,7 +51,7 @@ macro_rules! registers {
     };
 }
 
-/// A list of operations with the registers that they use, for another macro.
+/// Passes the list of operations with their intrinsics to another macro.
 macro_rules! list {
     ($then:ident) => {
         $then! {
@@ -66,7 +67,8 @@ macro_rules! list {
     };
 }
 
-/// Functions with the target features: each is optimised by itself before it is inlined into a body of many operations.
+/// Functions with the target features: each is optimised separately before it is inlined into a body of many
+/// operations.
 mod with_features {
     use super::*;
 
@@ -232,12 +234,13 @@ fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     trigonometry::with_large::<Avx2, N>(x)
 }
 
-/// An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs.
+/// Rotates sine and cosine by the quadrant: an odd quadrant exchanges them, and bits of the quadrant are
+/// their signs.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn turned_register(s: __m256d, c: __m256d, quadrant: __m256i) -> [__m256d; 2] {
     let sign = _mm256_set1_pd(-0.0);
-    // Only the first bit of each number is looked at.
+    // Only the first bit of each number is used.
     let odd = _mm256_castsi256_pd(_mm256_slli_epi64::<63>(quadrant));
     let sine = _mm256_blendv_pd(s, c, odd);
     let cosine = _mm256_blendv_pd(c, _mm256_xor_pd(s, sign), odd);

@@ -1,5 +1,5 @@
-//! Registers of eight numbers of double precision, for loops: straight-line bodies of many operations hardly gain by them, and
-//! would have to be compiled once more.
+//! Registers of eight double-precision numbers, for loops. Straight-line bodies of many operations hardly
+//! benefit, and would have to be compiled once more.
 #![expect(unsafe_code, reason = "instructions that the target does not promise")]
 
 use super::avx2::Avx2;
@@ -9,19 +9,21 @@ use crate::trigonometry::same;
 use core::arch::x86_64::*;
 use core::mem::transmute;
 
-/// A loop with these instructions runs within a function that has the target features, where the processor has them. The
-/// type is known to this crate alone, so that nobody else can do any.
+/// Arithmetic with AVX-512. Loops with this arithmetic run within a function that has the target features, if
+/// the processor supports them. The type is private to this crate, so that no other code can use it without
+/// that check.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512;
 
-/// The processor has the instructions and does not slow down where they are used: Intel's since Ice Lake, AMD's since Zen 4.
+/// Whether the processor has the instructions and does not reduce its clock frequency when they are used:
+/// Intel's since Ice Lake, AMD's since Zen 4.
 #[inline(always)]
 pub(crate) fn is_available() -> bool {
     use std::is_x86_feature_detected as has;
     has!("avx2") && has!("fma") && has!("avx512f") && has!("avx512vl") && has!("avx512vbmi2")
 }
 
-/// Functions with the target features. What is not eight numbers is left to AVX2.
+/// Functions with the target features. Vectors of other than eight numbers use AVX2.
 mod with_features {
     use super::*;
 

@@ -96,7 +96,7 @@ fn angles_give_random_rotations_back() {
     }
 }
 
-/// The middle angles close to a singularity of the sequence.
+/// Returns middle angles close to a singularity of the sequence.
 fn middles(sequence: EulerSequence) -> impl Iterator<Item = f64> {
     let ends = if sequence.is_symmetric() { [0.0, PI] } else { [-FRAC_PI_2, FRAC_PI_2] };
     let [low, high] = ends;

@@ -3,7 +3,7 @@ use crate::rotation::*;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Unit;
 
-/// Angles of turns from nothing to half a turn, also just short of it.
+/// Rotation angles from zero to π, also just below π.
 const ANGLES: [f64; 19] = [
     0.0,
     1e-300,
@@ -58,7 +58,7 @@ fn logarithm_inverts_the_exponential() {
                 RotationVector::from_quaternion(&vector.quaternion()),
                 RotationVector::from_quaternion(&antipode(&vector.quaternion())),
             ] {
-                // Beyond rounding, half a turn is the same one way or the other.
+                // To rounding, both signs of a rotation by π are valid.
                 let same = far(&found.0, &vector.0);
                 let other = if PI - angle < 1e-14 { far(&found.0, &-vector.0) } else { f64::INFINITY };
                 below(same.min(other), bound, angle);
@@ -132,7 +132,7 @@ fn all_parameters_give_the_same_rotation() {
             found.extend(
                 [Gibbs::try_from(sigma), Gibbs::try_from(rotation)].iter().flatten().map(Gibbs::rotation),
             );
-            // tan θ/2 = 2 tan(θ/4) / (1 − tan² θ/4), ill-conditioned towards half a turn.
+            // tan θ/2 = 2 tan(θ/4) / (1 − tan² θ/4), ill-conditioned near θ = π.
             if angle < 3.1 {
                 let doubled = sigma.0 * (2.0 / (1.0 - sigma.0.norm_squared()));
                 below(far(&doubled, &g.0), 1e-15 * (1.0 + g.0.norm_squared()), angle);
@@ -179,7 +179,8 @@ fn cayley_transforms_are_quotients_of_matrices() {
         let rotation = cayley(&skew);
         below(far(rotation.matrix(), &quotient), 3e-15, skew);
         below(far(&inverse_cayley(&rotation).unwrap(), &skew), 4e-14, skew);
-        // The second-order transform is that of the modified Rodrigues vector (Tsiotras, Junkins and Schaub, 1997).
+        // The second-order transform is that of the modified Rodrigues vector (Tsiotras, Junkins and Schaub,
+        // 1997).
         below(far(Mrp(axial(&skew)).rotation().matrix(), &(quotient * quotient)), 6e-15, skew);
     }
 }
@@ -203,7 +204,8 @@ fn vectors_compose_as_rotations_do() {
         below(far(&a.compose(&a.inverse()).0, &Vector3::zeros()), 2e-16, p);
         below(far(&g.compose(&g.inverse()).unwrap().0, &Vector3::zeros()), 2e-16, p);
     }
-    // Two quarter turns about one axis: infinite for one, on the ball for the other; two half turns: nothing.
+    // Two rotations by π/2 about one axis: infinite for the Gibbs vector, on the unit sphere for the other;
+    // two rotations by π: the identity.
     let quarter = Gibbs(Vector3::new(1.0, 0.0, 0.0));
     assert_eq!(quarter.compose(&quarter), Err(Singular::HalfTurn));
     let half = Mrp(Vector3::new(0.0, 1.0, 0.0));

@@ -2,7 +2,8 @@ use super::*;
 use crate::rotation::*;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Lengths of rotation vectors: tiny, small, both sides of the switch of the series, near and beyond half and full turns.
+/// Lengths of rotation vectors: tiny, small, on both sides of the limit of the series, near and beyond π and
+/// 2π.
 const LENGTHS: [f64; 15] =
     [0.0, 1e-200, 1e-9, 1e-4, 0.2, 0.23, 0.49, 0.51, 2.0, 3.1, PI, 3.2, 6.0, 6.6, 11.0];
 
@@ -60,7 +61,7 @@ fn euler_angles_report_their_singularity() {
                 "{sequence} {turns}"
             );
             assert_eq!(sequence.rates_from_space(angles, &omega), Err(Singular::ParallelAxes));
-            // The forward matrices stay right: their third column is the first one or its opposite.
+            // The forward matrices are correct: their third column is the first one or its opposite.
             for matrix in [sequence.body_rate_matrix(angles), sequence.space_rate_matrix(angles)] {
                 below(matrix.determinant().abs(), 1e-9, sequence);
                 let parallel = matrix.column(0).dot(&matrix.column(2)).abs();
@@ -98,7 +99,7 @@ fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
     }
 }
 
-/// The angular velocity, in body axes, of the motion whose quaternion is `f`, found by differences.
+/// Returns the angular velocity, in body axes, of the motion with the quaternion `f`, by differences.
 fn turning(f: impl Fn(f64) -> UnitQuaternion<f64>) -> Vector3<f64> {
     quaternion_omega_body(&f(0.0), &Quaternion::from(slope(|t| f(t).coords)))
 }
@@ -113,7 +114,7 @@ fn rates_of_rotation_vectors_agree_with_the_motion() {
             let body = vector.omega_body(&rate);
             below(far(&body, &turning(|t| RotationVector(vector.0 + rate * t).quaternion())), 2e-12, length);
             below(far(&(rotation * body), &vector.omega_space(&rate)), 2e-15, length);
-            // The inverse grows towards the full turn.
+            // The inverse grows towards 2π.
             let bound = 2e-15 * (1.0 + length) / if length > 1.0 { (length / 2.0).sin().abs() } else { 1.0 };
             below(far(&vector.rate_from_body(&body).unwrap(), &rate), bound, length);
             below(far(&vector.rate_from_space(&vector.omega_space(&rate)).unwrap(), &rate), bound, length);
@@ -139,7 +140,7 @@ fn rates_of_gibbs_vectors_agree_with_the_motion() {
             below(far(&rate, &g.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
             below(far(&g.omega_space(&rate), &(rotation * omega)), 2e-15 * (1.0 + size), size);
             below(far(&g.omega_body(&rate), &omega), 2e-15 * (1.0 + size), size);
-            // By differences only where the vector is of order one.
+            // Differences are accurate only where the vector is of order one.
             if size <= 1.0 {
                 let rate = random.vector();
                 let found = turning(|t| Gibbs(g.0 + rate * t).quaternion());
@@ -166,7 +167,7 @@ fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
                 let found = turning(|t| Mrp(sigma.0 + rate * t).quaternion());
                 below(far(&sigma.omega_body(&rate), &found), 1e-9, size);
             }
-            // The shadow turns as the vector itself does.
+            // The shadow has the same angular velocity as the vector itself.
             if let (Ok(shadow), Ok(shadow_rate)) = (sigma.shadow(), sigma.shadow_rate(&rate)) {
                 let relative = 1.0 + shadow.0.norm_squared();
                 below(far(&shadow_rate, &shadow.rate_from_body(&omega)) / relative, 2e-15, size);
@@ -177,7 +178,7 @@ fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
 
 #[test]
 fn integrated_with_switching_the_vector_stays_in_the_ball() {
-    // Steady spin about a body axis, classical Runge–Kutta: many full turns.
+    // Steady rotation about a body axis, classical Runge–Kutta: many revolutions.
     let omega = Vector3::new(1.0, -2.0, 0.5);
     let (h, steps) = (0.002, 10_000);
     let mut sigma = Mrp(Vector3::zeros());

@@ -1,8 +1,9 @@
 //! Reference values of all 24 sequences of Euler angles, at 16 digits.
 //!
-//! Source: products of elementary rotations, checked with scipy's `Rotation.from_euler` (2.2e-16); angular velocities
-//! checked with SymPy's kinematic equations (the tables of Kane, Likins and Levinson, *Spacecraft Dynamics*, appendix
-//! II). Columns of matrices are body axes in space axes; quaternions w x y z with w ≥ 0; rad and rad/s.
+//! Source: products of elementary rotations, checked with scipy's `Rotation.from_euler` (2.2e-16); angular
+//! velocities checked with SymPy's kinematic equations (the tables of Kane, Likins and Levinson, *Spacecraft
+//! Dynamics*, appendix II). Columns of matrices are body axes in space axes; quaternions w x y z with w ≥ 0;
+//! rad and rad/s.
 
 use crate::rotation::EulerSequence;
 
@@ -19,7 +20,8 @@ pub(super) struct Row {
     pub(super) omega_space: [f64; 3],
 }
 
-/// One line of the table: sequence, name, matrix by rows, quaternion, rotation vector, ω in body and in space axes.
+/// Returns one row of the table: sequence, name, matrix by rows, quaternion, rotation vector, ω in body and
+/// in space axes.
 const fn row(
     sequence: EulerSequence,
     name: &'static str,

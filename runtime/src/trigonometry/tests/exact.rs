@@ -1,11 +1,12 @@
-//! Sines and cosines with twice the digits.
+//! Sines and cosines in double-double precision.
 
-/// A number as the sum of two, of twice the digits.
+/// Number of twice the precision, as the sum of two numbers.
 pub type Double = (f64, f64);
 
-/// Sine and cosine with twice the digits: Taylor's series of a sixteenth of the angle without quarter turns, doubled four times.
+/// Returns sine and cosine in double-double precision: Taylor series of a sixteenth of the angle reduced
+/// modulo π/2, doubled four times.
 pub fn sin_cos(x: f64) -> [Double; 2] {
-    // π / 2 in four parts; the products of the first three with whole numbers below 2²⁰ are exact.
+    // π / 2 in four parts; the products of the first three with integers below 2²⁰ are exact.
     const PARTS: [f64; 4] = [
         1.570_796_326_734_125_6,
         6.077_100_506_303_966e-11,
@@ -19,7 +20,7 @@ pub fn sin_cos(x: f64) -> [Double; 2] {
     }
     let r = (r.0 / 16.0, r.1 / 16.0);
     let square = multiply(r, r);
-    // 1 - cos r = r²/2! - r⁴/4! + …, by which no digits are lost in doubling; sin r = r - r³/3! + ….
+    // 1 - cos r = r²/2! - r⁴/4! + …, which loses no digits in doubling; sin r = r - r³/3! + ….
     let (mut sine, mut versine) = (r, (square.0 / 2.0, square.1 / 2.0));
     let (mut odd, mut even) = (sine, versine);
     for k in (2..28).step_by(2) {
@@ -45,14 +46,14 @@ pub fn sin_cos(x: f64) -> [Double; 2] {
     }
 }
 
-/// How far a number is off, in units of the last place.
+/// Returns the error of a number, in units in the last place.
 pub fn error(found: f64, exact: Double) -> f64 {
     let magnitude = exact.0.abs();
     let unit = f64::from_bits(magnitude.to_bits() + 1) - magnitude;
     ((found - exact.0) - exact.1).abs() / unit
 }
 
-/// Knuth's sum without error of the first parts.
+/// Returns the sum; Knuth's error-free transformation of the first parts.
 fn add(a: Double, b: Double) -> Double {
     let sum = a.0 + b.0;
     let of_b = sum - a.0;

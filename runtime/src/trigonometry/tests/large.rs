@@ -1,4 +1,4 @@
-//! Angles beyond the reduction: what the functions of the library make of them.
+//! Angles beyond the range of the reduction, whose sines and cosines are the library's.
 
 use super::super::LARGEST;
 use super::{A, exact};
@@ -8,9 +8,10 @@ use exact::Double;
 /// Significand and exponent of an angle; its sine and cosine with twice the digits.
 type Row = (u64, i32, Double, Double);
 
-/// By mpmath 1.3 with 4000 bits. The first angle is of all doubles the one nearest to a multiple of a quarter turn (Muller,
-/// *Elementary Functions*, 2016, § 11.3.2). The next two are those, of some six thousand that come near to one, where glibc is
-/// worst. Nine more are near to one as well, by continued fractions, and nine are random.
+/// Reference values computed with mpmath 1.3 at 4000 bits. The first angle is the double nearest to a nonzero
+/// multiple of π/2 (Muller, *Elementary Functions*, 2016, § 11.3.2). The next two are those with the largest
+/// error of glibc among about six thousand angles near such multiples. Nine more are near such multiples,
+/// found by continued fractions, and nine are random.
 #[rustfmt::skip]
 const TABLE: [Row; 21] = [
     (6381956970095103, 797, (1.0, -1.098476220074687e-37), (-4.687165924254628e-19, 4.3720557429382733e-36)),
@@ -57,7 +58,8 @@ fn large_angles_are_as_good_as_the_library() {
             for (found, exact) in [(s, (sign * sine.0, sign * sine.1)), (c, cosine)] {
                 let off = ((found - exact.0) - exact.1).abs();
                 let unit = off / exact::error(found, exact);
-                // The reduction of glibc, the C library of Linux, ends there: 1e5 units in the last place at the worst angles.
+                // The accuracy of glibc's reduction (the C library of Linux) is limited to this: 1e5 units in
+                // the last place at the worst angles.
                 let lost = if cfg!(feature = "std") { 2e-28 } else { 0.0 };
                 assert!(off == 0.0 || off <= unit + lost, "of {x:e}: {found:e} is {off:e} off");
             }
