@@ -1,10 +1,11 @@
-//! Why a function is not there. Generated code has each function that a mechanism lacks once more, under a bound that nothing
-//! fulfils: whoever calls it is told what to do about it. Since the bound never holds, such a function stands in nobody's
-//! way, neither in that of an output nor in that of a method of the user's own.
+//! Diagnostics for functions that a mechanism lacks. Generated code declares each missing function under a
+//! trait bound that no type satisfies, so that a call to it is a compile error with advice. Because the bound
+//! is never satisfied, such a function does not conflict with outputs or methods of the same name.
 //!
-//! The lifetime makes rustc take a bound as it is, though it names no parameter; without one it would be refused at once.
+//! The lifetime parameter makes rustc accept a bound that names no other parameter; without it the
+//! declaration itself would be rejected.
 
-/// A mechanism with the word `derivatives`.
+/// Mechanism with the option `derivatives`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `derivatives`",
     label = "this needs the word `derivatives`",
@@ -12,7 +13,7 @@
 )]
 pub trait AsksForDerivatives<'a> {}
 
-/// A mechanism with the word `second_derivatives`.
+/// Mechanism with the option `second_derivatives`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `second_derivatives`",
     label = "this needs the word `second_derivatives`",
@@ -20,7 +21,7 @@ pub trait AsksForDerivatives<'a> {}
 )]
 pub trait AsksForSecondDerivatives<'a> {}
 
-/// A mechanism with the word `momentum_derivatives`.
+/// Mechanism with the option `momentum_derivatives`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `momentum_derivatives`",
     label = "this needs the word `momentum_derivatives`",
@@ -28,7 +29,7 @@ pub trait AsksForSecondDerivatives<'a> {}
 )]
 pub trait AsksForMomentumDerivatives<'a> {}
 
-/// A mechanism with the word `centroidal`.
+/// Mechanism with the option `centroidal`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `centroidal`",
     label = "this needs the word `centroidal`",
@@ -36,7 +37,7 @@ pub trait AsksForMomentumDerivatives<'a> {}
 )]
 pub trait AsksForCentroidal<'a> {}
 
-/// A mechanism with the word `hamilton`.
+/// Mechanism with the option `hamilton`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `hamilton`",
     label = "this needs the word `hamilton`",
@@ -44,7 +45,7 @@ pub trait AsksForCentroidal<'a> {}
 )]
 pub trait AsksForHamilton<'a> {}
 
-/// A mechanism with the word `routh`.
+/// Mechanism with the option `routh`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `routh`",
     label = "this needs the word `routh`",
@@ -52,7 +53,7 @@ pub trait AsksForHamilton<'a> {}
 )]
 pub trait AsksForRouth<'a> {}
 
-/// A mechanism with the word `conserved`.
+/// Mechanism with the option `conserved`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `conserved`",
     label = "this needs the word `conserved`",
@@ -60,7 +61,7 @@ pub trait AsksForRouth<'a> {}
 )]
 pub trait AsksForConserved<'a> {}
 
-/// A mechanism with the word `regressor`.
+/// Mechanism with the option `regressor`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `regressor`",
     label = "this needs the word `regressor`",
@@ -68,7 +69,7 @@ pub trait AsksForConserved<'a> {}
 )]
 pub trait AsksForRegressor<'a> {}
 
-/// A mechanism with the word `sensitivities`.
+/// Mechanism with the option `sensitivities`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `sensitivities`",
     label = "this needs the word `sensitivities`",
@@ -76,7 +77,7 @@ pub trait AsksForRegressor<'a> {}
 )]
 pub trait AsksForSensitivities<'a> {}
 
-/// A mechanism with the word `packed`.
+/// Mechanism with the option `packed`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `packed`",
     label = "this needs the word `packed`",
@@ -84,7 +85,7 @@ pub trait AsksForSensitivities<'a> {}
 )]
 pub trait AsksForPacked<'a> {}
 
-/// A mechanism with the word `prepare`.
+/// Mechanism with the option `prepare`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `prepare`",
     label = "this needs the word `prepare`",
@@ -92,7 +93,7 @@ pub trait AsksForPacked<'a> {}
 )]
 pub trait AsksForPrepare<'a> {}
 
-/// A mechanism with the word `batch`.
+/// Mechanism with the option `batch`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `batch`",
     label = "this needs the word `batch`",
@@ -100,7 +101,7 @@ pub trait AsksForPrepare<'a> {}
 )]
 pub trait AsksForBatch<'a> {}
 
-/// A mechanism with the word `drawing`.
+/// Mechanism with the option `drawing`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not ask for `drawing`",
     label = "this needs the word `drawing`",
@@ -132,7 +133,7 @@ pub trait HasInertia<'a> {}
 )]
 pub trait HasNoConstraints<'a> {}
 
-/// A mechanism with contacts that slip.
+/// Mechanism with sliding contacts.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that slip",
     label = "only mechanisms with friction at contacts have this",
@@ -140,7 +141,7 @@ pub trait HasNoConstraints<'a> {}
 )]
 pub trait HasSlipping<'a> {}
 
-/// A mechanism without contacts that slip.
+/// Mechanism without sliding contacts.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has contacts that slip",
     label = "only mechanisms whose friction does not follow from multipliers have this",
@@ -148,7 +149,7 @@ pub trait HasSlipping<'a> {}
 )]
 pub trait HasNoSlipping<'a> {}
 
-/// A mechanism with contacts that open and close.
+/// Mechanism with unilateral contacts.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that open and close",
     label = "only mechanisms with contacts or stops have this",
@@ -156,7 +157,7 @@ pub trait HasNoSlipping<'a> {}
 )]
 pub trait HasContacts<'a> {}
 
-/// A mechanism with generalized speeds that were declared.
+/// Mechanism with declared generalized speeds.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no speeds of its own",
     label = "only mechanisms with declared speeds have this",
@@ -164,7 +165,7 @@ pub trait HasContacts<'a> {}
 )]
 pub trait HasSpeeds<'a> {}
 
-/// A mechanism whose velocities are those of its joints.
+/// Mechanism whose velocities are those of its joints.
 #[diagnostic::on_unimplemented(
     message = "velocities of `{Self}` are declared speeds, which move a configuration by where it is",
     label = "this does not depend on the configuration",
@@ -180,7 +181,7 @@ pub trait HasNoSpeeds<'a> {}
 )]
 pub trait HasRegularMass<'a> {}
 
-/// A mechanism whose outputs of accelerations and reactions have Jacobians: none.
+/// Mechanism whose outputs of accelerations and reactions have Jacobians; no type implements this trait.
 #[diagnostic::on_unimplemented(
     message = "an output of accelerations or reactions has no Jacobian",
     label = "this output has none",
@@ -188,7 +189,7 @@ pub trait HasRegularMass<'a> {}
 )]
 pub trait HasJacobian<'a> {}
 
-/// A mechanism that knows its frames: not one that is prepared.
+/// Mechanism with frames, unlike a prepared mechanism.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no frames",
     label = "the mechanism that it was prepared from has them",
@@ -204,7 +205,7 @@ pub trait HasFrames<'a> {}
 )]
 pub trait HasParameters<'a> {}
 
-/// A mechanism that holds its parameters: not one that is prepared.
+/// Mechanism that stores its parameters, unlike a prepared mechanism.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not hold its parameters",
     label = "the mechanism that it was prepared from has this",
@@ -212,7 +213,7 @@ pub trait HasParameters<'a> {}
 )]
 pub trait HoldsParameters<'a> {}
 
-/// A mechanism that takes figures of its file for parameters.
+/// Mechanism with values of its robot file as parameters.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no figures of a file as parameters",
     label = "this needs the argument `parameters`",
@@ -220,7 +221,7 @@ pub trait HoldsParameters<'a> {}
 )]
 pub trait HasFileParameters<'a> {}
 
-/// A mechanism that has mass properties of a file's links as parameters.
+/// Mechanism with mass properties of a robot file's links as parameters.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no mass properties of links as parameters",
     label = "this needs `parameters = inertial`",

@@ -1,29 +1,29 @@
-//! The standard atmosphere: ISO 2533:1975 of the International Organization for Standardization and the *U.S. Standard
-//! Atmosphere 1976* (NASA TM-X-74335, part 1), which agree up to 47 km; the latter goes on to 86 km. Above, this one has the
-//! temperature of its top.
+//! The standard atmosphere: ISO 2533:1975 of the International Organization for Standardization and the *U.S.
+//! Standard Atmosphere 1976* (NASA TM-X-74335, part 1), which agree up to 47 km; the latter extends to 86 km.
+//! Above 86 km, the temperature is constant here.
 //!
-//! Heights are geopotential, m: `H = r h / (r + h)` for the height `h` above the sea and the Earth's radius `r` of
-//! 6 356 766 m. Expressions of the language take `h`.
+//! Heights are geopotential, m: `H = r h / (r + h)` for the height `h` above sea level and the Earth's radius
+//! `r` of 6 356 766 m. Expressions of the language take `h`.
 
 use crate::Real;
 use crate::private::constant;
 
-/// Acceleration of free fall, m/s².
+/// Standard acceleration of free fall, m/s².
 const G: f64 = 9.80665;
 /// Gas constant of air, J/(kg·K).
 const R: f64 = 287.05287;
-/// Temperature at the sea, K.
+/// Temperature at sea level, K.
 const T0: f64 = 288.15;
-/// Pressure at the sea, Pa.
+/// Pressure at sea level, Pa.
 const P0: f64 = 101_325.0;
 
-/// A layer: where it begins, m, and by how much its temperature changes with height, K/m.
+/// Layer of the atmosphere: its base height, m, and its temperature gradient, K/m.
 struct Layer {
     base: f64,
     lapse: f64,
 }
 
-/// The layers; the last has no end.
+/// Layers of the atmosphere; the last is unbounded.
 static LAYERS: [Layer; 8] = [
     Layer { base: 0.0, lapse: -6.5e-3 },
     Layer { base: 11_000.0, lapse: 0.0 },
@@ -35,32 +35,34 @@ static LAYERS: [Layer; 8] = [
     Layer { base: 84_852.0, lapse: 0.0 },
 ];
 
-/// The layers with their ends.
+/// Returns the layers with their upper ends.
 fn layers() -> impl Iterator<Item = (&'static Layer, Option<f64>)> {
     let ends = LAYERS.iter().skip(1).map(|next| Some(next.base)).chain([None]);
     LAYERS.iter().zip(ends)
 }
 
-/// How far into a layer `h` is, m: its whole depth above it, zero below it. The lowest goes down without end.
+/// Returns the depth of height `h` within a layer, m: the layer's whole thickness above it, zero below it.
+/// The lowest layer is unbounded below.
 fn depth<T: Real>(h: T, layer: &Layer, end: Option<f64>) -> T {
     let below = end.map_or(h, |end| h.min(constant(end)));
     let inside = if layer.base > 0.0 { below.max(constant(layer.base)) } else { below };
     inside - constant(layer.base)
 }
 
-/// One for a number that is not negative, else zero; of lanes, in each.
+/// Returns one for a nonnegative number and zero for a negative one, lane by lane.
 fn step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
-/// The standard atmosphere at a geopotential height, m.
+/// Standard atmosphere as functions of a geopotential height, m.
 pub trait Atmosphere: Real {
-    /// The temperature, K.
+    /// Returns the temperature, K.
     fn isa_temperature(self) -> Self {
         layers().fold(constant(T0), |sum, (layer, end)| sum + depth(self, layer, end) * constant(layer.lapse))
     }
 
-    /// How the temperature changes with height, K/m; at the border of two layers that of the upper.
+    /// Returns the derivative of the temperature with respect to height, K/m; at the boundary of two layers,
+    /// that of the upper one.
     fn isa_lapse_rate(self) -> Self {
         let mut rate: Self = constant(0.0);
         let mut before = 0.0;
@@ -73,11 +75,11 @@ pub trait Atmosphere: Real {
         rate
     }
 
-    /// The pressure, Pa.
+    /// Returns the pressure, Pa.
     fn isa_pressure(self) -> Self {
         let (mut pressure, mut base): (Self, f64) = (constant(P0), T0);
         for (layer, end) in layers() {
-            // Layers above change nothing; lanes that differ go through all of them.
+            // Layers above have no effect; lanes that differ pass through all layers.
             if layer.base > 0.0 && self < constant(layer.base) {
                 break;
             }

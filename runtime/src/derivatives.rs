@@ -7,50 +7,55 @@ use crate::private::constant;
 use crate::{At, Mechanism, Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
-/// `NV` by `NV`.
+/// Matrix of `NV` by `NV`.
 type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
 
-/// Derivatives by configuration, by velocity, and by `N` forces or inputs.
+/// Derivatives with respect to configuration, velocity, and `N` forces or inputs.
 pub type ByMotion<T, const NV: usize, const N: usize> =
     (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, N>);
 
-/// First derivatives of a mechanism's functions, in blocks of `NV` by `NV` (and by `NU`). `#[mechanism(…, derivatives)]` implements
-/// it, with and without constraints; one that is driven in time has [`RheonomicDerivatives`], and this at an instant
-/// ([`at`](crate::at)).
+/// First derivatives of a mechanism's functions, in blocks of `NV` by `NV` (and by `NU`). `#[mechanism(…,
+/// derivatives)]` implements the trait, with and without constraints. A mechanism that depends on time
+/// implements [`RheonomicDerivatives`], and this trait at an instant ([`at`](crate::at)).
 ///
-/// A derivative by `q` is along motions of the configuration: column `i` is along `q ⊕ ε eᵢ` (see
-/// [`integrate`](Mechanism::integrate)), for ball and free joints in body axes. So is the change of a configuration.
+/// Derivatives with respect to `q` are along displacements of the configuration: column `i` is the derivative
+/// along `q ⊕ ε eᵢ` (see [`integrate`](Mechanism::integrate)), in body axes for ball and free joints. Changes
+/// of a configuration are expressed in the same way.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives",
     note = "the word asks for them: `#[mechanism(…, derivatives)]`",
     note = "of a mechanism whose equations contain time pass `&at(&mechanism, t)`"
 )]
 pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ, NV, NU> {
-    /// There are [`generalized_momentum_derivatives`](Self::generalized_momentum_derivatives) and
-    /// [`momentum_rate_derivatives`](Self::momentum_rate_derivatives): the word `momentum_derivatives` asks for them.
+    /// Whether [`generalized_momentum_derivatives`](Self::generalized_momentum_derivatives) and
+    /// [`momentum_rate_derivatives`](Self::momentum_rate_derivatives) are available, through the option
+    /// `momentum_derivatives`.
     const MOMENTUM_DERIVATIVES: bool = false;
-    /// The velocity along which each input pushes, where every input is one entry of the generalized forces, as motors at joints are:
-    /// derivatives by inputs are then columns of those by forces.
+    /// Index of the velocity along which each input acts, if every input is one entry of the generalized
+    /// forces, as motors at joints are. Derivatives with respect to inputs are then columns of those with
+    /// respect to forces.
     const DIRECT_INPUTS: Option<[usize; NU]> = None;
-    /// The velocities of ball and free joints, from the first up to another: derivatives of `q ⊕ dv` are those of the identity elsewhere;
-    /// `None` where it is not known which these are.
+    /// Half-open range of the velocities of ball and free joints, outside which the derivatives of `q ⊕ dv`
+    /// are those of the identity; `None` if unknown.
     const TURNED: Option<(usize, usize)> = None;
 
-    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
+    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
     fn integrate_derivatives(
         &self,
         dv: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
-    /// `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Mechanism::tangent_rate); zero and the identity for plain coordinates.
+    /// Returns `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Mechanism::tangent_rate); zero and the identity for plain
+    /// coordinates.
     fn tangent_rate_derivatives(
         &self,
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
-    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q`, which does not depend on `q` unless speeds were declared ([`SPEEDS`](Mechanism::SPEEDS)):
-    /// [`integrate_derivatives`](Self::integrate_derivatives) is NaN then.
+    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q`. They do not depend on `q` unless generalized speeds are
+    /// declared ([`SPEEDS`](Mechanism::SPEEDS)): [`integrate_derivatives`](Self::integrate_derivatives) is
+    /// then NaN.
     fn integrate_derivatives_at(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -59,7 +64,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         self.integrate_derivatives(dv)
     }
 
-    /// `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Mechanism::displacement_rate), whose first is zero unless speeds were declared.
+    /// Returns `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Mechanism::displacement_rate); the first is
+    /// zero unless generalized speeds are declared.
     fn displacement_rate_derivatives(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -70,28 +76,31 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         (SMatrix::zeros(), by_dv, by_v)
     }
 
-    /// The matrix `T` by which displacements between two neighbouring motions change, `δq̇ = T δq + δv`, since it is measured in axes or speeds
-    /// that turn along.
+    /// Returns the matrix `T` in the rate of the displacement between two neighbouring motions, `δq̇ = T δq +
+    /// δv`. It results from measuring the displacement in rotating axes or in configuration-dependent
+    /// generalized speeds.
     fn turning(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV> {
         let (turning, _) = self.tangent_rate_derivatives(&SVector::zeros(), v);
-        // The tangent space moves along, so that the bracket counts twice.
+        // The tangent space moves with the configuration, so that the Lie bracket counts twice.
         turning * constant::<Self::Scalar>(2.0)
     }
 
-    /// A matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces, N and N·m, and `Ṁ − 2 C` skew (Echeandia and Wensing,
-    /// *Numerical methods to compute the Coriolis matrix and Christoffel symbols*, 2021).
+    /// Returns a matrix `C(q, v)` with `C v` the Coriolis and centrifugal forces, N and N·m, and `Ṁ − 2 C`
+    /// skew-symmetric (Echeandia and Wensing, *Numerical methods to compute the Coriolis matrix and
+    /// Christoffel symbols*, 2021).
     fn coriolis_matrix(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV>;
 
-    /// `(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per m, rad, m/s and rad/s; `∂τ/∂a` is
-    /// the mass matrix unless forces depend on accelerations (Carpentier and Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018).
+    /// Returns `(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per m, rad,
+    /// m/s and rad/s; `∂τ/∂a` is the mass matrix unless forces depend on accelerations (Carpentier and
+    /// Mansard, *Analytical derivatives of rigid body dynamics algorithms*, 2018).
     fn inverse_dynamics_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -99,8 +108,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         a: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
-    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Mechanism::forward_dynamics), constraints included. Without constraints
-    /// the last is the inverse of the mass matrix.
+    /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Mechanism::forward_dynamics), constraints
+    /// included. Without constraints `∂v̇/∂τ` is the inverse of the mass matrix.
     fn forward_dynamics_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -108,9 +117,10 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         tau: &SVector<Self::Scalar, NV>,
     ) -> ByMotion<Self::Scalar, NV, NV>;
 
-    /// Puts the derivatives of forward dynamics, [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives), into matrices
-    /// and returns the accelerations, which are calculated with them once. The matrices are zero, or hold what this function of the same
-    /// mechanism put there before: entries that are always zero are not written.
+    /// Writes [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) to matrices and returns
+    /// the accelerations, which are computed once together with them. On entry, the matrices must be zero or
+    /// contain the results of an earlier call for the same mechanism: entries that are always zero are not
+    /// written.
     fn forward_dynamics_derivatives_into(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -124,7 +134,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         Mechanism::forward_dynamics(self, q, v, tau)
     }
 
-    /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
+    /// Returns `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of [`generalized_forces`](Mechanism::generalized_forces).
     fn generalized_forces_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -132,8 +142,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         u: &SVector<Self::Scalar, NU>,
     ) -> ByMotion<Self::Scalar, NV, NU>;
 
-    /// `∂p/∂q` of [`generalized_momentum`](Mechanism::generalized_momentum); `∂p/∂v` is the mass matrix. NaN without
-    /// [`MOMENTUM_DERIVATIVES`](Self::MOMENTUM_DERIVATIVES).
+    /// Returns `∂p/∂q` of [`generalized_momentum`](Mechanism::generalized_momentum); `∂p/∂v` is the mass
+    /// matrix. NaN without [`MOMENTUM_DERIVATIVES`](Self::MOMENTUM_DERIVATIVES).
     fn generalized_momentum_derivatives(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -142,7 +152,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         unknown()
     }
 
-    /// `(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Mechanism::momentum_rate). NaN without
+    /// Returns `(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Mechanism::momentum_rate). NaN without
     /// [`MOMENTUM_DERIVATIVES`](Self::MOMENTUM_DERIVATIVES).
     fn momentum_rate_derivatives(
         &self,
@@ -152,7 +162,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         (unknown(), unknown())
     }
 
-    /// Hands the mechanism to `visitor` with the numbers of its constraints, where it has derivatives of them; `None` elsewhere.
+    /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters, if their
+    /// derivatives are available; otherwise returns `None`.
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: Visitor<Self::Scalar, NQ, NV, NU>,
@@ -160,7 +171,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         None
     }
 
-    /// The motion under the inputs `u` to first order.
+    /// Returns the acceleration under the inputs `u`, linearised about a state.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -175,7 +186,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     ///     motor: Torque,
     /// }
     ///
-    /// /// How fast it swings when it is let go: by the eigenvalue of the linear system, for any mechanism of one coordinate.
+    /// /// Frequency of small oscillations of any mechanism of one coordinate, from the eigenvalue.
     /// fn frequency<M: Derivatives<1, 1, 1, Scalar = f64>>(m: &M) -> f64 {
     ///     let linear = m.linear_motion(&m.neutral(), &[0.0].into(), &[0.0].into());
     ///     (-linear.by_q[0]).sqrt()
@@ -195,12 +206,13 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     }
 }
 
-/// Derivatives of the accelerations by state and inputs, of those by state and forces and of the forces'.
+/// Returns the derivatives of the accelerations with respect to state and inputs, given those with respect to
+/// state and forces, and the derivatives of the forces.
 pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
     (mut by_q, mut by_v, by_force): ByMotion<T, NV, NV>,
     (force_by_q, force_by_v, force_by_u): &ByMotion<T, NV, NU>,
 ) -> ByMotion<T, NV, NU> {
-    // Most inputs push along joints.
+    // Skips zero derivatives: most inputs act directly along joints.
     for (by_state, of_force) in [(&mut by_q, force_by_q), (&mut by_v, force_by_v)] {
         if !is_zero(of_force) {
             add_product(by_state, &by_force, of_force);
@@ -209,7 +221,8 @@ pub(crate) fn under_inputs<T: Real, const NV: usize, const NU: usize>(
     (by_q, by_v, product_with_few(&by_force, force_by_u))
 }
 
-/// The acceleration under the inputs `u`, whose derivatives by configuration, velocity and inputs go into matrices of zeros.
+/// Returns the acceleration under the inputs `u`, and writes its derivatives with respect to configuration,
+/// velocity and inputs to zero matrices.
 pub(crate) fn accelerated_into<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
@@ -234,7 +247,7 @@ where
     acceleration
 }
 
-/// [`Mechanism::acceleration_derivatives`] of mechanisms with derivatives.
+/// Implements [`Mechanism::acceleration_derivatives`] for mechanisms with derivatives.
 pub fn acceleration_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: M::Scalar,
@@ -250,8 +263,8 @@ where
     Some((by_q, by_v, by_u))
 }
 
-/// What [`Derivatives`] are for a mechanism whose functions depend on time `t`, s. Every mechanism with [`Derivatives`] has
-/// these, too.
+/// First derivatives of a mechanism whose functions depend on time `t`, s; see [`Derivatives`]. Every
+/// mechanism with [`Derivatives`] implements this trait, too.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives",
     note = "the word asks for them: `#[mechanism(…, derivatives)]`"
@@ -259,27 +272,27 @@ where
 pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     Rheonomic<NQ, NV, NU>
 {
-    /// There are derivatives of momenta ([`Derivatives::MOMENTUM_DERIVATIVES`]).
+    /// Whether derivatives of momenta are available ([`Derivatives::MOMENTUM_DERIVATIVES`]).
     const MOMENTUM_DERIVATIVES: bool = false;
-    /// Where inputs are entries of the generalized forces ([`Derivatives::DIRECT_INPUTS`]).
+    /// Index of the velocity along which each input acts ([`Derivatives::DIRECT_INPUTS`]).
     const DIRECT_INPUTS: Option<[usize; NU]> = None;
-    /// The velocities of ball and free joints ([`Derivatives::TURNED`]).
+    /// Range of the velocities of ball and free joints ([`Derivatives::TURNED`]).
     const TURNED: Option<(usize, usize)> = None;
 
-    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` ([`Derivatives::integrate_derivatives`]).
+    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` ([`Derivatives::integrate_derivatives`]).
     fn integrate_derivatives(
         &self,
         dv: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
-    /// `(∂/∂dv, ∂/∂v)` of the rate of `dv` ([`Derivatives::tangent_rate_derivatives`]).
+    /// Returns `(∂/∂dv, ∂/∂v)` of the rate of `dv` ([`Derivatives::tangent_rate_derivatives`]).
     fn tangent_rate_derivatives(
         &self,
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
-    /// `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q` ([`Derivatives::integrate_derivatives_at`]).
+    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q` ([`Derivatives::integrate_derivatives_at`]).
     fn integrate_derivatives_at(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -288,7 +301,8 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         self.integrate_derivatives(dv)
     }
 
-    /// `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Rheonomic::displacement_rate) ([`Derivatives::displacement_rate_derivatives`]).
+    /// Returns `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Rheonomic::displacement_rate)
+    /// ([`Derivatives::displacement_rate_derivatives`]).
     fn displacement_rate_derivatives(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -299,18 +313,19 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         (SMatrix::zeros(), by_dv, by_v)
     }
 
-    /// The matrix `T` by which displacements between two neighbouring motions change, `δq̇ = T δq + δv` ([`Derivatives::turning`]).
+    /// Returns the matrix `T` in the rate of the displacement between two neighbouring motions, `δq̇ = T δq +
+    /// δv` ([`Derivatives::turning`]).
     fn turning(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV> {
         let (turning, _) = self.tangent_rate_derivatives(&SVector::zeros(), v);
-        // The tangent space moves along, so that the bracket counts twice.
+        // The tangent space moves with the configuration, so that the Lie bracket counts twice.
         turning * constant::<Self::Scalar>(2.0)
     }
 
-    /// A matrix `C(t, q, v)` of Coriolis and centrifugal forces ([`Derivatives::coriolis_matrix`]).
+    /// Returns a matrix `C(t, q, v)` of Coriolis and centrifugal forces ([`Derivatives::coriolis_matrix`]).
     fn coriolis_matrix(
         &self,
         t: Self::Scalar,
@@ -318,7 +333,7 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV>;
 
-    /// `(∂τ/∂q, ∂τ/∂v)` ([`Derivatives::inverse_dynamics_derivatives`]).
+    /// Returns `(∂τ/∂q, ∂τ/∂v)` of inverse dynamics ([`Derivatives::inverse_dynamics_derivatives`]).
     fn inverse_dynamics_derivatives(
         &self,
         t: Self::Scalar,
@@ -327,7 +342,8 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         a: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
 
-    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` ([`Derivatives::forward_dynamics_derivatives`]).
+    /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of forward dynamics
+    /// ([`Derivatives::forward_dynamics_derivatives`]).
     fn forward_dynamics_derivatives(
         &self,
         t: Self::Scalar,
@@ -336,7 +352,8 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         tau: &SVector<Self::Scalar, NV>,
     ) -> ByMotion<Self::Scalar, NV, NV>;
 
-    /// Puts `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` into matrices and returns `v̇` ([`Derivatives::forward_dynamics_derivatives_into`]).
+    /// Writes `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` to matrices and returns `v̇`
+    /// ([`Derivatives::forward_dynamics_derivatives_into`]).
     #[allow(clippy::too_many_arguments, reason = "one each")]
     fn forward_dynamics_derivatives_into(
         &self,
@@ -352,7 +369,8 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         self.forward_dynamics(t, q, v, tau)
     }
 
-    /// `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' forces ([`Derivatives::generalized_forces_derivatives`]).
+    /// Returns `(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' forces
+    /// ([`Derivatives::generalized_forces_derivatives`]).
     fn generalized_forces_derivatives(
         &self,
         t: Self::Scalar,
@@ -361,7 +379,7 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         u: &SVector<Self::Scalar, NU>,
     ) -> ByMotion<Self::Scalar, NV, NU>;
 
-    /// `∂p/∂q` of the generalized momentum ([`Derivatives::generalized_momentum_derivatives`]).
+    /// Returns `∂p/∂q` of the generalized momentum ([`Derivatives::generalized_momentum_derivatives`]).
     fn generalized_momentum_derivatives(
         &self,
         _t: Self::Scalar,
@@ -371,7 +389,7 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         unknown()
     }
 
-    /// `(∂ṗ/∂q, ∂ṗ/∂v)` of its rate ([`Derivatives::momentum_rate_derivatives`]).
+    /// Returns `(∂ṗ/∂q, ∂ṗ/∂v)` of the momentum's rate ([`Derivatives::momentum_rate_derivatives`]).
     fn momentum_rate_derivatives(
         &self,
         _t: Self::Scalar,
@@ -381,7 +399,8 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
         (unknown(), unknown())
     }
 
-    /// Hands the mechanism to `visitor` with the numbers of its constraints ([`Derivatives::visit_constraints`]).
+    /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters
+    /// ([`Derivatives::visit_constraints`]).
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: Visitor<Self::Scalar, NQ, NV, NU>,
@@ -390,13 +409,13 @@ pub trait RheonomicDerivatives<const NQ: usize, const NV: usize, const NU: usize
     }
 }
 
-/// What is not there.
+/// Returns a matrix of NaN, for derivatives that are not available.
 pub(crate) fn unknown<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::repeat(constant(f64::NAN))
 }
 
-/// A motion under inputs to first order: how displacements `δq` (in body axes for ball and free joints) and changes of velocity
-/// grow, `δq̇ = turning δq + δv`, `δv̇ = by_q δq + by_v δv + by_u δu`.
+/// Linearised motion under inputs: the rates of displacements `δq` (in body axes for ball and free joints)
+/// and of changes of velocity, `δq̇ = turning δq + δv`, `δv̇ = by_q δq + by_v δv + by_u δu`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearMotion<T, const NV: usize, const NU: usize> {
     /// `v̇`, m/s² and rad/s².
@@ -407,11 +426,11 @@ pub struct LinearMotion<T, const NV: usize, const NU: usize> {
     pub by_v: SMatrix<T, NV, NV>,
     /// `∂v̇/∂u`.
     pub by_u: SMatrix<T, NV, NU>,
-    /// What displacements in turning axes add to their own rates, `δq × v`; zero for plain coordinates.
+    /// Contribution of rotating axes to the rates of displacements, `δq × v`; zero for plain coordinates.
     pub turning: SMatrix<T, NV, NV>,
 }
 
-/// An entry of one of four blocks.
+/// Returns an entry of a matrix of two by two blocks.
 pub(crate) fn entry<T: Real, const NV: usize>(blocks: [[&Square<T, NV>; 2]; 2], i: usize, j: usize) -> T {
     let of = |k: usize| if k < NV { (0, k) } else { (1, k - NV) };
     let ((row, i), (column, j)) = (of(i), of(j));
@@ -419,7 +438,7 @@ pub(crate) fn entry<T: Real, const NV: usize>(blocks: [[&Square<T, NV>; 2]; 2], 
     block.copied().unwrap_or(T::zero())
 }
 
-/// A matrix of one column of blocks.
+/// Returns a matrix of two blocks, one above the other.
 pub(crate) fn column<T: Real, const NV: usize, const NU: usize, const NX: usize>(
     above: &SMatrix<T, NV, NU>,
     below: &SMatrix<T, NV, NU>,
@@ -431,15 +450,15 @@ pub(crate) fn column<T: Real, const NV: usize, const NU: usize, const NX: usize>
 }
 
 impl<T: Real, const NV: usize, const NU: usize> LinearMotion<T, NV, NU> {
-    /// `A` of `ẋ = A x + B δu`, with `x` the displacements, then the changes of velocity. `NX` is `2 NV`, which the type that
-    /// is asked for says; any other does not compile.
+    /// Returns `A` of `ẋ = A x + B δu`, with `x` the displacements, then the changes of velocity. `NX` is `2
+    /// NV`, inferred from the requested type; any other value does not compile.
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let identity = Square::identity();
         SMatrix::from_fn(|i, j| entry([[&self.turning, &identity], [&self.by_q, &self.by_v]], i, j))
     }
 
-    /// `B` of `ẋ = A x + B δu`; `NX` is `2 NV`.
+    /// Returns `B` of `ẋ = A x + B δu`; `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         column(&SMatrix::zeros(), &self.by_u)

@@ -1,14 +1,16 @@
-//! The functions of the traits of mechanisms in one table, from which everything that passes them on is made: references, a
-//! mechanism at an instant, a mechanism without time as one with it, stabilised mechanisms, lanes.
+//! Table of the functions of the mechanism traits. All forwarding implementations are generated from it:
+//! those for references, for a mechanism at an instant, for a mechanism without time as a rheonomic one, for
+//! stabilised mechanisms, and for lanes.
 //!
-//! A function that is added to the traits is added here. Whatever passes functions on is under the lint
-//! `clippy::missing_trait_methods`, so that one that is forgotten does not quietly become its default.
+//! A function added to the traits must be added to this table. Forwarding implementations enable the lint
+//! `clippy::missing_trait_methods`, so that a missing function does not silently become its default.
 
-/// Rows `name(argument: kind, …) -> result` in groups, handed to a macro that writes a function for each: `space` depends on
-/// no time, `dynamics` on time, `accelerations` are what constraints and feedback change, and `methods` are what integrators
-/// call; `tangent` and `derivatives` are those of the traits of derivatives, without and with time (`given_derivatives` without those of
-/// accelerations), `second` those of second ones, of which `second_tangent` has no time.
-/// A kind is the length of a vector, `scalar`, `state`, or `square` for a matrix that a result goes into.
+/// Passes groups of rows `name(argument: kind, …) -> result` to a macro that defines a function for each row.
+/// `space` does not depend on time, `dynamics` does; constraints and feedback change `accelerations`;
+/// integrators call `methods`. `tangent` and `derivatives` belong to the derivative traits, without and with
+/// time (`given_derivatives` excludes derivatives of accelerations). `second` belongs to the
+/// second-derivative traits, of which `second_tangent` has no time. A kind is the length of a vector,
+/// `scalar`, `state`, or `square` for a matrix that receives a result.
 macro_rules! each_function {
     (space, $($how:tt)+) => {
         $crate::forward::write! { $($how)+;
@@ -87,8 +89,8 @@ macro_rules! each_function {
     };
 }
 
-/// Writes functions that call those of a trait on an object: `plain` without time, `at` at a time that is given, `drop` with a time
-/// that does not matter, `pass` with one that is passed on.
+/// Defines functions that call those of a trait on an object: `plain` without time, `at` at a fixed time,
+/// `drop` with an ignored time argument, `pass` with a forwarded time argument.
 macro_rules! write_functions {
     (plain $trait:ident, $self:ident => $object:expr;
      $($name:ident($($argument:ident: $kind:ident),*) -> $result:ty;)+) => {$(
@@ -120,7 +122,7 @@ macro_rules! write_functions {
     )+};
 }
 
-/// The type of an argument.
+/// Expands to the type of an argument.
 macro_rules! kind {
     (scalar) => { Self::Scalar };
     (truth) => { bool };
@@ -129,31 +131,39 @@ macro_rules! kind {
     ($n:ident) => { &SVector<Self::Scalar, $n> };
 }
 
-/// Writes the functions of [`Rheonomic`](crate::Rheonomic) that programs call as functions of a type itself, which has them
-/// without that trait in scope: the prelude has the trait of mechanisms without time alone.
+/// Writes the functions of [`Rheonomic`](crate::Rheonomic) that programs call as functions of a type itself,
+/// which has them without that trait in scope: the prelude has the trait of mechanisms without time alone.
 macro_rules! inherent_functions {
     (impl<$($lifetime:lifetime,)? $($parameter:ident),* $(; const $($size:ident),+)?> $type:ty) => {
         impl<$($lifetime,)? $($parameter,)* $($(const $size: usize,)+)?> $type {
             $crate::forward::inherent_functions! { @
-                /// Returns the acceleration under the forces `tau` ([`Rheonomic::forward_dynamics`](crate::Rheonomic::forward_dynamics)).
+                /// Returns the acceleration under the forces `tau`
+                /// ([`Rheonomic::forward_dynamics`](crate::Rheonomic::forward_dynamics)).
                 forward_dynamics(t: T, q: Q, v: V, tau: V) -> nalgebra::SVector<T, N>;
-                /// Returns the forces that give the acceleration `a` ([`Rheonomic::inverse_dynamics`](crate::Rheonomic::inverse_dynamics)).
+                /// Returns the forces that give the acceleration `a`
+                /// ([`Rheonomic::inverse_dynamics`](crate::Rheonomic::inverse_dynamics)).
                 inverse_dynamics(t: T, q: Q, v: V, a: V) -> nalgebra::SVector<T, N>;
                 /// Returns the mass matrix ([`Rheonomic::mass_matrix`](crate::Rheonomic::mass_matrix)).
                 mass_matrix(t: T, q: Q) -> nalgebra::SMatrix<T, N, N>;
                 /// Returns the bias forces ([`Rheonomic::bias_forces`](crate::Rheonomic::bias_forces)).
                 bias_forces(t: T, q: Q, v: V) -> nalgebra::SVector<T, N>;
-                /// Returns the generalized forces of inputs ([`Rheonomic::generalized_forces`](crate::Rheonomic::generalized_forces)).
+                /// Returns the generalized forces of inputs
+                /// ([`Rheonomic::generalized_forces`](crate::Rheonomic::generalized_forces)).
                 generalized_forces(t: T, q: Q, v: V, u: U) -> nalgebra::SVector<T, N>;
-                /// Returns the kinetic energy ([`Rheonomic::kinetic_energy`](crate::Rheonomic::kinetic_energy)).
+                /// Returns the kinetic energy
+                /// ([`Rheonomic::kinetic_energy`](crate::Rheonomic::kinetic_energy)).
                 kinetic_energy(t: T, q: Q, v: V) -> T;
-                /// Returns the potential energy ([`Rheonomic::potential_energy`](crate::Rheonomic::potential_energy)).
+                /// Returns the potential energy
+                /// ([`Rheonomic::potential_energy`](crate::Rheonomic::potential_energy)).
                 potential_energy(t: T, q: Q) -> T;
-                /// Returns the generalized momentum ([`Rheonomic::generalized_momentum`](crate::Rheonomic::generalized_momentum)).
+                /// Returns the generalized momentum
+                /// ([`Rheonomic::generalized_momentum`](crate::Rheonomic::generalized_momentum)).
                 generalized_momentum(t: T, q: Q, v: V) -> nalgebra::SVector<T, N>;
-                /// Returns the configuration after a displacement ([`Rheonomic::integrate`](crate::Rheonomic::integrate)).
+                /// Returns the configuration after a displacement
+                /// ([`Rheonomic::integrate`](crate::Rheonomic::integrate)).
                 integrate(q: Q, dv: V) -> nalgebra::SVector<T, NQ>;
-                /// Returns the displacement between configurations ([`Rheonomic::difference`](crate::Rheonomic::difference)).
+                /// Returns the displacement between configurations
+                /// ([`Rheonomic::difference`](crate::Rheonomic::difference)).
                 difference(from: Q, to: Q) -> nalgebra::SVector<T, N>;
             }
 

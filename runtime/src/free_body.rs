@@ -1,10 +1,10 @@
-//! Free-body diagrams: all that acts on a body at once, as data. An output of the type [`FreeBody`](crate::elements::FreeBody) gives
-//! one; the crate `linkwork-view` draws it.
+//! Free-body diagrams as data: all forces and torques on a body. An output of the type
+//! [`FreeBody`](crate::elements::FreeBody) returns a diagram; the crate `linkwork-view` draws it.
 
 use crate::Real;
 use nalgebra::SVector;
 
-/// What an action of a free-body diagram comes from.
+/// Origin of an action in a free-body diagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// Uniform gravity, at the centre of mass.
@@ -13,11 +13,12 @@ pub enum Origin {
     Element,
     /// An input.
     Input,
-    /// A joint: its constraint forces, with the forces of what acts on its own coordinates.
+    /// A joint: its constraint forces, plus the forces on its own coordinates.
     Joint,
-    /// A constraint, such as rolling, with the friction of a slipping one.
+    /// A constraint, such as rolling, including the friction of a sliding one.
     Constraint,
-    /// A contact that opens and closes: nothing where it is open. A stop on a joint's own coordinate is with its joint.
+    /// A unilateral contact: zero if it is separated. A stop on a joint's own coordinate is included in the
+    /// joint.
     Contact,
 }
 
@@ -26,34 +27,34 @@ pub enum Origin {
 pub struct Action<T> {
     /// Name of the element, joint or constraint.
     pub name: &'static str,
-    /// What that is.
+    /// Kind of the element.
     pub origin: Origin,
-    /// Where it acts, from the body's centre of mass, m.
+    /// Point of application, relative to the body's centre of mass, m.
     pub point: SVector<T, 3>,
-    /// The force, N.
+    /// Force, N.
     pub force: SVector<T, 3>,
-    /// The torque about the point, N·m.
+    /// Torque about the point of application, N·m.
     pub torque: SVector<T, 3>,
 }
 
 impl<T: Real> Action<T> {
-    /// The torque about a point that is given from the centre of mass, m: `T + (p − r) × F`, N·m.
+    /// Returns the torque about a point `r` relative to the centre of mass, m: `T + (p − r) × F`, N·m.
     #[must_use]
     pub fn torque_about(&self, r: &SVector<T, 3>) -> SVector<T, 3> {
         self.torque + (self.point - r).cross(&self.force)
     }
 }
 
-/// All that acts on a body, in the motion of the mechanism: gravity, force elements, inputs, joints, constraints and contacts, `N`
-/// actions.
-/// By the equations of Newton and Euler their sum is `m a_C`, and about the centre of mass the rate of the angular momentum
-/// `Ḣ_C`, of the body with all that is fixed on it.
+/// Free-body diagram of a body during the motion of the mechanism: the `N` actions of gravity, force
+/// elements, inputs, joints, constraints and contacts. By the Newton–Euler equations, the sum of the forces
+/// is `m a_C`, and the sum of the torques about the centre of mass is the rate `Ḣ_C` of the angular momentum,
+/// for the body together with all bodies fixed to it.
 ///
-/// Beside [contacts](crate::contact) that open and close the function of an output `loads` gives a `Result`: the diagram under the
-/// forces that contacts exert in this state ([`contact::acting`](crate::contact::acting)). A second function,
-/// `loads_under(q, v, u, forces)`, takes these forces, in the order of `CONTACT_ROWS`: those of a step
-/// ([`contact::forces`](crate::contact::forces)), or of contacts that are taken to hold
-/// ([`contact::forward_dynamics`](crate::contact::forward_dynamics)).
+/// For mechanisms with unilateral [contacts](crate::contact), the function of an output `loads` returns a
+/// `Result`: the diagram with the contact forces of this state ([`contact::acting`](crate::contact::acting)).
+/// A second function, `loads_under(q, v, u, forces)`, takes the contact forces as an argument, in the order
+/// of `CONTACT_ROWS`: those of a step ([`contact::forces`](crate::contact::forces)), or of contacts enforced
+/// as bilateral constraints ([`contact::forward_dynamics`](crate::contact::forward_dynamics)).
 ///
 /// ```
 /// use linkwork::free_body::Origin;
@@ -73,7 +74,7 @@ impl<T: Real> Action<T> {
 ///     loads: FreeBody,
 /// }
 ///
-/// // The stay carries half of the weight, the hinge the other half.
+/// // The stay supports half of the weight, the hinge the other half.
 /// let flap = Flap { stiffness: 9.81 / 0.5 };
 /// let loads = flap.loads(&[0.0].into(), &[0.0].into());
 /// let names: Vec<&str> = loads.actions.iter().map(|action| action.name).collect();
@@ -89,13 +90,13 @@ impl<T: Real> Action<T> {
 pub struct Diagram<T, const N: usize> {
     /// Name of the body.
     pub body: &'static str,
-    /// What acts on it.
+    /// Actions on the body.
     pub actions: [Action<T>; N],
 }
 
 impl<T: Real, const N: usize> Diagram<T, N> {
-    /// The diagram from the names of the actions and nine numbers for each: point, force, torque. Numbers that are not given are
-    /// zero.
+    /// Returns the diagram from the names of the actions and nine numbers for each: point, force, torque.
+    /// Missing numbers are zero.
     #[must_use]
     pub fn new(body: &'static str, names: [(&'static str, Origin); N], numbers: &[T]) -> Self {
         let mut parts = numbers.chunks(3);
@@ -110,25 +111,26 @@ impl<T: Real, const N: usize> Diagram<T, N> {
         Self { body, actions }
     }
 
-    /// The sum of all forces, N: `m a_C`.
+    /// Returns the sum of all forces, N: `m a_C`.
     #[must_use]
     pub fn force(&self) -> SVector<T, 3> {
         self.actions.iter().fold(SVector::zeros(), |sum, action| sum + action.force)
     }
 
-    /// The sum of all torques about the centre of mass, N·m: the rate of the angular momentum about it.
+    /// Returns the sum of all torques about the centre of mass, N·m: the rate of the angular momentum about
+    /// it.
     #[must_use]
     pub fn torque(&self) -> SVector<T, 3> {
         self.torque_about(&SVector::zeros())
     }
 
-    /// The sum of all torques about a point that is given from the centre of mass, N·m.
+    /// Returns the sum of all torques about a point `r` relative to the centre of mass, N·m.
     #[must_use]
     pub fn torque_about(&self, r: &SVector<T, 3>) -> SVector<T, 3> {
         self.actions.iter().fold(SVector::zeros(), |sum, action| sum + action.torque_about(r))
     }
 
-    /// The action of this name, if there is one.
+    /// Returns the action with this name, if any.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Action<T>> {
         self.actions.iter().find(|action| action.name == name)

@@ -1,21 +1,21 @@
-//! The guide, chapter by chapter. All examples are tests, and assert what the text says.
+//! The guide, chapter by chapter. All examples are tests, and assert the statements of the text.
 //!
 //! | chapter | about |
 //! | --- | --- |
 //! | [`first_mechanism`] | a pendulum, from its declaration to its motion; a controller |
 //! | [`recipes`] | how do I …? |
-//! | [`language`] | all that can stand in a mechanism's struct |
+//! | [`language`] | all declarations of a mechanism's struct |
 //! | [`robots`] | mechanisms from URDF, MJCF and SDF files |
 //! | [`constraints`] | closed loops, gears, rolling and sliding |
-//! | [`contact`] | surfaces and stops that touch and part: impacts, friction that holds |
-//! | [`functions`] | what is generated |
+//! | [`contact`] | unilateral contacts and stops: impacts, friction |
+//! | [`functions`] | generated functions |
 //! | [`simulating`] | integrators, inputs, events |
 //! | [`control`] | code for any mechanism: steps with Jacobians, regulators, Kalman filters, names |
-//! | [`batches`] | many states at once |
+//! | [`batches`] | evaluation of many states at once |
 //! | [`without_std`] | microcontrollers |
 //! | [`python`] | classes of Python from robot files and declarations |
 //! | [`speed`] | what makes generated code fast, in release and in debug builds; accuracy |
-//! | [`from_other_tools`] | the names of SymPy, Pinocchio, MuJoCo and Drake |
+//! | [`from_other_tools`] | corresponding names in SymPy, Pinocchio, MuJoCo and Drake |
 //!
 //! These modules exist in the documentation only.
 

@@ -1,17 +1,18 @@
-//! Identified base parameters put back into a mechanism: mass properties that bodies can have, and that have them.
+//! Mass properties of a mechanism from identified base parameters, such that they are physically consistent.
 //!
-//! From motions and forces no more can be learnt than the base parameters, which are fewer than the mass properties of the links:
-//! infinitely many mass properties have the same. [`put_back`] takes those that differ least from the ones that are known before,
-//! by the distance in which bodies are compared that does not depend on units or frames (Lee, Wensing and Park, *Geometric robot
-//! dynamic identification: a convex programming approach*, 2020); bodies can have them by construction.
+//! Motions and forces determine only the base parameters, which are fewer than the mass properties of the
+//! links: infinitely many mass properties have the same base parameters. [`put_back`] selects the mass
+//! properties nearest to those known before, in a distance between bodies that does not depend on units or
+//! frames (Lee, Wensing and Park, *Geometric robot dynamic identification: a convex programming approach*,
+//! 2020). The result is physically consistent by construction.
 
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Inertial, Real};
 use core::fmt;
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, SVector, Vector3};
 
-/// A mechanism whose links' mass properties are parameters, and whose base parameters are known: `parameters = inertial` and the
-/// word `regressor`. It has `N` such links and `B` base parameters.
+/// Mechanism whose links' mass properties are parameters and whose base parameters are available: one with
+/// `parameters = inertial` and the option `regressor`. It has `N` such links and `B` base parameters.
 #[diagnostic::on_unimplemented(
     message = "nothing can be put back into `{Self}`",
     label = "expected a mechanism whose links' mass properties are parameters",
@@ -21,28 +22,29 @@ pub trait Identifiable<const N: usize, const B: usize> {
     /// The scalar type.
     type Scalar: Real;
 
-    /// The mass properties of the links, in the order of `LINKS`.
+    /// Returns the mass properties of the links, in the order of `LINKS`.
     fn inertials(&self) -> [Inertial<Self::Scalar>; N];
 
     /// Sets the mass properties of the links.
     fn set_inertials(&mut self, links: &[Inertial<Self::Scalar>; N]);
 
-    /// The base parameters that the mechanism has with them, in the order of `BASE_PARAMETERS`.
+    /// Returns the base parameters for the current mass properties, in the order of `BASE_PARAMETERS`.
     fn own_base_parameters(&self) -> SVector<Self::Scalar, B>;
 }
 
-/// Why base parameters cannot be put back.
+/// Error for base parameters that cannot be converted to mass properties.
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum PutBackError {
-    /// A link has no mass properties of a body to begin with: a mass that is not positive, or an inertia that no body has.
+    /// The initial mass properties of a link are not those of a body: a mass that is not positive, or an
+    /// inertia that no body has.
     Prior {
-        /// Which, in the order of `LINKS`.
+        /// Index of the link, in the order of `LINKS`.
         link: usize,
     },
-    /// No bodies have these base parameters, or hardly any.
+    /// No physically consistent mass properties have these base parameters, or hardly any.
     NotPhysical {
-        /// The largest difference that was left between a base parameter and what it should be, in units of the parameter.
+        /// Largest remaining difference between a base parameter and its target, in units of the parameter.
         residual: f64,
     },
     /// A base parameter is infinite or NaN.
@@ -70,22 +72,24 @@ impl fmt::Display for PutBackError {
 
 impl core::error::Error for PutBackError {}
 
-/// Most iterations of Newton's method.
+/// Maximum number of Newton iterations.
 const MOST_ITERATIONS: usize = 200;
 
-/// Gives the links the mass properties with the base parameters `base` that differ least from those that they have; all of
-/// them are those of bodies, whatever the noise in `base`. Where some of the links are parameters and others are not, `base` can
-/// hold only as far as those reach; it is approached there.
+/// Sets the links' mass properties to those nearest to the current ones that have the base parameters `base`.
+/// The result is physically consistent for any noise in `base`. If only some of the links are parameters,
+/// they may not reach `base`, which is then approximated.
 ///
-/// With the pseudo-inertia `P = [Σ, h; hᵀ, m]` of each link (`Σ` the second moments of its mass, `h` the first) it minimises
-/// `Σ tr(P₀⁻¹ P) − log det P` subject to the base parameters, which are linear in `P`: a convex problem, by Newton's method with
-/// damped steps, 200 at most. It takes a few dozen on robots, each with some `B² N` products and a factorisation of `B × B`.
-/// Nothing is allocated; matrices of `11 N B + 2 B²` numbers are on the stack.
+/// With the pseudo-inertia `P = [Σ, h; hᵀ, m]` of each link (`Σ` the second moments of its mass, `h` the
+/// first) the function minimises `Σ tr(P₀⁻¹ P) − log det P` subject to the base parameters, which are linear
+/// in `P`. This convex problem is solved by a damped Newton method with at most 200 iterations. Robots need a
+/// few dozen iterations, each with about `B² N` products and a factorisation of a `B × B` matrix. No memory
+/// is allocated; matrices of `11 N B + 2 B²` numbers are on the stack.
 ///
 /// # Errors
 ///
-/// [`PutBackError::NotPhysical`] where no bodies have these base parameters, which happens with motions that excite some of them too
-/// little: give the regression the prior for those. The mechanism stays as it is then.
+/// [`PutBackError::NotPhysical`] if no bodies have these base parameters. This occurs for motions that excite
+/// some of the parameters too little: regularise the regression with the prior for those. The mechanism is
+/// then unchanged.
 pub fn put_back<M, const N: usize, const B: usize>(
     mechanism: &mut M,
     base: &SVector<M::Scalar, B>,
@@ -96,14 +100,15 @@ where
     put(mechanism, base, None)
 }
 
-/// [`put_back`] for base parameters that no bodies have, as noise may leave them: they hold as well as bodies allow. `softness`,
-/// more than zero, is what a base parameter may be off, squared, compared with what the links' mass properties may change: with
-/// 1e-6, changing all of them by their own size is as good as being off by a thousandth of it.
+/// Approximates base parameters that no bodies have, for example because of noise, as well as physically
+/// consistent mass properties allow; see [`put_back`]. `softness`, greater than zero, is the squared error of
+/// a base parameter relative to the squared change of the links' mass properties: with 1e-6, changing all
+/// mass properties by their own magnitude costs as much as a relative error of a thousandth.
 ///
 /// # Errors
 ///
-/// Those of [`put_back`] but [`PutBackError::NotPhysical`], which is left for a softness that is not positive, or so small that
-/// 200 iterations do not suffice.
+/// The errors of [`put_back`]; [`PutBackError::NotPhysical`] only for a softness that is not positive, or so
+/// small that 200 iterations do not suffice.
 pub fn approach<M, const N: usize, const B: usize>(
     mechanism: &mut M,
     base: &SVector<M::Scalar, B>,
@@ -138,16 +143,17 @@ where
     Ok(())
 }
 
-/// By base parameter and link.
+/// One matrix for each base parameter and link.
 type Blocks<T, const N: usize, const B: usize> = [[Matrix4<T>; N]; B];
 
-/// Base parameters as a linear function of the links' pseudo-inertias: a matrix for each of both, and what does not depend on them.
+/// Base parameters as an affine function of the links' pseudo-inertias: a matrix for each base parameter and
+/// link, and the constant term.
 struct Map<T, const N: usize, const B: usize> {
     factors: Blocks<T, N, B>,
     rest: SVector<T, B>,
 }
 
-/// The function, from its values where one entry is one.
+/// Returns the affine function, computed from its values for pseudo-inertias with a single nonzero entry.
 fn linear_map<M, const N: usize, const B: usize>(mechanism: &mut M) -> Map<M::Scalar, N, B>
 where
     M: Identifiable<N, B>,
@@ -163,7 +169,7 @@ where
             for j in i..4 {
                 let mut p = Matrix4::zeros();
                 (p[(i, j)], p[(j, i)]) = (one, one);
-                // First moments need a mass to be those of a body; what that gives by itself is taken away.
+                // First moments require a mass; the contribution of the mass alone is subtracted.
                 let (massive, alone) = if i < 3 && j == 3 { (one, true) } else { (o, false) };
                 if alone {
                     p[(3, 3)] = massive;
@@ -180,7 +186,7 @@ where
                 let share = if i == j { one } else { constant(0.5) };
                 let size = value.abs();
                 for (r, row) in factors.iter_mut().enumerate() {
-                    // What is left of others when they are subtracted is nothing.
+                    // Rounding residue of the subtraction counts as zero.
                     let value = if size[r] > noise[r] { value[r] * share } else { o };
                     (row[k][(i, j)], row[k][(j, i)]) = (value, value);
                 }
@@ -196,13 +202,14 @@ impl<T: Real, const N: usize, const B: usize> Map<T, N, B> {
     }
 }
 
-/// The sum of the products of all entries.
+/// Returns the sum of the products of all entries.
 fn inner<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; N]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + a.dot(b))
 }
 
-/// Newton's method with steps that stay among the pseudo-inertias of bodies: in the norm of the Hessian, those of a length below
-/// one do (Boyd and Vandenberghe, *Convex Optimization*, 2004, ch. 9.6).
+/// Minimises the change of the mass properties by Newton's method. The step length preserves positive
+/// definite pseudo-inertias: a step shorter than one in the norm of the Hessian does (Boyd and Vandenberghe,
+/// *Convex Optimization*, 2004, ch. 9.6).
 fn least_change<T: Real, const N: usize, const B: usize>(
     map: &Map<T, N, B>,
     prior: &[Matrix4<T>; N],
@@ -218,14 +225,14 @@ fn least_change<T: Real, const N: usize, const B: usize>(
     let enough = epsilon::<T>().cbrt() * constant(4.0);
     let mut diagonal: Option<SVector<T, B>> = None;
     let mut multipliers = SVector::zeros();
-    // What is asked for is approached from what is easy.
+    // Continuation from a large softness, which converges easily, to the requested one.
     let least = softness.unwrap_or(T::one());
     let mut share = T::one().max(least);
     if least * T::zero() != T::zero() || least <= T::zero() {
         return failed(&p);
     }
     for _ in 0..MOST_ITERATIONS {
-        // Step: P − P P₀⁻¹ P − Σ νᵢ P Aᵢ P.
+        // Newton step: P − P P₀⁻¹ P − Σ νᵢ P Aᵢ P.
         let free: [Matrix4<T>; N] = core::array::from_fn(|k| p[k] - p[k] * prior_inverse[k] * p[k]);
         let mut moved = [[Matrix4::zeros(); N]; B];
         for (moved, factors) in moved.iter_mut().zip(&map.factors) {
@@ -237,7 +244,8 @@ fn least_change<T: Real, const N: usize, const B: usize>(
             SMatrix::<T, B, B>::from_fn(
                 |i, j| if j <= i { inner(&map.factors[i], &moved[j]) } else { T::zero() },
             );
-        // Base parameters that these links do not reach, or some combination of them, hold as well as they can.
+        // Base parameters, or combinations of them, that these links do not reach are satisfied
+        // approximately.
         let unit = *diagonal.get_or_insert_with(|| softness_of(&s, softness.map(|_| T::one())));
         let soft = unit * share;
         for (i, soft) in soft.iter().enumerate() {
@@ -247,7 +255,8 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         let ahead: [Matrix4<T>; N] = core::array::from_fn(|k| p[k] + free[k]);
         let mut nu = map.value(&ahead) + map.rest - base;
         if softness.is_none() {
-            // What holds them softly gives way: by and by those that can hold do.
+            // Augmented Lagrangian: over the iterations, all base parameters that can be satisfied are
+            // satisfied.
             nu += soft.component_mul(&multipliers);
         }
         factor.solve_mut(&mut nu);
@@ -285,8 +294,9 @@ fn least_change<T: Real, const N: usize, const B: usize>(
     failed(&p)
 }
 
-/// What is added to the diagonal of the matrix of the multipliers, in units of what the links reach: what is asked for; else nothing
-/// if the matrix has full rank, so that base parameters hold exactly, and the root of the rounding if not.
+/// Returns the diagonal regularisation of the multipliers' matrix, relative to its diagonal entries: `asked`,
+/// if any. Otherwise it is zero for a matrix of full rank, so that base parameters are satisfied exactly, and
+/// the square root of machine epsilon for a singular one.
 fn softness_of<T: Real, const B: usize>(s: &SMatrix<T, B, B>, asked: Option<T>) -> SVector<T, B> {
     let regular = asked.is_none()
         && Cholesky::new(*s).is_some_and(|factor| {
@@ -300,20 +310,21 @@ fn softness_of<T: Real, const B: usize>(s: &SMatrix<T, B, B>, asked: Option<T>) 
     s.diagonal().map(|own| if own == T::zero() { T::one() } else { own * share })
 }
 
-/// The inverse of a positive definite matrix, from its factorisation.
+/// Returns the inverse of a positive definite matrix, from its Cholesky factorisation.
 fn inverse<T: Real>(p: &Matrix4<T>) -> Matrix4<T> {
     Cholesky::new(*p).map_or(Matrix4::repeat(constant(f64::NAN)), |factor| factor.inverse())
 }
 
-/// The pseudo-inertia of a link about its origin (Wensing, Kim and Slotine 2018); of one at the bound of what there is (a rod, a
-/// plate, a point) that of a body as good as equal. Nothing if no body is meant.
+/// Returns the pseudo-inertia of a link about its origin (Wensing, Kim and Slotine 2018). A link at the bound
+/// of physical consistency (a rod, a plate, a point) is replaced by a nearly equal body. `None` if the mass
+/// is not positive or the inertia is that of no body.
 fn pseudo_inertia<T: Real>(link: &Inertial<T>) -> Option<Matrix4<T>> {
     let Inertial { mass: m, com: [x, y, z], ixx, ixy, ixz, iyy, iyz, izz } = *link;
     let half = (ixx + iyy + izz) * constant(0.5);
-    // A hundredth of the second moments, and those of a millimetre.
+    // A hundredth of the second moments, plus the second moments of a radius of one millimetre.
     let least = half.max(T::zero()) * constant(0.01) + m * constant(1e-6);
     let mut central = Matrix3::new(half - ixx, -ixy, -ixz, -ixy, half - iyy, -iyz, -ixz, -iyz, half - izz);
-    // Neither is a mass that is not a number.
+    // Also rejects a mass that is NaN.
     if m.partial_cmp(&T::zero()) != Some(core::cmp::Ordering::Greater) {
         return None;
     }
@@ -332,7 +343,7 @@ fn pseudo_inertia<T: Real>(link: &Inertial<T>) -> Option<Matrix4<T>> {
     Some(p)
 }
 
-/// The mass properties with a pseudo-inertia.
+/// Returns the mass properties with a pseudo-inertia.
 fn of_pseudo_inertia<T: Real>(p: &Matrix4<T>) -> Inertial<T> {
     let (xx, yy, zz) = (p[(0, 0)], p[(1, 1)], p[(2, 2)]);
     Inertial::from_standard([

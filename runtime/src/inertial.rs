@@ -1,15 +1,15 @@
-//! Figures of robots' files that are parameters.
+//! Parameters of links and joints in robot files.
 
 use crate::Real;
 use crate::private::constant;
 
-/// The mass properties of a link, as URDF files give them: the field of a link in a mechanism with
-/// `parameters = inertial("link")` (see [robots](crate::guide::robots#figures-as-parameters)).
+/// Mass properties of a link, as in URDF files: the field of a link in a mechanism with `parameters =
+/// inertial("link")` (see [robots](crate::guide::robots#figures-as-parameters)).
 ///
 /// ```
 /// use linkwork::Inertial;
 ///
-/// // A ball of 2 kg and 0.1 m at half a metre, to which a point of 0.5 kg is fixed at its top.
+/// // A ball of mass 2 kg and radius 0.1 m at a height of 0.5 m, with a point mass of 0.5 kg on top.
 /// let i = 0.4 * 2.0 * 0.01;
 /// let ball = Inertial { mass: 2.0, com: [0.0, 0.0, 0.5], ixx: i, ixy: 0.0, ixz: 0.0, iyy: i, iyz: 0.0, izz: i };
 /// let both = ball.plus(&Inertial::point(0.5, [0.0, 0.0, 0.6]));
@@ -21,10 +21,10 @@ use crate::private::constant;
 pub struct Inertial<T> {
     /// Mass, kg.
     pub mass: T,
-    /// Centre of mass from the link's origin, in its axes, m.
+    /// Position of the centre of mass relative to the link's origin, in the link's axes, m.
     pub com: [T; 3],
-    /// Entry xx of the inertia about the centre of mass, in the link's axes, kg·m². Files may give it in other axes; here it is
-    /// turned.
+    /// Entry xx of the inertia about the centre of mass, in the link's axes, kg·m². An inertia that a file
+    /// gives in other axes has been rotated.
     pub ixx: T,
     /// Entry xy, a product of inertia with the sign of the matrix, kg·m².
     pub ixy: T,
@@ -39,15 +39,16 @@ pub struct Inertial<T> {
 }
 
 impl<T: Real> Inertial<T> {
-    /// A point of mass `mass` (kg) at `com` (m).
+    /// Returns a point mass of `mass` (kg) at `com` (m).
     #[must_use]
     pub fn point(mass: T, com: [T; 3]) -> Self {
         let o = T::zero();
         Inertial { mass, com, ixx: o, ixy: o, ixz: o, iyy: o, iyz: o, izz: o }
     }
 
-    /// The ten numbers by which mass properties act linearly: the mass (kg), the first moments `m c` (x, y, z; kg·m), and the
-    /// inertia about the link's origin (xx, xy, yy, xz, yz, zz; kg·m²), in the order of `standard_parameters`.
+    /// Returns the ten standard parameters, in which the dynamics are linear: the mass (kg), the first
+    /// moments `m c` (x, y, z; kg·m), and the inertia about the link's origin (xx, xy, yy, xz, yz, zz;
+    /// kg·m²), in the order of `standard_parameters`.
     #[must_use]
     pub fn to_standard(&self) -> [T; 10] {
         let Inertial { mass: m, com: [x, y, z], ixx, ixy, ixz, iyy, iyz, izz } = *self;
@@ -56,7 +57,8 @@ impl<T: Real> Inertial<T> {
         [m, h, k, m * z, ixx + yy + zz, ixy - h * y, iyy + xx + zz, ixz - h * z, iyz - k * z, izz + xx + yy]
     }
 
-    /// The mass properties with these ten numbers. Without mass the centre of mass is the origin.
+    /// Returns the mass properties with these ten standard parameters. For zero mass, the centre of mass is
+    /// the origin.
     #[must_use]
     pub fn from_standard([m, hx, hy, hz, xx, xy, yy, xz, yz, zz]: [T; 10]) -> Self {
         let divisor = if m == T::zero() { T::one() } else { m };
@@ -74,14 +76,15 @@ impl<T: Real> Inertial<T> {
         }
     }
 
-    /// Both together, as if they were fixed to one another: a payload and the link that carries it.
+    /// Returns the mass properties of two bodies fixed to each other, such as a link and its payload.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         let (a, b) = (self.to_standard(), other.to_standard());
         Self::from_standard(core::array::from_fn(|k| a[k] + b[k]))
     }
 
-    /// The body with its density multiplied: mass and inertia change, the centre of mass stays.
+    /// Returns the mass properties with the density multiplied by `factor`: mass and inertia change, the
+    /// centre of mass does not.
     #[must_use]
     pub fn scaled(&self, factor: T) -> Self {
         let Inertial { mass, com, ixx, ixy, ixz, iyy, iyz, izz } = *self;
@@ -97,7 +100,7 @@ impl<T: Real> Inertial<T> {
         }
     }
 
-    /// The same figures in another type of numbers, `f64` in lanes for instance.
+    /// Returns the same values in another scalar type, for example SIMD lanes.
     #[must_use]
     pub fn cast<U: Real>(&self) -> Inertial<U>
     where
@@ -118,14 +121,14 @@ impl<T: Real> Inertial<T> {
     }
 }
 
-/// Where a joint stands on its parent link, as URDF files give it: the field `joint_placement` of a joint in a mechanism with
-/// `parameters = placement("joint")`, for calibration.
+/// Pose of a joint on its parent link, as in URDF files: the field `joint_placement` of a joint in a
+/// mechanism with `parameters = placement("joint")`, for calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Placement<T> {
     /// Position, m.
     pub xyz: [T; 3],
-    /// Roll, pitch and yaw, rad: turns about the parent's x, y and z axes, in this order.
+    /// Roll, pitch and yaw, rad: rotations about the parent's x, y and z axes, in this order.
     pub rpy: [T; 3],
 }
 
@@ -146,7 +149,7 @@ mod tests {
             izz: 0.5,
         };
         let ten = body.to_standard();
-        // Huygens and Steiner: m (y² + z²) and −m x y.
+        // Parallel axis theorem (Huygens and Steiner): m (y² + z²) and −m x y.
         assert!((ten[4] - (0.3 + 2.0 * 0.13)).abs() < 1e-15);
         assert!((ten[5] - (0.01 + 2.0 * 0.02)).abs() < 1e-15);
         let back = Inertial::from_standard(ten).to_standard();

@@ -1,10 +1,12 @@
-//! Inverse kinematics: a configuration that puts one or several frames where they should be, within the limits of the joints.
+//! Inverse kinematics: a configuration in which one or several frames reach target poses, within the joint
+//! limits.
 //!
-//! [`InverseKinematics::reach`] minimises the weighted squares of what is left to the targets, by the method of Levenberg and
-//! Marquardt on the configuration manifold (Sugihara, *Solvability-unconcerned inverse kinematics by the Levenberg–Marquardt
-//! method*, IEEE Transactions on Robotics 27, 2011). Coordinates that would leave their [`Limits`] are held at them. What the
-//! targets leave open stays near a posture. Nothing is allocated, and the number of iterations is bounded: each takes a placement
-//! and a Jacobian of every target, and solves `NV` linear equations.
+//! [`InverseKinematics::reach`] minimises the weighted squares of the pose errors by the Levenberg–Marquardt
+//! method on the configuration manifold (Sugihara, *Solvability-unconcerned inverse kinematics by the
+//! Levenberg–Marquardt method*, IEEE Transactions on Robotics 27, 2011). Coordinates that would exceed their
+//! [`Limits`] are fixed at them. Redundant degrees of freedom remain near a posture. The solver allocates no
+//! memory, and the number of iterations is bounded: each evaluates the placement and the Jacobian of every
+//! target, and solves `NV` linear equations.
 //!
 //! ```
 //! use linkwork::inverse_kinematics::{InverseKinematics, Target};
@@ -14,7 +16,7 @@
 //! pub struct Ur5;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // Where the tool is in some configuration is in reach.
+//! // The placement of the tool in some configuration is reachable.
 //! let placement = Ur5.frame_placement(frame!(Ur5, "tool0"), &[0.4, -1.2, 1.5, -0.6, 1.3, 0.2].into());
 //! let target = Target::pose(index!(Ur5::FRAMES, "tool0"), placement);
 //! let start = [0.0, -1.0, 1.0, 0.0, 1.0, 0.0].into();
@@ -32,13 +34,13 @@ use crate::private::{constant, to_f64};
 use crate::{Frames, Limits, Real, Rheonomic, placement_difference};
 use nalgebra::{IsometryMatrix3, SMatrix, SVector};
 
-/// Where a frame should be.
+/// Target pose of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target<T: Real> {
-    /// Number of the frame: its place in the list of frames, `index!(Arm::FRAMES, "tool")`, or [`index_of`](crate::index_of) a
-    /// name that is known only when the program runs.
+    /// Index of the frame in the list of frames: `index!(Arm::FRAMES, "tool")`, or
+    /// [`index_of`](crate::index_of) for a name that is known only at run time.
     pub frame: usize,
-    /// Its placement in the ground: axes, and origin, m.
+    /// Target placement in the ground frame: axes, and origin, m.
     pub placement: IsometryMatrix3<T>,
     /// Weight of the distance, 1/m; zero if the position does not matter.
     pub position: T,
@@ -47,49 +49,50 @@ pub struct Target<T: Real> {
 }
 
 impl<T: Real> Target<T> {
-    /// Position and orientation, a metre as heavy as a radian.
+    /// Returns a target of position and orientation, in which one metre has the same weight as one radian.
     pub fn pose(frame: usize, placement: IsometryMatrix3<T>) -> Self {
         Self { frame, placement, position: T::one(), orientation: T::one() }
     }
 
-    /// Position alone, m.
+    /// Returns a target of the position alone, m.
     pub fn position(frame: usize, position: SVector<T, 3>) -> Self {
         let placement = IsometryMatrix3::from_parts(position.into(), nalgebra::Rotation3::identity());
         Self { frame, placement, position: T::one(), orientation: T::zero() }
     }
 }
 
-/// A configuration that reaches the targets.
+/// Solution that reaches the targets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached<T, const NQ: usize> {
-    /// The configuration.
+    /// Configuration that reaches the targets.
     pub q: SVector<T, NQ>,
-    /// Iterations that it took.
+    /// Number of iterations.
     pub iterations: usize,
 }
 
-/// Why no configuration was found.
+/// Error for targets that were not reached.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Unreached<T, const NQ: usize> {
-    /// There is no frame of this number.
+    /// The index of the frame is out of range.
     UnknownFrame {
-        /// Which target.
+        /// Index of the target.
         target: usize,
     },
-    /// A weight or a placement of a target, or the placement of its frame at the start, is not finite; or a weight is negative.
+    /// A weight or a placement of a target, or the placement of its frame at the start, is not finite, or a
+    /// weight is negative.
     NotFinite {
-        /// Which target.
+        /// Index of the target.
         target: usize,
     },
-    /// Targets are out of reach, contradict each other, or lie beyond a barrier of the limits for this start.
+    /// The targets are out of reach, contradict each other, or are separated from this start by joint limits.
     OutOfReach {
-        /// The nearest configuration that was found.
+        /// Nearest configuration found.
         q: SVector<T, NQ>,
-        /// What is left there of the largest distance whose weight is not zero, m.
+        /// Largest position error in `q` over the targets with nonzero position weight, m.
         position: f64,
-        /// What is left there of the largest angle whose weight is not zero, rad.
+        /// Largest orientation error in `q` over the targets with nonzero orientation weight, rad.
         orientation: f64,
-        /// Iterations that were made.
+        /// Number of iterations.
         iterations: usize,
     },
 }
@@ -121,14 +124,14 @@ impl<T, const NQ: usize> core::fmt::Display for Unreached<T, NQ> {
 
 impl<T, const NQ: usize> core::error::Error for Unreached<T, NQ> {}
 
-/// The settings of the search.
+/// Settings of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InverseKinematics<T> {
-    /// Distance that may be left, m.
+    /// Position tolerance, m.
     pub position: T,
-    /// Angle that may be left, rad.
+    /// Orientation tolerance, rad.
     pub orientation: T,
-    /// Most iterations.
+    /// Maximum number of iterations.
     pub iterations: usize,
 }
 
@@ -138,32 +141,34 @@ impl<T: Real> Default for InverseKinematics<T> {
     }
 }
 
-/// How strong the pull to the posture is beside the targets: it fades with what is left, so that it does not keep them from being
-/// met.
+/// Weight of the attraction to the posture relative to the targets. It decreases with the pose errors, so
+/// that it does not prevent convergence to the targets.
 const PULL: f64 = 1e-3;
 
-/// What is left to all targets, half of its weighted squares first.
+/// Pose errors of all targets; `cost` is half of their weighted squares.
 struct Left<T, const NV: usize> {
     cost: T,
     position: T,
     orientation: T,
-    /// `Jᵀ W e` and `Jᵀ W J`.
+    /// Gradient `Jᵀ W e`; `normal` is the matrix `Jᵀ W J`.
     gradient: SVector<T, NV>,
     normal: SMatrix<T, NV, NV>,
 }
 
 impl<T: Real> InverseKinematics<T> {
-    /// A millionth of a metre and of a radian, within 100 iterations.
+    /// Returns a solver with tolerances of a millionth of a metre and of a radian, and at most 100
+    /// iterations.
     pub fn new() -> Self {
         Self { position: constant(1e-6), orientation: constant(1e-6), iterations: 100 }
     }
 
-    /// A configuration that puts the frames of the targets where they say, at the time `t`, s (which matters to what is driven in
-    /// time). The search begins at `start`, clamped to the limits, and stays near it in what the targets leave open.
+    /// Returns a configuration in which the frames reach their targets, at time `t`, s (which matters only
+    /// for driven motion). The search begins at `start`, clamped to the limits; redundant degrees of freedom
+    /// remain near `start`.
     ///
     /// # Errors
     ///
-    /// [`Unreached`] says which target makes no sense, or what is left after the last iteration.
+    /// [`Unreached`] contains the index of an invalid target, or the pose errors after the last iteration.
     pub fn reach<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
@@ -193,7 +198,7 @@ impl<T: Real> InverseKinematics<T> {
                 damping = at_least(damping * constant(0.3), constant(1e-9));
                 pull = constant(PULL);
             } else {
-                // Where the pull leads away from the targets, it is they that count.
+                // If the attraction to the posture increases the pose errors, only the targets count.
                 damping *= constant(8.0);
                 pull = T::zero();
             }
@@ -251,8 +256,8 @@ impl<T: Real> InverseKinematics<T> {
     }
 }
 
-/// The step of Levenberg and Marquardt: `(JᵀWJ + μ) dq = JᵀWe + posture`, with coordinates held that it would drive beyond their
-/// limits.
+/// Returns the Levenberg–Marquardt step, `(JᵀWJ + μ) dq = JᵀWe + posture`; coordinates that it would move
+/// beyond their limits are fixed.
 fn step<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: &SVector<T, NQ>,
@@ -279,7 +284,7 @@ where
         (normal, right) = (product(&product(&rows, &normal), of_rates), rows * right);
     }
     let mut held = [false; NV];
-    // Each round holds one more at least.
+    // Each round fixes at least one more coordinate.
     for _ in 0..=NV {
         let mut step = -right;
         let Ok((factor, pivots)) = factors(&normal, T::zero()) else { return SVector::zeros() };

@@ -1,8 +1,9 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
-//! Linkwork compiles mechanisms. Annotate a struct with bodies, joints, springs and inputs, or name a URDF, MJCF or SDF file: an
-//! attribute macro checks the mechanism, derives its equations of motion, and generates functions for them, specialised
-//! for this one mechanism. They do not allocate, do not panic in release builds, and need no standard library.
+//! Linkwork compiles mechanisms. Annotate a struct with bodies, joints, springs and inputs, or name a URDF,
+//! MJCF or SDF file: an attribute macro checks the mechanism, derives its equations of motion, and generates
+//! functions for them, specialised for this one mechanism. They do not allocate, do not panic in release
+//! builds, and need no standard library.
 //!
 //! ```
 //! use linkwork::prelude::*;
@@ -24,13 +25,13 @@
 //! fn main() -> Result<(), Error> {
 //!     let pendulum = Pendulum { mass: 2.0, length: 1.5 };
 //!
-//!     // The torque that holds it still, horizontal: weight times half the length.
+//!     // Static torque in the horizontal position: weight times half the length.
 //!     let (q, rest) = ([std::f64::consts::FRAC_PI_2].into(), [0.0].into());
 //!     let tau = pendulum.inverse_dynamics(&q, &rest, &rest);
 //!     assert!((tau[0] - 2.0 * 9.81 * 0.75).abs() < 1e-12);
 //!
-//!     // Released there, it swings until its velocity is zero again: on the other side,
-//!     // as high as before.
+//!     // Released there, the pendulum swings until its velocity is zero again: on the other side,
+//!     // at the same height.
 //!     let run = simulate(&pendulum).from(q, rest);
 //!     let end = run.until_crossing(Crossing::Rising, |_t, _q, v| v[0]).finish()?;
 //!     assert!((end.q[0] + std::f64::consts::FRAC_PI_2).abs() < 1e-6);
@@ -39,34 +40,38 @@
 //! }
 //! ```
 //!
-//! # Where to read on
+//! # Further reading
 //!
-//! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html), answers
-//! [how do I …?](guide/recipes/index.html), and has chapters on the
-//! [language](guide/language/index.html), [robots](guide/robots/index.html) from URDF, MJCF and SDF files,
-//! [constraints](guide/constraints/index.html), [functions](guide/functions/index.html) that are generated,
-//! [simulating](guide/simulating/index.html), [control](guide/control/index.html), [batches](guide/batches/index.html) of states,
-//! targets [without std](guide/without_std/index.html), [Python](guide/python/index.html), [speed](guide/speed/index.html), and the names of things
-//! [in other tools](guide/from_other_tools/index.html).
+//! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html) and a list
+//! of [recipes](guide/recipes/index.html), and has chapters on the [language](guide/language/index.html),
+//! [robots](guide/robots/index.html) from URDF, MJCF and SDF files,
+//! [constraints](guide/constraints/index.html), generated [functions](guide/functions/index.html),
+//! [simulating](guide/simulating/index.html), [control](guide/control/index.html),
+//! [batches](guide/batches/index.html) of states, targets [without std](guide/without_std/index.html),
+//! [Python](guide/python/index.html), [speed](guide/speed/index.html), and the corresponding names [in other
+//! tools](guide/from_other_tools/index.html).
 //!
-//! - [`prelude`]: everything that a program with a mechanism needs, in one import.
+//! - [`prelude`]: all items that a program with a mechanism needs, in one import.
 //! - [`mechanism`](macro@mechanism): the attribute and its arguments.
 //! - [`elements`]: bodies, joints and forces, the types of a mechanism's fields.
-//! - [`Mechanism`]: what every mechanism offers; [`Constrained`] what those with closed loops or rolling offer besides.
-//! - [`Derivatives`]: first derivatives for generic code; [`discrete`]: single steps and their Jacobians, for estimators and
+//! - [`Mechanism`]: functions of every mechanism; [`Constrained`]: additional functions of mechanisms with
+//!   constraints.
+//! - [`Derivatives`]: first derivatives for generic code; [`discrete`]: single steps and their Jacobians, for
+//!   estimators and optimal control.
+//! - [`inverse_kinematics`]: configurations that reach target poses of frames; [`optimal`]: the recursion of
 //!   optimal control.
-//! - [`inverse_kinematics`]: configurations that put frames where they should be; [`optimal`]: the recursion of optimal control.
-//! - [`simulate()`]: motion over time; [`integrate`] holds the integrators.
-//! - [`identification`]: identified base parameters put back into a robot.
+//! - [`simulate()`]: motion over time; [`integrate`]: the integrators.
+//! - [`identification`]: mass properties of a robot from identified base parameters.
 //! - [`batch`]: many states of a mechanism at once, in [`Lanes`].
 //! - [`rotation`]: Euler angles, quaternions and other parameters of rotations.
 //!
 //! # Features
 //!
-//! - `std` (default): elementary functions of the standard library. Release builds for x86-64 compile large functions
-//!   also for AVX2 and FMA, and choose at run time ([speed](guide/speed/index.html)).
+//! - `std` (default): elementary functions of the standard library. Release builds for x86-64 compile large
+//!   functions also for AVX2 and FMA, and choose at run time ([speed](guide/speed/index.html)).
 //! - `libm`: elementary functions of the crate `libm`, for targets without the standard library.
-//! - `serde`: `Inertial` and `Placement`, fields of robots with figures as parameters, can be read and written.
+//! - `serde`: serialisation of `Inertial` and `Placement`, the fields of robots whose file values are
+//!   parameters.
 //! - `rayon`: rollouts of many states on all processors.
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
@@ -144,12 +149,13 @@ mod speeds;
 mod table;
 mod trigonometry;
 
-/// Everything that a program with a mechanism needs: `use linkwork::prelude::*;`.
+/// Prelude of all items that a program with a mechanism needs: `use linkwork::prelude::*;`.
 ///
-/// Names of your own, and names that you import one by one, go before all of these: a program may have an `Error`, a
-/// `Sample` or a `Body` itself, or `use std::error::Error;`. Elements are known to
-/// [`mechanism`](macro@mechanism) whether they are imported or not; those that nalgebra has as well, `Point`, `Scalar` and
-/// `Vector`, are left out here, so that `use linkwork::nalgebra::*;` may stand beside this.
+/// Local names and explicitly imported names take precedence over the prelude: a program may define an
+/// `Error`, a `Sample` or a `Body` itself, or `use std::error::Error;`. [`mechanism`](macro@mechanism)
+/// recognises elements whether they are imported or not. Elements that nalgebra defines as well, `Point`,
+/// `Scalar` and `Vector`, are not in the prelude, so that `use linkwork::nalgebra::*;` can be used together
+/// with it.
 pub mod prelude {
     pub use crate::elements::{
         Attraction, Ball, Body, Collar, Contact, Coordinate, Dashpot, Equilibrium, Force, Frame, Free,
@@ -172,7 +178,7 @@ pub mod prelude {
     pub use nalgebra::{SMatrix, SVector};
 }
 
-/// What generated code calls; no part of the public interface.
+/// Items for generated code; not part of the public interface.
 #[doc(hidden)]
 pub mod __private {
     pub use crate::absent;
@@ -218,12 +224,12 @@ pub mod __private {
 #[cfg(test)]
 mod testing;
 
-/// The README's examples are tests.
+/// Runs the README's examples as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;
 
-/// The equations that the README shows are those of its example.
+/// Checks that the equations in the README are those of its example.
 ///
 /// ```
 /// use linkwork::prelude::*;

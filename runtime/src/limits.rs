@@ -4,13 +4,13 @@ use crate::private::constant;
 use crate::{At, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// What the coordinates of a mechanism, their velocities and the generalized forces on them stay within: what a file says of its
-/// joints, and each [`Limit`](crate::elements::Limit) of a struct. Every mechanism implements it; entries that nothing bounds are
-/// infinite, those of ball and free joints always.
+/// Limits of the coordinates of a mechanism, of their velocities and of the generalized forces on them: the
+/// joint limits of a file, and each [`Limit`](crate::elements::Limit) of a struct. Every mechanism implements
+/// the trait. Unlimited entries are infinite; entries of ball and free joints always are.
 ///
-/// Limits exert no force, and no function of the dynamics knows them. They are functions, not constants, since they may be
-/// expressions of the parameters; numbers cost nothing. None of the functions here allocates, and none has branches that depend
-/// on `NV` alone.
+/// Limits exert no force, and the dynamics do not depend on them. They are functions, not constants, because
+/// they may be expressions of the parameters; constant limits are free of cost. The functions allocate no
+/// memory, and do not branch on `NV` alone.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -18,7 +18,7 @@ use nalgebra::{SMatrix, SVector};
 /// #[mechanism(urdf = "../models/urdf/ur5.urdf")]
 /// pub struct Ur5;
 ///
-/// /// A force that the motors can give.
+/// /// The generalized force within the limits of the motors.
 /// fn saturated<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
 ///     m: &M,
 ///     tau: &SVector<M::Scalar, NV>,
@@ -34,35 +34,36 @@ pub trait Limits<const NQ: usize, const NV: usize> {
     /// The scalar type.
     type Scalar: Real;
 
-    /// The least value of the coordinate whose rate is each entry of `v`, m or rad; −∞ where there is none. Where speeds are declared
-    /// ([`Speed`](crate::elements::Speed)), that of the coordinate whose rate the entry would be without them.
+    /// Returns the lower limit of the coordinate whose rate is each entry of `v`, m or rad; −∞ if unlimited.
+    /// With declared generalized speeds ([`Speed`](crate::elements::Speed)), entries refer to the joint
+    /// velocities that the speeds replace.
     fn lower_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::NEG_INFINITY))
     }
 
-    /// The largest value of the coordinate whose rate is each entry of `v`, m or rad; ∞ where there is none. With declared speeds as
-    /// for [`lower_limits`](Self::lower_limits).
+    /// Returns the upper limit of the coordinate whose rate is each entry of `v`, m or rad; ∞ if unlimited.
+    /// With declared generalized speeds, see [`lower_limits`](Self::lower_limits).
     fn upper_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::INFINITY))
     }
 
-    /// The largest magnitude of each entry of `v`, m/s or rad/s; ∞ where there is none.
+    /// Returns the largest magnitude of each entry of `v`, m/s or rad/s; ∞ if unlimited.
     fn velocity_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::INFINITY))
     }
 
-    /// The largest magnitude of each generalized force `τ`, N or N·m; ∞ where there is none.
+    /// Returns the largest magnitude of each generalized force `τ`, N or N·m; ∞ if unlimited.
     fn effort_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::INFINITY))
     }
 
-    /// The configuration with each coordinate that is beyond a limit put at that limit. What is not a number stays so.
+    /// Returns the configuration with each coordinate clamped to its limits. NaN remains NaN.
     fn clamp_configuration(&self, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NQ> {
         *q
     }
 
-    /// The coordinates in the order of these limits, and by which matrix speeds follow from their rates; `None` where no speeds are
-    /// declared, and velocities are rates.
+    /// Returns the coordinates in the order of these limits, and the matrix that maps their rates to
+    /// generalized speeds; `None` without declared speeds, when velocities are rates of the coordinates.
     #[doc(hidden)]
     #[allow(clippy::type_complexity, reason = "a vector and a matrix")]
     fn limited_coordinates(
@@ -72,35 +73,35 @@ pub trait Limits<const NQ: usize, const NV: usize> {
         None
     }
 
-    /// The velocity with each entry that is beyond its limit put at that limit. What is not a number stays so.
+    /// Returns the velocity with each entry clamped to its limit. NaN remains NaN.
     fn clamp_velocity(&self, v: &SVector<Self::Scalar, NV>) -> SVector<Self::Scalar, NV> {
         within(v, &self.velocity_limits())
     }
 
-    /// The generalized force with each entry that is beyond its limit put at that limit. What is not a number stays so.
+    /// Returns the generalized force with each entry clamped to its limit. NaN remains NaN.
     fn clamp_effort(&self, tau: &SVector<Self::Scalar, NV>) -> SVector<Self::Scalar, NV> {
         within(tau, &self.effort_limits())
     }
 }
 
-/// Each entry of `x`, of the magnitude in `most` at most.
+/// Returns `x` with each entry clamped to the magnitude in `most`.
 fn within<T: Real, const N: usize>(x: &SVector<T, N>, most: &SVector<T, N>) -> SVector<T, N> {
     x.zip_map(most, |x, most| at_most(at_least(x, -most), most))
 }
 
-/// The larger of both; `x` if it is not a number.
+/// Returns the larger of both; `x` if it is NaN.
 #[inline(always)]
 pub fn at_least<T: Real>(x: T, bound: T) -> T {
     x.clamp(bound, constant(f64::INFINITY))
 }
 
-/// The smaller of both; `x` if it is not a number.
+/// Returns the smaller of both; `x` if it is NaN.
 #[inline(always)]
 pub fn at_most<T: Real>(x: T, bound: T) -> T {
     x.clamp(constant(f64::NEG_INFINITY), bound)
 }
 
-/// Passes every function on.
+/// Forwards every function.
 macro_rules! pass_on {
     ($self:ident => $to:expr) => {
         fn lower_limits(&$self) -> SVector<Self::Scalar, NV> {
@@ -147,7 +148,7 @@ impl<M: Limits<NQ, NV> + ?Sized, const NQ: usize, const NV: usize> Limits<NQ, NV
     pass_on!(self => (**self));
 }
 
-/// Limits do not depend on time.
+/// Implements the trait at an instant; limits do not depend on time.
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M: Limits<NQ, NV>, T, const NQ: usize, const NV: usize> Limits<NQ, NV> for At<'_, M, T> {
     type Scalar = M::Scalar;

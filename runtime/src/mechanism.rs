@@ -1,29 +1,31 @@
-//! The trait that generic code (integrators, controllers, plotters) is written against.
+//! Trait for code that is generic over mechanisms: integrators, controllers, plotters.
 
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
 use crate::forward::each_function;
 use nalgebra::{RealField, SMatrix, SVector};
 
-/// The numbers that generated code can run on: every `Copy` real field of nalgebra, so `f64`, `f32`, dual
-/// numbers for automatic differentiation and SIMD lanes.
+/// Scalar types of generated code: every `Copy` real field of nalgebra, such as `f64`, `f32`, dual numbers
+/// for automatic differentiation and SIMD lanes.
 pub trait Real: RealField + Copy {}
 
 impl<T: RealField + Copy> Real for T {}
 
-/// What every mechanism offers, for generic code.
+/// Functions of every mechanism, for generic code.
 ///
-/// It has `NQ` configuration numbers, `NV` velocities and `NU` inputs, and its equations do not contain time
-/// (scleronomic). `#[mechanism]` implements the trait. A mechanism that is driven in time implements [`Rheonomic`](crate::Rheonomic)
-/// instead, and is a `Mechanism` at every instant: [`at(&hoop, t)`](crate::at).
+/// The mechanism has `NQ` configuration numbers, `NV` velocities and `NU` inputs, and its equations do not
+/// contain time (scleronomic). `#[mechanism]` implements the trait. A mechanism that is driven in time
+/// implements [`Rheonomic`](crate::Rheonomic) instead, and is a `Mechanism` at every instant: [`at(&hoop,
+/// t)`](crate::at).
 ///
-/// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` lives on the configuration manifold (a ball
-/// or a free joint holds a unit quaternion x y z w), `v` in its tangent space: body-frame velocities for ball and
-/// free joints, rates of the coordinates for all others. Entries follow the order in which joints are declared.
+/// The equation of motion is `M(q) v̇ + h(q, v) = τ`, in SI units. `q` is a point of the configuration
+/// manifold (with a unit quaternion x y z w for a ball or a free joint), `v` a vector of its tangent space:
+/// body-frame velocities for ball and free joints, rates of the coordinates for all others. Entries follow
+/// the order in which joints are declared.
 ///
-/// A mechanism implements the trait for one triple of numbers only, so they need not be written:
-/// `fn energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(m: &M, …)` is called
-/// as `energy(&cart_pole, …)`.
+/// A mechanism implements the trait for one triple (`NQ`, `NV`, `NU`) only, so that callers need not write
+/// it: `fn energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(m: &M, …)` is
+/// called as `energy(&cart_pole, …)`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no mechanism without time",
     label = "expected a `Mechanism`",
@@ -40,42 +42,45 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     const VELOCITIES: [&'static str; NV];
     /// Name of every entry of `u`.
     const INPUTS: [&'static str; NU];
-    /// SI unit of every entry of `v`, as inferred: `rad/s`; `any` where nothing determines one, empty where none was said. A
-    /// displacement along it has the same unit without the `/s`.
+    /// SI unit of every entry of `v`, as inferred, such as `rad/s`; `any` if it is undetermined, empty if
+    /// unknown. The corresponding displacement has this unit without `/s`.
     const VELOCITY_UNITS: [&'static str; NV] = [""; NV];
-    /// SI unit of every entry of `u`, in the same words.
+    /// SI unit of every entry of `u`, in the format of [`VELOCITY_UNITS`](Self::VELOCITY_UNITS).
     const INPUT_UNITS: [&'static str; NU] = [""; NU];
 
-    /// The coordinates are restricted by constraints ([`Constrained`](crate::Constrained)).
+    /// Whether constraints restrict the coordinates ([`Constrained`](crate::Constrained)).
     const CONSTRAINED: bool = false;
 
-    /// Contacts slip with friction ([`Slipping`](crate::elements::Slipping)): forces depend on multipliers.
+    /// Whether contacts slide with friction ([`Slipping`](crate::elements::Slipping)): forces then depend on
+    /// multipliers.
     const SLIPPING: bool = false;
 
-    /// Constraints are kept by feedback, or forces depend on accelerations
+    /// Whether feedback enforces the constraints, or forces depend on accelerations
     /// ([`Rheonomic::FEEDBACK`](crate::Rheonomic::FEEDBACK)).
     const FEEDBACK: bool = false;
 
-    /// Contacts open and close ([`Contacts`](crate::Contacts)): methods of integration that know nothing of them do not compile.
+    /// Whether the mechanism has unilateral contacts ([`Contacts`](crate::Contacts)); integration methods
+    /// that do not treat them do not compile.
     const CONTACTING: bool = false;
 
-    /// Events at contacts can be located ([`EventDriven`](crate::integrate::EventDriven)): by
+    /// Whether contact events can be located ([`EventDriven`](crate::integrate::EventDriven)), through
     /// [`visit_contacts`](Self::visit_contacts).
     const LOCATABLE: bool = false;
 
-    /// How many of the last velocities are states of first order, which have no place in `q`
+    /// Number of first-order states, which are the last velocities and have no entry in `q`
     /// ([`Extended`](crate::Extended)).
     const FIRST_ORDER: usize = 0;
 
-    /// Some velocities are generalized speeds that were declared ([`Speed`](crate::elements::Speed)): how the entries of `v` move `q`
-    /// depends on `q`.
+    /// Whether some velocities are declared generalized speeds ([`Speed`](crate::elements::Speed)): the
+    /// relation between `v` and the motion of `q` then depends on `q`.
     const SPEEDS: bool = false;
 
-    /// The state nearest to a given one that fulfils the constraints, if there are any.
+    /// Projects a state onto the constraints, if there are any: returns the nearest state that satisfies
+    /// them.
     ///
     /// # Errors
     ///
-    /// Those of [`Constrained::project_state`](crate::Constrained::project_state).
+    /// The errors of [`Constrained::project_state`](crate::Constrained::project_state).
     fn project(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -84,9 +89,11 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         Ok((*q, *v))
     }
 
-    /// The change of the velocity `v` by the generalized impulse `p`, N·s and N·m·s: `x` of `M x = p`. Where there are
-    /// constraints, `M x = p + Jᵀ λ` with such impulses `λ` of theirs that they hold, to first order in `x`, when the new
-    /// velocity has lasted for `h` seconds; with `h = 0` that their rates are zero. What implicit methods solve with.
+    /// Returns the change `x` of the velocity `v` due to the generalized impulse `p`, N·s and N·m·s: the
+    /// solution of `M x = p`. With constraints it solves `M x = p + Jᵀ λ` with constraint impulses `λ` such
+    /// that the constraints are satisfied, to first order in `x`, after the new velocity has lasted for `h`
+    /// seconds; for `h = 0`, such that their rates are zero. Implicit methods solve their equations with this
+    /// function.
     fn impulse(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -97,14 +104,16 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         self.forward_dynamics(q, v, &(self.bias_forces(q, v) + p))
     }
 
-    /// Whether the constraints lose rank in the configuration `q`, or as good as: a step by `dv` changes them as much as they
-    /// differ from dependent ones. Methods go on by accelerations there, which are continuous.
+    /// Whether the constraints are singular or nearly singular in the configuration `q`: a step by `dv`
+    /// changes them as much as they differ from dependent constraints. Integration methods then use
+    /// accelerations, which are continuous there.
     fn is_nearly_singular(&self, _q: &SVector<Self::Scalar, NQ>, _dv: &SVector<Self::Scalar, NV>) -> bool {
         false
     }
 
-    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` under the inputs `u`, constraints included, as in [`LinearMotion`](crate::LinearMotion): what
-    /// implicit methods solve with. `None` without `#[mechanism(…, derivatives)]`; methods take differences there.
+    /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` under the inputs `u`, constraints included, as in
+    /// [`LinearMotion`](crate::LinearMotion). Implicit methods use these derivatives. `None` without
+    /// `#[mechanism(…, derivatives)]`; methods then use finite differences.
     fn acceleration_derivatives(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -114,9 +123,9 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         None
     }
 
-    /// The velocity `v` at the configuration `q` in the axes that ball and free joints have after the displacement `dv`, and in the
-    /// speeds there if some were declared: its components change, and bodies move as before. Only of mechanisms with contacts, others
-    /// leave it as it is.
+    /// Returns the velocity `v` at the configuration `q` expressed in the axes of ball and free joints after
+    /// the displacement `dv`, and in the generalized speeds there if some are declared: the components
+    /// change, the motion of the bodies does not. Mechanisms without contacts return `v` unchanged.
     fn carry(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -126,12 +135,13 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         *v
     }
 
-    /// The configuration `q` where a motion is to begin with it: surfaces that overlap are refused ([`contact::check`](crate::contact::check)), or taken apart
-    /// where `parts` ([`contact::project`](crate::contact::project)). Mechanisms without contacts leave it as it is.
+    /// Checks or corrects the configuration `q` at the start of a motion. Penetrating contact surfaces are an
+    /// error ([`contact::check`](crate::contact::check)), or are separated if `parts` is true
+    /// ([`contact::project`](crate::contact::project)). Mechanisms without contacts return `q` unchanged.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Overlap`] with the contact whose surfaces overlap most.
+    /// [`ConstraintError::Overlap`] with the contact of the deepest penetration.
     fn contact_start(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -140,13 +150,13 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         Ok(*q)
     }
 
-    /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
-    /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity
-    /// ([`contact::solve`](crate::contact::solve)).
+    /// Applies the contact impulses of a step of `h` seconds ([`contact::solve`](crate::contact::solve)). The
+    /// step starts at the configuration and velocity `start`; without contacts it ends at the configuration
+    /// `q` with the velocity `free`, and during it contacts were assumed to add `given` to the velocity.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Contact`] of mechanisms with contacts.
+    /// [`ConstraintError::Contact`] for mechanisms with contacts.
     fn contact_step(
         &self,
         _start: (&SVector<Self::Scalar, NQ>, &SVector<Self::Scalar, NV>),
@@ -157,8 +167,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         Ok(Touched::free(*q, free + given))
     }
 
-    /// Hands the mechanism to `visitor` with the numbers of its contacts, where it has any; `None` where it has none, or where it stands
-    /// for many.
+    /// Passes the mechanism to `visitor`, with the numbers of its contacts as const parameters. `None` for
+    /// mechanisms without contacts and for wrappers of several states.
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
@@ -166,38 +176,40 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         None
     }
 
-    /// The configuration with all coordinates zero; identity quaternions.
+    /// Returns the configuration with all coordinates zero and identity quaternions.
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
-    /// `q ⊕ dv`: the configuration reached from `q` by moving with the constant velocity `dv` for one unit of time.
-    /// A sum for plain coordinates, the exponential of SO(3) for a ball and of SE(3) for a free joint. Quaternions
-    /// are normalised. With declared speeds the velocities of the joints are constant that `dv` stands for at `q`.
+    /// Returns `q ⊕ dv`: the configuration reached from `q` by moving with the constant velocity `dv` for one
+    /// unit of time. It is a sum for plain coordinates, the exponential of SO(3) for a ball joint and of
+    /// SE(3) for a free joint. Quaternions are normalised. With declared generalized speeds, the constant
+    /// velocities are the joint velocities that correspond to `dv` at `q`.
     fn integrate(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         dv: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NQ>;
 
-    /// `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so that
-    /// `integrate(from, difference(from, to))` is `to`. Rotations take the shorter way.
+    /// Returns `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time, so
+    /// that `integrate(from, difference(from, to))` is `to`. Rotations are by the smaller angle.
     fn difference(
         &self,
         from: &SVector<Self::Scalar, NQ>,
         to: &SVector<Self::Scalar, NQ>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`: the inverse of the exponential's derivative, the
-    /// identity for plain coordinates. The series `v + ½ [dv, v] + …` is cut where it matters for steps of order
-    /// above six (Hairer, Lubich and Wanner, *Geometric Numerical Integration*, ch. IV.7).
+    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`: the inverse of the exponential's
+    /// derivative, the identity for plain coordinates. The series `v + ½ [dv, v] + …` is truncated after the
+    /// terms that affect steps of order six (Hairer, Lubich and Wanner, *Geometric Numerical Integration*,
+    /// ch. IV.7).
     fn tangent_rate(
         &self,
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`: what methods of integration call. It is
-    /// [`tangent_rate`](Self::tangent_rate), which does not depend on `q`, unless speeds were declared ([`SPEEDS`](Self::SPEEDS)):
-    /// `tangent_rate` is NaN then.
+    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`; called by
+    /// integration methods. It equals [`tangent_rate`](Self::tangent_rate), which does not depend on `q`,
+    /// unless generalized speeds are declared ([`SPEEDS`](Self::SPEEDS)): `tangent_rate` is then NaN.
     fn displacement_rate(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -207,18 +219,19 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         self.tangent_rate(dv, v)
     }
 
-    /// Mass matrix `M(q)`, symmetric, both triangles: kg between translations, kg·m² between rotations, kg·m mixed.
+    /// Returns the mass matrix `M(q)`, symmetric, both triangles: kg between translations, kg·m² between
+    /// rotations, kg·m mixed.
     fn mass_matrix(&self, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
 
-    /// Bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots, friction. N for translations,
-    /// N·m for rotations.
+    /// Returns the bias forces `h(q, v)`: Coriolis and centrifugal forces, gravity, springs, dashpots,
+    /// friction. N for translations, N·m for rotations.
     fn bias_forces(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// `τ = M(q) a + h(q, v)`: the forces (N) and torques (N·m) that give the acceleration `a`.
+    /// Returns `τ = M(q) a + h(q, v)`: the generalized forces, N and N·m, that cause the acceleration `a`.
     fn inverse_dynamics(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -226,8 +239,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// `v̇ = M(q)⁻¹ (τ − h(q, v))`, m/s² and rad/s²: the acceleration that the forces `tau` give. Not finite where `M(q)`
-    /// is singular.
+    /// Returns the acceleration `v̇ = M(q)⁻¹ (τ − h(q, v))`, m/s² and rad/s², due to the generalized forces
+    /// `tau`. Not finite if `M(q)` is singular.
     fn forward_dynamics(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -235,12 +248,13 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         tau: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// [`forward_dynamics`](Self::forward_dynamics), or why the forces determine no acceleration: what simulations call.
+    /// Returns [`forward_dynamics`](Self::forward_dynamics), or the reason why the forces determine no
+    /// acceleration; called by simulations.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip; others
-    /// have none.
+    /// [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] for mechanisms with sliding contacts;
+    /// none for others.
     fn try_forward_dynamics(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -250,8 +264,8 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         Ok(self.forward_dynamics(q, v, tau))
     }
 
-    /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work. Few mechanisms need `v` here: those whose
-    /// inputs act by way of the velocity, such as the control surfaces of an aircraft.
+    /// Returns the generalized forces `τ` of the inputs `u`, N and N·m, by virtual work. They depend on `v`
+    /// only if inputs act through the velocity, such as the control surfaces of an aircraft.
     fn generalized_forces(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -259,21 +273,22 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
         u: &SVector<Self::Scalar, NU>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Kinetic energy `T = ½ vᵀ M(q) v`, J.
+    /// Returns the kinetic energy `T = ½ vᵀ M(q) v`, J.
     fn kinetic_energy(&self, q: &SVector<Self::Scalar, NQ>, v: &SVector<Self::Scalar, NV>) -> Self::Scalar;
 
-    /// Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J.
+    /// Returns the potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J.
     fn potential_energy(&self, q: &SVector<Self::Scalar, NQ>) -> Self::Scalar;
 
-    /// Generalized momentum `p = M(q) v`, kg·m/s for translations, kg·m²/s for rotations.
+    /// Returns the generalized momentum `p = M(q) v`, kg·m/s for translations, kg·m²/s for rotations.
     fn generalized_momentum(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(q, v) + τ` (Hamilton's second
-    /// equation, in body components for ball and free joints: the Euler–Poincaré equation).
+    /// Returns the rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(q, v) + τ`
+    /// (Hamilton's second equation, in body components for ball and free joints: the Euler–Poincaré
+    /// equation).
     fn momentum_rate(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -281,7 +296,7 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize> {
     ) -> SVector<Self::Scalar, NV>;
 }
 
-/// A reference to a mechanism is one: a controller may borrow its plant.
+/// Implements the trait for references to mechanisms: a controller may borrow its plant.
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> for &M
 where

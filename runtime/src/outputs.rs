@@ -1,11 +1,12 @@
-//! Outputs of a mechanism for generic code: what its sensors measure, and how that changes.
+//! Outputs of a mechanism for generic code: sensor measurements and their derivatives.
 
 use crate::rheonomic::At;
 use crate::{LinearMotion, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// All outputs of a mechanism in one vector of `NY` numbers, but for those that name reactions: what a generic estimator compares
-/// with measurements. `#[mechanism]` implements it for mechanisms with `#[output(…)]`.
+/// All outputs of a mechanism in one vector of `NY` numbers, except outputs that name reactions. A generic
+/// estimator compares this vector with measurements. `#[mechanism]` implements the trait for mechanisms with
+/// `#[output(…)]`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no outputs, or another number of them",
     note = "`#[output(expression)] name: Scalar` declares one; reactions are left out"
@@ -14,13 +15,14 @@ pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: u
     /// The scalar type.
     type Scalar: Real;
 
-    /// The name of every entry: that of the output, with `.x`, `.y` and `.z` for the components of a vector.
+    /// Name of every entry: that of the output, with `.x`, `.y` and `.z` appended for the components of a
+    /// vector.
     const OUTPUTS: [&'static str; NY];
-    /// SI unit of every entry, as inferred: `m/s²`; `any` where nothing determines one, empty where none was said.
+    /// SI unit of every entry, as inferred, such as `m/s²`; `any` if it is undetermined, empty if unknown.
     const OUTPUT_UNITS: [&'static str; NY] = [""; NY];
 
-    /// The outputs at the time `t` (which matters where a function of the mechanism depends on it), of the configuration `q`, the
-    /// velocity `v`, the acceleration `a` and the inputs `u`, in their own units.
+    /// Returns the outputs in SI units, at time `t` (which matters only if a function of the mechanism
+    /// depends on it), configuration `q`, velocity `v`, acceleration `a` and inputs `u`.
     fn outputs(
         &self,
         t: Self::Scalar,
@@ -39,7 +41,7 @@ pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: u
 pub trait OutputDerivatives<const NQ: usize, const NV: usize, const NU: usize, const NY: usize>:
     Outputs<NQ, NV, NU, NY>
 {
-    /// The derivatives of [`outputs`](Outputs::outputs), each by one argument while the others stay.
+    /// Returns the partial derivatives of [`outputs`](Outputs::outputs) with respect to each argument.
     fn output_derivatives(
         &self,
         t: Self::Scalar,
@@ -50,7 +52,7 @@ pub trait OutputDerivatives<const NQ: usize, const NV: usize, const NU: usize, c
     ) -> OutputJacobians<Self::Scalar, NY, NV, NU>;
 }
 
-/// At the instant of the mechanism; the argument `t` is not looked at.
+/// Implements the trait at the instant of the mechanism; the argument `t` is ignored.
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NY: usize> Outputs<NQ, NV, NU, NY>
     for At<'_, M, T>
 where
@@ -91,28 +93,28 @@ where
     }
 }
 
-/// Derivatives of outputs of `NY` numbers by configuration, velocity, acceleration and inputs, each while the others stay. Column
-/// `i` of the one by `q` is along `q ⊕ ε eᵢ`, for ball and free joints in body axes.
+/// Partial derivatives of `NY` outputs with respect to configuration, velocity, acceleration and inputs.
+/// Column `i` of `by_q` is the derivative along `q ⊕ ε eᵢ`, in body axes for ball and free joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputJacobians<T, const NY: usize, const NV: usize, const NU: usize> {
-    /// By configuration, per m and rad.
+    /// Derivative with respect to the configuration, per m and rad.
     pub by_q: SMatrix<T, NY, NV>,
-    /// By velocity, per m/s and rad/s.
+    /// Derivative with respect to the velocity, per m/s and rad/s.
     pub by_v: SMatrix<T, NY, NV>,
-    /// By acceleration, per m/s² and rad/s².
+    /// Derivative with respect to the acceleration, per m/s² and rad/s².
     pub by_a: SMatrix<T, NY, NV>,
-    /// By inputs.
+    /// Derivative with respect to the inputs.
     pub by_u: SMatrix<T, NY, NU>,
 }
 
 impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians<T, NY, NV, NU> {
-    /// All zero.
+    /// Returns zero derivatives.
     pub fn zeros() -> Self {
         let (state, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { by_q: state, by_v: state, by_a: state, by_u }
     }
 
-    /// Puts those of other outputs into the rows from `first` on; rows that do not fit are left out.
+    /// Writes the derivatives of other outputs to the rows from `first` on; rows beyond the last are dropped.
     pub fn put_rows<const R: usize>(&mut self, first: usize, other: &OutputJacobians<T, R, NV, NU>) {
         crate::private::put_rows(&mut self.by_q, first, &other.by_q);
         crate::private::put_rows(&mut self.by_v, first, &other.by_v);
@@ -120,13 +122,13 @@ impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians
         crate::private::put_rows(&mut self.by_u, first, &other.by_u);
     }
 
-    /// How the outputs change with state and inputs where the acceleration is that of the motion: `∂y/∂q + ∂y/∂a ∂v̇/∂q`, and so
-    /// on. Nothing is left by the acceleration.
+    /// Returns the total derivatives of the outputs along the motion, `∂y/∂q + ∂y/∂a ∂v̇/∂q` and so on;
+    /// `by_a` of the result is zero.
     ///
     /// ```
     /// use linkwork::prelude::*;
     ///
-    /// /// A cart with an accelerometer, pushed and held by a spring.
+    /// /// A cart with an accelerometer, pushed by a force against a spring.
     /// #[mechanism(derivatives)]
     /// struct Cart {
     ///     #[body(mass = 2)]
@@ -144,7 +146,7 @@ impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians
     /// let (q, v, u) = ([0.1].into(), [0.0].into(), [1.0].into());
     /// let motion = Cart {}.linear_motion(&q, &v, &u);
     /// let measured = Cart {}.accelerometer_derivatives(&q, &v, &motion.acceleration).in_motion(&motion);
-    /// // −k / m by the position, 1 / m by the push.
+    /// // The derivatives are −k / m for the position and 1 / m for the force.
     /// assert!((measured.by_q[0] + 4.0).abs() < 1e-12 && (measured.by_u[0] - 0.5).abs() < 1e-12);
     /// ```
     pub fn in_motion(&self, motion: &LinearMotion<T, NV, NU>) -> Self {
@@ -156,9 +158,9 @@ impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians
         }
     }
 
-    /// `C` of `δy = C x + D δu`, with `x` the displacements, then the changes of velocity; `D` is `by_u`. Before, accelerations
-    /// follow from the motion ([`in_motion`](Self::in_motion)). `NX` is `2 NV`, which the type that is asked for says; any other
-    /// does not compile.
+    /// Returns `C` of `δy = C x + D δu`, with `x` the displacements, then the changes of velocity; `D` is
+    /// `by_u`. Call [`in_motion`](Self::in_motion) first, so that the derivatives include those of the
+    /// acceleration. `NX` is `2 NV`, inferred from the requested type; any other value does not compile.
     pub fn c<const NX: usize>(&self) -> SMatrix<T, NY, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many columns as there are velocities") };
         SMatrix::from_fn(|i, j| {

@@ -1,25 +1,26 @@
-//! Constants of any type of number. The rest of what generated code calls is in `arithmetic` and `lie`.
+//! Numeric constants and matrix blocks for any scalar type. Other functions for generated code are in
+//! `arithmetic` and `lie`.
 
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// The nearest number of type `T` to `x`.
+/// Returns the number of type `T` nearest to `x`.
 #[inline(always)]
 pub fn constant<T: Real>(x: f64) -> T {
     nalgebra::convert(x)
 }
 
-/// `x` as `f64`, for error messages.
+/// Returns `x` as `f64`, for error messages; NaN if it has no such value.
 pub(crate) fn to_f64<T: Real>(x: T) -> f64 {
     nalgebra::try_convert(x).unwrap_or(f64::NAN)
 }
 
-/// The distance from 1 to the next larger number of type `T`.
+/// Returns the distance from 1 to the next larger number of type `T`.
 pub(crate) fn epsilon<T: Real>() -> T {
     T::default_epsilon()
 }
 
-/// Puts a block on the diagonal of a matrix, with its first entry at `first` in both directions.
+/// Writes a block to the diagonal of a matrix, with its first entry at index `first` in both directions.
 pub fn put_block<T: Real, const N: usize, const K: usize>(
     matrix: &mut SMatrix<T, N, N>,
     first: usize,
@@ -34,7 +35,7 @@ pub fn put_block<T: Real, const N: usize, const K: usize>(
     }
 }
 
-/// Puts rows into a matrix of more of them.
+/// Writes rows to a larger matrix, from row `first` on.
 #[inline(always)]
 pub fn put_rows<T: Real, const ROWS: usize, const R: usize, const C: usize>(
     into: &mut SMatrix<T, ROWS, C>,

@@ -1,5 +1,5 @@
-//! Mechanisms whose equations contain time: driven cranks, rotating hoops, moving pivots. Integrators are written against
-//! this trait, which every [`Mechanism`] has too.
+//! Mechanisms whose equations contain time: driven cranks, rotating hoops, moving pivots. Integrators use
+//! this trait, which every [`Mechanism`] implements too.
 
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::Touched;
@@ -7,10 +7,11 @@ use crate::forward::each_function;
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// What mechanisms offer whose functions may depend on time `t`, s: those with a driven crank or a moving pivot.
+/// Functions of mechanisms that may depend on time `t`, s: mechanisms with a driven crank or a moving pivot.
 ///
-/// `#[mechanism]` implements it where something depends on time; every [`Mechanism`] is one too. Shapes, units and conventions are those of [`Mechanism`]; with
-/// driven motion the kinetic energy is no longer `½ vᵀ M v`, nor the momentum `M v`.
+/// `#[mechanism]` implements the trait for mechanisms that depend on time, and every [`Mechanism`] implements
+/// it. Shapes, units and conventions are those of [`Mechanism`]. With driven motion, the kinetic energy
+/// differs from `½ vᵀ M v` and the momentum from `M v`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no mechanism",
     label = "expected a mechanism",
@@ -31,35 +32,36 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     /// SI unit of every entry of `u` ([`Mechanism::INPUT_UNITS`]).
     const INPUT_UNITS: [&'static str; NU] = [""; NU];
 
-    /// The coordinates are restricted by constraints ([`Mechanism::CONSTRAINED`]).
+    /// Whether constraints restrict the coordinates ([`Mechanism::CONSTRAINED`]).
     const CONSTRAINED: bool = false;
 
-    /// Contacts slip with friction ([`Mechanism::SLIPPING`]).
+    /// Whether contacts slide with friction ([`Mechanism::SLIPPING`]).
     const SLIPPING: bool = false;
 
-    /// Constraints are kept by feedback ([`Stabilized`](crate::constraint::Stabilized)), or forces depend on accelerations:
-    /// `forward_dynamics` holds these forces, so that neither mass matrix nor momentum tell the motion; states need not fulfil
-    /// constraints.
+    /// Whether feedback enforces the constraints ([`Stabilized`](crate::constraint::Stabilized)), or forces
+    /// depend on accelerations. `forward_dynamics` includes these forces, so that mass matrix and momentum do
+    /// not determine the motion; states need not satisfy the constraints.
     const FEEDBACK: bool = false;
 
-    /// Contacts open and close ([`Contacts`](crate::Contacts)): methods of integration that know nothing of them do not compile.
+    /// Whether the mechanism has unilateral contacts ([`Contacts`](crate::Contacts)); integration methods
+    /// that do not treat them do not compile.
     const CONTACTING: bool = false;
 
-    /// Events at contacts can be located ([`EventDriven`](crate::integrate::EventDriven)): by
+    /// Whether contact events can be located ([`EventDriven`](crate::integrate::EventDriven)), through
     /// [`visit_contacts`](Self::visit_contacts).
     const LOCATABLE: bool = false;
 
-    /// How many of the last velocities are states of first order ([`Mechanism::FIRST_ORDER`]).
+    /// Number of first-order states, which are the last velocities ([`Mechanism::FIRST_ORDER`]).
     const FIRST_ORDER: usize = 0;
 
-    /// Some velocities are generalized speeds that were declared ([`Mechanism::SPEEDS`]).
+    /// Whether some velocities are declared generalized speeds ([`Mechanism::SPEEDS`]).
     const SPEEDS: bool = false;
 
-    /// The state nearest to a given one that fulfils the constraints, if there are any ([`Mechanism::project`]).
+    /// Projects a state onto the constraints, if there are any ([`Mechanism::project`]).
     ///
     /// # Errors
     ///
-    /// Those of [`Constrained::project_state`](crate::Constrained::project_state).
+    /// The errors of [`Constrained::project_state`](crate::Constrained::project_state).
     fn project(
         &self,
         _t: Self::Scalar,
@@ -69,8 +71,9 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         Ok((*q, *v))
     }
 
-    /// The change of the velocity `v` by the generalized impulse `p`, N·s and N·m·s, and by those of the constraints
-    /// ([`Mechanism::impulse`]): these hold, to first order, when the new velocity has lasted for `h` seconds.
+    /// Returns the change of the velocity `v` due to the generalized impulse `p`, N·s and N·m·s, and the
+    /// constraint impulses ([`Mechanism::impulse`]). The constraints are satisfied, to first order, after the
+    /// new velocity has lasted for `h` seconds.
     fn impulse(
         &self,
         t: Self::Scalar,
@@ -82,7 +85,7 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         self.forward_dynamics(t, q, v, &(self.bias_forces(t, q, v) + p))
     }
 
-    /// Whether constraints lose rank near `q` ([`Mechanism::is_nearly_singular`]).
+    /// Whether constraints nearly lose rank at `q` ([`Mechanism::is_nearly_singular`]).
     fn is_nearly_singular(
         &self,
         _t: Self::Scalar,
@@ -92,7 +95,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         false
     }
 
-    /// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` under the inputs `u` where they are generated ([`Mechanism::acceleration_derivatives`]).
+    /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` under the inputs `u`, if they are generated
+    /// ([`Mechanism::acceleration_derivatives`]).
     fn acceleration_derivatives(
         &self,
         _t: Self::Scalar,
@@ -103,9 +107,9 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         None
     }
 
-    /// The velocity `v` at the configuration `q` in the axes that ball and free joints have after the displacement `dv`, and in the
-    /// speeds there if some were declared: its components change, and bodies move as before. Only of mechanisms with contacts, others
-    /// leave it as it is.
+    /// Returns the velocity `v` at the configuration `q` expressed in the axes of ball and free joints after
+    /// the displacement `dv`, and in the generalized speeds there if some are declared: the components
+    /// change, the motion of the bodies does not. Mechanisms without contacts return `v` unchanged.
     fn carry(
         &self,
         _t: Self::Scalar,
@@ -116,12 +120,13 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         *v
     }
 
-    /// The configuration `q` where a motion is to begin with it: surfaces that overlap are refused ([`contact::check`](crate::contact::check)), or taken apart
-    /// where `parts` ([`contact::project`](crate::contact::project)). Mechanisms without contacts leave it as it is.
+    /// Checks or corrects the configuration `q` at the start of a motion. Penetrating contact surfaces are an
+    /// error ([`contact::check`](crate::contact::check)), or are separated if `parts` is true
+    /// ([`contact::project`](crate::contact::project)). Mechanisms without contacts return `q` unchanged.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Overlap`] with the contact whose surfaces overlap most.
+    /// [`ConstraintError::Overlap`] with the contact of the deepest penetration.
     fn contact_start(
         &self,
         _t: Self::Scalar,
@@ -131,13 +136,13 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         Ok(*q)
     }
 
-    /// What contacts make of a step of `h` seconds from the configuration and velocity `start`, which has led to a configuration and,
-    /// without contacts, a velocity; on the way they have been taken to add `given` to the velocity
-    /// ([`contact::solve`](crate::contact::solve)).
+    /// Applies the contact impulses of a step of `h` seconds ([`contact::solve`](crate::contact::solve)). The
+    /// step starts at the configuration and velocity `start`; without contacts it ends at the configuration
+    /// `q` with the velocity `free`, and during it contacts were assumed to add `given` to the velocity.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Contact`] of mechanisms with contacts.
+    /// [`ConstraintError::Contact`] for mechanisms with contacts.
     fn contact_step(
         &self,
         _t: Self::Scalar,
@@ -149,8 +154,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         Ok(Touched::free(*q, free + given))
     }
 
-    /// Hands the mechanism to `visitor` with the numbers of its contacts, where it has any; `None` where it has none, or where it stands
-    /// for many.
+    /// Passes the mechanism to `visitor`, with the numbers of its contacts as const parameters. `None` for
+    /// mechanisms without contacts and for wrappers of several states.
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,
@@ -158,17 +163,19 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         None
     }
 
-    /// The configuration with all coordinates zero; identity quaternions ([`Mechanism::neutral`]).
+    /// Returns the configuration with all coordinates zero and identity quaternions
+    /// ([`Mechanism::neutral`]).
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
-    /// `q ⊕ dv`: the configuration reached from `q` with the velocity `dv` in one unit of time ([`Mechanism::integrate`]).
+    /// Returns `q ⊕ dv`: the configuration reached from `q` with the velocity `dv` in one unit of time
+    /// ([`Mechanism::integrate`]).
     fn integrate(
         &self,
         q: &SVector<Self::Scalar, NQ>,
         dv: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NQ>;
 
-    /// `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time
+    /// Returns `to ⊖ from`: the velocity that leads from one configuration to another in one unit of time
     /// ([`Mechanism::difference`]).
     fn difference(
         &self,
@@ -176,14 +183,16 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         to: &SVector<Self::Scalar, NQ>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v` ([`Mechanism::tangent_rate`]).
+    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`
+    /// ([`Mechanism::tangent_rate`]).
     fn tangent_rate(
         &self,
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q` ([`Mechanism::displacement_rate`]).
+    /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`, from any `q`
+    /// ([`Mechanism::displacement_rate`]).
     fn displacement_rate(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -193,10 +202,12 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         self.tangent_rate(dv, v)
     }
 
-    /// Mass matrix `M(t, q)`, symmetric, both triangles: kg between translations, kg·m² between rotations, kg·m mixed.
+    /// Returns the mass matrix `M(t, q)`, symmetric, both triangles: kg between translations, kg·m² between
+    /// rotations, kg·m mixed.
     fn mass_matrix(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, NV, NV>;
 
-    /// Bias forces `h(t, q, v)`, N and N·m: those of [`Mechanism::bias_forces`], and the inertia of the driven motion.
+    /// Returns the bias forces `h(t, q, v)`, N and N·m: those of [`Mechanism::bias_forces`], plus the
+    /// inertial forces of the driven motion.
     fn bias_forces(
         &self,
         t: Self::Scalar,
@@ -204,7 +215,7 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// `τ = M(t, q) a + h(t, q, v)`, N and N·m.
+    /// Returns `τ = M(t, q) a + h(t, q, v)`, N and N·m.
     fn inverse_dynamics(
         &self,
         t: Self::Scalar,
@@ -213,7 +224,7 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// `v̇ = M(t, q)⁻¹ (τ − h(t, q, v))`, m/s² and rad/s². Not finite where `M` is singular.
+    /// Returns `v̇ = M(t, q)⁻¹ (τ − h(t, q, v))`, m/s² and rad/s². Not finite if `M` is singular.
     fn forward_dynamics(
         &self,
         t: Self::Scalar,
@@ -222,12 +233,12 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         tau: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// [`forward_dynamics`](Self::forward_dynamics), or why the forces determine no acceleration
-    /// ([`Mechanism::try_forward_dynamics`]).
+    /// Returns [`forward_dynamics`](Self::forward_dynamics), or the reason why the forces determine no
+    /// acceleration ([`Mechanism::try_forward_dynamics`]).
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] of mechanisms with contacts that slip.
+    /// [`ConstraintError::Jammed`] and [`ConstraintError::Singular`] for mechanisms with sliding contacts.
     fn try_forward_dynamics(
         &self,
         t: Self::Scalar,
@@ -238,7 +249,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         Ok(self.forward_dynamics(t, q, v, tau))
     }
 
-    /// Generalized forces `τ` of the inputs `u`, N and N·m, by virtual work ([`Mechanism::generalized_forces`]).
+    /// Returns the generalized forces `τ` of the inputs `u`, N and N·m, by virtual work
+    /// ([`Mechanism::generalized_forces`]).
     fn generalized_forces(
         &self,
         t: Self::Scalar,
@@ -247,8 +259,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         u: &SVector<Self::Scalar, NU>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Kinetic energy `T(t, q, v)`, J: quadratic in `v`, and linear and constant terms where motion is driven (Goldstein,
-    /// Poole and Safko, *Classical Mechanics*, 2002, § 1.6).
+    /// Returns the kinetic energy `T(t, q, v)`, J: quadratic in `v`, with additional linear and constant
+    /// terms for driven motion (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, § 1.6).
     fn kinetic_energy(
         &self,
         t: Self::Scalar,
@@ -256,10 +268,10 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> Self::Scalar;
 
-    /// Potential energy `U(t, q)` of gravity (zero at the ground's origin) and springs, J.
+    /// Returns the potential energy `U(t, q)` of gravity (zero at the ground's origin) and springs, J.
     fn potential_energy(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> Self::Scalar;
 
-    /// Generalized momentum `p = ∂T/∂v`, kg·m/s and kg·m²/s.
+    /// Returns the generalized momentum `p = ∂T/∂v`, kg·m/s and kg·m²/s.
     fn generalized_momentum(
         &self,
         t: Self::Scalar,
@@ -267,8 +279,8 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// Rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(t, q, v) + τ` (Hamilton's second
-    /// equation).
+    /// Returns the rate of the generalized momentum without inputs, N and N·m: `ṗ = momentum_rate(t, q, v) +
+    /// τ` (Hamilton's second equation).
     fn momentum_rate(
         &self,
         t: Self::Scalar,
@@ -277,14 +289,14 @@ pub trait Rheonomic<const NQ: usize, const NV: usize, const NU: usize> {
     ) -> SVector<Self::Scalar, NV>;
 }
 
-/// A mechanism at an instant.
+/// Mechanism at a fixed time.
 #[derive(Clone, Copy, Debug)]
 pub struct At<'m, M, T> {
     pub(crate) mechanism: &'m M,
     pub(crate) t: T,
 }
 
-/// The mechanism at time `t`, for code that is written against [`Mechanism`].
+/// Returns the mechanism at time `t`, for generic code over [`Mechanism`].
 pub fn at<M, T>(mechanism: &M, t: T) -> At<'_, M, T> {
     At { mechanism, t }
 }
@@ -346,7 +358,7 @@ where
     each_function!(accelerations, at Rheonomic, self => self.mechanism, self.t);
     each_function!(methods, at Rheonomic, self => self.mechanism, self.t);
 
-    // Contacts know their own time.
+    // Contacts take the time as an argument of their own.
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: crate::contact::Visitor<Self::Scalar, NQ, NV, NU>,

@@ -1,4 +1,5 @@
-//! Second derivatives of the dynamics for generic code: differential dynamic programming, Newton's method on trajectories.
+//! Second derivatives of the dynamics for generic code: differential dynamic programming, Newton's method on
+//! trajectories.
 
 use crate::blocks::{add_multiple, add_product, is_zero, product, transposed};
 use crate::constraint::{CurvatureVisitor, FrozenCurvature};
@@ -7,24 +8,26 @@ use crate::private::constant;
 use crate::{At, Derivatives, Real, RheonomicDerivatives};
 use nalgebra::{SMatrix, SVector};
 
-/// `NV` by `NV`.
+/// Matrix of `NV` by `NV`.
 type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
 
-/// Second derivatives by configuration twice, by configuration (rows) and velocity, by velocity twice, and by configuration (rows)
-/// and a third argument of the function: acceleration, force or input. All are contracted with factors `λ`.
+/// Second derivatives contracted with factors `λ`: with respect to configuration twice; configuration (rows)
+/// and velocity; velocity twice; configuration (rows) and a third argument of the function (acceleration,
+/// force or input).
 pub type SecondOrder<T, const NV: usize> = (Square<T, NV>, Square<T, NV>, Square<T, NV>, Square<T, NV>);
 
-/// Second derivatives by configuration twice, by configuration (rows) and velocity, by velocity twice, by configuration (rows) and
-/// input, by velocity (rows) and input, and by inputs twice. All are contracted with factors `λ`.
+/// Second derivatives contracted with factors `λ`: with respect to configuration twice; configuration (rows)
+/// and velocity; velocity twice; configuration (rows) and input; velocity (rows) and input; input twice.
 pub type InputSecondOrder<T, const NV: usize, const NU: usize> =
     (Square<T, NV>, Square<T, NV>, Square<T, NV>, SMatrix<T, NV, NU>, SMatrix<T, NV, NU>, SMatrix<T, NU, NU>);
 
-/// Second derivatives of a mechanism's functions, contracted with factors `λ`: Hessians of `λᵀ f`, in blocks of `NV` by `NV` (and by
-/// `NU`). `#[mechanism(…, second_derivatives)]` implements it, with and without constraints, unless contacts slip; one that is driven
-/// in time has [`RheonomicSecondDerivatives`], and this at an instant ([`at`](crate::at)).
+/// Second derivatives of a mechanism's functions, contracted with factors `λ`: Hessians of `λᵀ f`, in blocks
+/// of `NV` by `NV` (and by `NU`). `#[mechanism(…, second_derivatives)]` implements the trait, with and
+/// without constraints, unless contacts slide. A mechanism that depends on time implements
+/// [`RheonomicSecondDerivatives`], and this trait at an instant ([`at`](crate::at)).
 ///
-/// Along `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond the first order, with `H` the derivatives by configuration twice;
-/// for ball and free joints `dq` is a motion in body axes.
+/// Along `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond first order, with `H` the second derivatives
+/// with respect to the configuration; for ball and free joints `dq` is a motion in body axes.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives",
     note = "the word asks for them: `#[mechanism(…, second_derivatives)]`",
@@ -33,8 +36,10 @@ pub type InputSecondOrder<T, const NV: usize, const NU: usize> =
 pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     Derivatives<NQ, NV, NU>
 {
-    /// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ` by [`inverse_dynamics`](crate::Mechanism::inverse_dynamics) (Singh, Russell
-    /// and Wensing, *Second-order derivatives of rigid-body dynamics*, 2023). Those by `v` and `a`, and by `a` twice, are zero.
+    /// Returns `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ` with `τ` from
+    /// [`inverse_dynamics`](crate::Mechanism::inverse_dynamics) (Singh, Russell and Wensing, *Second-order
+    /// derivatives of rigid-body dynamics*, 2023). The second derivatives with respect to `v` and `a`, and to
+    /// `a` twice, are zero.
     fn inverse_dynamics_second_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -43,8 +48,9 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> SecondOrder<Self::Scalar, NV>;
 
-    /// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇` by [`forward_dynamics`](crate::Mechanism::forward_dynamics), constraints
-    /// included. Those by `v` and `τ`, and by `τ` twice, are zero.
+    /// Returns `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇` with `v̇` from
+    /// [`forward_dynamics`](crate::Mechanism::forward_dynamics), constraints included. The second derivatives
+    /// with respect to `v` and `τ`, and to `τ` twice, are zero.
     fn forward_dynamics_second_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -53,7 +59,8 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> SecondOrder<Self::Scalar, NV>;
 
-    /// All of `λᵀ τ` by [`generalized_forces`](crate::Mechanism::generalized_forces); zero where inputs act along joints.
+    /// Returns all second derivatives of `λᵀ τ` with `τ` from
+    /// [`generalized_forces`](crate::Mechanism::generalized_forces); zero if inputs act along joints.
     fn generalized_forces_second_derivatives(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -62,7 +69,8 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> InputSecondOrder<Self::Scalar, NV, NU>;
 
-    /// `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Mechanism::tangent_rate), of mixed ones with `dv` as rows; zero for plain coordinates.
+    /// Returns `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Mechanism::tangent_rate); the rows of
+    /// the mixed derivatives are `dv`. Zero for plain coordinates.
     fn tangent_rate_second_derivatives(
         &self,
         _dv: &SVector<Self::Scalar, NV>,
@@ -72,7 +80,8 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         (SMatrix::zeros(), SMatrix::zeros())
     }
 
-    /// Hands the mechanism to `visitor` with the numbers of its constraints, where those have second derivatives; `None` elsewhere.
+    /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters, if their
+    /// second derivatives are available; otherwise returns `None`.
     fn visit_constraint_curvature<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
@@ -80,7 +89,8 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
         None
     }
 
-    /// The second derivatives of `λᵀ v̇`, with `v̇` the acceleration under the inputs `u`: by state and inputs.
+    /// Returns the second derivatives of `λᵀ v̇` with respect to state and inputs, with `v̇` the acceleration
+    /// under the inputs `u`.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -129,8 +139,8 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     }
 }
 
-/// What [`SecondDerivatives`] are for a mechanism whose functions depend on time `t`, s. Every mechanism with [`SecondDerivatives`]
-/// has these, too.
+/// Second derivatives of a mechanism whose functions depend on time `t`, s; see [`SecondDerivatives`]. Every
+/// mechanism with [`SecondDerivatives`] implements this trait, too.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives",
     note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; with contacts that slip there are none"
@@ -138,7 +148,8 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
 pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     RheonomicDerivatives<NQ, NV, NU>
 {
-    /// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ` ([`SecondDerivatives::inverse_dynamics_second_derivatives`]).
+    /// Returns `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂a)` of `λᵀ τ`
+    /// ([`SecondDerivatives::inverse_dynamics_second_derivatives`]).
     fn inverse_dynamics_second_derivatives(
         &self,
         t: Self::Scalar,
@@ -148,7 +159,8 @@ pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> SecondOrder<Self::Scalar, NV>;
 
-    /// `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇` ([`SecondDerivatives::forward_dynamics_second_derivatives`]).
+    /// Returns `(∂²/∂q∂q, ∂²/∂q∂v, ∂²/∂v∂v, ∂²/∂q∂τ)` of `λᵀ v̇`
+    /// ([`SecondDerivatives::forward_dynamics_second_derivatives`]).
     fn forward_dynamics_second_derivatives(
         &self,
         t: Self::Scalar,
@@ -158,7 +170,8 @@ pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> SecondOrder<Self::Scalar, NV>;
 
-    /// Those of the inputs' `λᵀ τ` ([`SecondDerivatives::generalized_forces_second_derivatives`]).
+    /// Returns the second derivatives of `λᵀ τ` with the forces `τ` of the inputs
+    /// ([`SecondDerivatives::generalized_forces_second_derivatives`]).
     fn generalized_forces_second_derivatives(
         &self,
         t: Self::Scalar,
@@ -168,7 +181,8 @@ pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU:
         lambda: &SVector<Self::Scalar, NV>,
     ) -> InputSecondOrder<Self::Scalar, NV, NU>;
 
-    /// `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Rheonomic::tangent_rate), of mixed ones with `dv` as rows; zero for plain coordinates.
+    /// Returns `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Rheonomic::tangent_rate); the rows of
+    /// the mixed derivatives are `dv`. Zero for plain coordinates.
     fn tangent_rate_second_derivatives(
         &self,
         _dv: &SVector<Self::Scalar, NV>,
@@ -178,7 +192,8 @@ pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU:
         (SMatrix::zeros(), SMatrix::zeros())
     }
 
-    /// Hands the mechanism to `visitor` with the numbers of its constraints ([`SecondDerivatives::visit_constraint_curvature`]).
+    /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters
+    /// ([`SecondDerivatives::visit_constraint_curvature`]).
     fn visit_constraint_curvature<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: CurvatureVisitor<Self::Scalar, NQ, NV, NU>,
@@ -187,9 +202,10 @@ pub trait RheonomicSecondDerivatives<const NQ: usize, const NV: usize, const NU:
     }
 }
 
-/// Second derivatives of `λᵀ v̇` from first ones of `v̇` and from those of `μᵀ τ` of inverse dynamics for given factors `μ`.
+/// Returns the second derivatives of `λᵀ v̇`, from the first derivatives of `v̇` and a function that returns
+/// those of `μᵀ τ` of inverse dynamics for factors `μ`.
 ///
-/// `τ(q, v, v̇(q, v, τ))` is `τ`; differentiated twice, with `μ = M⁻ᵀ λ`.
+/// They follow from differentiating the identity `τ(q, v, v̇(q, v, τ)) = τ` twice, with `μ = M⁻ᵀ λ`.
 pub fn forward_second_derivatives<T: Real, const NV: usize>(
     (by_q, by_v, inverse): &(Square<T, NV>, Square<T, NV>, Square<T, NV>),
     lambda: &SVector<T, NV>,

@@ -1,10 +1,12 @@
-//! Derivatives of the dynamics by the parameters of the struct, for generic code: identification, design, robust control.
+//! Derivatives of the dynamics with respect to the parameters of the struct, for generic code:
+//! identification, design, robust control.
 
 use crate::{At, Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
-/// Derivatives of a mechanism's functions by its `NP` parameters, a column for each. `#[mechanism(…, sensitivities)]` implements it
-/// for mechanisms with parameters and without constraints. Time `t`, s, matters where a function depends on it.
+/// Derivatives of a mechanism's functions with respect to its `NP` parameters, one column for each.
+/// `#[mechanism(…, sensitivities)]` implements the trait for mechanisms with parameters and without
+/// constraints. Time `t`, s, matters only if a function depends on it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives by parameters",
     note = "the word asks for them: `#[mechanism(…, sensitivities)]`; mechanisms without parameters and those with constraints have none"
@@ -12,10 +14,11 @@ use nalgebra::{SMatrix, SVector};
 pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const NP: usize>:
     Rheonomic<NQ, NV, NU>
 {
-    /// The name of every parameter.
+    /// Name of every parameter.
     const PARAMETERS: [&'static str; NP];
 
-    /// `∂τ/∂p` of [`inverse_dynamics`](Rheonomic::inverse_dynamics), N and N·m per unit of the parameter.
+    /// Returns `∂τ/∂p` of [`inverse_dynamics`](Rheonomic::inverse_dynamics), N and N·m per unit of the
+    /// parameter.
     fn inverse_dynamics_by_parameters(
         &self,
         t: Self::Scalar,
@@ -24,7 +27,8 @@ pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const
         a: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NP>;
 
-    /// `∂v̇/∂p` of [`forward_dynamics`](Rheonomic::forward_dynamics), m/s² and rad/s² per unit of the parameter.
+    /// Returns `∂v̇/∂p` of [`forward_dynamics`](Rheonomic::forward_dynamics), m/s² and rad/s² per unit of the
+    /// parameter.
     fn forward_dynamics_by_parameters(
         &self,
         t: Self::Scalar,
@@ -33,7 +37,8 @@ pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const
         tau: &SVector<Self::Scalar, NV>,
     ) -> SMatrix<Self::Scalar, NV, NP>;
 
-    /// `∂τ/∂p` of the inputs' [`generalized_forces`](Rheonomic::generalized_forces), N and N·m per unit of the parameter.
+    /// Returns `∂τ/∂p` of the inputs' [`generalized_forces`](Rheonomic::generalized_forces), N and N·m per
+    /// unit of the parameter.
     fn generalized_forces_by_parameters(
         &self,
         t: Self::Scalar,

@@ -1,7 +1,8 @@
-//! Derivatives on the configuration space in declared speeds `u = Y(q) v` of the velocities `v = Z(q) u` that joints have, from
-//! those in the velocities of the joints: what generated code composes.
+//! Derivatives on the configuration manifold with respect to declared generalized speeds `u = Y(q) v`,
+//! composed from derivatives with respect to the joint velocities `v = Z(q) u`; used by generated code.
 //!
-//! The matrix `G(q, u)` has as its columns how `Z(q) u` changes at constant `u` along the configurations that move with a speed.
+//! Column `i` of the matrix `G(q, u)` is the change of `Z(q) u` at constant `u` along the configurations that
+//! move with speed `i`.
 
 use crate::discrete::eliminated;
 use crate::private::{constant, epsilon};
@@ -10,13 +11,16 @@ use nalgebra::{SMatrix, SVector};
 
 type Square<T, const N: usize> = SMatrix<T, N, N>;
 
-/// Iterations of a displacement at most; each gains a factor of about the angle through which speeds turn on the way.
+/// Maximum number of iterations for a displacement; each reduces the error by a factor of about the angle
+/// through which the axes of the speeds rotate.
 const MOST_ITERATIONS: usize = 50;
 
-/// The displacement `ξ = s ξ̇(ξ, v)` by which the configuration is away after `s` seconds with the speeds `v` that it has there, from the
-/// rate `ξ̇` of a displacement: the implicit midpoint rule has such midpoints. `s v` where speeds are the velocities of joints.
+/// Returns the displacement `ξ = s ξ̇(ξ, v)` after `s` seconds, given the speeds `v` at its end and the rate
+/// `ξ̇` of a displacement. Midpoints of the implicit midpoint rule have this form. The result is `s v` if the
+/// speeds are joint velocities.
 ///
-/// Where the iteration does not settle, what it has come to: methods of integration look at their own equations.
+/// If the iteration does not converge, the last iterate is returned: integration methods check their own
+/// equations.
 pub(crate) fn way<T: Real, const N: usize>(
     rate: impl Fn(&SVector<T, N>) -> SVector<T, N>,
     v: &SVector<T, N>,
@@ -37,7 +41,7 @@ pub(crate) fn way<T: Real, const N: usize>(
     way
 }
 
-/// [`way`] of a mechanism.
+/// Returns [`way`] for a mechanism.
 pub(crate) fn way_of<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
@@ -51,7 +55,8 @@ where
     if M::SPEEDS { way(|way| m.displacement_rate(q, way, v), v, s) } else { v * s }
 }
 
-/// The velocity of the midpoint of a displacement that takes twice `s` seconds, from its mean rate.
+/// Returns the velocity of the midpoint of a displacement that takes `2 s` seconds, given the mean rate of
+/// the displacement.
 pub(crate) fn at_midpoint<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
@@ -70,8 +75,9 @@ where
     eliminated(by_v, mean)
 }
 
-/// Where the velocity `v` of a midpoint leads from `q`: how the configuration after `s` seconds, and that after twice the time, change
-/// with `q` and with the displacement `s v`, or `2 s v`, at the velocities of joints.
+/// Returns the derivatives of the configurations reached from `q` with the midpoint velocity `v` after `s`
+/// and after `2 s` seconds, with respect to `q` and to the displacement `s v`, or `2 s v`, in joint
+/// velocities.
 pub(crate) fn led<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
@@ -98,7 +104,8 @@ where
     [through(T::one()), through(two)]
 }
 
-/// `(∂/∂q, ∂/∂dv)` of `q₁ = q ⊕ Z(q) dv`, from `Z(q)`, `Y(q₁)`, the derivatives for the joints' displacement, and `G(q, dv)`.
+/// Returns `(∂/∂q, ∂/∂dv)` of `q₁ = q ⊕ Z(q) dv`, from `Z(q)`, `Y(q₁)`, the derivatives for the joints'
+/// displacement, and `G(q, dv)`.
 pub fn integrate_derivatives_in_speeds<T: Real, const N: usize>(
     z: &Square<T, N>,
     y: &Square<T, N>,
@@ -108,8 +115,9 @@ pub fn integrate_derivatives_in_speeds<T: Real, const N: usize>(
     (y * (by_q * z + by_dv * changes), y * by_dv * z)
 }
 
-/// `(∂/∂q, ∂/∂dv, ∂/∂v)` of `f = Y(q) R(Z(q) dv, Z(q₁) v)`, the rate of `dv` where `q₁ = q ⊕ dv` moves with the speeds `v`: from
-/// `Y(q)`, `Z(q)` and `Z(q₁)`; the derivatives of `R`; those of `q₁`; and `G(q, dv)`, `G(q, f)` and `G(q₁, v)`.
+/// Returns `(∂/∂q, ∂/∂dv, ∂/∂v)` of `f = Y(q) R(Z(q) dv, Z(q₁) v)`, the rate of `dv` such that `q₁ = q ⊕ dv`
+/// moves with the speeds `v`. The arguments are `Y(q)`, `Z(q)` and `Z(q₁)`; the derivatives of `R`; those of
+/// `q₁`; and `G(q, dv)`, `G(q, f)` and `G(q₁, v)`.
 pub fn displacement_rate_derivatives_in_speeds<T: Real, const N: usize>(
     [y, z, z_there]: [&Square<T, N>; 3],
     (by_way, by_rates): &(Square<T, N>, Square<T, N>),

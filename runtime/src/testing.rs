@@ -1,10 +1,10 @@
-//! Mechanisms written by hand, with closed forms, for the tests of this crate.
+//! Hand-written mechanisms with closed-form solutions, for the tests of this crate.
 
 use crate::__private::{ball_integrate, ball_tangent_rate, constant, free_integrate, free_tangent_rate};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// One plain coordinate of inertia `inertia` under the force `force(q)`, damped; the input is a force on it.
+/// One plain coordinate with inertia `inertia` under the damped force `force(q)`; the input is a force on it.
 pub(crate) struct OneDof<T> {
     pub(crate) inertia: T,
     pub(crate) damping: T,
@@ -12,18 +12,18 @@ pub(crate) struct OneDof<T> {
     pub(crate) energy: fn(T) -> T,
 }
 
-/// `q̈ = −q`.
+/// Returns the oscillator `q̈ = −q`.
 pub(crate) fn oscillator<T: Real>() -> OneDof<T> {
     let half = |q: T| q * q * constant(0.5);
     OneDof { inertia: T::one(), damping: T::zero(), force: |q| -q, energy: half }
 }
 
-/// A pendulum of unit mass and length under unit gravity.
+/// Returns a pendulum of unit mass and length under unit gravity.
 pub(crate) fn pendulum() -> OneDof<f64> {
     OneDof { inertia: 1.0, damping: 0.0, force: |q| -q.sin(), energy: |q| 1.0 - q.cos() }
 }
 
-/// A ball of unit mass above the floor under unit gravity.
+/// Returns a ball of unit mass above the floor under unit gravity.
 pub(crate) fn falling() -> OneDof<f64> {
     OneDof { inertia: 1.0, damping: 0.0, force: |_| -1.0, energy: |q| q }
 }
@@ -78,7 +78,7 @@ impl<T: Real> Mechanism<1, 1, 1> for OneDof<T> {
     }
 }
 
-/// A body that turns about its fixed centre of mass: a ball joint. The input is a torque in the body frame.
+/// A body that rotates about its fixed centre of mass: a ball joint. The input is a torque in the body frame.
 pub(crate) struct Top<T> {
     pub(crate) inertia: Vector3<T>,
 }
@@ -131,7 +131,7 @@ impl<T: Real> Mechanism<4, 3, 3> for Top<T> {
     }
 }
 
-/// `R(q) a` for a quaternion x y z w.
+/// Returns `R(q) a` for a quaternion x y z w.
 pub(crate) fn turned(q: [f64; 4], a: Vector3<f64>) -> Vector3<f64> {
     let [x, y, z, w] = q;
     let u = Vector3::new(x, y, z);
@@ -145,7 +145,7 @@ pub(crate) struct FreeBody {
     pub(crate) gravity: f64,
 }
 
-/// Linear and angular part.
+/// Splits a velocity into its linear and angular parts.
 fn split(v: &V<f64, 6>) -> (Vector3<f64>, Vector3<f64>) {
     (Vector3::new(v[0], v[1], v[2]), Vector3::new(v[3], v[4], v[5]))
 }
@@ -206,8 +206,9 @@ impl Mechanism<7, 6, 0> for FreeBody {
     }
 }
 
-/// Angular velocity of the symmetric free top `inertia = (a, a, c)` in the body frame at time `t`, and its attitude,
-/// from the attitude of the ground and the velocity `w`: `R = exp(t L/a) exp(t (w₃ − L₃/a) e₃)`.
+/// Returns attitude and angular velocity in the body frame of the symmetric free top `inertia = (a, a, c)` at
+/// time `t`, which starts at the ground's attitude with the velocity `w`: `R = exp(t L/a) exp(t (w₃ − L₃/a)
+/// e₃)`.
 pub(crate) fn symmetric_top(inertia: Vector3<f64>, w: Vector3<f64>, t: f64) -> ([f64; 4], Vector3<f64>) {
     let momentum = inertia.component_mul(&w) / inertia.x;
     let rate = w.z - momentum.z;
@@ -219,7 +220,8 @@ pub(crate) fn symmetric_top(inertia: Vector3<f64>, w: Vector3<f64>, t: f64) -> (
     (attitude, w)
 }
 
-/// Period of the pendulum of [`pendulum`] with the amplitude `angle`: `2π / agm(1, cos(angle/2))`.
+/// Returns the period of the pendulum of [`pendulum`] with the amplitude `angle`: `2π / agm(1,
+/// cos(angle/2))`.
 pub(crate) fn pendulum_period(angle: f64) -> f64 {
     let (mut a, mut b) = (1.0_f64, (angle / 2.0).cos());
     for _ in 0..8 {
