@@ -1,4 +1,5 @@
-//! Writes the chains that are measured next to other libraries: a `#[mechanism]` struct has to stand in a source file.
+//! Writes the chains that are measured next to other libraries: a `#[mechanism]` struct has to stand in a
+//! source file.
 
 #[path = "src/chains.rs"]
 #[allow(dead_code, reason = "the rest of the module is for the package itself")]

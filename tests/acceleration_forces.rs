@@ -9,7 +9,8 @@ use support::random::Random;
 /// Between derivatives and differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
 
-/// An aircraft whose lift and pitching moment depend on the rate of the angle of attack, as far as a table and an engine say.
+/// An aircraft whose lift and pitching moment depend on the rate of the angle of attack, as far as a table
+/// and an engine say.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 #[derive(Debug)]
 struct Unsteady<T: Real> {
@@ -63,8 +64,8 @@ fn unsteady() -> Unsteady<f64> {
     }
 }
 
-/// Two links and a slider; what the links feel of each other's accelerations is not symmetric, and depends on position, velocity
-/// and time.
+/// Two links and a slider; what the links feel of each other's accelerations is not symmetric, and depends on
+/// position, velocity and time.
 #[mechanism(gravity = -9.81 * y, derivatives, batch, prepare, sensitivities)]
 #[derive(Clone, Copy, Debug)]
 struct Coupled {
@@ -309,8 +310,8 @@ struct Hull {
     munk: Torque,
 }
 
-/// Kirchhoff's equations of a body in an ideal fluid: impulse and moment of impulse stay what they are in space (Lamb,
-/// *Hydrodynamics*, 1932, §§ 124–126).
+/// Kirchhoff's equations of a body in an ideal fluid: impulse and moment of impulse stay what they are in
+/// space (Lamb, *Hydrodynamics*, 1932, §§ 124–126).
 #[test]
 fn a_hull_moves_by_kirchhoffs_equations() {
     let hull = Hull { mass: 3.0, along: 0.4, across: 2.5, turning: 1.5 };

@@ -1,6 +1,6 @@
-//! Accelerations and their derivatives as generated and compiled, against Kane's equations in numbers: the oracle of the
-//! compiler's own tests, which shares nothing with it. The mechanisms are random; they stand in a file that the same
-//! generator writes.
+//! Accelerations and their derivatives as generated and compiled, against Kane's equations in numbers: the
+//! oracle of the compiler's own tests, which shares nothing with it. The mechanisms are random; they stand in
+//! a file that the same generator writes.
 
 #[path = "../macros/compiler/tests/oracle/jet.rs"]
 mod jet;

@@ -90,7 +90,8 @@ struct Hoop {
     motor: Torque,
 }
 
-/// A four-bar linkage, whose loop is singular where all bars lie on one line; and what is computed of its parameters.
+/// A four-bar linkage, whose loop is singular where all bars lie on one line; and what is computed of its
+/// parameters.
 #[mechanism(gravity = -g * y, batch, prepare, derivatives, centroidal)]
 struct FourBar {
     g: f64,
@@ -178,8 +179,8 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
     }
 }
 
-/// All functions of the trait. The mass matrix and dynamics of a single state may differ by so much where they have lanes
-/// of their own.
+/// All functions of the trait. The mass matrix and dynamics of a single state may differ by so much where
+/// they have lanes of their own.
 fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
     m: &M,
     [columns, limbs]: [f64; 2],

@@ -1,5 +1,5 @@
-//! The matrix of the momentum and its bias: by the momentum itself, by its differences along motions, and by Newton's
-//! and Euler's laws for the whole.
+//! The matrix of the momentum and its bias: by the momentum itself, by its differences along motions, and by
+//! Newton's and Euler's laws for the whole.
 
 use linkwork::nalgebra::{SMatrix, SVector, Vector6};
 use linkwork::{Mechanism, mechanism};

@@ -1,6 +1,6 @@
-//! Two derivations of one mechanism agree: the recursive algorithms in link axes, and Lagrange's equations from
-//! energies written out in the ground frame. On random trees of every joint, with random bodies, parameters, springs,
-//! dashpots, inputs and states.
+//! Two derivations of one mechanism agree: the recursive algorithms in link axes, and Lagrange's equations
+//! from energies written out in the ground frame. On random trees of every joint, with random bodies,
+//! parameters, springs, dashpots, inputs and states.
 
 mod random_speeds;
 mod random_tree;
@@ -113,8 +113,9 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     }
 }
 
-/// Generalized forces are the derivatives of the inputs' power by the velocities: the power of a force is its product
-/// with the velocity of its point, found here by differentiating the point's position in the ground frame.
+/// Generalized forces are the derivatives of the inputs' power by the velocities: the power of a force is its
+/// product with the velocity of its point, found here by differentiating the point's position in the ground
+/// frame.
 fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
     let g = model.graph;
     let joints = kinematics::joints(model);

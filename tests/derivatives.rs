@@ -1,5 +1,5 @@
-//! First derivatives of the dynamics against reference values, and against differentiation of the equations themselves;
-//! what they cost.
+//! First derivatives of the dynamics against reference values, and against differentiation of the equations
+//! themselves; what they cost.
 
 mod free_bodies;
 mod random_limbs;
@@ -32,7 +32,8 @@ const REFERENCE: f64 = 1e-9;
 /// Between two derivations.
 const DERIVATION: f64 = 1e-10;
 
-// ---- Robots against Pinocchio ------------------------------------------------------------------------------------
+// ---- Robots against
+// Pinocchio ------------------------------------------------------------------------------------
 
 macro_rules! robot {
     ($robot:ident, $test:ident, $name:literal, $($options:tt)*) => {
@@ -89,7 +90,8 @@ robot!(Solo12, solo12, "../models/urdf/solo12.urdf", , base = free);
 robot!(Humanoid, simple_humanoid, "../models/urdf/simple_humanoid.urdf", , base = free);
 robot!(G1, g1, "../models/urdf/g1.urdf", , base = free);
 
-// ---- Two derivations ---------------------------------------------------------------------------------------------
+// ---- Two
+// derivations ---------------------------------------------------------------------------------------------
 
 fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
     let at = symbols(model, seed);
@@ -200,8 +202,8 @@ fn moved(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
     moved
 }
 
-/// The derivatives of forward dynamics, with what is known of them in its place, are limits of differences. Returns the
-/// largest deviation relative to the largest derivative, and how many columns are known.
+/// The derivatives of forward dynamics, with what is known of them in its place, are limits of differences.
+/// Returns the largest deviation relative to the largest derivative, and how many columns are known.
 fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     const STEP: f64 = 1e-5;
     let joints = kinematics::joints(model);
@@ -328,7 +330,8 @@ proptest! {
     }
 }
 
-// ---- Operations --------------------------------------------------------------------------------------------------
+// ----
+// Operations --------------------------------------------------------------------------------------------------
 
 /// Operations of the derivatives of inverse dynamics, and of the inverse of the mass matrix.
 fn operations(arguments: &str) -> [usize; 2] {
@@ -350,8 +353,8 @@ fn programs(arguments: &str) -> [Program; 2] {
     })
 }
 
-/// With alike limbs as lanes: multiplications, additions and divisions together, each on all lanes at once, and the
-/// instructions that are left of them when products are fused into sums.
+/// With alike limbs as lanes: multiplications, additions and divisions together, each on all lanes at once,
+/// and the instructions that are left of them when products are fused into sums.
 #[test]
 fn operation_counts_in_lanes() {
     let of = |robot: &str| {

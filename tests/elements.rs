@@ -1,5 +1,6 @@
-//! The elements that are no joints, on random mechanisms with all of them: the recursive algorithms and Lagrange's
-//! equations agree, energy goes where it should, and what is looked at moves as its velocities and accelerations say.
+//! The elements that are no joints, on random mechanisms with all of them: the recursive algorithms and
+//! Lagrange's equations agree, energy goes where it should, and what is looked at moves as its velocities and
+//! accelerations say.
 
 mod random_world;
 
@@ -171,7 +172,8 @@ fn output<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
     model.outputs.iter().find(|o| o.name == name).expect("every output is there").values.clone()
 }
 
-/// Velocities are the rates of places, accelerations those of velocities, each in the axes in which it is taken.
+/// Velocities are the rates of places, accelerations those of velocities, each in the axes in which it is
+/// taken.
 fn check_outputs(model: &Model<'_>, seed: u64) {
     let state = State::new(model, seed);
     let is_rate = |rate: &str, of: &str| {

@@ -1,5 +1,5 @@
-//! Extended Kalman filters of a load on a ball joint, by its inertial measurement unit: what the sensors see is found, what they cannot
-//! see stays off, and errors are as large as the filter says.
+//! Extended Kalman filters of a load on a ball joint, by its inertial measurement unit: what the sensors see
+//! is found, what they cannot see stays off, and errors are as large as the filter says.
 
 use linkwork::nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
@@ -48,8 +48,9 @@ struct Belief {
     spread: SMatrix<f64, 6, 6>,
 }
 
-/// One period of the filter, whose correction is linearised anew where it leads until that changes no more: the most likely state, also
-/// where the first one is far off (Bell and Cathey, *The iterated Kalman filter update as a Gauss-Newton method*, 1993).
+/// One period of the filter, whose correction is linearised anew where it leads until that changes no more:
+/// the most likely state, also where the first one is far off (Bell and Cathey, *The iterated Kalman filter
+/// update as a Gauss-Newton method*, 1993).
 fn update<M, const NY: usize>(m: &M, belief: &mut Belief, y: &SVector<f64, NY>)
 where
     M: RheonomicDerivatives<4, 3, 0, Scalar = f64> + OutputDerivatives<4, 3, 0, NY, Scalar = f64>,
@@ -91,8 +92,8 @@ fn normal<const N: usize>(random: &mut Random, variance: f64) -> SVector<f64, N>
     SVector::from_fn(|_, _| (0..12).map(|_| random.uniform(0.5)).sum::<f64>() * variance.sqrt())
 }
 
-/// Runs from an error of the start that is as large as `off` for so many seconds: the displacement from the estimate to the state, the
-/// error of the velocity, and the last belief and configuration.
+/// Runs from an error of the start that is as large as `off` for so many seconds: the displacement from the
+/// estimate to the state, the error of the velocity, and the last belief and configuration.
 fn run<M, const NY: usize>(
     m: &M,
     random: &mut Random,
@@ -133,8 +134,8 @@ fn a_load_on_a_ball_joint_is_found() {
     }
 }
 
-/// Gyroscope and accelerometer tell nothing of how the load stands about the vertical: all else is found, and that stays off, which the
-/// filter knows.
+/// Gyroscope and accelerometer tell nothing of how the load stands about the vertical: all else is found, and
+/// that stays off, which the filter knows.
 #[test]
 fn heading_is_not_seen_without_a_compass() {
     for seed in 0..5 {
@@ -151,8 +152,8 @@ fn heading_is_not_seen_without_a_compass() {
     }
 }
 
-/// Errors are as large as the filter says: the mean of `eᵀ P⁻¹ e` is the number of unknowns (Bar-Shalom, Li and Kirubarajan,
-/// *Estimation with applications to tracking and navigation*, 2001, § 5.4).
+/// Errors are as large as the filter says: the mean of `eᵀ P⁻¹ e` is the number of unknowns (Bar-Shalom, Li
+/// and Kirubarajan, *Estimation with applications to tracking and navigation*, 2001, § 5.4).
 #[test]
 fn errors_are_as_large_as_they_are_said_to_be() {
     const RUNS: u64 = 30;
@@ -161,7 +162,8 @@ fn errors_are_as_large_as_they_are_said_to_be() {
         let (left, belief, _) = run::<_, 9>(&Guided {}, &mut Random::new(100 + seed), 0.1, 1.0, GUSTS);
         sum += left.dot(&(belief.spread.try_inverse().unwrap() * left));
     }
-    // Of a mean of 30 values of chi square with six degrees of freedom 99.9 % are within 3.3 standard deviations.
+    // Of a mean of 30 values of chi square with six degrees of freedom 99.9 % are within 3.3 standard
+    // deviations.
     let mean = sum / RUNS as f64;
     assert!((mean - 6.0).abs() < 3.3 * (12.0 / RUNS as f64).sqrt(), "{mean}");
 }

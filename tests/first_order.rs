@@ -10,8 +10,8 @@ use support::random::Random;
 /// Between derivatives and differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
 
-/// An aircraft whose thrust follows the throttle late, and whose elevator moves by a filtered angle of attack; the jet's deflection,
-/// an input, acts by the thrust there is.
+/// An aircraft whose thrust follows the throttle late, and whose elevator moves by a filtered angle of
+/// attack; the jet's deflection, an input, acts by the thrust there is.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 #[derive(Debug)]
 struct Fighter<T: Real> {

@@ -1,4 +1,5 @@
-//! Optimal control through contacts that are known: a hop of one leg, from its stance by a flight and a touchdown to its stance.
+//! Optimal control through contacts that are known: a hop of one leg, from its stance by a flight and a
+//! touchdown to its stance.
 
 use linkwork::contact::{self, HeldDerivatives, Touch};
 use linkwork::discrete::{self, Transition};
@@ -134,8 +135,8 @@ fn gradient(start: &State, inputs: &[Inputs]) -> f64 {
     most
 }
 
-/// An iterative linear-quadratic regulator finds a motion whose costs no input changes to first order, as differences of the whole
-/// motion say, which know of no derivatives.
+/// An iterative linear-quadratic regulator finds a motion whose costs no input changes to first order, as
+/// differences of the whole motion say, which know of no derivatives.
 #[test]
 fn a_hop_is_optimal() {
     let start: State = ([0.0, 0.38, 0.1, 0.02].into(), SVector::zeros());

@@ -1,4 +1,5 @@
-//! Inverse dynamics as a linear function of the mass properties, and the combinations of them that can be identified.
+//! Inverse dynamics as a linear function of the mass properties, and the combinations of them that can be
+//! identified.
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{DMatrix, SMatrix, SVector};
@@ -22,8 +23,8 @@ struct Panda;
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, passive = ignore, regressor)]
 struct Quadruped;
 
-/// A 6R arm with the geometry of the PUMA 560 in parameters (Armstrong, Khatib and Burdick 1986), its bodies of no
-/// symmetry, one of them with a load that is fixed to it.
+/// A 6R arm with the geometry of the PUMA 560 in parameters (Armstrong, Khatib and Burdick 1986), its bodies
+/// of no symmetry, one of them with a load that is fixed to it.
 #[mechanism(gravity = -9.81 * z, regressor, prepare)]
 struct Puma {
     a2: f64,
@@ -85,7 +86,8 @@ struct Workshop {
     bead: Particle,
 }
 
-/// A universal joint on a body that moves, on which a ball has another: what is moved between the axes of each acts twice.
+/// A universal joint on a body that moves, on which a ball has another: what is moved between the axes of
+/// each acts twice.
 #[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
 struct Slings {
     #[body(mass = 0.3, com = -0.3 * z, inertia = sphere(0.3, 0.05))]
@@ -113,8 +115,8 @@ fn rank<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usiz
     singular.iter().filter(|s| **s > RANK * singular.max()).count()
 }
 
-/// Both regressors give inverse dynamics, for the mechanism's own mass properties and for any others alike, and there
-/// are no fewer combinations that act than base parameters.
+/// Both regressors give inverse dynamics, for the mechanism's own mass properties and for any others alike,
+/// and there are no fewer combinations that act than base parameters.
 macro_rules! check {
     ($robot:ident, $at:expr) => {{
         const STANDARD: usize = 10 * $robot::BODIES.len();
@@ -202,8 +204,8 @@ struct DoublePendulum {
     dashpot: Dashpot,
 }
 
-/// Of a plane chain two components of the first moment and one inertia act for each link, one of the masses by way of
-/// them; what elements do stays outside.
+/// Of a plane chain two components of the first moment and one inertia act for each link, one of the masses
+/// by way of them; what elements do stays outside.
 #[test]
 fn by_hand() {
     let (m, l, k, c) = (1.5, 0.8, 7.0, 0.3);

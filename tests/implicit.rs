@@ -1,4 +1,5 @@
-//! Implicit methods on generated derivatives: the motion is that by differences, for fewer evaluations of the dynamics.
+//! Implicit methods on generated derivatives: the motion is that by differences, for fewer evaluations of the
+//! dynamics.
 
 use linkwork::contact::{self, Touch};
 use linkwork::integrate::{DormandPrince8, Method, Rodas, Rosenbrock};
@@ -300,8 +301,9 @@ fn the_order_is_four_under_constraints() {
     }
 }
 
-/// Where the clock has run for weeks and years it ticks in steps longer than those between samples in time: forces that depend on it
-/// cost no more steps, and the motion is the same but for what rounding of the time makes of the forces.
+/// Where the clock has run for weeks and years it ticks in steps longer than those between samples in time:
+/// forces that depend on it cost no more steps, and the motion is the same but for what rounding of the time
+/// makes of the forces.
 #[test]
 fn a_clock_that_has_run_for_long_costs_no_steps() {
     let cart = Cart {};
@@ -388,7 +390,8 @@ where
     )
 }
 
-/// The derivatives of a mechanism whose violations decay are those by differences, in states that are off its constraints too.
+/// The derivatives of a mechanism whose violations decay are those by differences, in states that are off its
+/// constraints too.
 #[track_caller]
 fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,

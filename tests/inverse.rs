@@ -1,4 +1,5 @@
-//! The inverse of the mass matrix, and the derivatives made of it, of mechanisms so large that loops calculate them.
+//! The inverse of the mass matrix, and the derivatives made of it, of mechanisms so large that loops
+//! calculate them.
 
 use linkwork::prelude::*;
 use support::compare::assert_similar;
@@ -29,8 +30,8 @@ struct Tail {
     fourth: Ball,
 }
 
-/// Three arms, none like another, declared link by link in turns: their velocities are not neighbours. The tail does not move
-/// with the neck.
+/// Three arms, none like another, declared link by link in turns: their velocities are not neighbours. The
+/// tail does not move with the neck.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
 struct Squid {
     #[body(mass = 5, com = 0.1 * x + 0.1 * z, inertia = cuboid(5, 0.4, 0.3, 0.2))]
@@ -108,8 +109,8 @@ struct Bird {
     right_second: Ball,
 }
 
-/// Compares with the equations of motion: `M⁻¹ M` is one, and where `M v̇ + h = τ` the derivatives of `v̇` are `−M⁻¹` times those
-/// of `M v̇ + h` at `v̇` held fast.
+/// Compares with the equations of motion: `M⁻¹ M` is one, and where `M v̇ + h = τ` the derivatives of `v̇`
+/// are `−M⁻¹` times those of `M v̇ + h` at `v̇` held fast.
 macro_rules! solve_the_equations {
     ($test:ident, $m:ident, $nv:literal) => {
         #[test]

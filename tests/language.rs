@@ -190,7 +190,8 @@ fn structure_without_motion() {
     assert_eq!(Structure {}.forward_dynamics(&q, &q, &q), q);
 }
 
-/// At right angles: the piston is where Pythagoras has it, stands still against the crank's end, and its rows are named.
+/// At right angles: the piston is where Pythagoras has it, stands still against the crank's end, and its rows
+/// are named.
 #[test]
 fn joint_that_closes_a_loop() {
     let engine = SliderCrank { g: 9.81, r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };
@@ -219,9 +220,9 @@ struct RollingDisk {
     contact: Rolling,
 }
 
-/// In the axes that lean but do not roll `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`, `u̇₂ = −⅔ u₁ u₃`,
-/// `u̇₃ = (−2 u₂ + u₃ tan q₂) u₁` (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972, ch. II); the disk turns
-/// in them by `spin` about y.
+/// In the axes that lean but do not roll `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`,
+/// `u̇₂ = −⅔ u₁ u₃`, `u̇₃ = (−2 u₂ + u₃ tan q₂) u₁` (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*,
+/// 1972, ch. II); the disk turns in them by `spin` about y.
 #[test]
 fn rolling_pair() {
     let (g, radius, lean) = (9.81, 0.4, 0.35_f64);
@@ -283,7 +284,8 @@ fn extremes_are_exact() {
     assert!(Extremes::EQUATIONS.contains("min(rail, 0)"), "{}", Extremes::EQUATIONS);
 }
 
-/// A carriage with a buffer that it reaches late, a valve that saturates, and a law that is not defined on the other side.
+/// A carriage with a buffer that it reaches late, a valve that saturates, and a law that is not defined on
+/// the other side.
 #[mechanism(derivatives)]
 struct Pieces {
     gap: f64,
@@ -369,8 +371,8 @@ struct Winged {
     air: Force,
 }
 
-/// The rotations of Etkin and Reid, *Dynamics of Flight* (1996), appendix A.7: by the sideslip about z, then by the angle of attack
-/// about y.
+/// The rotations of Etkin and Reid, *Dynamics of Flight* (1996), appendix A.7: by the sideslip about z, then
+/// by the angle of attack about y.
 #[test]
 fn stability_and_wind_axes_turn_by_their_angles() {
     let (m, mut random) = (Winged {}, support::random::Random::new(5));

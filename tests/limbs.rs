@@ -1,5 +1,5 @@
-//! Mechanisms with alike limbs, which are evaluated as lanes: the functions agree with each other for every type of
-//! scalars, on the ground and on a free base, with parameters of all limbs and of each.
+//! Mechanisms with alike limbs, which are evaluated as lanes: the functions agree with each other for every
+//! type of scalars, on the ground and on a free base, with parameters of all limbs and of each.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Lanes, Mechanism, Real, mechanism};
@@ -289,8 +289,8 @@ fn elements_between_limbs_act_with_and_without_passes() {
     support::compare::assert_same_dynamics(&Hand {}, &PlainHand {}, 20, 1e-11);
 }
 
-/// An arm whose angles and places carry noise, as exporters leave it: axes that are next to parallel, arms of next to no length,
-/// centres of mass next to axes.
+/// An arm whose angles and places carry noise, as exporters leave it: axes that are next to parallel, arms of
+/// next to no length, centres of mass next to axes.
 macro_rules! noisy {
     ($name:ident, $($options:tt)*) => {
         #[mechanism(gravity = -9.81 * z $($options)*)]

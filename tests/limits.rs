@@ -21,7 +21,8 @@ fn written(file: &str, joint: &str, attribute: &str) -> Option<f64> {
     Some(value.parse().unwrap())
 }
 
-/// Compares the limits of a robot whose joints do not follow one another with the text of its file; how many bounds there are.
+/// Compares the limits of a robot whose joints do not follow one another with the text of its file; how many
+/// bounds there are.
 fn compare<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, file: &str) -> usize
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64> + Limits<NQ, NV, Scalar = f64>,
@@ -77,7 +78,8 @@ struct Ignored;
 #[test]
 fn files_say_limits_in_many_ways() {
     assert_eq!(Several::VELOCITIES, ["leader", "wheel", "endless", "rail", "free"]);
-    // −2 q + 0.5 from −2 to 1.5 is q from −0.5 to 1.25; its speed of 4 is 2 of the leader's. What drives it is its own.
+    // −2 q + 0.5 from −2 to 1.5 is q from −0.5 to 1.25; its speed of 4 is 2 of the leader's. What drives it
+    // is its own.
     assert_eq!(Several.lower_limits(), vector([-0.5, -NONE, -NONE, -NONE, -NONE]));
     assert_eq!(Several.upper_limits(), vector([1.25, NONE, NONE, 0.5, NONE]));
     assert_eq!(Several.velocity_limits(), vector([2.0, 50.0, NONE, 0.0, NONE]));

@@ -73,7 +73,8 @@ macro_rules! check_differences {
     }};
 }
 
-/// Every joint, springs, dashpots, friction, inputs on coordinates and on bodies; not all numbers are constant.
+/// Every joint, springs, dashpots, friction, inputs on coordinates and on bodies; not all numbers are
+/// constant.
 #[mechanism(gravity = 0.3 * x - 0.4 * y - 9.7 * z, derivatives)]
 struct Zoo {
     mass: f64,
@@ -185,7 +186,8 @@ fn coupled_joints() {
     check_differences!(PandaMimic, PandaMimic, m => m);
 }
 
-// ---- Closed forms ------------------------------------------------------------------------------------------------
+// ---- Closed
+// forms ------------------------------------------------------------------------------------------------
 
 /// A particle on a massless rod with a motor.
 #[mechanism(gravity = -g * y, derivatives)]

@@ -1,10 +1,12 @@
-//! Outputs as measurements: their derivatives against differences, alone and in the motion, and all of them as one vector.
+//! Outputs as measurements: their derivatives against differences, alone and in the motion, and all of them
+//! as one vector.
 
 use linkwork::prelude::*;
 use linkwork::{OutputDerivatives, Outputs, RheonomicDerivatives, index_of};
 use support::random::Random;
 
-/// A flying body with a load on a ball joint, with gyroscope, accelerometer, an altimeter, a current and a camera.
+/// A flying body with a load on a ball joint, with gyroscope, accelerometer, an altimeter, a current and a
+/// camera.
 #[mechanism(gravity = -9.81 * z, derivatives, sensitivities, batch, prepare)]
 struct Carrier {
     mass: f64,
@@ -90,8 +92,9 @@ struct Bodies {
     beside: Scalar,
 }
 
-/// Turned as one rigid body about a line through the ground's origin, all have the kinetic energy `½ ω² J`; two turns at once tell
-/// the products of inertia. The line through another point has the moment of the parallel-axis theorem.
+/// Turned as one rigid body about a line through the ground's origin, all have the kinetic energy `½ ω² J`;
+/// two turns at once tell the products of inertia. The line through another point has the moment of the
+/// parallel-axis theorem.
 #[test]
 fn moments_of_inertia_are_those_of_energies() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(15));
@@ -298,8 +301,8 @@ struct Bare {
     hinge: Pin,
 }
 
-/// What elements deliver is what they add to the rate of the kinetic energy: bias forces with and without them tell, by the velocities
-/// that they act on. Group by group it is the power balance of the whole.
+/// What elements deliver is what they add to the rate of the kinetic energy: bias forces with and without
+/// them tell, by the velocities that they act on. Group by group it is the power balance of the whole.
 #[test]
 fn elements_deliver_what_energies_gain() {
     let mut random = Random::new(25);

@@ -85,8 +85,9 @@ fn joints_that_follow_and_that_are_held() {
     check_frames!(Coupled, "coupled");
 }
 
-/// Tendons through space, straight, around a ball, a cylinder on a side of it, and one on the shorter side, over pulleys; actuators on
-/// them and on sites. Each surface is touched in some of the cases and not in others.
+/// Tendons through space, straight, around a ball, a cylinder on a side of it, and one on the shorter side,
+/// over pulleys; actuators on them and on sites. Each surface is touched in some of the cases and not in
+/// others.
 #[test]
 fn cables_and_sites() {
     #[mechanism(mjcf = "data/mjcf/cables.xml")]
@@ -105,7 +106,8 @@ fn a_medium_brakes() {
     check(&Medium, "medium");
 }
 
-/// A connection keeps two points together, a weld two bodies; the conditions of a plane loop out of its plane are redundant.
+/// A connection keeps two points together, a weld two bodies; the conditions of a plane loop out of its plane
+/// are redundant.
 #[test]
 fn loops() {
     #[mechanism(mjcf = "data/mjcf/loops.xml")]
@@ -167,7 +169,8 @@ fn geometry_for_contact() {
     assert_close("gaps", &found, &expected, 1e-12);
 }
 
-/// The file says what touches: each shape the plane of its world, with the larger of the two coefficients of friction.
+/// The file says what touches: each shape the plane of its world, with the larger of the two coefficients of
+/// friction.
 #[test]
 fn contacts_of_the_file() -> Result<(), linkwork::integrate::Error> {
     #[mechanism(mjcf = "data/mjcf/contacts.xml", contacts = file)]

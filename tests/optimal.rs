@@ -1,5 +1,5 @@
-//! The recursion of optimal control: against dense algebra, and as differential dynamic programming, whose iterations converge
-//! quadratically.
+//! The recursion of optimal control: against dense algebra, and as differential dynamic programming, whose
+//! iterations converge quadratically.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::optimal::{Indefinite, Policy, Quadratic, Value, backward};
@@ -119,7 +119,8 @@ struct Flapper {
 }
 
 /// What is known of a step whose configuration follows from its velocity changes the work, not the result.
-/// Costs of numbers that the motion makes are `Jᵀ g` and `Jᵀ H J`, by a product of whole matrices; half of the numbers have none.
+/// Costs of numbers that the motion makes are `Jᵀ g` and `Jᵀ H J`, by a product of whole matrices; half of
+/// the numbers have none.
 #[test]
 fn costs_of_numbers_go_through_their_derivatives() {
     let mut random = Random::new(7);
@@ -240,7 +241,8 @@ impl Problem {
         M: RheonomicSecondDerivatives<2, 2, 1, Scalar = f64>,
     {
         let (mut to_go, mut policies, mut slope) = (self.last(&states[STEPS]), Vec::new(), 0.0_f64);
-        // The gradient along the trajectory itself: factors of the curvature, and what is zero at the optimum.
+        // The gradient along the trajectory itself: factors of the curvature, and what is zero at the
+        // optimum.
         let mut adjoint = (to_go.q, to_go.v);
         for ((q, v), u) in states.iter().zip(inputs).rev() {
             let step = discrete::transition(m, &self.method, 0.0, q, v, u).expect("it moves");
@@ -285,7 +287,8 @@ impl Problem {
     }
 }
 
-/// With curvature the gradient's exponent doubles near the optimum; without, it shrinks by a factor each time.
+/// With curvature the gradient's exponent doubles near the optimum; without, it shrinks by a factor each
+/// time.
 #[test]
 fn dynamic_programming_converges_quadratically() {
     let m = Pendubot {};

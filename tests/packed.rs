@@ -82,8 +82,9 @@ macro_rules! check {
 
 #[test]
 fn packed_is_whole() {
-    // The base with itself: a mass that is the same in all directions, a skew first moment, an inertia. Each joint with
-    // the base: turning a hip about x pushes nothing along x. In each leg each joint with those above it.
+    // The base with itself: a mass that is the same in all directions, a skew first moment, an inertia. Each
+    // joint with the base: turning a hip about x pushes nothing along x. In each leg each joint with those
+    // above it.
     assert_eq!(check!(Quadruped, Quadruped), (21 - 3 - 3) + (12 * 6 - 4) + 4 * 6);
     // Fingers of equal mass that move against each other push nothing.
     assert_eq!(check!(Panda, Panda), 7 * 8 / 2 + 1);

@@ -1,4 +1,5 @@
-//! Robots whose figures are parameters: with the file's figures they are the robot of the file, with others that of another file.
+//! Robots whose figures are parameters: with the file's figures they are the robot of the file, with others
+//! that of another file.
 
 use linkwork::identification::{PutBackError, approach};
 use linkwork::lanes::f64x4;
@@ -251,7 +252,8 @@ fn identified_base_parameters_are_put_back() {
             assert_close("kept", &one.to_standard(), &other.to_standard(), 1e-7);
         }
     }
-    // The file's own base parameters leave its links as they are, up to those that are at the bound of what there is.
+    // The file's own base parameters leave its links as they are, up to those that are at the bound of what
+    // there is.
     let mut same = Panda::FILE;
     same.set_base_parameters(&same.base_parameters(&same.standard_parameters())).unwrap();
     same_torques(&same, &Panda::FILE);

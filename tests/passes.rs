@@ -1,5 +1,5 @@
-//! Model passes change no function: every variant of a model has the same equations, energies, momenta and frames as the
-//! model itself, on random trees of every joint and on the robots.
+//! Model passes change no function: every variant of a model has the same equations, energies, momenta and
+//! frames as the model itself, on random trees of every joint and on the robots.
 
 mod random_limbs;
 mod random_robot;
@@ -81,8 +81,8 @@ fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     all
 }
 
-/// Every variant of a model has its functions, and forward dynamics inverts inverse dynamics. With common axes everything is so
-/// that does not name the axes of links.
+/// Every variant of a model has its functions, and forward dynamics inverts inverse dynamics. With common
+/// axes everything is so that does not name the axes of links.
 fn check_forms(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
     let joints = kinematics::joints(model);
@@ -192,8 +192,8 @@ fn robots_move_as_without_passes() {
     }
 }
 
-/// With alike limbs as lanes every variant of a model has its functions. What acts between limbs may be built differently for each
-/// of them: then there are no lanes.
+/// With alike limbs as lanes every variant of a model has its functions. What acts between limbs may be built
+/// differently for each of them: then there are no lanes.
 fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     const TOLERANCE: f64 = 1e-11;
     let at = symbols(model, seed);
@@ -260,7 +260,8 @@ proptest! {
     }
 }
 
-/// Every variant has the functions of its model to the last digits, and no figures that are larger than its own.
+/// Every variant has the functions of its model to the last digits, and no figures that are larger than its
+/// own.
 fn check_digits(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
     let joints = kinematics::joints(model);
@@ -358,8 +359,8 @@ proptest! {
     }
 }
 
-/// Where the axes of pins are parallel nothing is turned between links; what is turned are constants. Axes that are not
-/// parallel are left alone.
+/// Where the axes of pins are parallel nothing is turned between links; what is turned are constants. Axes
+/// that are not parallel are left alone.
 #[test]
 fn parallel_joints_share_their_axes() {
     let arm = |axes: [&str; 3]| {
@@ -387,8 +388,8 @@ fn parallel_joints_share_their_axes() {
     assert_eq!(shared(["z", "y", "z"]), [false; 0]);
 }
 
-/// Arms of next to no length between axes, as exporters leave them, must not take large masses and lose digits; nor may
-/// axes that are next to parallel send a frame far away.
+/// Arms of next to no length between axes, as exporters leave them, must not take large masses and lose
+/// digits; nor may axes that are next to parallel send a frame far away.
 #[test]
 fn figures_next_to_zero_cost_no_digits() {
     let mut fields = String::new();

@@ -1,4 +1,5 @@
-//! A prepared mechanism has the functions of the mechanism itself, and does no work that its parameters alone decide.
+//! A prepared mechanism has the functions of the mechanism itself, and does no work that its parameters alone
+//! decide.
 
 use linkwork::integrate::Error;
 use linkwork::simulate::Sample;
@@ -238,7 +239,8 @@ fn with_a_closed_loop() {
     );
 }
 
-// ---- What is left to do ------------------------------------------------------------------------------------------
+// ---- What is left to
+// do ------------------------------------------------------------------------------------------
 
 const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
 
@@ -256,8 +258,8 @@ fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
     (main(&output.functions), output.prepared.map(|prepared| main(&prepared.functions)))
 }
 
-/// A 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986), and bodies without any symmetry;
-/// their mass properties are numbers or parameters, and so are the lengths.
+/// A 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986), and bodies without any
+/// symmetry; their mass properties are numbers or parameters, and so are the lengths.
 fn puma(lengths: bool, parameters: bool) -> String {
     let [a2, a3, d3, d4] = match lengths {
         true => ["a2", "a3", "d3", "d4"],
@@ -314,7 +316,8 @@ fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
     format!("pub struct Chain {{ {fields} }}")
 }
 
-/// Within ten per cent of the same mechanism in numbers, and exactly. Where rods lie along an axis two lengths become one.
+/// Within ten per cent of the same mechanism in numbers, and exactly. Where rods lie along an axis two
+/// lengths become one.
 #[test]
 fn parameters_cost_next_to_nothing() {
     for (name, numbers, parameters, expected) in [

@@ -1,5 +1,5 @@
-//! Many states at once: arrays of states and rollouts give what single states give, however many there are, in however
-//! many lanes and threads.
+//! Many states at once: arrays of states and rollouts give what single states give, however many there are,
+//! in however many lanes and threads.
 
 use linkwork::batch::{Error, Lockstep, Progress, Rollout, unwatched};
 use linkwork::integrate::{self, ContinuousInputs, State, System};

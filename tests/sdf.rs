@@ -30,7 +30,8 @@ fn the_same_arm_as_sdf_and_as_urdf() {
     assert_eq!(Sdf.velocity_limits()[4], f64::INFINITY, "less than zero stands for none");
 }
 
-/// Fixed joints between links with mass, frames that stand in frames, joints in frames, links in joints, models in models.
+/// Fixed joints between links with mass, frames that stand in frames, joints in frames, links in joints,
+/// models in models.
 #[test]
 fn the_same_tree_of_nested_frames() {
     #[mechanism(sdf = "data/sdf/tree.sdf")]
@@ -90,7 +91,8 @@ fn other_joints() {
     assert_same_dynamics(&File, &Written {}, 20, TOLERANCE);
 }
 
-/// A joint to a link that another one carries closes a loop; joints join frames on links, and frames have placements.
+/// A joint to a link that another one carries closes a loop; joints join frames on links, and frames have
+/// placements.
 #[test]
 fn linkage() {
     #[mechanism(sdf = "data/sdf/linkage.sdf")]
@@ -113,7 +115,8 @@ fn linkage() {
         hold: Weld,
         #[joint(ground.at(0.8 * x).rotated(y(0.3)) -> rocker, about = y)]
         c_swing: Pin,
-        // In the file's pose, where the joint stands at zero: the bar is turned by 0.2 + 1.1, the rocker by 0.3.
+        // In the file's pose, where the joint stands at zero: the bar is turned by 0.2 + 1.1, the rocker by
+        // 0.3.
         #[joint(
             rocker.at(0.5 * z).rotated(y(1.0)) -> bar.at(
                 (cos(1.3) * (0.8 + 0.5 * sin(0.3) - 0.3 * sin(0.2)) - sin(1.3) * (0.5 * cos(0.3) - 0.3 * cos(0.2))) * x

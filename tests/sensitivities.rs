@@ -1,4 +1,5 @@
-//! Derivatives of the dynamics by parameters: against differences of the functions that they are the derivatives of.
+//! Derivatives of the dynamics by parameters: against differences of the functions that they are the
+//! derivatives of.
 
 use linkwork::discrete::{self, StepByParameters};
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -184,7 +185,8 @@ struct Flyer {
     rotor: Force,
 }
 
-/// A body on Cardan's angles, in its angular velocity along its own axes, which contains no parameter, with a slider.
+/// A body on Cardan's angles, in its angular velocity along its own axes, which contains no parameter, with a
+/// slider.
 #[mechanism(gravity = -g * z, derivatives, sensitivities)]
 #[derive(Clone, Copy)]
 struct Gimbal {

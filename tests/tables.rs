@@ -1,5 +1,5 @@
-//! Tables, the standard atmosphere and angles of flight in mechanisms: a table of a parabola is the parabola, in every function
-//! and every derivative; others agree with differences of high order.
+//! Tables, the standard atmosphere and angles of flight in mechanisms: a table of a parabola is the parabola,
+//! in every function and every derivative; others agree with differences of high order.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Lanes, Real, Table, mechanism};
@@ -11,7 +11,8 @@ const FORMULA: f64 = 1e-10;
 /// Between derivatives and differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
 
-/// The aircraft once with tables and once with formulas: what is written between the braces are its coefficients.
+/// The aircraft once with tables and once with formulas: what is written between the braces are its
+/// coefficients.
 macro_rules! aircraft {
     ($name:ident<$t:ident>, { $($parameter:ident: $kind:ty),* }, $lift:expr, $drag:expr, $thrust:expr) => {
         #[mechanism(gravity = 9.81 * z, derivatives, second_derivatives, sensitivities, prepare, batch)]
@@ -240,7 +241,8 @@ fn angles_of_flight_are_those_that_the_attitude_was_made_of() {
     assert!((Attitude.sound(&q) - 295.154).abs() < 1e-3);
 }
 
-/// A fan whose torque is looked up at a speed that is fixed, in one way by a number and in the other by a parameter.
+/// A fan whose torque is looked up at a speed that is fixed, in one way by a number and in the other by a
+/// parameter.
 #[mechanism(derivatives, prepare, batch, sensitivities)]
 struct Fan {
     torque: Table<1>,

@@ -51,7 +51,8 @@ fn note(line: &str) -> Option<&str> {
     line.strip_prefix("= note: ")
 }
 
-/// True for what is expected in a note: what a parameter is and in which argument, or what it would have to be.
+/// True for what is expected in a note: what a parameter is and in which argument, or what it would have to
+/// be.
 fn is_note(text: &str) -> bool {
     text.starts_with("it is ") || text.ends_with(" in")
 }

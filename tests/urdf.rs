@@ -1,4 +1,5 @@
-//! What a URDF file can say, and the options of `#[mechanism(urdf = …)]`, against the same in the struct language.
+//! What a URDF file can say, and the options of `#[mechanism(urdf = …)]`, against the same in the struct
+//! language.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{frame, mechanism};
@@ -210,7 +211,8 @@ fn rounded_frames_are_those_that_were_meant() {
         let difference = (written - meant).norm() / written.norm();
         assert!(difference > 1e-9 && difference < 1e-4, "{difference}");
     }
-    // Stretched out upwards, the arm has only its small offsets on one side, all of them: the file's digits add to that.
+    // Stretched out upwards, the arm has only its small offsets on one side, all of them: the file's digits
+    // add to that.
     let up = SVector::zeros();
     let aside = 0.005375 + 3.0 * 0.006375 + 2.0 * 0.00017505;
     let meant = Meant.frame_placement(frame!(Meant, "EndEffector_Link"), &up).translation;
@@ -235,8 +237,8 @@ fn rounded_numbers_are_documented() {
     assert!(!docs.contains("Rounded numbers"));
 }
 
-/// Without inertia there are frames, their Jacobians, the configuration space and what inputs do, as they follow from the
-/// file: polar coordinates, and a ball at the end.
+/// Without inertia there are frames, their Jacobians, the configuration space and what inputs do, as they
+/// follow from the file: polar coordinates, and a ball at the end.
 #[test]
 fn kinematics_need_no_inertia() {
     #[mechanism(urdf = "data/urdf/bare.urdf", inertia = none)]

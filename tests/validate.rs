@@ -179,7 +179,8 @@ fn what_is_at_the_bound_is_sound() {
     assert_eq!(Arm { m: 0.0, offset: -2.0, ..Arm::<f64>::sound() }.validate(), Ok(()));
 }
 
-/// What is trusted is not judged, nor what is kept for the user's own use; nor a stiffness, which may be negative.
+/// What is trusted is not judged, nor what is kept for the user's own use; nor a stiffness, which may be
+/// negative.
 #[mechanism(inertia = trust)]
 struct Trusted {
     moment: f64,

@@ -1,5 +1,5 @@
-//! The functions of an assembly file in the AT&T syntax that rustc writes for x86-64: their size, their stack and what they
-//! call. It knows as much of the language as that needs.
+//! The functions of an assembly file in the AT&T syntax that rustc writes for x86-64: their size, their stack
+//! and what they call. It knows as much of the language as that needs.
 
 use rustc_demangle::demangle;
 use std::collections::{BTreeMap, BTreeSet};

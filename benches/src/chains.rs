@@ -31,8 +31,8 @@ fn axis(k: usize) -> usize {
     [2, 1, 0][k % 3]
 }
 
-/// A chain of `n` links on pins about changing axes, in the struct `name`. `symbolic`: mass, length, centre of mass and
-/// inertia of each link are parameters; else they are numbers.
+/// A chain of `n` links on pins about changing axes, in the struct `name`. `symbolic`: mass, length, centre
+/// of mass and inertia of each link are parameters; else they are numbers.
 pub fn chain(name: &str, n: usize, symbolic: bool) -> Source {
     let mut item = format!("pub struct {name} {{\n");
     let mut parent = "ground".to_string();

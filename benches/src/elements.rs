@@ -1,4 +1,5 @@
-//! Mechanisms with many elements between points, and with coordinates that place what they move by expressions.
+//! Mechanisms with many elements between points, and with coordinates that place what they move by
+//! expressions.
 
 use crate::chains::Source;
 use std::fmt::Write;

@@ -1,8 +1,9 @@
 //! What a competent engineer writes by hand: rigid-body dynamics of any tree of links, read at run time.
 //!
-//! The recursive algorithms of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7, in link axes, on
-//! nalgebra's fixed 3-vectors and 3×3 matrices, with all intermediate results in a [`Data`] that is made once: nothing
-//! allocates. Written without the compiler's crates, so that it is an oracle for the generated code as well.
+//! The recursive algorithms of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7, in link axes,
+//! on nalgebra's fixed 3-vectors and 3×3 matrices, with all intermediate results in a [`Data`] that is made
+//! once: nothing allocates. Written without the compiler's crates, so that it is an oracle for the generated
+//! code as well.
 
 mod spatial;
 mod urdf;
@@ -171,7 +172,8 @@ impl Model {
         }
     }
 
-    /// Inverse dynamics `τ = M a + h` (the bias `h` alone without accelerations): recursive Newton–Euler algorithm.
+    /// Inverse dynamics `τ = M a + h` (the bias `h` alone without accelerations): recursive Newton–Euler
+    /// algorithm.
     pub fn inverse_dynamics(
         &self,
         data: &mut Data,

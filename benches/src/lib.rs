@@ -1,5 +1,6 @@
-//! Speed of Linkwork: generated functions next to a generic implementation of the same algorithms and next to other
-//! libraries, and the time that the compiler takes. The README beside this package says how to run what.
+//! Speed of Linkwork: generated functions next to a generic implementation of the same algorithms and next to
+//! other libraries, and the time that the compiler takes. The README beside this package says how to run
+//! what.
 
 pub mod assembly;
 pub mod chains;

@@ -41,7 +41,8 @@ pub struct Operations {
 }
 
 impl Operations {
-    /// Compiles `#[mechanism(arguments)] item`; paths are relative to this package. Panics if there is a mistake in it.
+    /// Compiles `#[mechanism(arguments)] item`; paths are relative to this package. Panics if there is a
+    /// mistake in it.
     pub fn of(arguments: &str, item: &str) -> Operations {
         let tokens = |text: &str| -> TokenStream { text.parse().expect("tokens") };
         let cx = &mut Diagnostics::new();

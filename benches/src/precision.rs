@@ -1,4 +1,5 @@
-//! Problems on which methods of integration are compared: two that are stiff or constrained, one of three bodies and more.
+//! Problems on which methods of integration are compared: two that are stiff or constrained, one of three
+//! bodies and more.
 
 use linkwork::integrate::Method;
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -8,8 +9,8 @@ use linkwork_models::{AndrewsSqueezer, CarAxle};
 use std::cell::Cell;
 use std::time::Instant;
 
-/// Seven stars in a plane that attract each other and pass close by (Hairer, Nørsett and Wanner, *Solving Ordinary Differential
-/// Equations I*, 1993, II.10).
+/// Seven stars in a plane that attract each other and pass close by (Hairer, Nørsett and Wanner, *Solving
+/// Ordinary Differential Equations I*, 1993, II.10).
 #[mechanism(derivatives)]
 pub struct Pleiades {
     #[particle(mass = 1 + i)]
@@ -68,8 +69,8 @@ impl Pleiades {
     );
 }
 
-/// A centrifugal governor whose sleeve sits on a stiff spring in thick oil: its motion dies away within a millisecond, the balls swing
-/// for seconds.
+/// A centrifugal governor whose sleeve sits on a stiff spring in thick oil: its motion dies away within a
+/// millisecond, the balls swing for seconds.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 pub struct StiffGovernor {
     #[body(mass = 2, inertia = diagonal(0.01, 0.01, 0.02))]
@@ -295,7 +296,8 @@ impl Visit for Rate<'_> {
     }
 }
 
-/// How a state changes, with the accelerations that keep constraints: the right-hand side for other libraries.
+/// How a state changes, with the accelerations that keep constraints: the right-hand side for other
+/// libraries.
 pub fn rate(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
     with(problem, Rate { t, y, rate });
 }

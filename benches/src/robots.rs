@@ -17,7 +17,8 @@ pub struct Kinova;
 #[derive(Clone, Copy)]
 pub struct Gen3;
 
-/// The G1 of Unitree: a humanoid with legs of six joints, a waist of three and arms of seven, hips and shoulders inclined.
+/// The G1 of Unitree: a humanoid with legs of six joints, a waist of three and arms of seven, hips and
+/// shoulders inclined.
 #[mechanism(urdf = "../models/urdf/g1.urdf", base = free, derivatives, packed)]
 #[derive(Clone, Copy)]
 pub struct G1;

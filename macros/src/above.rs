@@ -1,7 +1,8 @@
-//! What stands above the attribute: a `#[derive(…)]` there has seen the struct with its elements. Neither the struct nor the
-//! compiler tells, so the source file is asked.
+//! What stands above the attribute: a `#[derive(…)]` there has seen the struct with its elements. Neither the
+//! struct nor the compiler tells, so the source file is asked.
 
-/// True if an attribute that begins at a line and column, counted from one, stands below a `#[derive(…)]` of the same item.
+/// True if an attribute that begins at a line and column, counted from one, stands below a `#[derive(…)]` of
+/// the same item.
 pub fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
     let lines: Vec<&str> = text.lines().take(line).collect();
     let Some((own, above)) = lines.split_last() else { return false };

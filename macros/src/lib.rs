@@ -1,5 +1,5 @@
-//! The attribute macro of Linkwork. Use it through the crate `linkwork`, which re-exports it and holds what the
-//! generated code calls.
+//! The attribute macro of Linkwork. Use it through the crate `linkwork`, which re-exports it and holds what
+//! the generated code calls.
 
 mod above;
 
@@ -38,16 +38,17 @@ use std::path::PathBuf;
 /// assert!((by_state[(1, 0)] + 1.5 * 9.81 / 1.5 * 0.5_f64.cos()).abs() < 1e-12);
 /// ```
 ///
-/// The struct's fields are parameters (`f64`, `f32` or the struct's own type parameter), which stay, and elements
-/// (`linkwork::elements`), which say what the mechanism is made of and leave no trace in memory. The generated methods,
-/// their shapes, units and conventions are those of the trait `linkwork::Mechanism` (`linkwork::Rheonomic` if something
-/// depends on time) and stand in the rustdoc of the struct. The guide, `linkwork::guide`, explains everything from the
-/// beginning.
+/// The struct's fields are parameters (`f64`, `f32` or the struct's own type parameter), which stay, and
+/// elements (`linkwork::elements`), which say what the mechanism is made of and leave no trace in memory. The
+/// generated methods, their shapes, units and conventions are those of the trait `linkwork::Mechanism`
+/// (`linkwork::Rheonomic` if something depends on time) and stand in the rustdoc of the struct. The guide,
+/// `linkwork::guide`, explains everything from the beginning.
 ///
-/// **Order.** `#[mechanism]` stands above `#[derive(…)]`, so that the derives see the struct without its elements. The
-/// other order is an error that says so.
+/// **Order.** `#[mechanism]` stands above `#[derive(…)]`, so that the derives see the struct without its
+/// elements. The other order is an error that says so.
 ///
-/// **Mistakes** are compile errors at the token, all of them at once; those of a file carry its line and column.
+/// **Mistakes** are compile errors at the token, all of them at once; those of a file carry its line and
+/// column.
 ///
 /// # A robot from a file
 ///
@@ -101,17 +102,20 @@ use std::path::PathBuf;
 /// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
 /// | `crate = path::to::linkwork` | where generated code finds this crate, if `Cargo.toml` gives it another name (`crate = name`) or another crate re-exports it (`crate = other::linkwork`) |
 ///
-/// With `inertia = none` nothing needs a mass: frames with their velocities, accelerations and Jacobians, the configuration
-/// space (`neutral`, `integrate`, `difference`, `tangent_rate`), residuals and Jacobians of constraints, `assemble`, outputs and
-/// `generalized_forces` are generated, the dynamics and the trait `Mechanism` are not. Files that describe shapes and joints
-/// alone are read so; what such a file says of masses is skipped.
+/// With `inertia = none` nothing needs a mass: frames with their velocities, accelerations and Jacobians, the
+/// configuration space (`neutral`, `integrate`, `difference`, `tangent_rate`), residuals and Jacobians of
+/// constraints, `assemble`, outputs and `generalized_forces` are generated, the dynamics and the trait
+/// `Mechanism` are not. Files that describe shapes and joints alone are read so; what such a file says of
+/// masses is skipped.
 ///
-/// A mechanism has 128 degrees of freedom at most, and 1024 bodies: everything is written out for each of them. Masses, moments
-/// and lengths that are given by numbers must leave room for products of theirs to be finite.
+/// A mechanism has 128 degrees of freedom at most, and 1024 bodies: everything is written out for each of
+/// them. Masses, moments and lengths that are given by numbers must leave room for products of theirs to be
+/// finite.
 ///
-/// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`. A fixed root of this
-/// name is the ground, and one of the frames. A link `world` that joints name and the file does not declare is its root.
-/// What fixed joints hold to a fixed root enters no equation: its mass properties are not checked.
+/// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`. A
+/// fixed root of this name is the ground, and one of the frames. A link `world` that joints name and the file
+/// does not declare is its root. What fixed joints hold to a fixed root enters no equation: its mass
+/// properties are not checked.
 ///
 /// # A closed loop in independent speeds
 ///

@@ -1,8 +1,10 @@
-//! A seven-axis arm learns what it weighs: it moves along periodic trajectories, its torques are regressed on base parameters,
-//! friction and rotors, and what was found is put back into the robot, as bodies that can be.
+//! A seven-axis arm learns what it weighs: it moves along periodic trajectories, its torques are regressed on
+//! base parameters, friction and rotors, and what was found is put back into the robot, as bodies that can
+//! be.
 //!
-//! Sources: Swevers, Ganseman, Tükel, De Schutter and Van Brussel, *Optimal robot excitation and identification*, IEEE Transactions
-//! on Robotics and Automation 13 (1997), for the trajectories; Gautier and Khalil (1990) for the base parameters.
+//! Sources: Swevers, Ganseman, Tükel, De Schutter and Van Brussel, *Optimal robot excitation and
+//! identification*, IEEE Transactions on Robotics and Automation 13 (1997), for the trajectories; Gautier and
+//! Khalil (1990) for the base parameters.
 //!
 //! ```text
 //! cargo run --release --example identification -p linkwork-models
@@ -13,7 +15,8 @@ use linkwork::nalgebra::{Cholesky, SMatrix, SVector};
 use linkwork::prelude::*;
 use linkwork::{Inertial, ParameterError};
 
-/// The arm of the file. Its figures are parameters, and so are rotors of its motors, of which the file says nothing.
+/// The arm of the file. Its figures are parameters, and so are rotors of its motors, of which the file says
+/// nothing.
 #[mechanism(
     urdf = "urdf/panda.urdf",
     lock = ["panda_finger_joint1", "panda_finger_joint2"],
@@ -47,10 +50,12 @@ struct Arm {
 
 type Joints = SVector<f64, 7>;
 const BASE: usize = Arm::BASE_PARAMETERS.len();
-/// After the base parameters: damping and dry friction of every joint, and the rotors of all but the first two. Those act as the
-/// inertias of their links about the same axes do, which turn about nothing else along them.
+/// After the base parameters: damping and dry friction of every joint, and the rotors of all but the first
+/// two. Those act as the inertias of their links about the same axes do, which turn about nothing else along
+/// them.
 const COLUMNS: usize = BASE + 7 + 7 + 5;
-/// Speed around which dry friction is smooth, rad/s: `friction_speed` of the mechanism, as it is if nothing is said.
+/// Speed around which dry friction is smooth, rad/s: `friction_speed` of the mechanism, as it is if nothing
+/// is said.
 const SMOOTH: f64 = 0.01;
 
 impl Arm {
@@ -207,8 +212,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let found = Cholesky::new(normal).ok_or("some parameters were not excited")?.solve(&right);
 
-    // Put back: the joints' own figures, then the bodies nearest to the file's that move as was measured. What was measured has
-    // noise, so that no bodies may have it as it is.
+    // Put back: the joints' own figures, then the bodies nearest to the file's that move as was measured.
+    // What was measured has noise, so that no bodies may have it as it is.
     let part = |first: usize| Joints::from_fn(|j, _| found[first + j]);
     let rotors = Joints::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
     arm = arm.with_joints([part(BASE), part(BASE + 7), rotors]);

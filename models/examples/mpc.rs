@@ -1,7 +1,7 @@
-//! A cart with a pole goes from one end of its rail to the other, and never over: model-predictive control. To lean the pole
-//! to where it shall go, the cart has to go back first, for which it has two centimetres. Twenty-five times a second the next
-//! second is linearised about what was planned before, and a quadratic program finds the pushes that cost least within the
-//! limits of rail and motor.
+//! A cart with a pole goes from one end of its rail to the other, and never over: model-predictive control.
+//! To lean the pole to where it shall go, the cart has to go back first, for which it has two centimetres.
+//! Twenty-five times a second the next second is linearised about what was planned before, and a quadratic
+//! program finds the pushes that cost least within the limits of rail and motor.
 //!
 //! ```text
 //! cargo run --release --example mpc -p linkwork-models
@@ -79,7 +79,8 @@ impl Entries {
     }
 }
 
-/// The pushes and states of the next second: the sum of costs is least, with `rows x = right` for the motion, and `≤` for limits.
+/// The pushes and states of the next second: the sum of costs is least, with `rows x = right` for the motion,
+/// and `≤` for limits.
 struct Program {
     hessian: Entries,
     gradient: [f64; SIZE * STEPS],
@@ -88,7 +89,8 @@ struct Program {
 }
 
 impl Program {
-    /// The motion from a state on, linearised about that under planned pushes: `x⁺ − A x − B u = f − A x̄ − B ū`.
+    /// The motion from a state on, linearised about that under planned pushes:
+    /// `x⁺ − A x − B u = f − A x̄ − B ū`.
     fn motion(&mut self, start: &State, plan: &[f64; STEPS]) -> Result<(), Error> {
         let mut x = *start;
         for (k, &push) in plan.iter().enumerate() {
@@ -157,7 +159,8 @@ impl Program {
     }
 }
 
-/// The pushes of the next second that cost least, by those that were planned before; `None` if none keep the limits.
+/// The pushes of the next second that cost least, by those that were planned before; `None` if none keep the
+/// limits.
 fn planned(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<Option<[f64; STEPS]>, Error> {
     let (hessian, rows) = (Entries::default(), Entries::default());
     let mut program = Program { hessian, gradient: [0.0; SIZE * STEPS], rows, right: Vec::new() };

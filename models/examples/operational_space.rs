@@ -1,8 +1,8 @@
-//! A seven-axis arm leads its hand along a circle without turning it, while its elbow stays where it likes to be:
-//! operational-space control with the generated inverse mass matrix, frame Jacobian and bias forces.
+//! A seven-axis arm leads its hand along a circle without turning it, while its elbow stays where it likes to
+//! be: operational-space control with the generated inverse mass matrix, frame Jacobian and bias forces.
 //!
-//! Source: Khatib, *A unified approach for motion and force control of robot manipulators: the operational space formulation*,
-//! IEEE Journal on Robotics and Automation 3 (1987).
+//! Source: Khatib, *A unified approach for motion and force control of robot manipulators: the operational
+//! space formulation*, IEEE Journal on Robotics and Automation 3 (1987).
 //!
 //! ```text
 //! cargo run --release --example operational_space -p linkwork-models
@@ -41,7 +41,8 @@ fn control(t: f64, q: &Joints, v: &Joints) -> Joints {
     let (placement, twist, acceleration) = wanted(t);
     let jacobian = arm.frame_jacobian(hand, q);
     let missing = placement_difference(&arm.frame_placement(hand, q), &placement);
-    // The acceleration of the hand that corrects what is missing, less what it has without one of the joints, J̇ v.
+    // The acceleration of the hand that corrects what is missing, less what it has without one of the joints,
+    // J̇ v.
     let corrected = acceleration + missing * 400.0 + (twist - jacobian * v) * 40.0;
     let hand_acceleration = corrected - arm.frame_acceleration(hand, q, v, &Joints::zeros());
 
@@ -60,7 +61,8 @@ fn control(t: f64, q: &Joints, v: &Joints) -> Joints {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
-    // The start of the circle, from the posture by inverse kinematics; at rest, so that the hand has to catch up.
+    // The start of the circle, from the posture by inverse kinematics; at rest, so that the hand has to catch
+    // up.
     let target = Target::pose(index!(PandaArm::FRAMES, "panda_hand_tcp"), wanted(0.0).0);
     let found = InverseKinematics::new().reach(&arm, 0.0, &[target], &POSTURE.into())?;
 

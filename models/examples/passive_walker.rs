@@ -1,12 +1,13 @@
 //! Two legs walk down a gentle slope without motors: the simplest walking model, whose gait is published.
 //!
-//! A heavy hip, light feet, and between two touchdowns a double pendulum that stands on one foot ([`contact::hold`]). The other foot
-//! strikes the ground, the first one lifts off ([`contact::land`]), and legs change their parts. What a step dissipates is what the
-//! slope gives; a gait is a fixed point of the map from one step to the next, and this one is stable. As in the source the swinging foot
-//! passes through the ground on its way forward, for want of knees.
+//! A heavy hip, light feet, and between two touchdowns a double pendulum that stands on one foot
+//! ([`contact::hold`]). The other foot strikes the ground, the first one lifts off ([`contact::land`]), and
+//! legs change their parts. What a step dissipates is what the slope gives; a gait is a fixed point of the
+//! map from one step to the next, and this one is stable. As in the source the swinging foot passes through
+//! the ground on its way forward, for want of knees.
 //!
-//! Source: Garcia, Chatterjee, Ruina and Coleman, *The simplest walking model: stability, complexity, and scaling*, Journal of
-//! Biomechanical Engineering 120 (1998). Lengths are in legs, times in √(l/g).
+//! Source: Garcia, Chatterjee, Ruina and Coleman, *The simplest walking model: stability, complexity, and
+//! scaling*, Journal of Biomechanical Engineering 120 (1998). Lengths are in legs, times in √(l/g).
 //!
 //! ```text
 //! cargo run --release --example passive_walker -p linkwork-models
@@ -42,8 +43,8 @@ struct Walker {
     right_foot: Contact,
 }
 
-/// The state of a gait just after a touchdown, when both feet are on the ground: the angle of the standing leg from the slope's
-/// normal, and its rate.
+/// The state of a gait just after a touchdown, when both feet are on the ground: the angle of the standing
+/// leg from the slope's normal, and its rate.
 type Gait = [f64; 2];
 
 /// The published fixed point for the slope 0.009.
@@ -56,12 +57,13 @@ fn state([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
     (q, [-cos * rate, -sin * rate, rate, rate * (2.0 * angle).cos()].into())
 }
 
-/// One step on the left leg: the gait after the touchdown of the right one, how long it takes, how far the hip gets, and what the
-/// touchdown dissipates.
+/// One step on the left leg: the gait after the touchdown of the right one, how long it takes, how far the
+/// hip gets, and what the touchdown dissipates.
 fn step(walker: &Walker, gait: Gait) -> Result<(Gait, f64, f64, f64), Box<dyn std::error::Error>> {
     let (q, v) = state(gait);
     let stance = contact::hold(walker, [Touch::Sticks, Touch::Open]);
-    // Both feet are on the ground on the way forward, too, when the sum of the angles rises through zero: that is passed over.
+    // Both feet are on the ground on the way forward, too, when the sum of the angles rises through zero:
+    // that is passed over.
     let run = simulate(&stance).from(q, v).method(DormandPrince8::new().tolerance(1e-13, 1e-13));
     let strikes = run.until_crossing(Crossing::Falling, |_t, q, _v| q[2] + q[3]).duration(20.0);
     let end = strikes.finish()?;

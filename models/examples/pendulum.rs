@@ -29,7 +29,8 @@ fn main() -> Result<(), Error> {
     let pendulum = Pendulum { mass: 2.0, length: 1.5, friction: 0.3 };
     println!("{}", Pendulum::EQUATIONS);
 
-    // Every function is generated for this mechanism alone. Configuration q, velocity v and forces are vectors.
+    // Every function is generated for this mechanism alone. Configuration q, velocity v and forces are
+    // vectors.
     let (q, v) = (SVector::from([0.5]), SVector::from([0.0]));
     let inertia = pendulum.mass_matrix(&q)[0];
     let torque = pendulum.bias_forces(&q, &v)[0];

@@ -1,9 +1,11 @@
-//! A quadrotor in gusts knows where it is from its inertial measurement unit and from fixes of its position, five a second: an
-//! extended Kalman filter on generated Jacobians of the step and of the sensors. It flies on what the filter believes.
+//! A quadrotor in gusts knows where it is from its inertial measurement unit and from fixes of its position,
+//! five a second: an extended Kalman filter on generated Jacobians of the step and of the sensors. It flies
+//! on what the filter believes.
 //!
-//! The state is a pose and a velocity; spreads are those of displacements and velocities in the quadrotor's axes, twelve
-//! numbers, so that no quaternion is ever estimated. In still air an accelerometer feels the drag, which tells the tilt (Martin
-//! and Salaün, *The true role of accelerometer feedback in quadrotor control*, ICRA 2010).
+//! The state is a pose and a velocity; spreads are those of displacements and velocities in the quadrotor's
+//! axes, twelve numbers, so that no quaternion is ever estimated. In still air an accelerometer feels the
+//! drag, which tells the tilt (Martin and Salaün, *The true role of accelerometer feedback in quadrotor
+//! control*, ICRA 2010).
 //!
 //! ```text
 //! cargo run --release --example quadrotor_ekf -p linkwork-models
@@ -17,7 +19,8 @@ use linkwork::{OutputDerivatives, Outputs, discrete};
 use regulator::regulator;
 use std::ops::Range;
 
-/// Four rotors, each with its thrust, N, as its input; a gyroscope and an accelerometer off the centre of mass.
+/// Four rotors, each with its thrust, N, as its input; a gyroscope and an accelerometer off the centre of
+/// mass.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Quadrotor {
     front: Input,

@@ -1,5 +1,6 @@
-//! A pole is swung up by a cart: a trajectory that costs least, found by iterative linear-quadratic regulators (iLQR) and by
-//! differential dynamic programming (DDP), on generated first and second derivatives of the discrete step.
+//! A pole is swung up by a cart: a trajectory that costs least, found by iterative linear-quadratic
+//! regulators (iLQR) and by differential dynamic programming (DDP), on generated first and second derivatives
+//! of the discrete step.
 //!
 //! ```text
 //! cargo run --release --example trajectory -p linkwork-models
@@ -68,7 +69,8 @@ impl Trajectory {
         pushes + 50.0 * ((q - goal()).norm_squared() + v.norm_squared())
     }
 
-    /// The trajectory from the same start under policies about this one, with the length `α` of their changes.
+    /// The trajectory from the same start under policies about this one, with the length `α` of their
+    /// changes.
     fn followed(&self, policies: &Policies, length: f64) -> Result<Self, Error> {
         let mut next = self.clone();
         for (k, policy) in policies.iter().enumerate() {
@@ -79,8 +81,8 @@ impl Trajectory {
         Ok(next)
     }
 
-    /// Policies that are best to second order about this trajectory, and what they should save; `None` if the costs are not
-    /// convex in a push. DDP counts the curvature of the steps, iLQR does not.
+    /// Policies that are best to second order about this trajectory, and what they should save; `None` if the
+    /// costs are not convex in a push. DDP counts the curvature of the steps, iLQR does not.
     fn policies(&self, ddp: bool, regularisation: f64) -> Result<Option<(Policies, f64)>, Error> {
         let none = Policy {
             change: SVector::zeros(),
@@ -124,8 +126,8 @@ fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
             regularisation = (4.0 * regularisation).max(1e-6);
             continue;
         };
-        // Half as long a change, and half again, until it saves a part of what it should; near the end rounding hides that.
-        // A change that is far too long ends in states that are no numbers.
+        // Half as long a change, and half again, until it saves a part of what it should; near the end
+        // rounding hides that. A change that is far too long ends in states that are no numbers.
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
         let mut tried = lengths.filter_map(|length| best.followed(&policies, length).ok());
         let enough = |next: &Trajectory| saved < 1e-11 || next.costs() < best.costs() - 1e-4 * saved;

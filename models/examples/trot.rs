@@ -1,10 +1,11 @@
-//! A quadruped trots and walks on its feet: a gait that leads the feet around, springs and dampers at the joints that follow it, and
-//! the ground that does the rest.
+//! A quadruped trots and walks on its feet: a gait that leads the feet around, springs and dampers at the
+//! joints that follow it, and the ground that does the rest.
 //!
-//! Feet are led backwards under the hips while they stand, and return above the ground. The joints give way, so that the robot goes at
-//! half to three quarters of the speed at which its feet are led. In a trot feet stand in diagonal pairs, half of
-//! the time each; in a walk they are lifted one after the other. Source: Hildebrand, *Symmetrical gaits of horses*, Science 150
-//! (1965). Nothing is known of contacts here; what the ground exerts is read off as force plates would do it.
+//! Feet are led backwards under the hips while they stand, and return above the ground. The joints give way,
+//! so that the robot goes at half to three quarters of the speed at which its feet are led. In a trot feet
+//! stand in diagonal pairs, half of the time each; in a walk they are lifted one after the other. Source:
+//! Hildebrand, *Symmetrical gaits of horses*, Science 150 (1965). Nothing is known of contacts here; what the
+//! ground exerts is read off as force plates would do it.
 //!
 //! ```text
 //! cargo run --release --example trot -p linkwork-models

@@ -23,7 +23,8 @@ fn main() {
     let placement = Arm.frame_placement(tool, &q);
     println!("tool at           {:.4?}", placement.translation.vector.as_slice());
 
-    // The Jacobian turns joint velocities into the velocity of the tool: linear, then angular, in ground axes.
+    // The Jacobian turns joint velocities into the velocity of the tool: linear, then angular, in ground
+    // axes.
     let jacobian = Arm.frame_jacobian(tool, &q);
     println!("moves with        {:.4?}", (jacobian * v).as_slice());
     let step = 1e-6;

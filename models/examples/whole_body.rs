@@ -1,10 +1,11 @@
-//! A quadruped on its four feet moves its trunk about: whole-body control, whose torques let the feet push within their cones of
-//! friction, and no more along the ground than they have to.
+//! A quadruped on its four feet moves its trunk about: whole-body control, whose torques let the feet push
+//! within their cones of friction, and no more along the ground than they have to.
 //!
-//! Trunk and contact forces depend on the torques by [`contact::forward_dynamics_derivatives`]: `v̇ = v̇₀ + A τ`, `f = f₀ + F τ`. Of
-//! all torques that give the trunk the acceleration it should have, those are taken whose forces are least along the ground. Source:
-//! Righetti, Buchli, Mistry, Kalakrishnan and Schaal, *Optimal distribution of contact forces with inverse-dynamics control*,
-//! International Journal of Robotics Research 32 (2013).
+//! Trunk and contact forces depend on the torques by [`contact::forward_dynamics_derivatives`]:
+//! `v̇ = v̇₀ + A τ`, `f = f₀ + F τ`. Of all torques that give the trunk the acceleration it should have,
+//! those are taken whose forces are least along the ground. Source: Righetti, Buchli, Mistry, Kalakrishnan
+//! and Schaal, *Optimal distribution of contact forces with inverse-dynamics control*, International Journal
+//! of Robotics Research 32 (2013).
 //!
 //! ```text
 //! cargo run --release --example whole_body -p linkwork-models
@@ -34,7 +35,8 @@ type Torques = SVector<f64, 12>;
 /// Hip, thigh and shank of each leg, rad.
 const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
 const STANDING: [Touch; 4] = [Touch::Sticks; 4];
-/// What a torque costs beside a force along the ground, (N/(N·m))²; and a normal force, so that all feet carry.
+/// What a torque costs beside a force along the ground, (N/(N·m))²; and a normal force, so that all feet
+/// carry.
 const TORQUE: f64 = 1e-4;
 const NORMAL: f64 = 1e-2;
 /// How the trunk moves: sideways and up, m, nodding, rad, at this frequency, rad/s.

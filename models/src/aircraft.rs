@@ -1,12 +1,14 @@
 use linkwork::mechanism;
 
-/// An aircraft as a rigid body with linear aerodynamics in pitch: lift, drag, pitching moment, elevator and thrust.
+/// An aircraft as a rigid body with linear aerodynamics in pitch: lift, drag, pitching moment, elevator and
+/// thrust.
 ///
-/// Source: Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*, on aircraft; Etkin and Reid,
-/// *Dynamics of Flight* (1996), ch. 2 and 4.
+/// Source: Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*, on aircraft; Etkin and
+/// Reid, *Dynamics of Flight* (1996), ch. 2 and 4.
 ///
-/// - Axes: forward, right, down, of the ground too. Configuration: place and unit quaternion of `flight`; velocity:
-///   linear and angular in the aircraft's axes, (u, v, w) and (p, q, r). Inputs: `elevator`, rad; `thrust`, N, forward.
+/// - Axes: forward, right, down, of the ground too. Configuration: place and unit quaternion of `flight`;
+///   velocity: linear and angular in the aircraft's axes, (u, v, w) and (p, q, r). Inputs: `elevator`, rad;
+///   `thrust`, N, forward.
 /// - Angle of attack `α = atan2(w, u)`, dynamic pressure `Q = ½ ρ V²`. In the plane of symmetry: lift
 ///   `Q S (C_L0 + C_Lα α)`, drag `Q S (C_D0 + K C_L²)`, pitching moment
 ///   `Q S c (C_m0 + C_mα α + C_mq q c / (2 V) + C_mδ δ)`.
@@ -25,7 +27,8 @@ pub struct Aircraft {
     pub iyy: f64,
     /// Moment of inertia about the downward axis, kg·m².
     pub izz: f64,
-    /// Entry of the inertia matrix in row x and column z, kg·m²: minus the product of inertia of the handbooks.
+    /// Entry of the inertia matrix in row x and column z, kg·m²: minus the product of inertia of the
+    /// handbooks.
     pub ixz: f64,
     /// Density of the air, kg/m³.
     pub density: f64,
@@ -45,8 +48,8 @@ pub struct Aircraft {
     pub cm_0: f64,
     /// Slope of the pitching moment's coefficient with the angle of attack, 1/rad, negative if stable.
     pub cm_alpha: f64,
-    /// Slope of the pitching moment's coefficient with the pitch rate, which half the chord over the speed makes
-    /// dimensionless.
+    /// Slope of the pitching moment's coefficient with the pitch rate, which half the chord over the speed
+    /// makes dimensionless.
     pub cm_rate: f64,
     /// Slope of the pitching moment's coefficient with the elevator's angle, 1/rad.
     pub cm_elevator: f64,

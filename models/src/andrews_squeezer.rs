@@ -1,13 +1,13 @@
 use linkwork::mechanism;
 
-/// Andrews' squeezing mechanism: seven bodies in three loops that one motor drives, the best known test of methods for
-/// constrained motion.
+/// Andrews' squeezing mechanism: seven bodies in three loops that one motor drives, the best known test of
+/// methods for constrained motion.
 ///
-/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II* (1996), §VI.9; parameters of the Test Set for
-/// IVP Solvers (Mazzia and Magherini), problem `andrews`.
+/// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II* (1996), §VI.9; parameters of the
+/// Test Set for IVP Solvers (Mazzia and Magherini), problem `andrews`.
 ///
-/// - Coordinates: seven angles `β`, `Θ`, `γ`, `Φ`, `δ`, `Ω`, `ε`, rad. The pins `e3`, `e4` and `e6` close loops, all at one
-///   point of `k2`.
+/// - Coordinates: seven angles `β`, `Θ`, `γ`, `Φ`, `δ`, `Ω`, `ε`, rad. The pins `e3`, `e4` and `e6` close
+///   loops, all at one point of `k2`.
 #[mechanism(derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AndrewsSqueezer {

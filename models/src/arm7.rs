@@ -4,11 +4,11 @@ use linkwork::mechanism;
 ///
 /// Source: `franka_ros` (Apache-2.0) by way of `example-robot-data` 5.0.0; see the head of `urdf/panda.urdf`.
 ///
-/// - Coordinates: `panda_joint1` to `panda_joint7`, rad, then `panda_finger_joint1`, m, which the other finger mimics.
-///   Inputs: a torque (N·m) or force (N) on each.
-/// - Closed form: `panda_link0` to `panda_link8` by the manufacturer's Denavit–Hartenberg parameters in Craig's
-///   convention, d = (333, 0, 316, 0, 384, 0, 0) mm, a = (0, 0, 0, 82.5, −82.5, 0, 88) mm,
-///   α = (0, −90, 90, 90, −90, 90, 90)°, flange 107 mm.
+/// - Coordinates: `panda_joint1` to `panda_joint7`, rad, then `panda_finger_joint1`, m, which the other
+///   finger mimics. Inputs: a torque (N·m) or force (N) on each.
+/// - Closed form: `panda_link0` to `panda_link8` by the manufacturer's Denavit–Hartenberg parameters in
+///   Craig's convention, d = (333, 0, 316, 0, 384, 0, 0) mm, a = (0, 0, 0, 82.5, −82.5, 0, 88) mm, α = (0,
+///   −90, 90, 90, −90, 90, 90)°, flange 107 mm.
 ///
 /// For control see [`PandaArm`].
 #[mechanism(urdf = "urdf/panda.urdf")]
@@ -22,7 +22,8 @@ pub struct Panda;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PandaArm;
 
-/// A [`PandaArm`] that holds a load between its fingertips: what a controller that knows only the arm has to cope with.
+/// A [`PandaArm`] that holds a load between its fingertips: what a controller that knows only the arm has to
+/// cope with.
 #[mechanism(urdf = "urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"])]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadedPanda {

@@ -1,13 +1,13 @@
 use linkwork::mechanism;
 
-/// A ball that rolls without slipping inside a vertical tube. It does not fall: it sinks, turns back and rises again, as
-/// a golf ball that leaves the hole.
+/// A ball that rolls without slipping inside a vertical tube. It does not fall: it sinks, turns back and
+/// rises again, as a golf ball that leaves the hole.
 ///
-/// Source: Gualtieri, Tokieda, Advis-Gaete, Carry, Reffet and Guthmann, *Golfer's dilemma*, Am. J. Phys. 74 (2006);
-/// Neimark and Fufaev, *Dynamics of Nonholonomic Systems* (1972), ch. II.
+/// Source: Gualtieri, Tokieda, Advis-Gaete, Carry, Reffet and Guthmann, *Golfer's dilemma*, Am. J. Phys. 74
+/// (2006); Neimark and Fufaev, *Dynamics of Nonholonomic Systems* (1972), ch. II.
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes; z points up
-///   along the tube's axis.
+/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes; z
+///   points up along the tube's axis.
 /// - The rate `Ω` of the way round is constant, and with the spin `n` about the line from the axis:
 ///   `r ṅ = Ω ż`, `(7/5) z̈ + (2/5) r n Ω + g = 0`, an oscillation with the frequency `√(2/7) Ω`.
 #[mechanism(gravity = -g * z)]

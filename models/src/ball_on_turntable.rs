@@ -1,15 +1,15 @@
 use linkwork::mechanism;
 
-/// A ball that rolls without slipping on a turntable that is driven: it neither flies off nor comes to rest, but goes
-/// round in a circle, anywhere on the table.
+/// A ball that rolls without slipping on a turntable that is driven: it neither flies off nor comes to rest,
+/// but goes round in a circle, anywhere on the table.
 ///
-/// Source: Routh, *Advanced Dynamics of a System of Rigid Bodies* (1905), ch. V; Weltner, *Stable circular orbits of
-/// freely moving balls on rotating discs*, Am. J. Phys. 47 (1979).
+/// Source: Routh, *Advanced Dynamics of a System of Rigid Bodies* (1905), ch. V; Weltner, *Stable circular
+/// orbits of freely moving balls on rotating discs*, Am. J. Phys. 47 (1979).
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes. z points up;
-///   the table turns about z at the constant rate `spin` `Ω`.
-/// - Seen from the ground the ball's centre moves with `v̇ = (2/7) Ω z × v`: in a circle at the rate `(2/7) Ω`, whatever
-///   its mass and size.
+/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes. z
+///   points up; the table turns about z at the constant rate `spin` `Ω`.
+/// - Seen from the ground the ball's centre moves with `v̇ = (2/7) Ω z × v`: in a circle at the rate
+///   `(2/7) Ω`, whatever its mass and size.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallOnTurntable {

@@ -2,16 +2,16 @@ use linkwork::mechanism;
 
 /// A bead that slides on a circular hoop, which is kept turning about its vertical diameter.
 ///
-/// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), ch. 2; Strogatz, *Nonlinear Dynamics and Chaos*
-/// (2015), §3.5.
+/// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), ch. 2; Strogatz, *Nonlinear Dynamics and
+/// Chaos* (2015), §3.5.
 ///
-/// - Coordinate: `theta`, the bead's angle `θ` from the bottom of the hoop, rad. The hoop turns at the prescribed rate
-///   `Ω`, so the functions take the time first.
+/// - Coordinate: `theta`, the bead's angle `θ` from the bottom of the hoop, rad. The hoop turns at the
+///   prescribed rate `Ω`, so the functions take the time first.
 /// - Equation of motion: `m R² θ̈ + m g R sin θ − m R² Ω² sin θ cos θ = 0`.
-/// - Equilibria: the bottom, the top and, if `Ω² > g / R`, `cos θ₀ = g / (R Ω²)`; about the last the bead oscillates
-///   with the frequency `Ω sin θ₀`. The bottom is then unstable.
-/// - The energy is not conserved, because the drive works; Jacobi's integral `½ m R² (θ̇² − Ω² sin² θ) − m g R cos θ`
-///   is.
+/// - Equilibria: the bottom, the top and, if `Ω² > g / R`, `cos θ₀ = g / (R Ω²)`; about the last the bead
+///   oscillates with the frequency `Ω sin θ₀`. The bottom is then unstable.
+/// - The energy is not conserved, because the drive works; Jacobi's integral
+///   `½ m R² (θ̇² − Ω² sin² θ) − m g R cos θ` is.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeadOnSpinningHoop {

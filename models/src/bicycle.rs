@@ -1,17 +1,19 @@
 use linkwork::mechanism;
 
-/// The bicycle with a rigid rider whose hands are off the bar: four rigid bodies, two of them wheels that roll on their
-/// sharp rims. In a range of speeds it balances itself.
+/// The bicycle with a rigid rider whose hands are off the bar: four rigid bodies, two of them wheels that
+/// roll on their sharp rims. In a range of speeds it balances itself.
 ///
-/// Source: Whipple, *The stability of the motion of a bicycle*, Q. J. Pure Appl. Math. 30 (1899); Meijaard, Papadopoulos,
-/// Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a bicycle: a benchmark and review*,
-/// Proc. R. Soc. A 463 (2007), whose parameters are [`BENCHMARK`](Self::BENCHMARK).
+/// Source: Whipple, *The stability of the motion of a bicycle*, Q. J. Pure Appl. Math. 30 (1899); Meijaard,
+/// Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a bicycle: a
+/// benchmark and review*, Proc. R. Soc. A 463 (2007), whose parameters are [`BENCHMARK`](Self::BENCHMARK).
 ///
-/// - Configuration: place and unit quaternion `pose` of the rear frame, then the turn of the rear wheel `hub`, the steering
-///   angle `steer` and the turn of the front wheel `front_hub`, rad. In the upright straight configuration x points
-///   forward, y to the right, z down, and the origin is where the rear wheel touches the road.
-/// - Riding straight at the speed `v`, lean and steer obey `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q = 0`. The benchmark
-///   weaves up to 4.292 m/s, balances itself from there to 6.024 m/s, and falls over slowly (capsizes) above.
+/// - Configuration: place and unit quaternion `pose` of the rear frame, then the turn of the rear wheel
+///   `hub`, the steering angle `steer` and the turn of the front wheel `front_hub`, rad. In the upright
+///   straight configuration x points forward, y to the right, z down, and the origin is where the rear wheel
+///   touches the road.
+/// - Riding straight at the speed `v`, lean and steer obey `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q = 0`. The
+///   benchmark weaves up to 4.292 m/s, balances itself from there to 6.024 m/s, and falls over slowly
+///   (capsizes) above.
 #[mechanism(gravity = g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bicycle {

@@ -2,13 +2,14 @@ use linkwork::mechanism;
 
 /// A ball that is thrown without spin onto a level lane: it slides, and dry friction brings it to roll.
 ///
-/// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), § 5.9 (exercises); Sommerfeld, *Mechanics* (1952),
-/// § 27 (billiards).
+/// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), § 5.9 (exercises); Sommerfeld,
+/// *Mechanics* (1952), § 27 (billiards).
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes; z points up.
-/// - While it slides, with the slip `s` of its lowest point, `v̇ = −μ g s / √(|s|² + v₀²)`, which tends to Coulomb's
-///   law as the `regular_speed` `v₀` goes to zero. The slip keeps its direction: the path is a parabola, then
-///   straight.
+/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes; z
+///   points up.
+/// - While it slides, with the slip `s` of its lowest point, `v̇ = −μ g s / √(|s|² + v₀²)`, which tends to
+///   Coulomb's law as the `regular_speed` `v₀` goes to zero. The slip keeps its direction: the path is a
+///   parabola, then straight.
 /// - Thrown with the speed `v` it rolls from the time `2 v / (7 μ g)` on, at `5 v / 7`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]

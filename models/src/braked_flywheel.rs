@@ -2,14 +2,14 @@ use linkwork::mechanism;
 
 /// A flywheel on a shaft with a brake: dry friction brings it to rest.
 ///
-/// Source: Coulomb, *Théorie des machines simples* (1785); Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics,
-/// and Dynamics*, on dashpots and friction.
+/// Source: Coulomb, *Théorie des machines simples* (1785); Bernstein, Goel and Ansari, *Geometry, Kinematics,
+/// Statics, and Dynamics*, on dashpots and friction.
 ///
 /// - Coordinate: `shaft`, the flywheel's angle, rad. Input: `motor`, a torque, N·m.
-/// - Equation of motion: `J ω̇ = τ − f tanh(ω / ω₀)`: the smooth form of `τ − f sign ω`; below the small speed `ω₀` it
-///   creeps.
-/// - Running down from `ω(0)`: `sinh(ω / ω₀) = sinh(ω(0) / ω₀) exp(−f t / (J ω₀))`, so that `ω = ω(0) − f t / J` until
-///   it is all but at rest, after `J ω(0) / f`.
+/// - Equation of motion: `J ω̇ = τ − f tanh(ω / ω₀)`: the smooth form of `τ − f sign ω`; below the small
+///   speed `ω₀` it creeps.
+/// - Running down from `ω(0)`: `sinh(ω / ω₀) = sinh(ω(0) / ω₀) exp(−f t / (J ω₀))`, so that
+///   `ω = ω(0) − f t / J` until it is all but at rest, after `J ω(0) / f`.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrakedFlywheel {

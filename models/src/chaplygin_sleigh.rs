@@ -5,9 +5,9 @@ use linkwork::mechanism;
 /// Source: Neimark and Fufaev, *Dynamics of Nonholonomic Systems* (1972), ch. III.
 ///
 /// - Coordinates: `ice.x`, `ice.y`, place of the knife, m; `ice.angle`, its heading from x, rad.
-/// - With the speed `u` along the knife and the turning rate `ω`: `u̇ = a ω²`, `(J + m a²) ω̇ = −m a u ω`. The energy
-///   is constant, and yet the motion settles: the sleigh comes to run straight, centre of mass ahead, with
-///   `u = V tanh(a V t / b² + const)`, `b² = a² + J/m`.
+/// - With the speed `u` along the knife and the turning rate `ω`: `u̇ = a ω²`, `(J + m a²) ω̇ = −m a u ω`.
+///   The energy is constant, and yet the motion settles: the sleigh comes to run straight, centre of mass
+///   ahead, with `u = V tanh(a V t / b² + const)`, `b² = a² + J/m`.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChaplyginSleigh {

@@ -2,14 +2,16 @@ use linkwork::mechanism;
 
 /// An aircraft by its non-dimensional derivatives about level cruise, `α̇` derivatives among them.
 ///
-/// Source: Etkin and Reid, *Dynamics of Flight* (1996), ch. 4 and 6; the figures of [`BOEING_747`](Self::BOEING_747) from their
-/// tables, those of [`NAVION`](Self::NAVION) from Nelson, *Flight Stability and Automatic Control* (1998), appendix B.
+/// Source: Etkin and Reid, *Dynamics of Flight* (1996), ch. 4 and 6; the figures of
+/// [`BOEING_747`](Self::BOEING_747) from their tables, those of [`NAVION`](Self::NAVION) from Nelson, *Flight
+/// Stability and Automatic Control* (1998), appendix B.
 ///
-/// - Axes: forward, right, down, of the ground too; the stability axes of the cruise. Inputs: `elevator`, `aileron`, `rudder`, rad;
-///   `thrust`, N, beyond that of the cruise.
-/// - With `û = V / u₀ − 1`, the dynamic pressure `Q = ½ ρ V²`, and turning made dimensionless by `2 V / c` and `2 V / b`: forces and
-///   moments are `Q S`, `Q S c`, `Q S b` times coefficients that are linear, as
-///   `C_Z = C_Z0 + C_Zu û + C_Zα α + (C_Zq q + C_Zα̇ α̇) c / (2 V) + C_Zδ δ`. In the cruise `C_X = 0` and `C_Z0 = −m g / (Q S)`.
+/// - Axes: forward, right, down, of the ground too; the stability axes of the cruise. Inputs: `elevator`,
+///   `aileron`, `rudder`, rad; `thrust`, N, beyond that of the cruise.
+/// - With `û = V / u₀ − 1`, the dynamic pressure `Q = ½ ρ V²`, and turning made dimensionless by `2 V / c`
+///   and `2 V / b`: forces and moments are `Q S`, `Q S c`, `Q S b` times coefficients that are linear, as
+///   `C_Z = C_Z0 + C_Zu û + C_Zα α + (C_Zq q + C_Zα̇ α̇) c / (2 V) + C_Zδ δ`. In the cruise `C_X = 0` and
+///   `C_Z0 = −m g / (Q S)`.
 /// - What depends on `α̇` multiplies accelerations, and makes that matrix unsymmetric.
 #[mechanism(gravity = g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +26,8 @@ pub struct CruisingAircraft {
     pub iyy: f64,
     /// Moment of inertia about the downward axis, kg·m².
     pub izz: f64,
-    /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column z.
+    /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column
+    /// z.
     pub product: f64,
     /// Density of the air, kg/m³.
     #[unit(kg / m3)]
@@ -203,7 +206,8 @@ impl CruisingAircraft {
     };
 
     /// The Navion, a light aircraft with four seats, at 176 ft/s by the sea: 2750 lb, 184 ft², with
-    /// `C_L = 0.41`, `C_D = 0.05`, `C_Lα = 4.44`, `C_Dα = 0.33`. Forces by pitch rate are left out, as Nelson does.
+    /// `C_L = 0.41`, `C_D = 0.05`, `C_Lα = 4.44`, `C_Dα = 0.33`. Forces by pitch rate are left out, as Nelson
+    /// does.
     pub const NAVION: Self = Self {
         g: 32.2 * FOOT,
         mass: 2750.0 / 32.2 * SLUG,

@@ -2,12 +2,13 @@ use linkwork::mechanism;
 
 /// A solid cylinder that rolls without slipping inside a cylindrical trough.
 ///
-/// Source: Landau and Lifshitz, *Mechanics* (1976), §32, problem 6; Goldstein, Poole and Safko, *Classical Mechanics*
-/// (2002), ch. 2.
+/// Source: Landau and Lifshitz, *Mechanics* (1976), §32, problem 6; Goldstein, Poole and Safko, *Classical
+/// Mechanics* (2002), ch. 2.
 ///
-/// - Coordinate: `phi`, the angle `φ` of the line of centres from the vertical, rad, counter-clockwise seen from +z; y
-///   points up. The cylinder turns the other way, by `−(R − r) φ / r`.
-/// - Equation of motion: `(3/2) m (R − r)² φ̈ + m g (R − r) sin φ = 0`: a pendulum with the length `(3/2) (R − r)`.
+/// - Coordinate: `phi`, the angle `φ` of the line of centres from the vertical, rad, counter-clockwise seen
+///   from +z; y points up. The cylinder turns the other way, by `−(R − r) φ / r`.
+/// - Equation of motion: `(3/2) m (R − r)² φ̈ + m g (R − r) sin φ = 0`: a pendulum with the length
+///   `(3/2) (R − r)`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CylinderInTrough {

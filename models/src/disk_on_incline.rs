@@ -4,10 +4,11 @@ use linkwork::mechanism;
 ///
 /// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), §2.4; Galilei, *Discorsi* (1638).
 ///
-/// - Coordinate: `s`, the way down the incline, m; place and attitude of the disk follow from it, so that rolling
-///   without slip needs no constraint. x points level towards the downhill side, y up.
-/// - Equation of motion: `(m + J/R²) s̈ = m g sin α`. With `J = κ m R²` the acceleration is `g sin α / (1 + κ)`: `κ` is
-///   1 for a hoop, ½ for a disk or a solid cylinder, ⅔ for a shell and ⅖ for a solid ball, whatever its mass and size.
+/// - Coordinate: `s`, the way down the incline, m; place and attitude of the disk follow from it, so that
+///   rolling without slip needs no constraint. x points level towards the downhill side, y up.
+/// - Equation of motion: `(m + J/R²) s̈ = m g sin α`. With `J = κ m R²` the acceleration is
+///   `g sin α / (1 + κ)`: `κ` is 1 for a hoop, ½ for a disk or a solid cylinder, ⅔ for a shell and ⅖ for a
+///   solid ball, whatever its mass and size.
 /// - Output: `rim`, the velocity of that point of the rim which touches the incline at `s = 0`, m/s.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]

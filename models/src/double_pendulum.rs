@@ -8,7 +8,8 @@ use linkwork::mechanism;
 ///   counter-clockwise seen from +z; y points up.
 /// - Mass matrix: `M₁₁ = (m₁/3 + m₂) l₁² + m₂ l₂²/3 + m₂ l₁ l₂ cos θ₂`,
 ///   `M₁₂ = m₂ l₂²/3 + ½ m₂ l₁ l₂ cos θ₂`, `M₂₂ = m₂ l₂²/3`.
-/// - Bias forces: `h₁ = −m₂ l₁ l₂ sin θ₂ (θ̇₁ + ½ θ̇₂) θ̇₂ + (½ m₁ + m₂) g l₁ sin θ₁ + ½ m₂ g l₂ sin(θ₁ + θ₂)`,
+/// - Bias forces:
+///   `h₁ = −m₂ l₁ l₂ sin θ₂ (θ̇₁ + ½ θ̇₂) θ̇₂ + (½ m₁ + m₂) g l₁ sin θ₁ + ½ m₂ g l₂ sin(θ₁ + θ₂)`,
 ///   `h₂ = ½ m₂ l₁ l₂ sin θ₂ θ̇₁² + ½ m₂ g l₂ sin(θ₁ + θ₂)`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]

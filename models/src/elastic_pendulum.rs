@@ -5,11 +5,12 @@ use linkwork::mechanism;
 /// Source: Vitt and Gorelik, *Oscillations of an elastic pendulum* (1933); Lynch, *Resonant motions of the
 /// three-dimensional elastic pendulum*, Int. J. Non-Linear Mech. 37 (2002).
 ///
-/// - Coordinates: `length` of the spring, `r`, m; `theta`, its angle `θ` from the vertical, rad, counter-clockwise seen
-///   from +z; y points up.
-/// - Equations of motion: `m r̈ − m r θ̇² − m g cos θ + k (r − l) = 0`, `m r² θ̈ + 2 m r ṙ θ̇ + m g r sin θ = 0`.
-/// - At rest `r₀ = l + m g / k`. For small motions it bounces with `√(k/m)` and swings with `√(g/r₀)`; where the first
-///   is twice the second, bouncing turns into swinging and back.
+/// - Coordinates: `length` of the spring, `r`, m; `theta`, its angle `θ` from the vertical, rad,
+///   counter-clockwise seen from +z; y points up.
+/// - Equations of motion: `m r̈ − m r θ̇² − m g cos θ + k (r − l) = 0`,
+///   `m r² θ̈ + 2 m r ṙ θ̇ + m g r sin θ = 0`.
+/// - At rest `r₀ = l + m g / k`. For small motions it bounces with `√(k/m)` and swings with `√(g/r₀)`; where
+///   the first is twice the second, bouncing turns into swinging and back.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticPendulum {

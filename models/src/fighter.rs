@@ -2,18 +2,20 @@ use linkwork::{Table, mechanism};
 
 mod tables;
 
-/// A fighter with tabulated aerodynamics and an engine that follows its throttle late: the F-16 at subsonic speeds.
+/// A fighter with tabulated aerodynamics and an engine that follows its throttle late: the F-16 at subsonic
+/// speeds.
 ///
-/// Source: Stevens, Lewis and Johnson, *Aircraft Control and Simulation* (2015), § 3.5 and appendix A, after Nguyen and others, NASA
-/// TP 1538 (1979).
+/// Source: Stevens, Lewis and Johnson, *Aircraft Control and Simulation* (2015), § 3.5 and appendix A, after
+/// Nguyen and others, NASA TP 1538 (1979).
 ///
-/// - Axes: forward, right, down, of the ground too, from the centre of mass. Inputs: `throttle`, from 0 to 1; `elevator`, `aileron`,
-///   `rudder`, in degrees, as are the tables' angles. State: `power`, of the engine, in per cent.
-/// - Coefficients are sums of tables of the angles of attack and sideslip and of deflections, and of tables by the angle of attack
-///   times turning made dimensionless. The centre of mass lies `place` chords behind the leading edge, the moments' reference
-///   `reference`.
-/// - The power follows what the throttle commands at a rate that depends on both, by 40 and 60 per cent when the afterburner goes off or
-///   on: pieces, which `signum` puts together.
+/// - Axes: forward, right, down, of the ground too, from the centre of mass. Inputs: `throttle`, from 0 to 1;
+///   `elevator`, `aileron`, `rudder`, in degrees, as are the tables' angles. State: `power`, of the engine,
+///   in per cent.
+/// - Coefficients are sums of tables of the angles of attack and sideslip and of deflections, and of tables
+///   by the angle of attack times turning made dimensionless. The centre of mass lies `place` chords behind
+///   the leading edge, the moments' reference `reference`.
+/// - The power follows what the throttle commands at a rate that depends on both, by 40 and 60 per cent when
+///   the afterburner goes off or on: pieces, which `signum` puts together.
 /// - The rotor of the engine has an angular momentum, `spin`.
 /// - The air is the source's: `ρ = ρ₀ (1 − h / h₀)^4.14`, `T = T₀ (1 − h / h₀)`, up to 35 000 ft.
 #[mechanism(gravity = g * z, derivatives)]
@@ -29,7 +31,8 @@ pub struct Fighter {
     pub iyy: f64,
     /// Moment of inertia about the downward axis, kg·m².
     pub izz: f64,
-    /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column z.
+    /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column
+    /// z.
     pub product: f64,
     /// Angular momentum of the engine's rotor, kg·m²/s, along the forward axis.
     pub spin: f64,

@@ -2,13 +2,13 @@ use linkwork::mechanism;
 
 /// The planar five-bar: a parallel robot whose two motors both stand on the ground and move one tool.
 ///
-/// Source: Liu, Wang and Pritschow, *Kinematics, singularity and workspace of planar 5R symmetrical parallel mechanisms*,
-/// Mech. Mach. Theory 41 (2006).
+/// Source: Liu, Wang and Pritschow, *Kinematics, singularity and workspace of planar 5R symmetrical parallel
+/// mechanisms*, Mech. Mach. Theory 41 (2006).
 ///
-/// - Coordinates: `left` and `right` `θ₁`, `θ₂`, the angles of the two cranks from x; `left_elbow` and `right_elbow`, the
-///   angles of the forearms from their cranks; rad. y points up. The left crank turns about the origin, the right one
-///   about `(base, 0)`. The pin `wrist` closes the loop; the tool is there. Inputs: `left_motor` and `right_motor`,
-///   torques on the cranks, N·m.
+/// - Coordinates: `left` and `right` `θ₁`, `θ₂`, the angles of the two cranks from x; `left_elbow` and
+///   `right_elbow`, the angles of the forearms from their cranks; rad. y points up. The left crank turns
+///   about the origin, the right one about `(base, 0)`. The pin `wrist` closes the loop; the tool is there.
+///   Inputs: `left_motor` and `right_motor`, torques on the cranks, N·m.
 /// - The tool `P` lies on circles about both elbows `Eᵢ`: `|P − Eᵢ| = forearm`. The rates follow from
 ///   `(P − Eᵢ) · (Ṗ − Ėᵢ) = 0`.
 #[mechanism(gravity = -g * y)]

@@ -2,16 +2,17 @@ use linkwork::mechanism;
 
 /// Foucault's pendulum: a pendulum over the turning earth.
 ///
-/// Source: Foucault, *Démonstration physique du mouvement de rotation de la terre* (1851); Landau and Lifshitz,
-/// *Mechanics* (1976), §39, problem 3.
+/// Source: Foucault, *Démonstration physique du mouvement de rotation de la terre* (1851); Landau and
+/// Lifshitz, *Mechanics* (1976), §39, problem 3.
 ///
-/// - The ground does not turn; the laboratory turns with the earth about z, its own x up, y east, z north. The
-///   centrifugal force on the suspension belongs to the local `g`, as usual. Functions take the time first.
-/// - Coordinates: `suspension.first`, `a`, about the direction south, `suspension.second`, `b`, about the carried east,
-///   rad. The bob is at `x = −l sin b` south, `y = l sin a cos b` east, `−l cos a cos b` up.
-/// - Small swings, with `ω² = g/l` and `Ωᵥ = Ω sin λ`, the vertical part of the earth's rotation at the latitude `λ`:
-///   `ẍ + ω² x = 2 Ωᵥ ẏ`, `ÿ + ω² y = −2 Ωᵥ ẋ` up to terms in `Ω²`: the plane of the swing turns with `−Ωᵥ`, clockwise
-///   in the north.
+/// - The ground does not turn; the laboratory turns with the earth about z, its own x up, y east, z north.
+///   The centrifugal force on the suspension belongs to the local `g`, as usual. Functions take the time
+///   first.
+/// - Coordinates: `suspension.first`, `a`, about the direction south, `suspension.second`, `b`, about the
+///   carried east, rad. The bob is at `x = −l sin b` south, `y = l sin a cos b` east, `−l cos a cos b` up.
+/// - Small swings, with `ω² = g/l` and `Ωᵥ = Ω sin λ`, the vertical part of the earth's rotation at the
+///   latitude `λ`: `ẍ + ω² x = 2 Ωᵥ ẏ`, `ÿ + ω² y = −2 Ωᵥ ẋ` up to terms in `Ω²`: the plane of the swing
+///   turns with `−Ωᵥ`, clockwise in the north.
 /// - At the pole (`λ = ½π`) the motion is that of the spherical pendulum in a frame at rest, exactly.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,14 +2,14 @@ use linkwork::mechanism;
 
 /// The planar four-bar linkage: a crank, a coupler and a rocker, between two pivots on the ground.
 ///
-/// Source: Freudenstein, *Approximate synthesis of four-bar linkages*, Trans. ASME 77 (1955); Norton, *Design of
-/// Machinery* (2004), ch. 4 and 6.
+/// Source: Freudenstein, *Approximate synthesis of four-bar linkages*, Trans. ASME 77 (1955); Norton, *Design
+/// of Machinery* (2004), ch. 4 and 6.
 ///
-/// - Coordinates: `input` `θ₂`, the crank's angle from x; `joint`, the coupler's angle from the crank, so that its own is
-///   `θ₃ = input + joint`; `output` `θ₄`, the rocker's angle from x; rad. y points up. The pin `loop_` closes the loop.
-///   Input: `motor`, a torque on the crank, N·m.
-/// - Freudenstein's equation: `d/a cos θ₄ − d/c cos θ₂ + (a² − b² + c² + d²) / (2 a c) = cos(θ₂ − θ₄)`, with the lengths
-///   `a`, `b`, `c` of crank, coupler and rocker, and `d` of the base.
+/// - Coordinates: `input` `θ₂`, the crank's angle from x; `joint`, the coupler's angle from the crank, so
+///   that its own is `θ₃ = input + joint`; `output` `θ₄`, the rocker's angle from x; rad. y points up. The
+///   pin `loop_` closes the loop. Input: `motor`, a torque on the crank, N·m.
+/// - Freudenstein's equation: `d/a cos θ₄ − d/c cos θ₂ + (a² − b² + c² + d²) / (2 a c) = cos(θ₂ − θ₄)`, with
+///   the lengths `a`, `b`, `c` of crank, coupler and rocker, and `d` of the base.
 /// - Rates: `θ̇₄ / θ̇₂ = a sin(θ₃ − θ₂) / (c sin(θ₃ − θ₄))`, `θ̇₃ / θ̇₂ = a sin(θ₄ − θ₂) / (b sin(θ₃ − θ₄))`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]

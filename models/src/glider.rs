@@ -2,12 +2,13 @@ use linkwork::mechanism;
 
 /// A glider with a parabolic polar, `C_D = C_D0 + K C_L²`, and linear moments.
 ///
-/// Source: Anderson, *Aircraft Performance and Design* (1999), § 5.10, on gliding; Etkin and Reid, *Dynamics of Flight* (1996), ch. 6,
-/// on the spiral.
+/// Source: Anderson, *Aircraft Performance and Design* (1999), § 5.10, on gliding; Etkin and Reid, *Dynamics
+/// of Flight* (1996), ch. 6, on the spiral.
 ///
 /// - Axes: forward, right, down, of the ground too. Input: `elevator`, rad, which sets the angle of attack.
-/// - Steady: the whole force of the air is the weight, and the path goes down at `tan γ = C_D / C_L`. It is flattest where
-///   `C_L = √(C_D0 / K)`, with `C_L / C_D = 1 / (2 √(K C_D0))`, and sinks slowest near `C_L = √(3 C_D0 / K)`.
+/// - Steady: the whole force of the air is the weight, and the path goes down at `tan γ = C_D / C_L`. It is
+///   flattest where `C_L = √(C_D0 / K)`, with `C_L / C_D = 1 / (2 √(K C_D0))`, and sinks slowest near
+///   `C_L = √(3 C_D0 / K)`.
 /// - Where the angle of attack hardly changes the phugoid takes `√2 π V / g` seconds, with the damping ratio
 ///   `3 C_D / (2 √2 C_L)`.
 /// - The static margin is `−C_mα / (C_Lα + C_D)` chords.

@@ -2,17 +2,17 @@ use linkwork::mechanism;
 
 /// A satellite in orbit, which gravity turns because it is weaker at the far end.
 ///
-/// Source: Hughes, *Spacecraft Attitude Dynamics* (1986), ch. 9; Bernstein, Goel and Ansari, *Geometry, Kinematics,
-/// Statics, and Dynamics*, on central gravity.
+/// Source: Hughes, *Spacecraft Attitude Dynamics* (1986), ch. 9; Bernstein, Goel and Ansari, *Geometry,
+/// Kinematics, Statics, and Dynamics*, on central gravity.
 ///
-/// - Configuration: place and unit quaternion of `flight`, the free joint from the centre of attraction; velocity:
-///   linear and angular, in the satellite's axes.
-/// - At the place `r`, with `n = r/|r|` and the inertia matrix `I`, the torque of gravity is `3 μ / r³ · n × I n`, to
-///   second order in size over distance. The force is `−μ m r / r³` and a part of second order, which `I` decides as
-///   it does the torque.
-/// - On a circular orbit with the rate `Ω = √(μ/r³)`, one axis up (yaw), one forward (roll), one across (pitch), the
-///   satellite stays so; small oscillations in pitch have the frequency `Ω √(3 (I_roll − I_yaw) / I_pitch)`. Stable if
-///   the long axis is up.
+/// - Configuration: place and unit quaternion of `flight`, the free joint from the centre of attraction;
+///   velocity: linear and angular, in the satellite's axes.
+/// - At the place `r`, with `n = r/|r|` and the inertia matrix `I`, the torque of gravity is
+///   `3 μ / r³ · n × I n`, to second order in size over distance. The force is `−μ m r / r³` and a part of
+///   second order, which `I` decides as it does the torque.
+/// - On a circular orbit with the rate `Ω = √(μ/r³)`, one axis up (yaw), one forward (roll), one across
+///   (pitch), the satellite stays so; small oscillations in pitch have the frequency
+///   `Ω √(3 (I_roll − I_yaw) / I_pitch)`. Stable if the long axis is up.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GravityGradientSatellite {

@@ -4,12 +4,14 @@ use linkwork::mechanism;
 ///
 /// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), §5.7; Magnus, *Kreisel* (1971).
 ///
-/// - Coordinates: Euler's angles `precession` about the vertical z, `nutation` about the line of nodes, `spin` about
-///   the rotor's axis: `φ`, `θ`, `ψ`, rad. The gimbals are massless, so the mass matrix is singular where the axis is
-///   vertical (`θ = 0`: gimbal lock).
-/// - Steady precession at constant `θ`, with `A` the transverse moment of inertia about the pivot, `C` the axial one
-///   and the total spin `n = ψ̇ + φ̇ cos θ`: `A φ̇² cos θ − C n φ̇ + m g h = 0`. For a fast rotor `φ̇ ≈ m g h / (C n)`.
-/// - Output: `rotor_rate`, the angular velocity of the rotor in the axes of the inner gimbal, `(θ̇, φ̇ sin θ, n)`.
+/// - Coordinates: Euler's angles `precession` about the vertical z, `nutation` about the line of nodes,
+///   `spin` about the rotor's axis: `φ`, `θ`, `ψ`, rad. The gimbals are massless, so the mass matrix is
+///   singular where the axis is vertical (`θ = 0`: gimbal lock).
+/// - Steady precession at constant `θ`, with `A` the transverse moment of inertia about the pivot, `C` the
+///   axial one and the total spin `n = ψ̇ + φ̇ cos θ`: `A φ̇² cos θ − C n φ̇ + m g h = 0`. For a fast rotor
+///   `φ̇ ≈ m g h / (C n)`.
+/// - Output: `rotor_rate`, the angular velocity of the rotor in the axes of the inner gimbal,
+///   `(θ̇, φ̇ sin θ, n)`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gyroscope {

@@ -1,15 +1,16 @@
 use linkwork::{Real, mechanism};
 
-/// The heavy symmetric top: a body of revolution that spins about a fixed point on its axis. Also called Lagrange's top.
+/// The heavy symmetric top: a body of revolution that spins about a fixed point on its axis. Also called
+/// Lagrange's top.
 ///
-/// Source: Landau and Lifshitz, *Mechanics* (1976), §35, problem 1; Goldstein, Poole and Safko, *Classical Mechanics*
-/// (2002), §5.7.
+/// Source: Landau and Lifshitz, *Mechanics* (1976), §35, problem 1; Goldstein, Poole and Safko, *Classical
+/// Mechanics* (2002), §5.7.
 ///
-/// - Configuration: the unit quaternion of the ball joint `tip`; velocity: the angular velocity in the top's axes; z is
-///   the axis of the top, and up in the ground.
-/// - Euler's equations about the fixed point, all in the top's axes, with the height `h` of the centre of mass above
-///   the tip and the moments of inertia `C` about the axis and `A = transverse + m h²` across it: the mass matrix is
-///   `M = diag(A, A, C)`, the bias forces are `ω × M ω − h e₃ × m g`.
+/// - Configuration: the unit quaternion of the ball joint `tip`; velocity: the angular velocity in the top's
+///   axes; z is the axis of the top, and up in the ground.
+/// - Euler's equations about the fixed point, all in the top's axes, with the height `h` of the centre of
+///   mass above the tip and the moments of inertia `C` about the axis and `A = transverse + m h²` across it:
+///   the mass matrix is `M = diag(A, A, C)`, the bias forces are `ω × M ω − h e₃ × m g`.
 /// - Steady precession `Ω` at the inclination `θ` with the axial spin `n`: `A Ω² cos θ − C n Ω + m g h = 0`.
 /// - Upright it sleeps if `C² n² > 4 A m g h`.
 ///

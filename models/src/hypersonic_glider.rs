@@ -1,16 +1,19 @@
 use linkwork::mechanism;
 
-/// A craft that glides from orbit, in six degrees of freedom over the round Earth, which turns below with its air.
+/// A craft that glides from orbit, in six degrees of freedom over the round Earth, which turns below with its
+/// air.
 ///
-/// Source: Vinh, Busemann and Culp, *Hypersonic and Planetary Entry Flight Mechanics* (1980), ch. 2; Stevens, Lewis and Johnson,
-/// *Aircraft Control and Simulation* (2015), § 1.7.
+/// Source: Vinh, Busemann and Culp, *Hypersonic and Planetary Entry Flight Mechanics* (1980), ch. 2; Stevens,
+/// Lewis and Johnson, *Aircraft Control and Simulation* (2015), § 1.7.
 ///
-/// - Ground: inertial axes in the centre of the Earth, z to the North Pole. `flight` is the pose in axes that turn with the Earth and
-///   are those of the ground at the time 0. Axes of the craft: forward, right, down. Inputs: `lift`, upwards in them, and `thrust`,
-///   forward, N; `moment`, about the right axis, N·m.
+/// - Ground: inertial axes in the centre of the Earth, z to the North Pole. `flight` is the pose in axes that
+///   turn with the Earth and are those of the ground at the time 0. Axes of the craft: forward, right, down.
+///   Inputs: `lift`, upwards in them, and `thrust`, forward, N; `moment`, about the right axis, N·m.
 /// - In the axes that turn, `a = −μ r / r³ − 2 Ω × v − Ω × (Ω × r) + f / m`.
-/// - Level to the east over the equator at `V` it needs the lift `m (μ / r² − (V + Ω r)² / r)`, less than to the west.
-/// - Drag is `½ ρ V² S_D`, with `ρ = ρ₀ e^{−(r − R) / H}` and the velocity `V` over the Earth, with which the air goes.
+/// - Level to the east over the equator at `V` it needs the lift `m (μ / r² − (V + Ω r)² / r)`, less than to
+///   the west.
+/// - Drag is `½ ρ V² S_D`, with `ρ = ρ₀ e^{−(r − R) / H}` and the velocity `V` over the Earth, with which the
+///   air goes.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HypersonicGlider {

@@ -1,8 +1,8 @@
 //! Ready-made mechanisms for Linkwork, from the textbook's first page to humanoid robots.
 //!
-//! Each has a file of its own that states the problem, its source, its parameters and, where there is one, the
-//! closed form of its motion; a test of the same name in `tests/gallery` holds the generated equations against that closed
-//! form.
+//! Each has a file of its own that states the problem, its source, its parameters and, where there is one,
+//! the closed form of its motion; a test of the same name in `tests/gallery` holds the generated equations
+//! against that closed form.
 //!
 //! ```
 //! use linkwork::prelude::*;
@@ -20,8 +20,8 @@
 //!
 //! # By class
 //!
-//! The first seven classes are those of Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*. The
-//! column *freedom* counts the degrees of freedom: independent velocities.
+//! The first seven classes are those of Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and
+//! Dynamics*. The column *freedom* counts the degrees of freedom: independent velocities.
 //!
 //! | pendulums | freedom | closed form in the test |
 //! | --- | --- | --- |
@@ -155,11 +155,12 @@
 //!
 //! # The book, section by section
 //!
-//! What a reader of Bernstein, Goel and Ansari asks of a mechanism, topic by topic in the order of the chapters: mechanisms and their
-//! classes (1), geometry (2), tensors (3), kinematics (4), frames (5), statics (6), Newton's and Euler's dynamics (7), energy (8),
-//! Lagrange's, Hamilton's, Gibbs's, Appell's and Kane's equations (9); aircraft, linearisation, flight modes, linear systems and
-//! frequency response (10–16). The last column names a mechanism, or a test by its file in `tests` (of `linkwork-design` where it
-//! says so) and its function.
+//! What a reader of Bernstein, Goel and Ansari asks of a mechanism, topic by topic in the order of the
+//! chapters: mechanisms and their classes (1), geometry (2), tensors (3), kinematics (4), frames (5), statics
+//! (6), Newton's and Euler's dynamics (7), energy (8), Lagrange's, Hamilton's, Gibbs's, Appell's and Kane's
+//! equations (9); aircraft, linearisation, flight modes, linear systems and frequency response (10–16). The
+//! last column names a mechanism, or a test by its file in `tests` (of `linkwork-design` where it says so)
+//! and its function.
 //!
 //! | chapter | topic | words | shown and proved by |
 //! | --- | --- | --- | --- |

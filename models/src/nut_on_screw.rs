@@ -2,13 +2,13 @@ use linkwork::mechanism;
 
 /// A heavy nut on an upright screw without friction: its weight turns it as it comes down.
 ///
-/// Source: Ball, *A Treatise on the Theory of Screws* (1900); Bernstein, Goel and Ansari, *Geometry, Kinematics,
-/// Statics, and Dynamics*, on the screw joint.
+/// Source: Ball, *A Treatise on the Theory of Screws* (1900); Bernstein, Goel and Ansari, *Geometry,
+/// Kinematics, Statics, and Dynamics*, on the screw joint.
 ///
-/// - Coordinate: `thread`, the angle `θ` of the nut, rad; it rises by the pitch `p` each radian, `2π p` each turn.
-///   Input: `spanner`, a torque on the nut, N·m.
-/// - Equation of motion, with the nut's moment of inertia `J` about the screw: `(J + m p²) θ̈ + m g p = τ`. It falls
-///   with the constant acceleration `g / (1 + J / (m p²))`, and is held by the torque `m g p`.
+/// - Coordinate: `thread`, the angle `θ` of the nut, rad; it rises by the pitch `p` each radian, `2π p` each
+///   turn. Input: `spanner`, a torque on the nut, N·m.
+/// - Equation of motion, with the nut's moment of inertia `J` about the screw: `(J + m p²) θ̈ + m g p = τ`.
+///   It falls with the constant acceleration `g / (1 + J / (m p²))`, and is held by the torque `m g p`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NutOnScrew {

@@ -1,7 +1,7 @@
 use linkwork::mechanism;
 
-/// Writes a chain of particles on massless rods: for each link its joint, what it hangs from, its rod, its particle,
-/// mass and length. (`[…]` because an endpoint is more than one token.)
+/// Writes a chain of particles on massless rods: for each link its joint, what it hangs from, its rod, its
+/// particle, mass and length. (`[…]` because an endpoint is more than one token.)
 macro_rules! pendulum_chain {
     (
         $(#[$doc:meta])* $name:ident:
@@ -9,13 +9,13 @@ macro_rules! pendulum_chain {
     ) => {
         $(#[$doc])*
         ///
-        /// Source: Lagrange's hanging chain of particles, *Mécanique analytique* (1788); in modern notation Greenwood,
-        /// *Advanced Dynamics* (2003), ch. 2.
+        /// Source: Lagrange's hanging chain of particles, *Mécanique analytique* (1788); in modern notation
+        /// Greenwood, *Advanced Dynamics* (2003), ch. 2.
         ///
-        /// - Coordinates: the angle of each rod relative to the one above, `θ`, rad, the first from the vertical;
-        ///   counter-clockwise seen from +z; y points up.
-        /// - In the absolute angles `φ = L θ` (`L` the lower triangle of ones), with `μᵢⱼ` the mass below both:
-        ///   `Mᵢⱼ = μᵢⱼ lᵢ lⱼ cos(φᵢ − φⱼ)`, `hᵢ = Σⱼ μᵢⱼ lᵢ lⱼ sin(φᵢ − φⱼ) φ̇ⱼ² + μᵢᵢ g lᵢ sin φᵢ`;
+        /// - Coordinates: the angle of each rod relative to the one above, `θ`, rad, the first from the
+        ///   vertical; counter-clockwise seen from +z; y points up.
+        /// - In the absolute angles `φ = L θ` (`L` the lower triangle of ones), with `μᵢⱼ` the mass below
+        ///   both: `Mᵢⱼ = μᵢⱼ lᵢ lⱼ cos(φᵢ − φⱼ)`, `hᵢ = Σⱼ μᵢⱼ lᵢ lⱼ sin(φᵢ − φⱼ) φ̇ⱼ² + μᵢᵢ g lᵢ sin φᵢ`;
         ///   in the relative ones `Lᵀ M L` and `Lᵀ h`.
         #[mechanism(gravity = -g * y)]
         #[derive(Clone, Copy, Debug, PartialEq)]

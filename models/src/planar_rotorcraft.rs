@@ -2,8 +2,8 @@ use linkwork::mechanism;
 
 /// A rotorcraft with two propellers that flies in a vertical plane.
 ///
-/// Source: Hauser, Sastry and Meyer, *Nonlinear control design for slightly non-minimum phase systems: application to
-/// V/STOL aircraft*, Automatica 28 (1992); Tedrake, *Underactuated Robotics*, ch. 3.
+/// Source: Hauser, Sastry and Meyer, *Nonlinear control design for slightly non-minimum phase systems:
+/// application to V/STOL aircraft*, Automatica 28 (1992); Tedrake, *Underactuated Robotics*, ch. 3.
 ///
 /// - Coordinates: `flight.x`, `flight.y`, m, with y up, and `flight.angle`, `θ`, rad, counter-clockwise.
 ///   Inputs: `left` and `right`, the thrusts along the hull's y at `∓l`, N.

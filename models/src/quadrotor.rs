@@ -2,14 +2,16 @@ use linkwork::mechanism;
 
 /// A quadrotor whose rotors follow their commands late.
 ///
-/// Source: Mahony, Kumar and Corke, *Multirotor Aerial Vehicles*, IEEE Robotics and Automation Magazine 19 (2012).
+/// Source: Mahony, Kumar and Corke, *Multirotor Aerial Vehicles*, IEEE Robotics and Automation Magazine 19
+/// (2012).
 ///
-/// - Axes: forward, left, up, from the centre of mass; the ground's z is up. Inputs: speeds that the rotors shall have, rad/s; states:
-///   those they have, with `τ ω̇ = u − ω`. Front and back turn against left and right.
+/// - Axes: forward, left, up, from the centre of mass; the ground's z is up. Inputs: speeds that the rotors
+///   shall have, rad/s; states: those they have, with `τ ω̇ = u − ω`. Front and back turn against left and
+///   right.
 /// - Each rotor gives the thrust `k ω²`, and turns the hull about its upward axis by `∓ d ω²`.
 /// - It hovers at `ω₀ = √(m g / (4 k))`. There, near rest: the height follows all four commands by
-///   `8 k ω₀ / (m s² (τ s + 1))`, the roll rate that of the left rotor by `2 l k ω₀ / (I s (τ s + 1))`, the yaw rate that of the front
-///   by `2 d ω₀ / (I s (τ s + 1))`; sideways it goes by `−g / s²` of the roll.
+///   `8 k ω₀ / (m s² (τ s + 1))`, the roll rate that of the left rotor by `2 l k ω₀ / (I s (τ s + 1))`, the
+///   yaw rate that of the front by `2 d ω₀ / (I s (τ s + 1))`; sideways it goes by `−g / s²` of the roll.
 #[mechanism(gravity = -g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadrotor {

@@ -1,15 +1,16 @@
 use linkwork::mechanism;
 
-/// The rate gyroscope: a fast rotor in one gimbal on a turning base; the gimbal's deflection against its spring
-/// measures how fast the base turns.
+/// The rate gyroscope: a fast rotor in one gimbal on a turning base; the gimbal's deflection against its
+/// spring measures how fast the base turns.
 ///
-/// Source: Magnus, *Kreisel* (1971); Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*, on
-/// gimbals.
+/// Source: Magnus, *Kreisel* (1971); Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and
+/// Dynamics*, on gimbals.
 ///
-/// - The housing turns about z with the prescribed rate `Ω`, so the functions take the time first. Coordinates:
-///   `gimbal`, its angle `θ` about the housing's x, rad; `spin`, the rotor's angle about its axis, the gimbal's y, rad.
-/// - With `n = ψ̇ + Ω sin θ`, the rotor's whole spin, and the moments of inertia `C` about its axis and `A` across:
-///   `A θ̈ + A Ω² sin θ cos θ − C n Ω cos θ + k θ + c θ̇ = 0`, `C ṅ = 0`.
+/// - The housing turns about z with the prescribed rate `Ω`, so the functions take the time first.
+///   Coordinates: `gimbal`, its angle `θ` about the housing's x, rad; `spin`, the rotor's angle about its
+///   axis, the gimbal's y, rad.
+/// - With `n = ψ̇ + Ω sin θ`, the rotor's whole spin, and the moments of inertia `C` about its axis and `A`
+///   across: `A θ̈ + A Ω² sin θ cos θ − C n Ω cos θ + k θ + c θ̇ = 0`, `C ṅ = 0`.
 /// - At rest `k θ = (C n − A Ω sin θ) Ω cos θ`: in proportion to `Ω` while that is small.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]

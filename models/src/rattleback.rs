@@ -1,16 +1,17 @@
 use linkwork::mechanism;
 
-/// The rattleback, or celt: a half ellipsoid whose heavy axes are turned against those of its shape. Spun one way it begins
-/// to rattle, stops and turns the other way.
+/// The rattleback, or celt: a half ellipsoid whose heavy axes are turned against those of its shape. Spun one
+/// way it begins to rattle, stops and turns the other way.
 ///
-/// Source: Kane and Levinson, *Realistic mathematical modeling of the rattleback*, Int. J. Non-Linear Mech. 17 (1982);
-/// Walker, *On a dynamical top*, Q. J. Pure Appl. Math. 28 (1896). [`BENCHMARK`](Self::BENCHMARK) has the figures of the
-/// first.
+/// Source: Kane and Levinson, *Realistic mathematical modeling of the rattleback*, Int. J. Non-Linear Mech.
+/// 17 (1982); Walker, *On a dynamical top*, Q. J. Pure Appl. Math. 28 (1896). [`BENCHMARK`](Self::BENCHMARK)
+/// has the figures of the first.
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the body's axes, which are those
-///   of the ellipsoid `x²/a² + y²/b² + z²/c² = 1`. z points up; the centre of mass is below its middle.
-/// - It touches the table at `−(a² n₁, b² n₂, c² n₃) / √(a² n₁² + b² n₂² + c² n₃²)` from the middle, where `n` are the
-///   components of the upward normal, and that point is at rest.
+/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the body's axes,
+///   which are those of the ellipsoid `x²/a² + y²/b² + z²/c² = 1`. z points up; the centre of mass is below
+///   its middle.
+/// - It touches the table at `−(a² n₁, b² n₂, c² n₃) / √(a² n₁² + b² n₂² + c² n₃²)` from the middle, where
+///   `n` are the components of the upward normal, and that point is at rest.
 /// - Nothing dissipates: the energy is constant.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]

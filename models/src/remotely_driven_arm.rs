@@ -1,19 +1,19 @@
 use linkwork::mechanism;
 
-/// A planar arm with two links whose motors both stand on the ground: geared, and the second drives the forearm by a
-/// belt, so that the coordinates are the links' absolute angles.
+/// A planar arm with two links whose motors both stand on the ground: geared, and the second drives the
+/// forearm by a belt, so that the coordinates are the links' absolute angles.
 ///
-/// Source: Spong and Vidyasagar, *Robot Dynamics and Control* (1989), §6.4 (planar elbow manipulator with remotely
-/// driven link).
+/// Source: Spong and Vidyasagar, *Robot Dynamics and Control* (1989), §6.4 (planar elbow manipulator with
+/// remotely driven link).
 ///
-/// - Coordinates: `p1` and `p2`, the angles of both links from x, rad; y points up. Inputs: `motor1` and `motor2`,
-///   torques on the links from the ground (a motor's own times the gear ratio), N·m. Output: `hand`, the place of the
-///   forearm's end, m.
+/// - Coordinates: `p1` and `p2`, the angles of both links from x, rad; y points up. Inputs: `motor1` and
+///   `motor2`, torques on the links from the ground (a motor's own times the gear ratio), N·m. Output:
+///   `hand`, the place of the forearm's end, m.
 /// - With uniform links and rotors `J` behind gears of ratio `n`: `M₁₁ = (⅓ m₁ + m₂) l₁² + n² J`,
 ///   `M₁₂ = ½ m₂ l₁ l₂ cos(p₂ − p₁)`, `M₂₂ = ⅓ m₂ l₂² + n² J`.
 /// - `h₁ = −½ m₂ l₁ l₂ sin(p₂ − p₁) ṗ₂² + (½ m₁ + m₂) g l₁ cos p₁`,
-///   `h₂ = ½ m₂ l₁ l₂ sin(p₂ − p₁) ṗ₁² + ½ m₂ g l₂ cos p₂`: in absolute angles there are no Coriolis terms, only
-///   centrifugal ones.
+///   `h₂ = ½ m₂ l₁ l₂ sin(p₂ − p₁) ṗ₁² + ½ m₂ g l₂ cos p₂`: in absolute angles there are no Coriolis terms,
+///   only centrifugal ones.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RemotelyDrivenArm {

@@ -4,9 +4,9 @@ use linkwork::mechanism;
 ///
 /// Source: Landau and Lifshitz, *Mechanics* (1976), §14, problem 1.
 ///
-/// - Coordinates: `suspension.first` about x, then `suspension.second` about the carried y, `a` and `b`, rad; z points
-///   up. The particle is at `l (−sin b, sin a cos b, −cos a cos b)`; the coordinates are singular where the rod lies
-///   along x.
+/// - Coordinates: `suspension.first` about x, then `suspension.second` about the carried y, `a` and `b`, rad;
+///   z points up. The particle is at `l (−sin b, sin a cos b, −cos a cos b)`; the coordinates are singular
+///   where the rod lies along x.
 /// - Equations of motion: `m l² cos²b ä − 2 m l² sin b cos b ȧ ḃ + m g l sin a cos b = 0`,
 ///   `m l² b̈ + m l² sin b cos b ȧ² + m g l cos a sin b = 0`.
 /// - Conical motion: at the inclination `α` the particle goes round in `T = 2π √(l cos α / g)`.

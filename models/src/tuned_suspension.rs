@@ -1,16 +1,18 @@
 use linkwork::mechanism;
 
-/// Two carts with springs, a dashpot and an inerter: a mass that is kept quiet by another one tuned to the disturbance.
+/// Two carts with springs, a dashpot and an inerter: a mass that is kept quiet by another one tuned to the
+/// disturbance.
 ///
-/// Source: Den Hartog, *Mechanical Vibrations* (1956), ch. 3 (tuned absorber); Smith, *Synthesis of mechanical
-/// networks: the inerter*, IEEE Trans. Automatic Control 47 (2002).
+/// Source: Den Hartog, *Mechanical Vibrations* (1956), ch. 3 (tuned absorber); Smith, *Synthesis of
+/// mechanical networks: the inerter*, IEEE Trans. Automatic Control 47 (2002).
 ///
-/// - Coordinates: `rail1` and `rail2`, the displacements of the carts, `x₁` and `x₂`, m; all springs are slack at zero.
-///   Input: `shaker`, a force on the first cart, N.
+/// - Coordinates: `rail1` and `rail2`, the displacements of the carts, `x₁` and `x₂`, m; all springs are
+///   slack at zero. Input: `shaker`, a force on the first cart, N.
 /// - Equations of motion: `M = [[m₁ + b, −b], [−b, m₂ + b]]`, `C = c [[1, −1], [−1, 1]]`,
-///   `K = [[k₁ + k₂, −k₂], [−k₂, k₂]]`: the inerter adds to the mass matrix as a spring does to the stiffness.
-/// - Without the dashpot and shaken with `ω = √(k₂ / (m₂ + b))` the first cart stands still, while the second moves by
-///   `F / (ω² b − k₂)`.
+///   `K = [[k₁ + k₂, −k₂], [−k₂, k₂]]`: the inerter adds to the mass matrix as a spring does to the
+///   stiffness.
+/// - Without the dashpot and shaken with `ω = √(k₂ / (m₂ + b))` the first cart stands still, while the second
+///   moves by `F / (ω² b − k₂)`.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TunedSuspension {

@@ -9,8 +9,8 @@ use linkwork::mechanism;
 /// - The centre of mass moves on a straight line. About it both describe ellipses with the period
 ///   `2π √(a³ / (G (m₁ + m₂)))`, where `a` is half the sum of the smallest and largest distance;
 ///   the relative speed is `v² = G (m₁ + m₂) (2/r − 1/a)`.
-/// - Energy, momentum, angular momentum and Laplace's vector, `v × (r × v) / (G (m₁ + m₂)) − r / |r|` (of the relative
-///   motion), are constant.
+/// - Energy, momentum, angular momentum and Laplace's vector, `v × (r × v) / (G (m₁ + m₂)) − r / |r|` (of the
+///   relative motion), are constant.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBodies {

@@ -4,12 +4,12 @@ use linkwork::mechanism;
 ///
 /// Source: Hughes, *Spacecraft Attitude Dynamics* (1986), ch. 6 and 7, on gyrostats.
 ///
-/// - `attitude` is that of the hull in inertial axes, a ball joint in the common centre of mass; `x_spin`, `y_spin`, `z_spin` are the
-///   wheels' turns in the hull, rad. Inputs: torques of the motors, N·m.
-/// - The motors change no angular momentum of the whole. From rest about one axis the hull turns by `−C / (I + C)` of the turn of the
-///   wheel, with its moment of inertia `C` and that of all the rest, `I`.
-/// - With the angular momentum `h` in the wheel about y, the hull near rest nutates at `h / √(I₁ I₃)`, where the moments of inertia
-///   about x and z leave out the wheels that turn freely about these axes.
+/// - `attitude` is that of the hull in inertial axes, a ball joint in the common centre of mass; `x_spin`,
+///   `y_spin`, `z_spin` are the wheels' turns in the hull, rad. Inputs: torques of the motors, N·m.
+/// - The motors change no angular momentum of the whole. From rest about one axis the hull turns by
+///   `−C / (I + C)` of the turn of the wheel, with its moment of inertia `C` and that of all the rest, `I`.
+/// - With the angular momentum `h` in the wheel about y, the hull near rest nutates at `h / √(I₁ I₃)`, where
+///   the moments of inertia about x and z leave out the wheels that turn freely about these axes.
 /// - Turning at `ν` about x, with the momentum `h` in the wheel there, it nutates at
 ///   `√((h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) / (I₂ I₃))`, and tumbles where the product is negative.
 #[mechanism(derivatives)]

@@ -1,11 +1,12 @@
-//! The table of the book's sections in the gallery's documentation has rows for every chapter, and names mechanisms and tests that
-//! exist.
+//! The table of the book's sections in the gallery's documentation has rows for every chapter, and names
+//! mechanisms and tests that exist.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where the table looks for tests: here, in the package of tests, in that of design, and at the compiler's equations.
+/// Where the table looks for tests: here, in the package of tests, in that of design, and at the compiler's
+/// equations.
 const FOLDERS: [&str; 4] =
     ["tests", "../tests", "../runtime/design/tests", "../macros/compiler/src/equations/tests"];
 

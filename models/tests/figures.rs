@@ -1,5 +1,5 @@
-//! Whatever figures they get, functions of mechanisms give figures or errors, in builds with debug assertions and overflow
-//! checks too: numbers that are none, infinite, enormous or tiny, and runs with such times.
+//! Whatever figures they get, functions of mechanisms give figures or errors, in builds with debug assertions
+//! and overflow checks too: numbers that are none, infinite, enormous or tiny, and runs with such times.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;

@@ -1,4 +1,5 @@
-//! Eight states at once in a build with debug assertions: the bits of single states, and no more stack than a small thread has.
+//! Eight states at once in a build with debug assertions: the bits of single states, and no more stack than a
+//! small thread has.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;

@@ -28,8 +28,9 @@ fn a_disk_rolls_in_a_circle() {
     assert!(v.dot(&a).abs() < 1e-10 && (a.norm() - turning * v.norm()).abs() < 1e-10);
 }
 
-/// The bicycle in wide circles at 4.6 m/s: lean and steering torque are those of `(g K₀ + v² K₂) (φ, δ) = (0, T)`, and without
-/// torque it circles at the published capsize speed alone (Meijaard and others, 2007).
+/// The bicycle in wide circles at 4.6 m/s: lean and steering torque are those of
+/// `(g K₀ + v² K₂) (φ, δ) = (0, T)`, and without torque it circles at the published capsize speed alone
+/// (Meijaard and others, 2007).
 #[test]
 fn a_bicycle_turns() {
     let bicycle = Bicycle::BENCHMARK;
@@ -78,7 +79,8 @@ fn a_bicycle_turns() {
     assert!((speed - 6.024_262_015_388_37).abs() < 1e-6, "{speed}");
 }
 
-/// The bicycle upright and straight, from its bodies and wheels: published eigenvalues (Meijaard and others, 2007, table 2).
+/// The bicycle upright and straight, from its bodies and wheels: published eigenvalues (Meijaard and others,
+/// 2007, table 2).
 #[test]
 fn a_bicycle_weaves_and_capsizes() {
     let bicycle = Bicycle::BENCHMARK;
@@ -134,8 +136,9 @@ fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
     );
 }
 
-/// Meijaard, Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a bicycle*, Proc. R. Soc. A
-/// 463 (2007), § 4: `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in lean and steer, from the bodies and wheels of the bicycle.
+/// Meijaard, Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a
+/// bicycle*, Proc. R. Soc. A 463 (2007), § 4: `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in lean and steer, from the
+/// bodies and wheels of the bicycle.
 #[test]
 fn a_bicycle_has_the_published_matrices() {
     let bicycle = Bicycle::BENCHMARK;

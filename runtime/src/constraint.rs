@@ -1,8 +1,9 @@
 //! Constrained mechanisms: closed loops, rolling and other constraints ([guide](crate::guide::constraints)).
 //!
-//! The coordinates are those of the spanning tree and are not independent: a state `(q, v)` fulfils the residuals
-//! `φ(t, q) = 0` and the rates `J(t, q) v + … = 0`. [`Constrained::assemble`] finds such a configuration near a given
-//! one, [`Constrained::complete_velocity`] the velocity with given entries, [`Constrained::project_velocity`] the nearest, and [`simulate`](crate::simulate()) keeps both, or lets
+//! The coordinates are those of the spanning tree and are not independent: a state `(q, v)` fulfils the
+//! residuals `φ(t, q) = 0` and the rates `J(t, q) v + … = 0`. [`Constrained::assemble`] finds such a
+//! configuration near a given one, [`Constrained::complete_velocity`] the velocity with given entries,
+//! [`Constrained::project_velocity`] the nearest, and [`simulate`](crate::simulate()) keeps both, or lets
 //! violations decay where a mechanism is [`stabilized`].
 
 use crate::private::{constant, epsilon, to_f64};
@@ -63,14 +64,16 @@ pub enum ConstraintError {
         /// What is left of it, m or rad.
         residual: f64,
     },
-    /// No velocity fulfils the constraints: what is driven in time contradicts them, or the configuration is singular.
+    /// No velocity fulfils the constraints: what is driven in time contradicts them, or the configuration is
+    /// singular.
     Velocity {
         /// The constraint that is violated most.
         constraint: &'static str,
         /// What is left of its rate, m/s or rad/s.
         rate: f64,
     },
-    /// No acceleration fulfils the constraints: entries that are given contradict them, or the configuration is singular.
+    /// No acceleration fulfils the constraints: entries that are given contradict them, or the configuration
+    /// is singular.
     Acceleration {
         /// The constraint that is violated most.
         constraint: &'static str,
@@ -83,24 +86,25 @@ pub enum ConstraintError {
         /// The assembly mode.
         mode: i8,
     },
-    /// Forces at the velocities that are driven cannot give the motion: another velocity has to be driven as well
-    /// ([`Constrained::constrained_inverse_dynamics`]).
+    /// Forces at the velocities that are driven cannot give the motion: another velocity has to be driven as
+    /// well ([`Constrained::constrained_inverse_dynamics`]).
     Undriven {
         /// The velocity whose equation is violated most.
         velocity: &'static str,
         /// The force that is missing there, N or N·m.
         force: f64,
     },
-    /// Constraints depend on each other here that are independent elsewhere: the motion is not determined to first order.
+    /// Constraints depend on each other here that are independent elsewhere: the motion is not determined to
+    /// first order.
     Singular,
-    /// Friction jams: a normal force that friction depends on does not follow from the motion (Painlevé's paradox), or is
-    /// shared by contacts in more than one way.
+    /// Friction jams: a normal force that friction depends on does not follow from the motion (Painlevé's
+    /// paradox), or is shared by contacts in more than one way.
     Jammed {
         /// The contact.
         constraint: &'static str,
     },
-    /// No impulses are found that fulfil the laws of contact: constraints, or what is driven in time, hold surfaces that approach
-    /// each other.
+    /// No impulses are found that fulfil the laws of contact: constraints, or what is driven in time, hold
+    /// surfaces that approach each other.
     Contact {
         /// The contact whose law is fulfilled least.
         constraint: &'static str,
@@ -205,12 +209,12 @@ macro_rules! loops {
 
 /// What mechanisms with closed loops, rolling or other constraints offer, for generic code.
 ///
-/// There are `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the others
-/// velocities alone. `#[mechanism]` implements the trait where joints close loops or constraints are declared. Time `t` is in
-/// seconds; mechanisms that do not contain it take any.
+/// There are `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the
+/// others velocities alone. `#[mechanism]` implements the trait where joints close loops or constraints are
+/// declared. Time `t` is in seconds; mechanisms that do not contain it take any.
 ///
-/// The equations of motion are `M v̇ + h = τ + Jᵀ λ` with `J v̇ + b = 0`: `forward_dynamics` solves both, while the mass
-/// matrix, bias forces and inverse dynamics are those of the spanning tree.
+/// The equations of motion are `M v̇ + h = τ + Jᵀ λ` with `J v̇ + b = 0`: `forward_dynamics` solves both,
+/// while the mass matrix, bias forces and inverse dynamics are those of the spanning tree.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no constraints",
     label = "expected a mechanism with constraints",
@@ -222,7 +226,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     /// Name of every constraint.
     const CONSTRAINTS: [&'static str; NC];
 
-    /// Indices of the entries of `q` that are angles, rad: those of pins and of other coordinates that rotate something.
+    /// Indices of the entries of `q` that are angles, rad: those of pins and of other coordinates that rotate
+    /// something.
     const ANGLES: &'static [usize] = &[];
 
     /// `φ(t, q)`, m and rad: zero where the constraints hold.
@@ -232,7 +237,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         q: &SVector<Self::Scalar, NQ>,
     ) -> SVector<Self::Scalar, NH>;
 
-    /// `J(t, q) v + …`, m/s and rad/s: zero where the constraints hold. The first `NH` are the rates of the residuals.
+    /// `J(t, q) v + …`, m/s and rad/s: zero where the constraints hold. The first `NH` are the rates of the
+    /// residuals.
     fn constraint_rates(
         &self,
         t: Self::Scalar,
@@ -255,8 +261,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NC>;
 
-    /// `v̇` and the multipliers `λ` under the forces `tau`: N for lengths, N·m for angles. Where constraints are redundant,
-    /// the multipliers of least norm.
+    /// `v̇` and the multipliers `λ` under the forces `tau`: N for lengths, N·m for angles. Where constraints
+    /// are redundant, the multipliers of least norm.
     fn constrained_dynamics(
         &self,
         t: Self::Scalar,
@@ -273,8 +279,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         gap: &SVector<Self::Scalar, NC>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// The change of velocity `x` by the generalized impulse `p`, N·s and N·m·s, and by impulses of the constraints that take
-    /// `gap` away: `M x = p + Jᵀ λ`, `J x = −gap`. Dry friction of contacts that slip is left out.
+    /// The change of velocity `x` by the generalized impulse `p`, N·s and N·m·s, and by impulses of the
+    /// constraints that take `gap` away: `M x = p + Jᵀ λ`, `J x = −gap`. Dry friction of contacts that slip
+    /// is left out.
     fn constraint_response(
         &self,
         t: Self::Scalar,
@@ -283,8 +290,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         gap: &SVector<Self::Scalar, NC>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the mechanism [`stabilized`], with violations
-    /// that decay at `rate`, 1/s; `None` without [`ConstrainedDerivatives`].
+    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the mechanism
+    /// [`stabilized`], with violations that decay at `rate`, 1/s; `None` without [`ConstrainedDerivatives`].
     fn stabilized_derivatives(
         &self,
         _t: Self::Scalar,
@@ -295,10 +302,10 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         None
     }
 
-    /// [`Mechanism::impulse`](crate::Mechanism::impulse) of a mechanism with constraints. Those on configurations are looked
-    /// at where `v` leads in `h` seconds, those on velocities half-way there (a discrete constraint that reads the same
-    /// forwards and backwards: McLachlan and Perlmutter, *Integrators for nonholonomic mechanical systems*, J. Nonlinear
-    /// Sci. 16, 2006).
+    /// [`Mechanism::impulse`](crate::Mechanism::impulse) of a mechanism with constraints. Those on
+    /// configurations are looked at where `v` leads in `h` seconds, those on velocities half-way there (a
+    /// discrete constraint that reads the same forwards and backwards: McLachlan and Perlmutter, *Integrators
+    /// for nonholonomic mechanical systems*, J. Nonlinear Sci. 16, 2006).
     fn constrained_impulse(
         &self,
         t: Self::Scalar,
@@ -323,17 +330,19 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         self.constraint_response(t, q, p, &gap)
     }
 
-    /// A configuration near `q` in which the constraints hold, by damped Newton steps of bounded length and number
-    /// (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3), if need be from around `q`. The
-    /// coordinates whose velocities have the indices `held` stay as they are. Angles are found within half a turn of `q`,
-    /// unless the constraints turn them farther, as gears do.
+    /// A configuration near `q` in which the constraints hold, by damped Newton steps of bounded length and
+    /// number (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3), if need be
+    /// from around `q`. The coordinates whose velocities have the indices `held` stay as they are. Angles are
+    /// found within half a turn of `q`, unless the constraints turn them farther, as gears do.
     ///
     /// Most linkages can be assembled in several ways. The one that is found is usually next to `q`:
-    /// [`assembly_mode`](Self::assembly_mode) tells which it is, [`assemble_in_mode`](Self::assemble_in_mode) finds another.
+    /// [`assembly_mode`](Self::assembly_mode) tells which it is, [`assemble_in_mode`](Self::assemble_in_mode)
+    /// finds another.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Configuration`] where none is found, [`ConstraintError::Held`] for an index that is none.
+    /// [`ConstraintError::Configuration`] where none is found, [`ConstraintError::Held`] for an index that is
+    /// none.
     fn assemble(
         &self,
         t: Self::Scalar,
@@ -343,8 +352,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         assemble(&loops!(self, t), q, held, None)
     }
 
-    /// A configuration around `q` in which the constraints hold, as [`assemble`](Self::assemble) finds it, of the given
-    /// [`assembly_mode`](Self::assembly_mode).
+    /// A configuration around `q` in which the constraints hold, as [`assemble`](Self::assemble) finds it, of
+    /// the given [`assembly_mode`](Self::assembly_mode).
     ///
     /// # Errors
     ///
@@ -359,20 +368,20 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         assemble(&loops!(self, t), q, held, Some(mode))
     }
 
-    /// The assembly mode of the configuration `q`, 1 or −1: the sign of the determinant of the derivatives of the
-    /// constraints on configurations by the coordinates whose velocities are not `held`. It changes only in singular
-    /// positions, where the coordinates that are held no longer determine the others to first order. The two modes of a
-    /// four-bar with a given crank, open and crossed, have different signs; linkages of several loops may have more modes
-    /// than two, of which some share a sign.
+    /// The assembly mode of the configuration `q`, 1 or −1: the sign of the determinant of the derivatives of
+    /// the constraints on configurations by the coordinates whose velocities are not `held`. It changes only
+    /// in singular positions, where the coordinates that are held no longer determine the others to first
+    /// order. The two modes of a four-bar with a given crank, open and crossed, have different signs;
+    /// linkages of several loops may have more modes than two, of which some share a sign.
     ///
-    /// `None` in a singular position, and where the coordinates that are not held are more or fewer than the constraints on
-    /// configurations.
+    /// `None` in a singular position, and where the coordinates that are not held are more or fewer than the
+    /// constraints on configurations.
     fn assembly_mode(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>, held: &[usize]) -> Option<i8> {
         assembly_mode(&loops!(self, t), q, held)
     }
 
-    /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy. For what has
-    /// drifted; [`assemble`](Self::assemble) comes from farther away.
+    /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy.
+    /// For what has drifted; [`assemble`](Self::assemble) comes from farther away.
     ///
     /// # Errors
     ///
@@ -387,7 +396,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         for _ in 0..MOST_STEPS {
             let residuals = self.constraint_residuals(t, &q);
             let (worst, size) = largest(&residuals)?;
-            // A drift that is let be is another linkage, which may have no singular position where this one has it.
+            // A drift that is let be is another linkage, which may have no singular position where this one
+            // has it.
             let enough = if last.is_none() { known(&q) } else { rounding(&q) };
             if size <= enough {
                 return Ok(q);
@@ -416,7 +426,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
         let mut v = *v;
-        // The second correction takes away what the first one may leave where constraints nearly depend on each other.
+        // The second correction takes away what the first one may leave where constraints nearly depend on
+        // each other.
         for enough in [epsilon::<Self::Scalar>() * reach(&v), rounding(&v)] {
             let rates = self.constraint_rates(t, q, &v);
             if largest(&rates)?.1 <= enough {
@@ -440,16 +451,16 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         Err(ConstraintError::Velocity { constraint, rate: to_f64(size) })
     }
 
-    /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the constraints:
-    /// `J v + … = 0`, [`constraint_rates`](Self::constraint_rates). m/s and rad/s. What the constraints leave open is nearest
-    /// to `v` in the metric of the kinetic energy; with nothing held the whole is, as by
-    /// [`project_velocity`](Self::project_velocity).
+    /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the
+    /// constraints: `J v + … = 0`, [`constraint_rates`](Self::constraint_rates). m/s and rad/s. What the
+    /// constraints leave open is nearest to `v` in the metric of the kinetic energy; with nothing held the
+    /// whole is, as by [`project_velocity`](Self::project_velocity).
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Velocity`] where the held entries contradict the constraints or nothing finite follows from them
-    /// (a piston that is to move while its crank is in line with the rod), [`ConstraintError::Held`] for an index that is
-    /// none.
+    /// [`ConstraintError::Velocity`] where the held entries contradict the constraints or nothing finite
+    /// follows from them (a piston that is to move while its crank is in line with the rod),
+    /// [`ConstraintError::Held`] for an index that is none.
     fn complete_velocity(
         &self,
         t: Self::Scalar,
@@ -460,13 +471,14 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         complete::complete(self, t, q, v, held)
     }
 
-    /// The acceleration whose entries `held` (indices) are those of `a`, while the others follow from the constraints:
-    /// `J a + b = 0`, m/s² and rad/s². What the constraints leave open is nearest to `a` in the metric of the kinetic energy.
+    /// The acceleration whose entries `held` (indices) are those of `a`, while the others follow from the
+    /// constraints: `J a + b = 0`, m/s² and rad/s². What the constraints leave open is nearest to `a` in the
+    /// metric of the kinetic energy.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Acceleration`] where the held entries contradict the constraints or nothing finite follows from
-    /// them, [`ConstraintError::Held`] for an index that is none.
+    /// [`ConstraintError::Acceleration`] where the held entries contradict the constraints or nothing finite
+    /// follows from them, [`ConstraintError::Held`] for an index that is none.
     fn complete_acceleration(
         &self,
         t: Self::Scalar,
@@ -478,16 +490,17 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         complete::complete_acceleration(self, t, (q, v), a, held)
     }
 
-    /// Inverse dynamics under the constraints: the generalized forces `τ` at the velocities `driven` (indices) and the
-    /// multipliers `λ` that give a motion, `M a + h = τ + Jᵀ λ`. As many velocities are driven as there are degrees of
-    /// freedom, none where the constraints drive the mechanism themselves: then the drives are in `λ`. Where constraints are
-    /// redundant or more velocities are driven, the multipliers of least norm. Dry friction of contacts that slip is left out.
+    /// Inverse dynamics under the constraints: the generalized forces `τ` at the velocities `driven`
+    /// (indices) and the multipliers `λ` that give a motion, `M a + h = τ + Jᵀ λ`. As many velocities are
+    /// driven as there are degrees of freedom, none where the constraints drive the mechanism themselves:
+    /// then the drives are in `λ`. Where constraints are redundant or more velocities are driven, the
+    /// multipliers of least norm. Dry friction of contacts that slip is left out.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Velocity`] and [`ConstraintError::Acceleration`] for a motion that does not fulfil the constraints,
-    /// [`ConstraintError::Undriven`] where forces at other velocities would be needed, [`ConstraintError::Held`] for an index
-    /// that is none.
+    /// [`ConstraintError::Velocity`] and [`ConstraintError::Acceleration`] for a motion that does not fulfil
+    /// the constraints, [`ConstraintError::Undriven`] where forces at other velocities would be needed,
+    /// [`ConstraintError::Held`] for an index that is none.
     fn constrained_inverse_dynamics(
         &self,
         t: Self::Scalar,
@@ -501,8 +514,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 
     /// Both: configuration first.
     ///
-    /// Where constraints have two branches that cross, a state within rounding of the crossing, which fulfils the rates of both
-    /// alike, keeps its velocity: it tells the branch that the state is on, when the configuration no longer does.
+    /// Where constraints have two branches that cross, a state within rounding of the crossing, which fulfils
+    /// the rates of both alike, keeps its velocity: it tells the branch that the state is on, when the
+    /// configuration no longer does.
     ///
     /// # Errors
     ///
@@ -553,7 +567,8 @@ fn rounding<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     constant::<T>(ROUNDINGS) * epsilon() * reach(x)
 }
 
-/// What rounding of the numbers alone makes of constraints: angles of many turns are known less well than the rest.
+/// What rounding of the numbers alone makes of constraints: angles of many turns are known less well than the
+/// rest.
 fn known<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     epsilon::<T>() * reach(x).max(constant(ROUNDINGS))
 }
@@ -563,7 +578,8 @@ fn near<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
     size <= epsilon::<T>().sqrt() * reach(x)
 }
 
-/// Whether the rate of a constraint is so small that its direction may be that of either of two branches which cross.
+/// Whether the rate of a constraint is so small that its direction may be that of either of two branches
+/// which cross.
 fn open<T: Real, const N: usize>(rate: T, v: &SVector<T, N>) -> bool {
     rate <= epsilon::<T>().sqrt().sqrt() * v.iter().fold(T::zero(), |most, v| most.max(v.abs()))
 }

@@ -1,39 +1,45 @@
 //! Contacts that open and close: gaps, impacts, friction that holds ([guide](crate::guide::contact)).
 //!
-//! A [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with `restitution` declares one. The functions
-//! of the dynamics (`forward_dynamics` and all else) know nothing of contacts; [`TimeStepping`](crate::integrate::TimeStepping)
-//! simulates them, and [`impact`] and [`solve`] are what it is made of; [`EventDriven`](crate::integrate::EventDriven) locates every
-//! event. Other methods of integration do not compile for a mechanism
-//! with contacts, so that none is passed through in silence; [`apart`] leaves contacts out where that is meant.
+//! A [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with `restitution` declares
+//! one. The functions of the dynamics (`forward_dynamics` and all else) know nothing of contacts;
+//! [`TimeStepping`](crate::integrate::TimeStepping) simulates them, and [`impact`] and [`solve`] are what it
+//! is made of; [`EventDriven`](crate::integrate::EventDriven) locates every event. Other methods of
+//! integration do not compile for a mechanism with contacts, so that none is passed through in silence;
+//! [`apart`] leaves contacts out where that is meant.
 //!
 //! # The law
 //!
-//! Of each contact the gap `g` is zero or more, and so is the normal impulse `Λ`, and where surfaces part there is none. After an
-//! impact the rate of the gap is `−e` times that before it, at least (Newton's law of restitution). Friction is Coulomb's: where
-//! surfaces stick the impulse along the tangents is at most `μ Λ`, and where they slip it is that, against the slip. All contacts,
-//! and all constraints of the mechanism, act at once: with the rates `u = G v`,
+//! Of each contact the gap `g` is zero or more, and so is the normal impulse `Λ`, and where surfaces part
+//! there is none. After an impact the rate of the gap is `−e` times that before it, at least (Newton's law of
+//! restitution). Friction is Coulomb's: where surfaces stick the impulse along the tangents is at most `μ Λ`,
+//! and where they slip it is that, against the slip. All contacts, and all constraints of the mechanism, act
+//! at once: with the rates `u = G v`,
 //!
 //! ```text
 //! M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   J v⁺ = 0,   0 ≤ u⁺ₙ + e u⁻ₙ  ⊥  Λₙ ≥ 0,   |Λₜ| ≤ μ Λₙ,  Λₜ = −μ Λₙ u⁺ₜ / |u⁺ₜ| where it slips
 //! ```
 //!
-//! Where restitution is Poisson's (`restitution = poisson(e)`) an impact has two parts, each with Coulomb's law. The impulses `Λᶜ` of
-//! compression are those without restitution, `0 ≤ uᶜₙ ⊥ Λᶜₙ ≥ 0`; then those of restitution are `e Λᶜₙ` at least, and more where
-//! surfaces would approach each other: `0 ≤ u⁺ₙ ⊥ Λₙ − (1 + e) Λᶜₙ ≥ 0` (Glocker and Pfeiffer, *Multiple impacts with friction in
-//! rigid multibody systems*, Nonlinear Dynamics 7, 1995). In a time step compression is that of the velocity before the step, so that
-//! what rests does not bounce.
+//! Where restitution is Poisson's (`restitution = poisson(e)`) an impact has two parts, each with Coulomb's
+//! law. The impulses `Λᶜ` of compression are those without restitution, `0 ≤ uᶜₙ ⊥ Λᶜₙ ≥ 0`; then those of
+//! restitution are `e Λᶜₙ` at least, and more where surfaces would approach each other:
+//! `0 ≤ u⁺ₙ ⊥ Λₙ − (1 + e) Λᶜₙ ≥ 0` (Glocker and Pfeiffer, *Multiple impacts with friction in rigid multibody
+//! systems*, Nonlinear Dynamics 7, 1995). In a time step compression is that of the velocity before the step,
+//! so that what rests does not bounce.
 //!
-//! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato, *Numerical Methods for
-//! Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding: where all contacts
-//! stick that approach there is a linear system, else Newton's method for their natural map (Alart and Curnier, Comput. Methods Appl.
-//! Mech. Eng. 92, 1991) begins there, or with the impulses of the step before, and takes two or three steps as a rule; where it finds
-//! nothing, it goes on between projected gradient steps with momentum (Nesterov; Mazhar et al., *Using Nesterov's method to accelerate
-//! multibody dynamics with friction and contact*, ACM Trans. Graph. 34, 2015): at most 900 of these, and 19 000 of Newton's. All contacts take each step at once, so that the order in which they are declared decides nothing.
-//! Without friction an active set that takes in contact after contact comes first. Impulses that are shared by more contacts than the
-//! motion can tell apart (a table on four legs) are those of least norm where all of them hold; where some of them slip there may be
-//! several solutions, and of piles of boxes rounding chooses between them in about one of 3000 steps. Newton's law of restitution together
-//! with friction can give more energy than there was (Kane's paradox), or have no solution; where it would, all coefficients of
-//! restitution are lowered together until it does not.
+//! (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988; Acary and Brogliato,
+//! *Numerical Methods for Nonsmooth Dynamical Systems*, 2008). The equations are solved to rounding: where
+//! all contacts stick that approach there is a linear system, else Newton's method for their natural map
+//! (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991) begins there, or with the impulses of the
+//! step before, and takes two or three steps as a rule; where it finds nothing, it goes on between projected
+//! gradient steps with momentum (Nesterov; Mazhar et al., *Using Nesterov's method to accelerate multibody
+//! dynamics with friction and contact*, ACM Trans. Graph. 34, 2015): at most 900 of these, and 19 000 of
+//! Newton's. All contacts take each step at once, so that the order in which they are declared decides
+//! nothing. Without friction an active set that takes in contact after contact comes first. Impulses that are
+//! shared by more contacts than the motion can tell apart (a table on four legs) are those of least norm
+//! where all of them hold; where some of them slip there may be several solutions, and of piles of boxes
+//! rounding chooses between them in about one of 3000 steps. Newton's law of restitution together with
+//! friction can give more energy than there was (Kane's paradox), or have no solution; where it would, all
+//! coefficients of restitution are lowered together until it does not.
 
 use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
@@ -82,8 +88,8 @@ pub use stepping::step;
 use stepping::{Came, closed};
 use total::Total;
 
-/// Which of the rates of all contacts are those of one: that of its gap first, then those of slip. Those of a moment of friction
-/// ([`PRESSED_BY`](Contacts::PRESSED_BY)) are of turning alone, rad/s.
+/// Which of the rates of all contacts are those of one: that of its gap first, then those of slip. Those of a
+/// moment of friction ([`PRESSED_BY`](Contacts::PRESSED_BY)) are of turning alone, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rows {
     /// Index of the rate of the gap; of a moment of friction that of its first rate.
@@ -97,17 +103,19 @@ pub struct Rows {
 pub enum Touch {
     /// No force acts.
     Open,
-    /// Surfaces stay together, and do not slip if there is friction; of a moment of friction, they do not turn.
+    /// Surfaces stay together, and do not slip if there is friction; of a moment of friction, they do not
+    /// turn.
     Sticks,
-    /// Surfaces stay together, and friction acts against the slip that there is; where there is none it has no direction, and does
-    /// not act.
+    /// Surfaces stay together, and friction acts against the slip that there is; where there is none it has
+    /// no direction, and does not act.
     Slips,
 }
 
 /// What mechanisms with contacts offer, for generic code: `NK` contacts with `NR` rates.
 ///
-/// `#[mechanism]` implements the trait where a [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with
-/// `restitution` is declared. Time `t` is in seconds; mechanisms that do not contain it take any.
+/// `#[mechanism]` implements the trait where a [`Contact`](crate::elements::Contact) or a
+/// [`Limit`](crate::elements::Limit) with `restitution` is declared. Time `t` is in seconds; mechanisms that
+/// do not contain it take any.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that open and close",
     label = "expected a mechanism with contacts",
@@ -120,15 +128,17 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     const CONTACTS: [&'static str; NK];
     /// Which rates belong to each contact.
     const CONTACT_ROWS: [Rows; NK];
-    /// Which contact presses whose friction each one is: itself, but for the moments of friction against spin and rolling. These follow
-    /// their contact, as `foot.spin` and `foot.roll` follow `foot`, have its gap, and rates of turning alone.
+    /// Which contact presses whose friction each one is: itself, but for the moments of friction against spin
+    /// and rolling. These follow their contact, as `foot.spin` and `foot.roll` follow `foot`, have its gap,
+    /// and rates of turning alone.
     const PRESSED_BY: [usize; NK] = layout::own();
 
-    /// Distance of the surfaces of each contact, m or rad: zero where they touch, negative where they overlap.
+    /// Distance of the surfaces of each contact, m or rad: zero where they touch, negative where they
+    /// overlap.
     fn contact_gaps(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NK>;
 
-    /// Rates at the contacts, m/s and rad/s: of each that of its gap, then the slip along its tangents; of moments of friction the
-    /// relative angular velocity about the normal, or about the tangents.
+    /// Rates at the contacts, m/s and rad/s: of each that of its gap, then the slip along its tangents; of
+    /// moments of friction the relative angular velocity about the normal, or about the tangents.
     fn contact_rates(
         &self,
         t: Self::Scalar,
@@ -151,8 +161,8 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NR>;
 
-    /// What impulses at the contacts do to velocities and rates, through the constraints of the mechanism. Only those contacts
-    /// matter that are `closed`; entries of others may be zero.
+    /// What impulses at the contacts do to velocities and rates, through the constraints of the mechanism.
+    /// Only those contacts matter that are `closed`; entries of others may be zero.
     fn contact_responses(
         &self,
         t: Self::Scalar,
@@ -165,8 +175,9 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         response::responses(self, t, q, closed)
     }
 
-    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) while contacts do what `touches` says, with
-    /// gaps and rates of what is held decaying by the gains of position and velocity, 1/s² and 1/s; `None` without [`ContactDerivatives`].
+    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) while contacts do
+    /// what `touches` says, with gaps and rates of what is held decaying by the gains of position and
+    /// velocity, 1/s² and 1/s; `None` without [`ContactDerivatives`].
     fn held_derivatives(
         &self,
         _t: Self::Scalar,
@@ -182,8 +193,8 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     fn contact_laws(&self) -> [Law<Self::Scalar>; NK];
 }
 
-/// What is done with a mechanism whose contacts are of any number, by [`Rheonomic::visit_contacts`]: generic code that knows nothing of
-/// these numbers comes to [`Contacts`] through it.
+/// What is done with a mechanism whose contacts are of any number, by [`Rheonomic::visit_contacts`]: generic
+/// code that knows nothing of these numbers comes to [`Contacts`] through it.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// What comes of it.
     type Output;
@@ -241,17 +252,19 @@ impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
 pub struct Solved<T, const NV: usize, const NR: usize> {
     /// The velocity.
     pub v: SVector<T, NV>,
-    /// The impulses of the contacts, N·s, and N·m·s of stops about an axis: of each the normal one, then those along its
-    /// tangents.
+    /// The impulses of the contacts, N·s, and N·m·s of stops about an axis: of each the normal one, then
+    /// those along its tangents.
     pub impulses: SVector<T, NR>,
 }
 
-/// Surfaces nearer than this touch, m: what rounding does to places of some metres, and well below what matters.
+/// Surfaces nearer than this touch, m: what rounding does to places of some metres, and well below what
+/// matters.
 fn near<T: Real>() -> T {
     epsilon::<T>().sqrt() * constant(0.67)
 }
 
-/// What contacts do to a velocity at once: an impact where surfaces approach each other. Where none do, nothing happens.
+/// What contacts do to a velocity at once: an impact where surfaces approach each other. Where none do,
+/// nothing happens.
 ///
 /// ```
 /// use linkwork::contact;
@@ -281,8 +294,9 @@ fn near<T: Real>() -> T {
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Contact`] where no impulses are found: where constraints, or what is driven in time, hold surfaces that
-/// approach each other; [`ConstraintError::Coefficient`] where parameters make a coefficient what it cannot be.
+/// [`ConstraintError::Contact`] where no impulses are found: where constraints, or what is driven in time,
+/// hold surfaces that approach each other; [`ConstraintError::Coefficient`] where parameters make a
+/// coefficient what it cannot be.
 pub fn impact<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -296,9 +310,10 @@ where
     solve(mechanism, t, q, v, &mechanism.contact_rates(t, q, v))
 }
 
-/// What contacts make of the velocity `free`, m/s and rad/s, that a motion would have without them after a short time, in the
-/// configuration `q` where it would be then. `before` are the [`contact_rates`](Contacts::contact_rates) when that time began, which
-/// restitution answers to. The impulses are those of the whole time: divided by it they are the mean forces.
+/// What contacts make of the velocity `free`, m/s and rad/s, that a motion would have without them after a
+/// short time, in the configuration `q` where it would be then. `before` are the
+/// [`contact_rates`](Contacts::contact_rates) when that time began, which restitution answers to. The
+/// impulses are those of the whole time: divided by it they are the mean forces.
 ///
 /// All contacts take part whose gap is zero or less.
 ///
@@ -322,13 +337,15 @@ where
     }
 }
 
-/// The mean forces of the contacts over `h` seconds under inputs `u` that are held, N, and N·m of stops about an axis: of each contact
-/// the normal one, which presses where it is positive, then those along its tangents. With the step of a simulation by
-/// [`TimeStepping`](crate::integrate::TimeStepping) they are the ones that act there; an impact counts with its impulse.
+/// The mean forces of the contacts over `h` seconds under inputs `u` that are held, N, and N·m of stops about
+/// an axis: of each contact the normal one, which presses where it is positive, then those along its
+/// tangents. With the step of a simulation by [`TimeStepping`](crate::integrate::TimeStepping) they are the
+/// ones that act there; an impact counts with its impulse.
 ///
 /// # Errors
 ///
-/// [`Error::InvalidStep`] for a time that is zero, negative or not finite; [`Error::Constraint`] with those of [`impact`].
+/// [`Error::InvalidStep`] for a time that is zero, negative or not finite; [`Error::Constraint`] with those
+/// of [`impact`].
 pub fn forces<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -361,10 +378,11 @@ where
     Ok(solved.map_err(reported)?.impulses / h)
 }
 
-/// The forces of the contacts in a state under inputs `u`, N, and N·m of stops about an axis: of each contact the normal one, which
-/// presses where it is positive, then those along its tangents. Where surfaces slip they are those of friction against the slip,
-/// where none do they are what keeps it so, or what is there when motion begins. Surfaces that are about to strike each other are
-/// taken to rest: an impact has no force but an [`impact`]'s impulse.
+/// The forces of the contacts in a state under inputs `u`, N, and N·m of stops about an axis: of each contact
+/// the normal one, which presses where it is positive, then those along its tangents. Where surfaces slip
+/// they are those of friction against the slip, where none do they are what keeps it so, or what is there
+/// when motion begins. Surfaces that are about to strike each other are taken to rest: an impact has no force
+/// but an [`impact`]'s impulse.
 ///
 /// Outputs read them as `contact_force(name)`. They are mean forces of a short time: friction that stops slip
 /// within `1.5e-8` s (`3.5e-4` s with `f32`) acts as in a contact that sticks.
@@ -532,7 +550,8 @@ where
     Ok(solved)
 }
 
-/// Impulses with the largest part of all restitutions that they can fulfil, and that gives no energy where nothing is driven.
+/// Impulses with the largest part of all restitutions that they can fulfil, and that gives no energy where
+/// nothing is driven.
 fn tempered<T: Real, const NK: usize, const NR: usize>(
     problem: &mut Problem<T, NK, NR>,
     laws: &[Law<T>; NK],

@@ -1,7 +1,9 @@
-//! Simulation of a mechanism: from an initial state to samples of its motion ([guide](crate::guide::simulating)).
+//! Simulation of a mechanism: from an initial state to samples of its motion
+//! ([guide](crate::guide::simulating)).
 //!
-//! [`simulate`] begins, the methods of [`Simulation`] say the rest, and iterating yields [`Sample`]s. All other types here
-//! belong to events: they appear in the type of a simulation, and programs need not name them.
+//! [`simulate`] begins, the methods of [`Simulation`] say the rest, and iterating yields [`Sample`]s. All
+//! other types here belong to events: they appear in the type of a simulation, and programs need not name
+//! them.
 
 mod clock;
 mod event;
@@ -84,8 +86,8 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, NV, NU> {
-    /// A sample of a motion that does not come from [`simulate`]: measured, computed by another program, or a single state to be drawn
-    /// or logged. It reports no event.
+    /// A sample of a motion that does not come from [`simulate`]: measured, computed by another program, or a
+    /// single state to be drawn or logged. It reports no event.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -108,7 +110,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] for a number that is infinite or NaN, and [`Error::Quaternion`] for a quaternion that is not of unit length.
+    /// [`Error::NotFinite`] for a number that is infinite or NaN, and [`Error::Quaternion`] for a quaternion
+    /// that is not of unit length.
     pub fn new<M>(
         mechanism: &M,
         t: T,
@@ -139,18 +142,20 @@ enum Samples<'m, T> {
     At(&'m [T]),
 }
 
-/// What a simulation does about surfaces of contacts that overlap at its start by more than `1e-8` m or rad (`2.3e-4` with `f32`).
+/// What a simulation does about surfaces of contacts that overlap at its start by more than `1e-8` m or rad
+/// (`2.3e-4` with `f32`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overlaps {
-    /// [`ConstraintError::Overlap`](crate::ConstraintError::Overlap), which names the contact whose surfaces overlap most.
+    /// [`ConstraintError::Overlap`](crate::ConstraintError::Overlap), which names the contact whose surfaces
+    /// overlap most.
     #[default]
     Refuse,
-    /// They are taken apart through the constraints of the mechanism ([`contact::project`](crate::contact::project)); where that cannot
-    /// be the error is the same.
+    /// They are taken apart through the constraints of the mechanism
+    /// ([`contact::project`](crate::contact::project)); where that cannot be the error is the same.
     Part,
     /// They stay as they are: for a run that goes on where another has ended, since a step of
-    /// [`TimeStepping`](crate::integrate::TimeStepping) leaves surfaces that meet in each other by what they approach in it. Where bodies
-    /// start deep inside each other they stay so.
+    /// [`TimeStepping`](crate::integrate::TimeStepping) leaves surfaces that meet in each other by what they
+    /// approach in it. Where bodies start deep inside each other they stay so.
     Keep,
 }
 
@@ -185,8 +190,8 @@ where
     T: Real,
     S: Method<T>,
 {
-    /// Starts from the configuration `q` and the velocity `v`: vectors, references to them or arrays ([`Start`]).
-    /// Quaternions x y z w of unit length; others are [`Error::Quaternion`].
+    /// Starts from the configuration `q` and the velocity `v`: vectors, references to them or arrays
+    /// ([`Start`]). Quaternions x y z w of unit length; others are [`Error::Quaternion`].
     pub fn from(self, q: impl Start<T, NQ>, v: impl Start<T, NV>) -> Self {
         let start = State { t: self.start.t, q: q.vector(), v: v.vector() };
         Self { start, ..self.afresh() }
@@ -198,7 +203,8 @@ where
         Self { start, ..self.afresh() }
     }
 
-    /// What is done about surfaces of [contacts](crate::contact) that overlap at the start: without it they are refused.
+    /// What is done about surfaces of [contacts](crate::contact) that overlap at the start: without it they
+    /// are refused.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -228,21 +234,22 @@ where
         Self { overlaps, ..self.afresh() }
     }
 
-    /// Ends `duration` seconds after the start; with zero the start is all there is. Without it the run ends at an event of [`until`](Self::until), or
-    /// goes on for as long as samples are asked for.
+    /// Ends `duration` seconds after the start; with zero the start is all there is. Without it the run ends
+    /// at an event of [`until`](Self::until), or goes on for as long as samples are asked for.
     pub fn duration(self, duration: T) -> Self {
         Self { duration: Some(duration), ..self.afresh() }
     }
 
-    /// Samples every `interval` seconds: the `k`-th exactly at start + k · interval. Fixed-step methods divide the
-    /// interval into equal steps; adaptive ones interpolate. Without it every step of the integrator is a sample.
+    /// Samples every `interval` seconds: the `k`-th exactly at start + k · interval. Fixed-step methods
+    /// divide the interval into equal steps; adaptive ones interpolate. Without it every step of the
+    /// integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
         Self { samples: Samples::Every(interval), ..self.afresh() }
     }
 
-    /// Samples at these times, s, as the run counts them: increasing, none before the start, which is a sample if it is one of them. The
-    /// last one ends the run, or else the [`duration`](Self::duration), whose end is a sample, too. Fixed-step methods end steps
-    /// there; adaptive ones interpolate.
+    /// Samples at these times, s, as the run counts them: increasing, none before the start, which is a
+    /// sample if it is one of them. The last one ends the run, or else the [`duration`](Self::duration),
+    /// whose end is a sample, too. Fixed-step methods end steps there; adaptive ones interpolate.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -268,8 +275,8 @@ where
         Self { samples: Samples::At(times), ..self.afresh() }
     }
 
-    /// Inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For functions with jumps,
-    /// such as digital controllers, use [`control_every`](Self::control_every).
+    /// Inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For functions with
+    /// jumps, such as digital controllers, use [`control_every`](Self::control_every).
     pub fn inputs<F>(self, inputs: F) -> Simulation<'m, M, T, ContinuousInputs<F>, S, E, NQ, NV, NU>
     where
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
@@ -277,8 +284,8 @@ where
         self.with_inputs(ContinuousInputs(inputs))
     }
 
-    /// Inputs of a digital controller: `|t, q, v| u` is called once every `period` seconds, from the start on, and
-    /// `u` is held in between (zero-order hold). Integrator steps end on the control instants.
+    /// Inputs of a digital controller: `|t, q, v| u` is called once every `period` seconds, from the start
+    /// on, and `u` is held in between (zero-order hold). Integrator steps end on the control instants.
     pub fn control_every<F>(
         self,
         period: T,
@@ -291,7 +298,8 @@ where
     }
 
     /// Integrates with another method: [`DormandPrince`] with other settings, [`Rk4`](crate::integrate::Rk4),
-    /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint), [`Rosenbrock`](crate::integrate::Rosenbrock),
+    /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint),
+    /// [`Rosenbrock`](crate::integrate::Rosenbrock),
     /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler).
     pub fn method<R: Method<T>>(self, method: R) -> Simulation<'m, M, T, I, R, E, NQ, NV, NU> {
         let Self { system, events, start, overlaps, duration, samples, .. } = self;
@@ -318,11 +326,13 @@ where
         self.with_event(Event::new(function, crossing, Stop))
     }
 
-    /// Reports zero crossings of `function(t, q, v)` by additional samples, whose [`Sample::event`] says which.
+    /// Reports zero crossings of `function(t, q, v)` by additional samples, whose [`Sample::event`] says
+    /// which.
     ///
-    /// Every step is searched at its quarters, so that two crossings closer together than a quarter of a step may be
-    /// missed; a function that is zero at the start counts once it has left zero and returned, however soon. The crossing
-    /// is located to rounding on the interpolated motion. A function that is not a number is [`Error::Event`].
+    /// Every step is searched at its quarters, so that two crossings closer together than a quarter of a step
+    /// may be missed; a function that is zero at the start counts once it has left zero and returned, however
+    /// soon. The crossing is located to rounding on the interpolated motion. A function that is not a number
+    /// is [`Error::Event`].
     pub fn event<G>(
         self,
         crossing: Crossing,
@@ -339,9 +349,10 @@ where
     /// event with the velocity after it, which constraints have changed to the nearest that fulfils them
     /// (they give impulses, too).
     ///
-    /// Nothing rests on the surface of an event. Where the impact stops the motion towards it (a plastic one) and the motion
-    /// then goes on through, or impacts follow each other ever faster without end, the run ends with [`Error::Impacts`].
-    /// Events that coincide, such as an [`until`](Self::until), all act, in the order of declaration.
+    /// Nothing rests on the surface of an event. Where the impact stops the motion towards it (a plastic one)
+    /// and the motion then goes on through, or impacts follow each other ever faster without end, the run
+    /// ends with [`Error::Impacts`]. Events that coincide, such as an [`until`](Self::until), all act, in the
+    /// order of declaration.
     pub fn impact<G, F>(
         self,
         crossing: Crossing,

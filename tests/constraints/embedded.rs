@@ -147,8 +147,8 @@ fn a_solved_four_bar_moves_as_with_multipliers() {
         let b = bar.forward_dynamics(&all, &v_all, &SVector::from([0.5, 2.0, 0.0, 0.0]));
         assert!((a[0] - b[0]).abs() < 1e-9 * (1.0 + b.amax()), "{a} and {b} at {angle}");
         assert!((a[1] - b[1]).abs() < 1e-9 * (1.0 + b.amax()), "{a} and {b} at {angle}");
-        // Reactions, where one side has its multipliers from the elimination, and the other from the joints that are
-        // solved for.
+        // Reactions, where one side has its multipliers from the elimination, and the other from the joints
+        // that are solved for.
         let (u, here) = (SVector::from([2.0]), SVector::from([full[0], full[1]]));
         let close = |x: linkwork::nalgebra::Vector3<f64>, y: linkwork::nalgebra::Vector3<f64>| {
             assert!((x - y).norm() < 1e-9 * (1.0 + y.norm()), "{x} for {y} at {angle}");

@@ -1,5 +1,6 @@
-//! Lagrange multipliers and independent speeds solve the same equations: on random closed chains with planar and spatial
-//! joints, loops closed by every joint, and states on and off the constraints. The equations themselves are the judge.
+//! Lagrange multipliers and independent speeds solve the same equations: on random closed chains with planar
+//! and spatial joints, loops closed by every joint, and states on and off the constraints. The equations
+//! themselves are the judge.
 
 use linkwork::__private::{Elimination, independent_solution};
 use linkwork_compiler::expr::Expr;
@@ -94,8 +95,8 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
     }
 }
 
-/// Whether the runtime takes accelerations that follow from chosen speeds, or turns to multipliers: by the pivots, which stand
-/// behind accelerations and multipliers, and what those were before.
+/// Whether the runtime takes accelerations that follow from chosen speeds, or turns to multipliers: by the
+/// pivots, which stand behind accelerations and multipliers, and what those were before.
 fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
     fn by<const NC: usize>(found: &[f64]) -> bool {
         let part = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
@@ -139,7 +140,8 @@ fn both_formulations_fulfil_the_equations() {
             let at = symbols(model, seed);
             let first = eval(&by_multipliers, &at);
             let second = eval(&by_speeds, &at);
-            // Where the random configuration is close to a singular one, or speeds nearly depend on each other, both say so.
+            // Where the random configuration is close to a singular one, or speeds nearly depend on each
+            // other, both say so.
             let regular = (0..nc).all(|k| first[nv + nc + k] > 1e-4 * first[nv + 2 * nc + k]);
             let taken = is_taken(nv, nc, &second);
             let m = eval(&mass.concat(), &at);
@@ -178,7 +180,8 @@ fn both_formulations_fulfil_the_equations() {
 proptest! {
     #![proptest_config(config(32))]
 
-    /// The rates are the derivatives of the residuals along the motion, and the biases those of the rates at constant `v`.
+    /// The rates are the derivatives of the residuals along the motion, and the biases those of the rates at
+    /// constant `v`.
     #[test]
     fn rates_and_biases_are_derivatives(chain in chains(), seed in 0..1000_u64) {
         with_model(&chain, "", |model| {

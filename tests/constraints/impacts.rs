@@ -13,8 +13,9 @@ struct Bob {
     rod: Holonomic,
 }
 
-/// A bob swings against a wall that turns the horizontal velocity round, as a user writes it who does not think of the
-/// rod: that would throw it off, by 0.39 m/s and more. What is left is the part along the circle.
+/// A bob swings against a wall that turns the horizontal velocity round, as a user writes it who does not
+/// think of the rod: that would throw it off, by 0.39 m/s and more. What is left is the part along the
+/// circle.
 #[test]
 fn impacts_leave_the_constraints_alone() {
     let pendulum = Bob {};

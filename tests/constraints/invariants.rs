@@ -227,7 +227,8 @@ struct Held<T: Real> {
     rod: Holonomic,
 }
 
-/// With half of the digits a constraint must hold, so that in single precision, too, a wrong configuration is an error.
+/// With half of the digits a constraint must hold, so that in single precision, too, a wrong configuration is
+/// an error.
 #[test]
 fn single_precision_knows_what_is_off() {
     fn check<T: Real>(tolerance: T) {
@@ -248,7 +249,8 @@ fn single_precision_knows_what_is_off() {
     check::<f32>(1e-6);
 }
 
-/// A crank keeps its rate, whatever that is; at its dead centre the piston cannot be told to move, the crank can.
+/// A crank keeps its rate, whatever that is; at its dead centre the piston cannot be told to move, the crank
+/// can.
 #[test]
 fn velocities_are_completed() {
     let engine = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };

@@ -1,10 +1,11 @@
-//! A linkage that moves against Grübler's count, whatever its configuration: constraints that always depend on each other.
+//! A linkage that moves against Grübler's count, whatever its configuration: constraints that always depend
+//! on each other.
 
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 
-/// Bennett's linkage: four rods in a ring with skew pins. Opposite rods are alike, with lengths `a` and `b` and twists
-/// `α` and `β` of which `a sin β = b sin α` (Bennett, *A new mechanism*, Engineering 76, 1903).
+/// Bennett's linkage: four rods in a ring with skew pins. Opposite rods are alike, with lengths `a` and `b`
+/// and twists `α` and `β` of which `a sin β = b sin α` (Bennett, *A new mechanism*, Engineering 76, 1903).
 #[mechanism(gravity = -9.81 * z, batch)]
 struct Bennett {
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
@@ -70,7 +71,8 @@ fn its_multipliers_are_the_least_that_fulfil_the_equations() {
         let held = linkage.inverse_dynamics(&q, &v, &a) - jacobian.transpose() * lambda;
         assert!((held - tau).norm() < 1e-9 * (1.0 + lambda.norm()), "{held}");
         assert!((jacobian * a + linkage.constraint_bias(&q, &v)).norm() < 1e-9 * (1.0 + a.norm()));
-        // What no multiplier of least norm has: a part along the forces that do no work on any motion of the tree.
+        // What no multiplier of least norm has: a part along the forces that do no work on any motion of the
+        // tree.
         let column = |k: usize| Vector3::from(jacobian.column(k));
         let idle = column(0).cross(&column(1)).normalize();
         assert!((jacobian.transpose() * idle).norm() < 1e-9);

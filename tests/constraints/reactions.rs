@@ -94,7 +94,8 @@ fn reactions_balance_every_free_body() {
     }
 }
 
-/// A rod welded to the end of a turning arm: the weld carries its weight, its centripetal force and their moment.
+/// A rod welded to the end of a turning arm: the weld carries its weight, its centripetal force and their
+/// moment.
 #[mechanism(gravity = -9.81 * z)]
 struct WeldedArm {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]

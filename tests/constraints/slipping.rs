@@ -31,8 +31,8 @@ impl Roller {
     }
 }
 
-/// Steep inclines: `g (sin θ − μ cos θ)` and `2 μ g cos θ / R`; gentle ones: `⅔ g sin θ`, rolling but for a creep that does
-/// not change.
+/// Steep inclines: `g (sin θ − μ cos θ)` and `2 μ g cos θ / R`; gentle ones: `⅔ g sin θ`, rolling but for a
+/// creep that does not change.
 #[test]
 fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
     let (mu, v0) = (0.3_f64, 1e-3_f64);
@@ -200,7 +200,8 @@ struct Ladder {
     wall: Slipping,
 }
 
-/// Three equations for the two normal forces and the acceleration of the angle, from free body and kinematics by hand.
+/// Three equations for the two normal forces and the acceleration of the angle, from free body and kinematics
+/// by hand.
 #[test]
 fn a_ladder_slides_down() {
     let (angle, rate) = (1.0_f64, -0.8);
@@ -212,7 +213,8 @@ fn a_ladder_slides_down() {
             && Ladder {}.constraint_rates(&q, &v).amax() < 1e-15
     );
     let (a, forces) = Ladder {}.try_constrained_dynamics(&q, &v, &SVector::zeros()).expect("it slides");
-    // Slips of the balls' points: the floor's runs away from the wall, the wall's down; the balls turn as well.
+    // Slips of the balls' points: the floor's runs away from the wall, the wall's down; the balls turn as
+    // well.
     let part = |s: f64| s / s.hypot(1e-4);
     let (on_floor, on_wall) = (part(4.0 * s * rate + 0.05 * rate), part(4.0 * c * rate + 0.05 * rate));
     let (mu, nu, inertia) = (0.2 * on_floor, 0.3 * on_wall, 10.0 * 16.0 / 12.0);

@@ -27,8 +27,8 @@ fn apexes(m: &Ball, height: f64, h: f64, duration: f64) -> Vec<f64> {
     turns.map(|pair| pair[0].q[2] - 0.05 + pair[0].v[2] * pair[0].v[2] / (2.0 * G)).collect()
 }
 
-/// The n-th apex of a ball that is dropped from a height h is e²ⁿ h. Engines miss it: where 0.25 is due they have 0.25, 0.07 or
-/// 0.01 (dimforge/rapier, issue 974).
+/// The n-th apex of a ball that is dropped from a height h is e²ⁿ h. Engines miss it: where 0.25 is due they
+/// have 0.25, 0.07 or 0.01 (dimforge/rapier, issue 974).
 #[test]
 fn apexes_are_those_of_the_coefficient_of_restitution() {
     for e in [0.3, 0.5, 0.8, 0.95, 1.0] {
@@ -86,7 +86,8 @@ struct OnASlope {
     slope: Contact,
 }
 
-/// A sphere rolls down 15° with g sin α · 5/7, under a friction of 2/7 m g sin α; figures of the task that Drake tests.
+/// A sphere rolls down 15° with g sin α · 5/7, under a friction of 2/7 m g sin α; figures of the task that
+/// Drake tests.
 #[test]
 fn a_sphere_rolls_down_a_slope() {
     let tilt = 15.0_f64.to_radians();
@@ -98,7 +99,8 @@ fn a_sphere_rolls_down_a_slope() {
     let end = run.last().unwrap().unwrap();
     let acceleration = 1.813_582_023_182_663_4;
     assert!((acceleration - G * tilt.sin() * 5.0 / 7.0).abs() < 1e-14);
-    // It turns by 0.07 rad in a step at the end, which the method of order 4 for the axes of its velocity knows to 1e-6.
+    // It turns by 0.07 rad in a step at the end, which the method of order 4 for the axes of its velocity
+    // knows to 1e-6.
     let along = end.v.fixed_rows::<3>(0).norm();
     assert!((along - acceleration * t).abs() < 2e-6, "{along}");
     assert!((end.q[0] - acceleration * t * t / 2.0).abs() < 2e-6, "{}", end.q[0]);
@@ -146,8 +148,8 @@ impl Block {
     }
 }
 
-/// A block on a slope below the angle of friction does not move: not by a micrometre in an hour. Its four corners share the force in
-/// more ways than one.
+/// A block on a slope below the angle of friction does not move: not by a micrometre in an hour. Its four
+/// corners share the force in more ways than one.
 #[test]
 fn a_block_sticks_for_an_hour() {
     let m = Block { tilt: 15.0_f64.to_radians(), friction: 0.5 };

@@ -6,7 +6,8 @@ use linkwork::prelude::*;
 
 use crate::laws::{Chain, Pile, Random};
 
-/// Follows a motion whose energy must not grow and whose surfaces must not pass each other; how many steps it takes.
+/// Follows a motion whose energy must not grow and whose surfaces must not pass each other; how many steps it
+/// takes.
 fn follow<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -93,7 +94,8 @@ fn a_double_pendulum_strikes_the_floor() {
     }
 }
 
-/// Time stepping leads to where located events do, the nearer the shorter its steps are: to first order where something strikes.
+/// Time stepping leads to where located events do, the nearer the shorter its steps are: to first order where
+/// something strikes.
 #[test]
 fn time_stepping_leads_to_the_same() {
     let m = Tile { friction: 0.4, restitution: 0.0 };

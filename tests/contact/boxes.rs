@@ -72,8 +72,8 @@ pub fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f6
     q
 }
 
-/// The distance of two boxes that do not overlap, whose axes times half of their lengths are columns, with centres apart by `c`: the
-/// least of all corners of each from the other, and of all edges from each other.
+/// The distance of two boxes that do not overlap, whose axes times half of their lengths are columns, with
+/// centres apart by `c`: the least of all corners of each from the other, and of all edges from each other.
 fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
     let signs = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
     let corner = |block: &Matrix3<f64>, k: usize| block * Vector3::from(signs(k));
@@ -136,8 +136,8 @@ fn met(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vec
     far * out
 }
 
-/// What a box or a capsule is apart from a box where it nearly touches it is the least distance of their points; farther away it is
-/// positive.
+/// What a box or a capsule is apart from a box where it nearly touches it is the least distance of their
+/// points; farther away it is positive.
 #[test]
 fn gaps_are_distances() {
     let (m, mut random) = (Two { gravity: G, friction: 0.0, restitution: 0.0 }, Random(3));
@@ -175,8 +175,8 @@ fn gaps_are_distances() {
     assert!(beside < 4, "{beside}");
 }
 
-/// Face on face, flush, turned, and across each other so that no corner of either is on the other: they lie still, and all points carry
-/// the weight.
+/// Face on face, flush, turned, and across each other so that no corner of either is on the other: they lie
+/// still, and all points carry the weight.
 #[test]
 fn boxes_lie_on_each_other() {
     let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
@@ -194,7 +194,8 @@ fn boxes_lie_on_each_other() {
     }
 }
 
-/// Edge on edge: the impulse is along the normal `n` of both edges, `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` over both boxes.
+/// Edge on edge: the impulse is along the normal `n` of both edges,
+/// `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` over both boxes.
 #[test]
 fn edges_strike_edges() {
     let m = Two { gravity: 0.0, friction: 0.0, restitution: 0.5 };
@@ -202,7 +203,8 @@ fn edges_strike_edges() {
         Matrix3::from_diagonal(&[b * b + c * c, a * a + c * c, a * a + b * b].into()) * (mass / 3.0)
     };
     for (d, lean) in [(0.0, 0.2), (0.03, 0.2), (-0.08, 0.3)] {
-        // The edge of the upper box between its sides −y and −z, over the edge of the lower one at x = 0.1 along y.
+        // The edge of the upper box between its sides −y and −z, over the edge of the lower one at x = 0.1
+        // along y.
         let lean = UnitQuaternion::from_euler_angles(0.0, lean, 0.0);
         let turn = lean * UnitQuaternion::from_euler_angles(core::f64::consts::FRAC_PI_4, 0.0, 0.0);
         let met = Vector3::new(LOW[0], 0.0, LOW[2]);
@@ -230,7 +232,8 @@ fn edges_strike_edges() {
     }
 }
 
-/// Impacts where they touch somehow obey all laws, and keep the momentum of two boxes that nothing else touches.
+/// Impacts where they touch somehow obey all laws, and keep the momentum of two boxes that nothing else
+/// touches.
 #[test]
 fn boxes_strike_by_the_laws() {
     let mut random = Random(11);
@@ -268,8 +271,8 @@ fn boxes_strike_by_the_laws() {
     }
 }
 
-/// A box falls on an edge of another, tips, and comes to rest or slides off: energy never grows, overlaps stay those of a step, and the
-/// order of the two makes no difference.
+/// A box falls on an edge of another, tips, and comes to rest or slides off: energy never grows, overlaps
+/// stay those of a step, and the order of the two makes no difference.
 #[test]
 fn a_box_falls_on_an_edge() {
     let m = Two { gravity: G, friction: 0.5, restitution: 0.0 };

@@ -240,8 +240,9 @@ pub struct OnPoints {
     hind_right: Contact,
 }
 
-/// Along one direction `wₖ = cos(0.7 k + 0.3)` of all coordinates: Pinocchio 3.4.0, `computeConstraintDynamicsDerivatives` with two
-/// contacts `CONTACT_3D`, `LOCAL_WORLD_ALIGNED`, without correctors, in the state of `stance`.
+/// Along one direction `wₖ = cos(0.7 k + 0.3)` of all coordinates: Pinocchio 3.4.0,
+/// `computeConstraintDynamicsDerivatives` with two contacts `CONTACT_3D`, `LOCAL_WORLD_ALIGNED`, without
+/// correctors, in the state of `stance`.
 #[test]
 fn a_quadruped_on_points_as_in_pinocchio() {
     let (q, v, tau) = stance();
@@ -350,7 +351,8 @@ fn a_quadruped_on_points_as_in_pinocchio() {
     close("∂f/∂τ", &[forces[0], forces[3]], &[5.929825685, 4.95663259]);
 }
 
-/// Steps with held contacts, with their Jacobians: explicit ones and implicit ones, with feedback and without.
+/// Steps with held contacts, with their Jacobians: explicit ones and implicit ones, with feedback and
+/// without.
 #[test]
 fn steps_of_a_held_quadruped() {
     use discrete::DifferentiableStep;

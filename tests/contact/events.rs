@@ -134,8 +134,8 @@ struct Block {
     rubs: Contact,
 }
 
-/// A force that grows with time moves the block when it exceeds friction, and that instant is located; when it is gone the block
-/// comes to rest, where it stays.
+/// A force that grows with time moves the block when it exceeds friction, and that instant is located; when
+/// it is gone the block comes to rest, where it stays.
 #[test]
 fn a_block_breaks_loose_and_stops() {
     let m = Block { friction: 0.4 };
@@ -180,7 +180,8 @@ struct Crate {
     pushes: Force,
 }
 
-/// A crate pushed at its top edge tips when the moment of the force exceeds that of its weight, before it slides.
+/// A crate pushed at its top edge tips when the moment of the force exceeds that of its weight, before it
+/// slides.
 #[test]
 fn a_crate_tips() {
     let m = Crate { friction: 0.8 };
@@ -214,8 +215,9 @@ struct Housner {
     right: Contact,
 }
 
-/// A slender block that rocks from edge to edge: between impacts θ obeys I θ̈ = −m g R sin(α − θ), and an impact on the other edge
-/// leaves 1 − (3/2) sin² α of the rate (Housner, *The behavior of inverted pendulum structures during earthquakes*, 1963).
+/// A slender block that rocks from edge to edge: between impacts θ obeys I θ̈ = −m g R sin(α − θ), and an
+/// impact on the other edge leaves 1 − (3/2) sin² α of the rate (Housner, *The behavior of inverted pendulum
+/// structures during earthquakes*, 1963).
 #[test]
 fn a_block_rocks_as_housner_says() {
     let m = Housner { friction: 5.0 };

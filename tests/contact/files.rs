@@ -60,8 +60,8 @@ fn last(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
     run.finish().unwrap()
 }
 
-/// On its face it stands on slopes that are less steep than friction and tipping allow: tan 30° is less than 2/3, the ratio of the
-/// diameter to the height, and than 0.7.
+/// On its face it stands on slopes that are less steep than friction and tipping allow: tan 30° is less than
+/// 2/3, the ratio of the diameter to the height, and than 0.7.
 #[test]
 fn a_drum_stands_on_its_face() {
     for slope in [0.0, 20.0_f64.to_radians(), 30.0_f64.to_radians()] {

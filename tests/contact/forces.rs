@@ -133,7 +133,8 @@ fn a_motor_presses_a_piston_onto_its_stop() {
     assert!((load + 1.5 / slope).abs() < 1e-5 * load.abs(), "{load} {slope}");
 }
 
-/// Chosen contacts: the equations hold, through a loop and with slip, and where nothing slips what acts is what is chosen.
+/// Chosen contacts: the equations hold, through a loop and with slip, and where nothing slips what acts is
+/// what is chosen.
 #[test]
 fn chosen_contacts_stay_closed() {
     let m = Table {};
@@ -196,7 +197,8 @@ struct Anvil {
     face: Contact,
 }
 
-/// Forces are told apart however much heavier one body is than the other, in both orders of the contacts that it matters for.
+/// Forces are told apart however much heavier one body is than the other, in both orders of the contacts that
+/// it matters for.
 #[test]
 fn heavy_bodies_are_held_on_light_ones() {
     for mass in [1.0, 1e2, 1e3, 1e4, 1e5] {

@@ -22,7 +22,8 @@ fn gaps_of_what_is_held_decay() {
     assert!((m.contact_gaps(&steady.q)[0] - 11.0 * (-10.0_f64).exp() * 1e-3).abs() < 1e-9);
 }
 
-/// A foot that has not quite landed comes to rest a fiftieth of its speed further on, where nothing draws it back.
+/// A foot that has not quite landed comes to rest a fiftieth of its speed further on, where nothing draws it
+/// back.
 #[test]
 fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
     let (q, _, _) = stance();
@@ -39,7 +40,8 @@ fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
     assert!((m.contact_rates(&end.q, &end.v)[0] + 0.1 * (-10.0_f64).exp()).abs() < 1e-7);
 }
 
-/// A step that is made of accelerations which are known is the step, and their forces are those that hold the feet.
+/// A step that is made of accelerations which are known is the step, and their forces are those that hold the
+/// feet.
 #[test]
 fn steps_are_made_of_known_accelerations() {
     let (q, v, _) = stance();

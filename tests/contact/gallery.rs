@@ -27,8 +27,9 @@ struct Billiards {
     touch: Contact,
 }
 
-/// The cue ball throws the object ball off the line of centres: across it the object ball gets `μ (1 + e) v cos φ / 2`, or a seventh
-/// of what the surfaces slip at if that is less; with `r ω = v sin φ` of side spin they do not slip, and it is not thrown.
+/// The cue ball throws the object ball off the line of centres: across it the object ball gets
+/// `μ (1 + e) v cos φ / 2`, or a seventh of what the surfaces slip at if that is less; with `r ω = v sin φ`
+/// of side spin they do not slip, and it is not thrown.
 #[test]
 fn a_ball_is_thrown() {
     let (v, radius) = (2.0, 0.0286);
@@ -65,9 +66,9 @@ struct Bouncing {
     floor: Contact,
 }
 
-/// A ball that spins about y and strikes the floor leaves it with `(5 vₓ + 2 r ω) / 7` where it grips, and slower by
-/// `μ (1 + e) |v_z|` where it slips: back spin turns it back (Cross, *Grip-slip behavior of a bouncing ball*, Am. J. Phys. 70, 2002,
-/// for a solid sphere that grips at once).
+/// A ball that spins about y and strikes the floor leaves it with `(5 vₓ + 2 r ω) / 7` where it grips, and
+/// slower by `μ (1 + e) |v_z|` where it slips: back spin turns it back (Cross, *Grip-slip behavior of a
+/// bouncing ball*, Am. J. Phys. 70, 2002, for a solid sphere that grips at once).
 #[test]
 fn spin_changes_how_a_ball_bounces() {
     for (friction, spin) in [(1.0, 0.0), (1.0, -150.0), (1.0, 200.0), (0.1, -150.0), (0.1, 250.0)] {
@@ -103,9 +104,10 @@ impl Rod {
     }
 }
 
-/// The tip's normal acceleration is `p N − (g − ω² sin θ)` with `p = 1 + 3 cos θ (cos θ − μ sin θ)`, which below μ = 4/3 is positive
-/// wherever the rod is, so that the force follows (Painlevé, *Sur les lois du frottement de glissement*, 1895; Génot and Brogliato,
-/// *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
+/// The tip's normal acceleration is `p N − (g − ω² sin θ)` with `p = 1 + 3 cos θ (cos θ − μ sin θ)`, which
+/// below μ = 4/3 is positive wherever the rod is, so that the force follows (Painlevé, *Sur les lois du
+/// frottement de glissement*, 1895; Génot and Brogliato, *New results on Painlevé paradoxes*, Eur. J. Mech. A
+/// 18, 1999).
 #[test]
 fn a_rod_slides_where_no_paradox_is() {
     let m = Rod { friction: 1.3 };
@@ -125,8 +127,9 @@ fn a_rod_slides_where_no_paradox_is() {
     }
 }
 
-/// With μ = 2 at tan θ = 2, `p = −0.8`: no force lets the rod slide on. An impact without a collision stops its tip at once, with the
-/// impulses (0.3, 0.4) N·s, and it turns about the tip from then on. Both ways of simulating do that.
+/// With μ = 2 at tan θ = 2, `p = −0.8`: no force lets the rod slide on. An impact without a collision stops
+/// its tip at once, with the impulses (0.3, 0.4) N·s, and it turns about the tip from then on. Both ways of
+/// simulating do that.
 #[test]
 fn a_rod_in_the_paradox_stops() {
     let m = Rod { friction: 2.0 };
@@ -164,8 +167,8 @@ struct Ladder {
     floor: Contact,
 }
 
-/// A ladder that slides down leaves the wall when its top has come down by a third, and goes on with the velocity along the floor that
-/// it has then.
+/// A ladder that slides down leaves the wall when its top has come down by a third, and goes on with the
+/// velocity along the floor that it has then.
 #[test]
 fn a_ladder_leaves_the_wall() {
     let (m, half, start) = (Ladder {}, 2.0, 1.2_f64);
@@ -205,8 +208,8 @@ struct Valve {
     seat: Limit,
 }
 
-/// It chatters: flights last `2/ω atan(v/(ω d))` for a preload of `k d`, each impact leaves `e` of the speed, and after infinitely many
-/// it is closed.
+/// It chatters: flights last `2/ω atan(v/(ω d))` for a preload of `k d`, each impact leaves `e` of the speed,
+/// and after infinitely many it is closed.
 #[test]
 fn a_valve_chatters() {
     let (omega, preload, restitution) = ((800.0_f64 / 0.02).sqrt(), 0.004, 0.6);
@@ -230,7 +233,8 @@ fn a_valve_chatters() {
     assert!((force[0] - 800.0 * preload).abs() < 1e-6);
 }
 
-/// A one-way clutch, or a silent ratchet: a strut hinged 0.1 m above a slide, on which a torque of 0.3 N·m presses its tip.
+/// A one-way clutch, or a silent ratchet: a strut hinged 0.1 m above a slide, on which a torque of 0.3 N·m
+/// presses its tip.
 #[mechanism]
 struct Clutch {
     friction: f64,
@@ -252,8 +256,9 @@ struct Clutch {
     tip: Contact,
 }
 
-/// Where tan α is less than the coefficient of friction the strut holds the slide against any load one way, and stops what moves that
-/// way at once; the other way it drags with `μ τ / (L (sin α + μ cos α))`. With less friction it slips either way.
+/// Where tan α is less than the coefficient of friction the strut holds the slide against any load one way,
+/// and stops what moves that way at once; the other way it drags with `μ τ / (L (sin α + μ cos α))`. With
+/// less friction it slips either way.
 #[test]
 fn a_strut_is_a_one_way_clutch() {
     let run = |m: &Clutch, load: f64, speed: f64, t: f64| {
@@ -317,9 +322,10 @@ struct Belt {
     end: Contact,
 }
 
-/// A belt that turns by `δ` at each of `n` points holds while its tensions are below `((1 + μ tan δ/2) / (1 − μ tan δ/2))ⁿ` of each
-/// other: at a point between the tensions `T` and `T'` the drum presses with `(T + T') sin δ/2`, and friction holds
-/// `(T' − T) cos δ/2`. This is more than the `e^{μ n δ}` of a belt that touches everywhere (Eytelwein's or Euler's formula).
+/// A belt that turns by `δ` at each of `n` points holds while its tensions are below
+/// `((1 + μ tan δ/2) / (1 − μ tan δ/2))ⁿ` of each other: at a point between the tensions `T` and `T'` the
+/// drum presses with `(T + T') sin δ/2`, and friction holds `(T' − T) cos δ/2`. This is more than the
+/// `e^{μ n δ}` of a belt that touches everywhere (Eytelwein's or Euler's formula).
 #[test]
 fn a_belt_holds_up_to_its_limit() {
     let (friction, radius, slack) = (0.3_f64, 0.1, 10.0);

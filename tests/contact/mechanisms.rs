@@ -76,8 +76,8 @@ struct Striking {
     wall: Limit,
 }
 
-/// A piston strikes a stop within a loop: the loop holds, the piston leaves as restitution says, the energy that is lost is
-/// ½ (1 − e²) v² over the inverse mass of the piston under the constraints.
+/// A piston strikes a stop within a loop: the loop holds, the piston leaves as restitution says, the energy
+/// that is lost is ½ (1 − e²) v² over the inverse mass of the piston under the constraints.
 #[test]
 fn a_piston_strikes_a_stop() {
     for e in [0.0, 0.3, 1.0] {
@@ -108,7 +108,8 @@ struct Tethered {
     rope: Limit,
 }
 
-/// It falls from beside the peg until the rope is taut, which takes the velocity along the rope, and swings then.
+/// It falls from beside the peg until the rope is taut, which takes the velocity along the rope, and swings
+/// then.
 #[test]
 fn a_rope_becomes_taut() {
     let m = Tethered { length: 1.0 };
@@ -152,8 +153,8 @@ struct Atwood {
     rope: Limit,
 }
 
-/// The rope is slack by 0.1 m: both fall. It pulls both to one speed then, which momentum along it gives, and the heavy one goes
-/// on down with `(m₁ − m₂) g / (m₁ + m₂)`.
+/// The rope is slack by 0.1 m: both fall. It pulls both to one speed then, which momentum along it gives, and
+/// the heavy one goes on down with `(m₁ − m₂) g / (m₁ + m₂)`.
 #[test]
 fn weights_on_a_rope_over_a_wheel() {
     let fall = (0.1 / 9.81_f64).sqrt();
@@ -185,8 +186,8 @@ struct Gears {
     teeth: Limit,
 }
 
-/// The rattle of gears: at each impact the speed of the teeth is turned round by the coefficient of restitution, while
-/// `I₁ ω₁ / r₁ − I₂ ω₂ / r₂` stays. Without restitution they stay together.
+/// The rattle of gears: at each impact the speed of the teeth is turned round by the coefficient of
+/// restitution, while `I₁ ω₁ / r₁ − I₂ ω₂ / r₂` stays. Without restitution they stay together.
 #[test]
 fn gears_rattle_in_their_play() {
     let kept = |v: &SVector<f64, 2>| 0.02 * v[0] / 0.1 - 0.03 * v[1] / 0.05;

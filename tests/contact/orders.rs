@@ -1,5 +1,5 @@
-//! Drops of boxes and balls: the order in which contacts and their surfaces are declared makes no difference, and contacts give no
-//! energy.
+//! Drops of boxes and balls: the order in which contacts and their surfaces are declared makes no difference,
+//! and contacts give no energy.
 
 use super::boxes::{Swapped, Two, any_turn, placed};
 use super::laws::Random;
@@ -41,7 +41,8 @@ heap!(Backwards:
     floor = (block.cuboid(0.3, 0.2, 0.1), ground.plane(z));
 );
 
-/// What differs after a step of `h` seconds from each state on the way of the first, m/s and rad/s: the most of `steps`.
+/// What differs after a step of `h` seconds from each state on the way of the first, m/s and rad/s: the most
+/// of `steps`.
 fn difference<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
     (one, other): (&A, &B),
     (mut q, mut v): (SVector<f64, N>, SVector<f64, NV>),
@@ -91,8 +92,8 @@ fn orders_of_declaration_make_no_difference() {
     assert!(most[0].max(most[1]) < 1e-8, "{most:?}");
 }
 
-/// Nor does the order of contacts with strong friction. (Which surface of a contact is named first may, where impulses that slip are
-/// shared: `Two` and `Swapped` differ by more than `1e-8` in about 1 of 3000 steps.)
+/// Nor does the order of contacts with strong friction. (Which surface of a contact is named first may, where
+/// impulses that slip are shared: `Two` and `Swapped` differ by more than `1e-8` in about 1 of 3000 steps.)
 #[test]
 fn orders_with_strong_friction_make_no_difference() {
     let mut random = Random(2);
@@ -112,7 +113,8 @@ fn orders_with_strong_friction_make_no_difference() {
     assert!(most < 1e-8, "{most}");
 }
 
-/// Of a drop the most that the energy grows by in a step, J, and the deepest overlap, m, with steps of `h` seconds.
+/// Of a drop the most that the energy grows by in a step, J, and the deepest overlap, m, with steps of `h`
+/// seconds.
 fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     let mut random = Random(seed);
     let m = Two { gravity: 9.81, friction: 0.5, restitution };
@@ -133,9 +135,9 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     (gain, least)
 }
 
-/// Neither impulses nor the removal of overlaps give energy. What is left is what a step of order 2 makes of bodies that turn about
-/// their edges: `½ m g r ω² h²` with about 3 kg, 0.15 m and 3 rad/s. Corners that strike at 4 m/s overlap by what they approach in a
-/// step.
+/// Neither impulses nor the removal of overlaps give energy. What is left is what a step of order 2 makes of
+/// bodies that turn about their edges: `½ m g r ω² h²` with about 3 kg, 0.15 m and 3 rad/s. Corners that
+/// strike at 4 m/s overlap by what they approach in a step.
 #[test]
 fn drops_gain_no_energy() {
     let h = 2e-3;

@@ -55,9 +55,9 @@ struct Cards {
     edge: Contact,
 }
 
-/// A card that leans by `φ` is pushed by `(m g / 2) tan φ` at its edge, horizontally by symmetry. The floor, which carries `m g`,
-/// holds it where its coefficient is at least `tan φ / 2`, and the face, on which the push is inclined by `φ`, where its is at
-/// least `tan φ`.
+/// A card that leans by `φ` is pushed by `(m g / 2) tan φ` at its edge, horizontally by symmetry. The floor,
+/// which carries `m g`, holds it where its coefficient is at least `tan φ / 2`, and the face, on which the
+/// push is inclined by `φ`, where its is at least `tan φ`.
 #[test]
 fn cards_lean_on_each_other() {
     let lean = 0.35_f64;
@@ -111,8 +111,8 @@ struct House {
     right_sill: Contact,
 }
 
-/// Eleven contacts with 22 forces on 21 velocities. Of the ten millinewtons that the upper pair and the roof press with none moves a
-/// card by a nanometre where friction is strong; where it is weak the house falls.
+/// Eleven contacts with 22 forces on 21 velocities. Of the ten millinewtons that the upper pair and the roof
+/// press with none moves a card by a nanometre where friction is strong; where it is weak the house falls.
 #[test]
 fn a_house_of_cards_stands() {
     let lean = 0.35_f64;
@@ -146,8 +146,8 @@ struct Cradle {
     touch: [Contact; 4],
 }
 
-/// Impacts one after the other hand the velocity on from ball to ball: the last one rises to where the first one came from, the
-/// others rest.
+/// Impacts one after the other hand the velocity on from ball to ball: the last one rises to where the first
+/// one came from, the others rest.
 #[test]
 fn a_cradle_hands_the_velocity_on() {
     let m = Cradle { gap: 1e-6 };

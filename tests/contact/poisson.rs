@@ -1,4 +1,5 @@
-//! Restitution as a ratio of impulses (Poisson): where it differs from that of velocities (Newton), and the laws of both.
+//! Restitution as a ratio of impulses (Poisson): where it differs from that of velocities (Newton), and the
+//! laws of both.
 
 use super::laws::Random;
 use linkwork::contact::{self, Contacts};
@@ -24,7 +25,8 @@ macro_rules! rod {
 rod!(Impulses, poisson(e));
 rod!(Velocities, e);
 
-/// The rates of gap and slip after an impact of a rod with its centre at rest but for `rates`, those of the end.
+/// The rates of gap and slip after an impact of a rod with its centre at rest but for `rates`, those of the
+/// end.
 fn after<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
 where
     M: Contacts<3, 3, 0, 1, 2, Scalar = f64>,
@@ -40,10 +42,11 @@ where
     ([rates[0], rates[1]], taken)
 }
 
-/// The oblique impact of a rod whose slip stops during compression (Wang and Mason, *Two-dimensional rigid-body collisions with
-/// friction*, J. Appl. Mech. 59, 1992: sticking in the phase of compression). With `W = G M⁻¹ Gᵀ` compression ends with no rates at all,
-/// so its impulses are `−W⁻¹ u`; restitution sticks too, so that the end leaves with `−e (uₙ − Wₙₜ uₜ / Wₜₜ)` by Poisson's law and with
-/// `−e uₙ` by Newton's. Of a rod of mass `m` and length `2 l` at an angle `θ`, `m Wₙₙ = 1 + 3 cos² θ`, `m Wₜₜ = 1 + 3 sin² θ` and
+/// The oblique impact of a rod whose slip stops during compression (Wang and Mason, *Two-dimensional
+/// rigid-body collisions with friction*, J. Appl. Mech. 59, 1992: sticking in the phase of compression). With
+/// `W = G M⁻¹ Gᵀ` compression ends with no rates at all, so its impulses are `−W⁻¹ u`; restitution sticks
+/// too, so that the end leaves with `−e (uₙ − Wₙₜ uₜ / Wₜₜ)` by Poisson's law and with `−e uₙ` by Newton's.
+/// Of a rod of mass `m` and length `2 l` at an angle `θ`, `m Wₙₙ = 1 + 3 cos² θ`, `m Wₜₜ = 1 + 3 sin² θ` and
 /// `m |Wₙₜ| = 3 sin θ cos θ`.
 #[test]
 fn an_oblique_rod_leaves_faster_than_by_newton() {
@@ -73,7 +76,8 @@ fn an_oblique_rod_leaves_faster_than_by_newton() {
     }
 }
 
-/// Where slip goes on both laws are one: the end leaves with `−e uₙ`, and slip is braked by `μ` times the impulse.
+/// Where slip goes on both laws are one: the end leaves with `−e uₙ`, and slip is braked by `μ` times the
+/// impulse.
 #[test]
 fn while_a_rod_slips_both_laws_are_one() {
     let (friction, e, gravity) = (0.1, 0.6, 0.0);
@@ -124,8 +128,8 @@ fn steps_strike_as_impacts_do() {
     }
 }
 
-/// A ball that bounces by Poisson's law comes to rest when that by Newton's does, in both ways of simulating, and stays: at rest there is
-/// no compression that would lift it.
+/// A ball that bounces by Poisson's law comes to rest when that by Newton's does, in both ways of simulating,
+/// and stays: at rest there is no compression that would lift it.
 #[mechanism(gravity = -9.81 * z)]
 struct Ball {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
@@ -217,8 +221,8 @@ fn check<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     }
 }
 
-/// Energy never grows, impulses press, stay within their cones and keep surfaces apart: with many contacts at once, beside Newton's law,
-/// and where that alone would give energy.
+/// Energy never grows, impulses press, stay within their cones and keep surfaces apart: with many contacts at
+/// once, beside Newton's law, and where that alone would give energy.
 #[test]
 fn impacts_obey_the_laws() {
     let mut random = Random(31);
@@ -263,7 +267,8 @@ struct Crank {
     stop: Limit,
 }
 
-/// Through a loop the slide leaves with `e` of its speed, the energy falls by `1 − e²`, and velocities stay on the constraints.
+/// Through a loop the slide leaves with `e` of its speed, the energy falls by `1 − e²`, and velocities stay
+/// on the constraints.
 #[test]
 fn loops_stay_closed() {
     let m = Crank { e: 0.7 };

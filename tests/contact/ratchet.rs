@@ -37,8 +37,9 @@ fn moves(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
     end.unwrap().q[0] - q[0]
 }
 
-/// A flank of slope `s = tan α` is climbed by a load of `m g tan(α + φ) = m g (s + μ) / (1 − s μ)` with `μ = tan φ`, and by none where
-/// `s μ > 1`: there the ratchet holds whatever pulls, and where it does not move it does not creep.
+/// A flank of slope `s = tan α` is climbed by a load of `m g tan(α + φ) = m g (s + μ) / (1 − s μ)` with
+/// `μ = tan φ`, and by none where `s μ > 1`: there the ratchet holds whatever pulls, and where it does not
+/// move it does not creep.
 #[test]
 fn a_pawl_holds_one_way() {
     let climbs = |s: f64, friction: f64| WEIGHT * (s + friction) / (1.0 - s * friction);

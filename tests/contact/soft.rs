@@ -57,8 +57,8 @@ fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64)
     (late, at(late).v[0])
 }
 
-/// An impact lasts half a period of the spring, and 2.9432 times the depth over the speed for round bodies (Johnson, *Contact
-/// Mechanics*, 1985, § 11.4); without dissipation it is elastic.
+/// An impact lasts half a period of the spring, and 2.9432 times the depth over the speed for round bodies
+/// (Johnson, *Contact Mechanics*, 1985, § 11.4); without dissipation it is elastic.
 #[test]
 fn impacts_last_as_long_as_closed_forms_say() {
     let method = || DormandPrince::new().tolerance(1e-12, 1e-14);
@@ -78,7 +78,8 @@ fn impacts_last_as_long_as_closed_forms_say() {
     );
 }
 
-/// The coefficient of restitution falls with the speed, by two thirds of the dissipation to first order (Hunt and Crossley, 1975).
+/// The coefficient of restitution falls with the speed, by two thirds of the dissipation to first order (Hunt
+/// and Crossley, 1975).
 #[test]
 fn restitution_falls_with_the_speed() {
     for dissipation in [0.003, 0.03] {

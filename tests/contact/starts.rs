@@ -24,8 +24,8 @@ struct Channel {
     high: Contact,
 }
 
-/// Balls that overlap by `d` part by `d m₂ / (m₁ + m₂)` and `d m₁ / (m₁ + m₂)` along the line of their centres: their centre of mass
-/// stays where it is.
+/// Balls that overlap by `d` part by `d m₂ / (m₁ + m₂)` and `d m₁ / (m₁ + m₂)` along the line of their
+/// centres: their centre of mass stays where it is.
 #[test]
 fn balls_part_in_proportion_to_their_masses() {
     let m = Channel { gap: 1.0 };
@@ -58,8 +58,9 @@ fn what_has_no_room_is_refused() {
     assert!(text.starts_with("the surfaces of the contact `high` overlap by 0.013"), "{text}");
 }
 
-/// Simulations of both kinds, and those of lanes, refuse balls that overlap and name the contact, start from where
-/// [`contact::project`] takes them where they are asked to, and leave them where they are where that is said.
+/// Simulations of both kinds, and those of lanes, refuse balls that overlap and name the contact, start from
+/// where [`contact::project`] takes them where they are asked to, and leave them where they are where that is
+/// said.
 #[test]
 fn simulations_look_at_their_start() {
     let m = Channel { gap: 1.0 };
@@ -106,7 +107,8 @@ struct Crank {
     stop: Contact,
 }
 
-/// The slide is taken back to the stop, and the loop stays closed: of the crank's angle `cos θ` follows from the law of cosines.
+/// The slide is taken back to the stop, and the loop stays closed: of the crank's angle `cos θ` follows from
+/// the law of cosines.
 #[test]
 fn loops_stay_closed() {
     let m = Crank {};
@@ -122,8 +124,8 @@ fn loops_stay_closed() {
     assert!((q[0] - cosine.acos()).abs() < 1e-8, "{q}");
 }
 
-/// A box that is turned and sunk in a corner of three planes comes to rest on them without overlaps, and a motion from there begins
-/// without a jump.
+/// A box that is turned and sunk in a corner of three planes comes to rest on them without overlaps, and a
+/// motion from there begins without a jump.
 #[mechanism(gravity = -9.81 * z)]
 struct Corner {
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]
@@ -170,7 +172,8 @@ struct Ball {
     floor: Contact,
 }
 
-/// Friction that is negative or endless, and restitution that takes or gives too much, are named by everything that contacts act in.
+/// Friction that is negative or endless, and restitution that takes or gives too much, are named by
+/// everything that contacts act in.
 #[test]
 fn coefficients_that_are_none_are_named() {
     let wrong = [(-0.1, 0.0, -0.1), (f64::INFINITY, 0.0, f64::INFINITY), (0.5, -0.2, -0.2), (0.5, 1.1, 1.1)];

@@ -34,7 +34,8 @@ fn looked(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
     square(best[0], best[1]).sqrt()
 }
 
-/// Near the ground the distance of a ball is the least of all; far above it is no less than a part of the height.
+/// Near the ground the distance of a ball is the least of all; far above it is no less than a part of the
+/// height.
 #[test]
 fn distances_from_hills_are_the_least() {
     let m = BallOnHills { g: 9.81, radius: 0.1, height: 0.15, length: 0.4 };
@@ -70,7 +71,8 @@ struct BallInHollow {
     hollow: Contact,
 }
 
-/// At the bottom of a hollow a ball swings as a pendulum whose length is the difference of the radii, and 7/5 of it where it rolls.
+/// At the bottom of a hollow a ball swings as a pendulum whose length is the difference of the radii, and 7/5
+/// of it where it rolls.
 #[test]
 fn a_ball_swings_in_a_hollow() {
     for (friction, share) in [(0.0, 1.0), (0.5, 1.4)] {

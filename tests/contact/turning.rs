@@ -86,7 +86,8 @@ fn a_rolling_ball_stops() {
     assert!((rests.q - steps.q).amax() < 1e-9, "{:e}", (rests.q - steps.q).amax());
 }
 
-/// On a slope it stays where tan α is less than ρ / r, and rolls down by 5/7 g (sin α − ρ / r cos α) where it is more.
+/// On a slope it stays where tan α is less than ρ / r, and rolls down by 5/7 g (sin α − ρ / r cos α) where it
+/// is more.
 #[test]
 fn a_ball_stays_on_a_gentle_slope() {
     let rolling = 0.1 * RADIUS;
@@ -111,7 +112,8 @@ fn moments_act_against_what_turns() {
     let weight = MASS * G;
     let spins = contact::acting(&m, 0.0, &q, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0].into(), &u).unwrap();
     assert!((spins - SVector::from([weight, 0.0, 0.0, -0.002 * weight, 0.0, 0.0])).amax() < 1e-7, "{spins}");
-    // Of what rolls and spins both moments are at their most; friction along the plane brakes what the moment against rolling turns.
+    // Of what rolls and spins both moments are at their most; friction along the plane brakes what the moment
+    // against rolling turns.
     let v = SVector::from([0.3, 0.0, 0.0, 0.0, 0.3 / RADIUS, -2.0]);
     let rolls =
         contact::forward_dynamics(&m, 0.0, &q, &v, &none, &[Touch::Sticks, Touch::Slips, Touch::Slips]);
@@ -145,7 +147,8 @@ fn derivatives_know_moments() {
     }
 }
 
-/// Impacts on a ball that spins and rolls: moments stay in their bounds, act against what turns, and no energy is gained.
+/// Impacts on a ball that spins and rolls: moments stay in their bounds, act against what turns, and no
+/// energy is gained.
 #[test]
 fn impacts_obey_the_laws() {
     let mut random = Random(12);
@@ -235,8 +238,8 @@ struct Soft {
     taken: Scalar,
 }
 
-/// A ball that rolls along x and spins about z is braked by `ρ m g` about y and by `a m g` about z, and loses these times its angular
-/// velocities; what the first surface is decides whose moments the output reads.
+/// A ball that rolls along x and spins about z is braked by `ρ m g` about y and by `a m g` about z, and loses
+/// these times its angular velocities; what the first surface is decides whose moments the output reads.
 #[test]
 fn outputs_read_moments() {
     let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();

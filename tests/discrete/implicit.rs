@@ -1,5 +1,5 @@
-//! Steps that are implicit in momenta, and steps under constraints: their Jacobians against differences of steps, and those of
-//! multipliers.
+//! Steps that are implicit in momenta, and steps under constraints: their Jacobians against differences of
+//! steps, and those of multipliers.
 
 use super::{Carrier, Driven, Linkage, assert_columns, check_step, check_steps, slopes};
 use linkwork::nalgebra::SVector;
@@ -7,7 +7,8 @@ use linkwork::prelude::*;
 use linkwork::{ConstrainedDerivatives, Rheonomic, discrete};
 use support::random::Random;
 
-/// A ball that rolls on a tilted plane, pushed and turned, with a pendulum inside: constraints on velocities and on a configuration.
+/// A ball that rolls on a tilted plane, pushed and turned, with a pendulum inside: constraints on velocities
+/// and on a configuration.
 #[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
 struct Ballbot {
     radius: f64,
@@ -28,7 +29,8 @@ struct Ballbot {
     push: Force,
 }
 
-/// Two arms on ball joints whose ends are held together by a rod that becomes longer and shorter: a spatial loop, in time.
+/// Two arms on ball joints whose ends are held together by a rod that becomes longer and shorter: a spatial
+/// loop, in time.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
 struct Arms {
     span: f64,
@@ -80,7 +82,8 @@ fn implicit_steps_change_as_their_jacobians_say() {
     }
 }
 
-/// All methods on a mechanism with constraints, at states that fulfil them: also along directions that they forbid.
+/// All methods on a mechanism with constraints, at states that fulfil them: also along directions that they
+/// forbid.
 pub(super) fn check_constrained<
     M,
     const NQ: usize,

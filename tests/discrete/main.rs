@@ -1,4 +1,5 @@
-//! Single steps and their Jacobians: against differences of steps, against the linear system, and for what they are used.
+//! Single steps and their Jacobians: against differences of steps, against the linear system, and for what
+//! they are used.
 
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::prelude::*;

@@ -1,4 +1,5 @@
-//! Steps of mechanisms with declared speeds, under constraints too: their Jacobians against differences of steps.
+//! Steps of mechanisms with declared speeds, under constraints too: their Jacobians against differences of
+//! steps.
 
 use super::check_steps;
 use super::implicit::check_constrained;
@@ -39,7 +40,8 @@ struct Gimbal {
     wz: Speed,
 }
 
-/// A ball that rolls on a tilted plane, with a pendulum inside, in the velocity of its centre along the axes of the ground.
+/// A ball that rolls on a tilted plane, with a pendulum inside, in the velocity of its centre along the axes
+/// of the ground.
 #[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
 struct Ballbot {
     radius: f64,
@@ -99,7 +101,8 @@ struct Arms {
     swing: Speed,
 }
 
-/// A loop of four pins in space, in the angular velocities of its bars and the speed of one end along the bar that it belongs to.
+/// A loop of four pins in space, in the angular velocities of its bars and the speed of one end along the bar
+/// that it belongs to.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct FourBar {
     base: f64,

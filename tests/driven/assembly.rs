@@ -1,4 +1,5 @@
-//! Assembly from partial guesses: within half a turn, in the assembly mode next to the guess, or in the one that is asked for.
+//! Assembly from partial guesses: within half a turn, in the assembly mode next to the guess, or in the one
+//! that is asked for.
 
 use super::jansen;
 use linkwork::prelude::*;
@@ -67,7 +68,8 @@ fn distance(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
     (a - b).iter().fold(0.0, |most, off| most.max(wrapped(*off).abs()))
 }
 
-/// From a guess of the crank alone, whole turns off or not: one of the two ways that circles give, within half a turn.
+/// From a guess of the crank alone, whole turns off or not: one of the two ways that circles give, within
+/// half a turn.
 #[test]
 fn partial_guesses_stay_within_half_a_turn() {
     let mut source = Random::new(5);
@@ -92,8 +94,8 @@ fn partial_guesses_stay_within_half_a_turn() {
     }
 }
 
-/// Along the straight way from its residuals to none (Davidenko's homotopy, in small steps) a guess leads to what assembly
-/// finds, unless assembly finds something that is nearer.
+/// Along the straight way from its residuals to none (Davidenko's homotopy, in small steps) a guess leads to
+/// what assembly finds, unless assembly finds something that is nearer.
 #[test]
 fn guesses_near_a_mode_lead_to_it() {
     let mut source = Random::new(6);

@@ -25,7 +25,8 @@ struct Cam {
     bearing: Vector,
 }
 
-/// `s = 0.05 + e sin φ`: the follower presses with `m s̈ + k s + m g`, the torque is that times `e cos φ`, and the weight of the cam.
+/// `s = 0.05 + e sin φ`: the follower presses with `m s̈ + k s + m g`, the torque is that times `e cos φ`,
+/// and the weight of the cam.
 #[test]
 fn the_cam_carries_spring_weight_and_inertia() {
     let (speed, e, mass) = (40.0, 0.02, 0.4);

@@ -1,4 +1,5 @@
-//! Random four-bars at random speeds and accelerations of the crank: d'Alembert's principle on corners by circles.
+//! Random four-bars at random speeds and accelerations of the crank: d'Alembert's principle on corners by
+//! circles.
 
 use super::assembly::{FourBar, corners, random};
 use linkwork::prelude::*;

@@ -3,7 +3,8 @@
 use linkwork::prelude::*;
 use support::compare::assert_close;
 
-/// An arm that turns at a given speed, on it a second one that turns with respect to the first, and a weight on that.
+/// An arm that turns at a given speed, on it a second one that turns with respect to the first, and a weight
+/// on that.
 #[mechanism(gravity = -9.81 * y)]
 struct Robot {
     first_speed: f64,

@@ -1,4 +1,5 @@
-//! A leg of Jansen's beast on a crank at a given speed: eleven bars, six loops' conditions, no degree of freedom.
+//! A leg of Jansen's beast on a crank at a given speed: eleven bars, six loops' conditions, no degree of
+//! freedom.
 
 use linkwork::prelude::*;
 use support::compare::assert_close;
@@ -49,8 +50,8 @@ struct Leg {
 
 pub type Point = [f64; 2];
 
-/// The corner of a triangle over two others, at distances from them; to the left of the way from the first to the second where
-/// `side` is 1.
+/// The corner of a triangle over two others, at distances from them; to the left of the way from the first to
+/// the second where `side` is 1.
 pub fn corner(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
     let d = [b[0] - a[0], b[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];

@@ -1,5 +1,5 @@
-//! Mechanisms that are driven at given positions, rates and accelerations: loops without a degree of freedom, forces of drives
-//! and bearings over a turn, and the assembly of linkages.
+//! Mechanisms that are driven at given positions, rates and accelerations: loops without a degree of freedom,
+//! forces of drives and bearings over a turn, and the assembly of linkages.
 
 mod assembly;
 mod cam;

@@ -1,5 +1,5 @@
-//! The prelude alone is enough for mechanisms that stand for others: with held contacts, decaying violations, states of first
-//! order and contacts left out.
+//! The prelude alone is enough for mechanisms that stand for others: with held contacts, decaying violations,
+//! states of first order and contacts left out.
 
 use linkwork::constraint::stabilized;
 use linkwork::contact::{Touch, apart, hold};

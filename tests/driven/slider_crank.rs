@@ -1,4 +1,5 @@
-//! A slider-crank whose crank turns at a given speed, in four declarations, against d'Alembert's principle by hand.
+//! A slider-crank whose crank turns at a given speed, in four declarations, against d'Alembert's principle by
+//! hand.
 
 use linkwork::prelude::*;
 use support::compare::assert_close;
@@ -124,8 +125,8 @@ struct ClosedForm {
     pin_force: Vector,
 }
 
-/// Angle of the rod, its rate and acceleration; place, rate and acceleration of the piston; torque on the crank and the force
-/// of the crank's bearing on it, at a constant speed of the crank.
+/// Angle of the rod, its rate and acceleration; place, rate and acceleration of the piston; torque on the
+/// crank and the force of the crank's bearing on it, at a constant speed of the crank.
 struct ByHand {
     rod: [f64; 3],
     piston: [f64; 3],
@@ -313,7 +314,8 @@ fn simulations_follow_the_drive() {
     assert_close("stroke", &[closed.stroke(found.t, &found.q)], &[hand.piston[0]], 1e-12);
 }
 
-/// A mechanism without a degree of freedom has no independent states: its linear system has inputs and outputs alone.
+/// A mechanism without a degree of freedom has no independent states: its linear system has inputs and
+/// outputs alone.
 #[test]
 fn linear_systems_are_empty() {
     let m = Positioned { omega: OMEGA };
@@ -325,7 +327,8 @@ fn linear_systems_are_empty() {
     assert_eq!(linear.a.shape(), (0, 0));
 }
 
-/// Two drives of one coordinate that disagree leave no configuration but at the time zero; none of them is left out.
+/// Two drives of one coordinate that disagree leave no configuration but at the time zero; none of them is
+/// left out.
 #[test]
 fn drives_that_disagree_are_reported() {
     assert_eq!((Twice::NC, Twice::NS), (4, 0));
@@ -335,7 +338,8 @@ fn drives_that_disagree_are_reported() {
     assert!(matches!(found, Err(ConstraintError::Configuration { .. })), "{found:?}");
 }
 
-/// With everything that can be asked for: derivatives along a motion that is given, and the force of a drive against a gas.
+/// With everything that can be asked for: derivatives along a motion that is given, and the force of a drive
+/// against a gas.
 #[test]
 fn functions_that_are_asked_for_hold_without_a_degree_of_freedom() {
     let m = Whole { omega: OMEGA, stiffness: 250.0 };

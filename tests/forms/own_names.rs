@@ -1,5 +1,5 @@
-//! The prelude stands in nobody's way: beside a program's own items of its names, beside names that are imported one by one,
-//! and beside everything of nalgebra.
+//! The prelude stands in nobody's way: beside a program's own items of its names, beside names that are
+//! imported one by one, and beside everything of nalgebra.
 
 mod both {
     use linkwork::nalgebra::*;

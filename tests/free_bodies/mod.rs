@@ -1,5 +1,5 @@
-//! Compiled mechanisms with free bodies and inertia that sees the ground: their derivatives are limits of differences, with
-//! prepared parameters and in the linearisation too.
+//! Compiled mechanisms with free bodies and inertia that sees the ground: their derivatives are limits of
+//! differences, with prepared parameters and in the linearisation too.
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{SMatrix, SVector};

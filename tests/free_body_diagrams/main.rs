@@ -1,5 +1,5 @@
-//! Free-body diagrams: the sum of all that acts on a body is the rate of its momentum, and its moment that of the angular momentum,
-//! both by differences along the motion.
+//! Free-body diagrams: the sum of all that acts on a body is the rate of its momentum, and its moment that of
+//! the angular momentum, both by differences along the motion.
 
 use linkwork::free_body::{Diagram, Origin};
 use linkwork::nalgebra::Vector3;
@@ -13,7 +13,8 @@ mod places;
 /// Differences of order two over 2e-4 s.
 const DIFFERENCE: f64 = 2e-6;
 
-/// A point on the path of a motion: what acts, and momentum, angular momentum about the ground's origin, centre of mass.
+/// A point on the path of a motion: what acts, and momentum, angular momentum about the ground's origin,
+/// centre of mass.
 type Seen = [SVector<f64, 3>; 3];
 
 /// Compares the sum with the rates of the momenta, of those `seen` at a time.

@@ -1,12 +1,13 @@
-//! Bodies and particles that move by `at` and `frame`: what holds them on their places acts on them, and on what carries them.
+//! Bodies and particles that move by `at` and `frame`: what holds them on their places acts on them, and on
+//! what carries them.
 
 use super::check;
 use linkwork::free_body::Origin;
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// An arm with a bead that a coordinate moves along it, and on the bead a pendulum; a plate on a path that is given in time and by
-/// a coordinate, with a weight on it.
+/// An arm with a bead that a coordinate moves along it, and on the bead a pendulum; a plate on a path that is
+/// given in time and by a coordinate, with a weight on it.
 #[mechanism(gravity = -9.81 * z)]
 struct Places {
     slide: Coordinate,

@@ -155,7 +155,8 @@ fn screw_is_a_collar_with_a_pitch() {
     check_screw!(OnScrewWithLead {}, 0.3 / std::f64::consts::TAU);
 }
 
-/// The state and acceleration of a ball or free joint that moves as a chain does: found from the chain's frames.
+/// The state and acceleration of a ball or free joint that moves as a chain does: found from the chain's
+/// frames.
 macro_rules! check_against_chain {
     ($joint:ident, $chain:ident, $first:literal) => {
         let (joint, chain) = ($joint {}, $chain {});
@@ -164,7 +165,8 @@ macro_rules! check_against_chain {
         for _ in 0..10 {
             let (q, v, a) = (random.vector(1.0), random.vector(1.0), random.vector(1.0));
             let relative = chain.frame_placement(socket, &q).inv_mul(&chain.frame_placement(last, &q));
-            // Motion relative to the socket: that of the chain with the pivot at rest, in axes of the last body.
+            // Motion relative to the socket: that of the chain with the pivot at rest, in axes of the last
+            // body.
             let (mut v_only, mut a_only) = (v, a);
             (v_only[0], a_only[0]) = (0.0, 0.0);
             let back = chain.frame_placement(last, &q).rotation.inverse();
@@ -172,7 +174,8 @@ macro_rules! check_against_chain {
             let velocity = chain.frame_velocity(last, &q, &v_only);
             let (v_linear, v_angular) = (part(&velocity, 0), part(&velocity, 3));
             let acceleration = chain.frame_acceleration(last, &q, &v_only, &a_only);
-            let (a_linear, a_angular) = (part(&acceleration, 0) - v_angular.cross(&v_linear), part(&acceleration, 3));
+            let (a_linear, a_angular) =
+                (part(&acceleration, 0) - v_angular.cross(&v_linear), part(&acceleration, 3));
 
             let quaternion = linkwork::nalgebra::UnitQuaternion::from_rotation_matrix(&relative.rotation);
             let position = [q[0]].into_iter().chain(relative.translation.vector.iter().copied());
@@ -181,7 +184,8 @@ macro_rules! check_against_chain {
             positions.extend(quaternion.coords.iter());
             let jq = SVector::from_column_slice(&positions);
             let stack = |pivot: f64, linear: Vector3<f64>, angular: Vector3<f64>| {
-                let all: Vec<f64> = [pivot].iter().chain(&linear).take(first).chain(&angular).copied().collect();
+                let all: Vec<f64> =
+                    [pivot].iter().chain(&linear).take(first).chain(&angular).copied().collect();
                 SVector::from_column_slice(&all)
             };
             let (jv, ja) = (stack(v[0], v_linear, v_angular), stack(a[0], a_linear, a_angular));
@@ -211,7 +215,8 @@ fn free_is_a_stage_and_three_pins() {
     check_against_chain!(OnFree, ChainedFree, 4);
 }
 
-/// What is welded together is one body, here with its mass in three particles at the same places as a triangle's.
+/// What is welded together is one body, here with its mass in three particles at the same places as a
+/// triangle's.
 #[test]
 fn welded_bodies_are_one() {
     #[mechanism(gravity = -9.81 * y)]

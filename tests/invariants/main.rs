@@ -175,10 +175,11 @@ fn dashpots() {
     });
 }
 
-// ---- Frames and the mechanism as a whole -------------------------------------------------------------------------
+// ---- Frames and the mechanism as a
+// whole -------------------------------------------------------------------------
 
-/// Placement, velocity, acceleration and Jacobian of a frame, centre of mass and momentum: each is the rate of the
-/// one before it.
+/// Placement, velocity, acceleration and Jacobian of a frame, centre of mass and momentum: each is the rate
+/// of the one before it.
 macro_rules! check_kinematics {
     ($mechanism:expr, $type:ident, $frame:literal) => {
         let m = $mechanism;
@@ -244,7 +245,8 @@ fn motors_do_not_change_the_momentum() {
     }
 }
 
-// ---- Inputs ------------------------------------------------------------------------------------------------------
+// ----
+// Inputs ------------------------------------------------------------------------------------------------------
 
 /// The power of an input is its force times the velocity of the point that it acts on.
 #[test]
@@ -281,10 +283,11 @@ fn inputs_work_where_they_act() {
     }
 }
 
-// ---- Motion ------------------------------------------------------------------------------------------------------
+// ----
+// Motion ------------------------------------------------------------------------------------------------------
 
-/// Without anything outside that acts on it, a mechanism keeps its momentum and its energy, and its centre of mass
-/// moves straight on.
+/// Without anything outside that acts on it, a mechanism keeps its momentum and its energy, and its centre of
+/// mass moves straight on.
 #[test]
 fn spacecraft_keeps_momentum_and_energy() {
     let m = Spacecraft {};
@@ -332,7 +335,8 @@ fn workshop_balances_its_energy() {
     assert_close("energy", &[energy(2000) - energy(0)], &[work], 1e-9);
 }
 
-// ---- Scalars -----------------------------------------------------------------------------------------------------
+// ----
+// Scalars -----------------------------------------------------------------------------------------------------
 
 /// One struct for every scalar type.
 #[mechanism(gravity = -g * y)]
@@ -387,8 +391,8 @@ fn scalar_types_agree() {
     }
 }
 
-/// A light arm that carries a heavy load: about parallel pins, so that two of three pivots of its mass matrix are small
-/// beside the first.
+/// A light arm that carries a heavy load: about parallel pins, so that two of three pivots of its mass matrix
+/// are small beside the first.
 #[mechanism]
 struct Loaded {
     load: f64,
@@ -406,9 +410,9 @@ struct Loaded {
     wrist: Pin,
 }
 
-/// Accelerations under forces fulfil the equations of motion to rounding of their largest terms, whatever the load: by
-/// elimination of one pivot after another their error is that of a matrix that differs from it by rounding (Higham, *Accuracy
-/// and Stability of Numerical Algorithms*, 2002, th. 10.4).
+/// Accelerations under forces fulfil the equations of motion to rounding of their largest terms, whatever the
+/// load: by elimination of one pivot after another their error is that of a matrix that differs from it by
+/// rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, th. 10.4).
 #[test]
 fn heavy_loads_on_light_arms_leave_the_digits() {
     let (v, tau) = (Vector3::zeros(), Vector3::new(0.3, -0.2, 0.7));

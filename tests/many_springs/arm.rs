@@ -93,8 +93,8 @@ fn many_springs_are_the_sum_of_few() {
     }
 }
 
-/// Twice as many springs are twice as many operations, and twice as much text: they stand once in the forces, once in their
-/// derivatives and once in the energy.
+/// Twice as many springs are twice as many operations, and twice as much text: they stand once in the forces,
+/// once in their derivatives and once in the energy.
 #[test]
 fn what_is_written_grows_as_springs_do() {
     let sizes = |springs: usize| {

@@ -1,5 +1,5 @@
-//! Mechanisms with so many springs that their forces are a function that the others call: energies, powers and differences
-//! know nothing of that.
+//! Mechanisms with so many springs that their forces are a function that the others call: energies, powers
+//! and differences know nothing of that.
 
 mod arm;
 mod tent;

@@ -11,9 +11,9 @@ use four_bar::FourBar;
 use linkwork::prelude::*;
 use rolling_disk::RollingDisk;
 
-/// Takes steps of `Rk4`, and holds the constraints after every one to the tolerance of the projection: 16 times the
-/// machine's precision, relative to entries of the state beyond one. Gives the largest change of the energy, in a first
-/// tenth and in all, J.
+/// Takes steps of `Rk4`, and holds the constraints after every one to the tolerance of the projection: 16
+/// times the machine's precision, relative to entries of the state beyond one. Gives the largest change of
+/// the energy, in a first tenth and in all, J.
 pub fn drift<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -45,8 +45,8 @@ where
     Ok(changes)
 }
 
-/// A million steps leave the loop as closed as the first one. The energy drifts in proportion to time, and less by the
-/// power of the step that the order says.
+/// A million steps leave the loop as closed as the first one. The energy drifts in proportion to time, and
+/// less by the power of the step that the order says.
 #[test]
 fn a_linkage() -> Result<(), Error> {
     let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };

@@ -63,8 +63,8 @@ struct TwoPendulums {
     elbow: Pin,
 }
 
-/// Follows a trajectory given in absolute angles, to a hundred times the error that another program's integration in
-/// double precision was seen to have (DOP853): `errors` at the times of the table.
+/// Follows a trajectory given in absolute angles, to a hundred times the error that another program's
+/// integration in double precision was seen to have (DOP853): `errors` at the times of the table.
 fn check_two_pendulums<const N: usize>(name: &str, errors: [f64; N]) {
     let rows = Record::load("problems/pendulums.json").rows::<5>(name);
     assert_eq!(rows.len(), N + 1);
@@ -123,8 +123,8 @@ struct FivePendulums {
     pin5: Pin,
 }
 
-/// In absolute angles θ: `M_ij = n_ij cos(θi − θj)` and `h_i = Σ_j n_ij sin(θi − θj) θ̇j² + n_ii g sin θi`, where
-/// `n_ij` is the number of masses beyond both joints.
+/// In absolute angles θ: `M_ij = n_ij cos(θi − θj)` and `h_i = Σ_j n_ij sin(θi − θj) θ̇j² + n_ii g sin θi`,
+/// where `n_ij` is the number of masses beyond both joints.
 #[test]
 fn chain_of_pendulums_by_its_closed_form() {
     let to_absolute = SMatrix::<f64, 5, 5>::from_fn(|i, j| if j <= i { 1.0 } else { 0.0 });

@@ -6,8 +6,9 @@ use std::f64::consts::FRAC_PI_2;
 use support::compare::assert_close;
 use support::table::Record;
 
-/// Standard Denavit–Hartenberg parameters: the joint turns about z of the link before, and its place on the link
-/// after is the inverse of `Tz(d) Tx(a) Rx(α)`. Inertias are parameters, since two of them are impossible.
+/// Standard Denavit–Hartenberg parameters: the joint turns about z of the link before, and its place on the
+/// link after is the inverse of `Tz(d) Tx(a) Rx(α)`. Inertias are parameters, since two of them are
+/// impossible.
 #[mechanism(gravity = -9.81 * z)]
 struct Puma560 {
     i1: f64,

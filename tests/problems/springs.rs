@@ -68,7 +68,8 @@ fn dashpot_alone() {
     assert_close("distances", q.as_slice(), &distances, 1e-13);
 }
 
-/// wall, k1 = 100, m1 = 2, k2 = 40, m2 = 1: the second mass slides on the first, so the second spring is on its joint.
+/// wall, k1 = 100, m1 = 2, k2 = 40, m2 = 1: the second mass slides on the first, so the second spring is on
+/// its joint.
 #[mechanism]
 struct TwoMasses {
     #[body(mass = 2)]
@@ -129,8 +130,8 @@ fn centre_of_percussion() {
     assert_close("change of velocity", change.as_slice(), &expected, 1e-14);
 }
 
-/// Falling flat at speed `v` on a stop at its end, with restitution e: an impulse of `m v (1 + e) / 4`, after which
-/// it turns at `1.5 (1 + e) v / l` and its centre falls at `v (3 − e) / 4`.
+/// Falling flat at speed `v` on a stop at its end, with restitution e: an impulse of `m v (1 + e) / 4`, after
+/// which it turns at `1.5 (1 + e) v / l` and its centre falls at `v (3 − e) / 4`.
 #[test]
 fn falling_rod_strikes_a_stop() {
     let (m, l, speed, restitution) = (1.2, 0.9, 2.0, 0.6);

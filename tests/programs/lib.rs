@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Calls cargo with a command for a package in release mode; it builds in the folder `packages` of `target`, which is
-/// `env!("CARGO_TARGET_TMPDIR")`: all packages share the compiler there. Without network, unless something is missing.
+/// Calls cargo with a command for a package in release mode; it builds in the folder `packages` of `target`,
+/// which is `env!("CARGO_TARGET_TMPDIR")`: all packages share the compiler there. Without network, unless
+/// something is missing.
 pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("Cargo.toml");
     let cargo = |network: &[&str]| {

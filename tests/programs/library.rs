@@ -1,4 +1,5 @@
-//! A library of a mechanism under constraints, written by the command `linkwork`, in a program in C: `library/main.c`.
+//! A library of a mechanism under constraints, written by the command `linkwork`, in a program in C:
+//! `library/main.c`.
 #![cfg(unix)]
 
 use linkwork_programs::cargo;

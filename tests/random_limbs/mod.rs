@@ -1,5 +1,5 @@
-//! Random mechanisms with alike limbs, in the words of the language; some with elements between the limbs, or between a limb
-//! and what carries it or the ground.
+//! Random mechanisms with alike limbs, in the words of the language; some with elements between the limbs, or
+//! between a limb and what carries it or the ground.
 
 use proptest::collection::vec;
 use proptest::prelude::*;

@@ -1,4 +1,5 @@
-//! Random robots as exporters write them: frames by right angles and a few other angles, all figures with noise.
+//! Random robots as exporters write them: frames by right angles and a few other angles, all figures with
+//! noise.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -17,7 +18,8 @@ pub struct Robot {
 struct Link {
     parent: usize,
     slides: bool,
-    /// By how many right angles it is turned about each axis of its parent; the last counts of four means another angle.
+    /// By how many right angles it is turned about each axis of its parent; the last counts of four means
+    /// another angle.
     turns: [usize; 3],
     /// Which components of its place, and of its centre of mass, are there at all.
     present: [bool; 6],

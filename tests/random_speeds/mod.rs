@@ -1,5 +1,5 @@
-//! Random mechanisms in random generalized speeds: all functions are those in the velocities of the joints, exchanged by
-//! `u = Y(q) v` as Kane's definitions say, and derivatives are limits of differences.
+//! Random mechanisms in random generalized speeds: all functions are those in the velocities of the joints,
+//! exchanged by `u = Y(q) v` as Kane's definitions say, and derivatives are limits of differences.
 
 use super::random_tree::{Tree, trees};
 use linkwork_compiler::derive::Output;
@@ -135,8 +135,8 @@ fn along(x: &[f64], e: f64, d: &[f64]) -> Vector {
     x.iter().zip(d).map(|(x, d)| x + e * d).collect()
 }
 
-/// Speeds for some of the velocities: combinations of neighbours with coefficients of coordinates, and angular velocities of bodies
-/// on ball joints in the axes of the ground.
+/// Speeds for some of the velocities: combinations of neighbours with coefficients of coordinates, and
+/// angular velocities of bodies on ball joints in the axes of the ground.
 fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     let names: Vec<&String> = plain
         .charts
@@ -173,7 +173,8 @@ fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     text
 }
 
-/// False for trees that have no plain coordinates or balls to choose speeds of, and those that do not compile.
+/// False for trees that have no plain coordinates or balls to choose speeds of, and those that do not
+/// compile.
 fn check(tree: &Tree, seed: u64) -> bool {
     let (arguments, item) = tree.source();
     let arguments = format!("{arguments}, {WORDS}");
@@ -370,7 +371,8 @@ fn a_rolling_disk_prints_kanes_equations() {
         #[speed(dot(omega(disk / ground), leaning.y))] u2: Speed,
         #[speed(dot(omega(disk / ground), leaning.z))] u3: Speed,";
     let text = printed("gravity = -g * z", fields);
-    // About the axis of lean nothing but inertia acts: `I u3' + J u1 u2 − I u1 u3 tan(lean)` with `I = m r²/4`, `J = m r²/2`.
+    // About the axis of lean nothing but inertia acts: `I u3' + J u1 u2 − I u1 u3 tan(lean)` with
+    // `I = m r²/4`, `J = m r²/2`.
     for line in [
         "heading' = u3/cos(lean)\n",
         "roll' = u2 - sin(lean) u3/cos(lean)\n",

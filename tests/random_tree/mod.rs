@@ -21,13 +21,15 @@ struct Limb {
 #[derive(Clone, Debug)]
 pub struct Tree {
     limbs: Vec<Limb>,
-    /// Elements between two bodies, by index into `TIES`; the ground stands for the first body where the second is the same.
+    /// Elements between two bodies, by index into `TIES`; the ground stands for the first body where the
+    /// second is the same.
     ties: Vec<(usize, usize, usize)>,
     gravity: [f64; 3],
 }
 
-/// Elements between places `@a` and `@b` of bodies or the ground, of which the first is a body: what has inertia, stores,
-/// dissipates and drives, and particles that are placed along axes of the body or the ground.
+/// Elements between places `@a` and `@b` of bodies or the ground, of which the first is a body: what has
+/// inertia, stores, dissipates and drives, and particles that are placed along axes of the body or the
+/// ground.
 const TIES: [&str; 9] = [
     "#[acts(between = (@b, @a), stiffness = 3, free_length = 0.2)] #: Spring,",
     "#[acts(between = (@b, @a), damping = 0.6)] #: Dashpot,",
@@ -40,7 +42,8 @@ const TIES: [&str; 9] = [
     "#[acts(on = @o, value = 0.3 * @o.x - 0.4 * omega(@o / ground))] #: Torque,",
 ];
 
-/// Trees with up to `joints` joints, of which more than usual move freely, with elements between their bodies and the ground.
+/// Trees with up to `joints` joints, of which more than usual move freely, with elements between their bodies
+/// and the ground.
 #[allow(dead_code, reason = "not every test that has trees has tied ones")]
 pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
     let ties = vec((0..TIES.len(), 0..8_usize, 0..8_usize), 0..=3);

@@ -1,6 +1,6 @@
-//! Random mechanisms with every element of the language that is not a joint: free coordinates, frames and points that
-//! move by coordinates and time, bodies and particles placed by them, some of them alike, springs and inerters between points, potentials,
-//! dissipation functions, forces with a value, and outputs.
+//! Random mechanisms with every element of the language that is not a joint: free coordinates, frames and
+//! points that move by coordinates and time, bodies and particles placed by them, some of them alike, springs
+//! and inerters between points, potentials, dissipation functions, forces with a value, and outputs.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -35,7 +35,8 @@ pub fn worlds() -> impl Strategy<Value = World> {
         .prop_map(|(root, numbers, chosen, time)| World { root, numbers, chosen, time })
 }
 
-/// What places the others. `#` is a random number, `@` an expression of time, or a number if nothing is driven.
+/// What places the others. `#` is a random number, `@` an expression of time, or a number if nothing is
+/// driven.
 const PLACES: &str = "
     throttle: Input,
     first: Coordinate,

@@ -1,5 +1,5 @@
-//! Second derivatives under constraints: against automatic differentiation of equations that are written by hand, and against
-//! differences of first ones on loops and rolling in space.
+//! Second derivatives under constraints: against automatic differentiation of equations that are written by
+//! hand, and against differences of first ones on loops and rolling in space.
 
 use super::hyper::{Hyper, solve};
 use super::{TOLERANCE, assert_block, check, check_steps_from};
@@ -59,7 +59,8 @@ pub struct Marble {
     fan: Force,
 }
 
-/// Two arms with point masses on a cart, whose hand stays at a distance from a peg that is driven, while one rate follows another.
+/// Two arms with point masses on a cart, whose hand stays at a distance from a peg that is driven, while one
+/// rate follows another.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
 struct Driven {
     sway: f64,

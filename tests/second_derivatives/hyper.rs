@@ -1,5 +1,6 @@
-//! Hyper-dual numbers: a value with its derivatives along two directions and the mixed second one, exact to rounding (Fike and
-//! Alonso, *The development of hyper-dual numbers for exact second-derivative calculations*, 2011).
+//! Hyper-dual numbers: a value with its derivatives along two directions and the mixed second one, exact to
+//! rounding (Fike and Alonso, *The development of hyper-dual numbers for exact second-derivative
+//! calculations*, 2011).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

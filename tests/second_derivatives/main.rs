@@ -1,5 +1,6 @@
-//! Second derivatives of the dynamics: against differences of first ones along the tangent space, on mechanisms with turning
-//! axes, driven motion, and inputs in body axes; constrained ones stand in `constrained`.
+//! Second derivatives of the dynamics: against differences of first ones along the tangent space, on
+//! mechanisms with turning axes, driven motion, and inputs in body axes; constrained ones stand in
+//! `constrained`.
 
 mod constrained;
 mod hyper;
@@ -15,8 +16,8 @@ use linkwork_compiler::{compile, read};
 use std::path::Path;
 use support::random::Random;
 
-/// A flying body with rotors, of which two also turn it by drag, and a pendulum on a ball joint below; forces along lines that
-/// the motion moves.
+/// A flying body with rotors, of which two also turn it by drag, and a pendulum on a ball joint below; forces
+/// along lines that the motion moves.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
 struct Carrier {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
@@ -79,7 +80,8 @@ fn slopes<const N: usize, const R: usize, const C: usize>(
     (0..N).map(along).collect()
 }
 
-/// The same for `λᵀ` of a matrix of derivatives: entry `(i, j)` is the slope along `j` of the derivative along `i`.
+/// The same for `λᵀ` of a matrix of derivatives: entry `(i, j)` is the slope along `j` of the derivative
+/// along `i`.
 fn contracted<const NV: usize, const N: usize, const C: usize>(
     lambda: &SVector<f64, NV>,
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, NV, C>,

@@ -1,5 +1,6 @@
-//! Second derivatives of steps where displacements turn: ball and free joints, also under constraints. They are held against second
-//! differences of the steps themselves, along the tangent space at the start and measured in that at the end.
+//! Second derivatives of steps where displacements turn: ball and free joints, also under constraints. They
+//! are held against second differences of the steps themselves, along the tangent space at the start and
+//! measured in that at the end.
 
 use super::constrained::{Marble, Tied};
 use super::{Carrier, Solo};
@@ -7,7 +8,8 @@ use linkwork::prelude::*;
 use linkwork::{RheonomicSecondDerivatives, discrete};
 use support::random::Random;
 
-/// Weights of the second difference of tenth order at one step, two and so on to both sides, of what is zero at none.
+/// Weights of the second difference of tenth order at one step, two and so on to both sides, of what is zero
+/// at none.
 const WEIGHTS: [f64; 5] = [5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1.0 / 3150.0];
 
 /// Quadratic forms of the second derivatives along random changes of state and inputs, next to differences.

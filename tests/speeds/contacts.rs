@@ -1,4 +1,5 @@
-//! Contacts that open and close, and limits, beside declared speeds: against the same mechanisms in the velocities of their joints.
+//! Contacts that open and close, and limits, beside declared speeds: against the same mechanisms in the
+//! velocities of their joints.
 
 use super::{DIFFERENCE, slopes};
 use linkwork::contact::{self, Contacts, Touch};

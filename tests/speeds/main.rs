@@ -65,7 +65,8 @@ struct Speeds {
     spin: Scalar,
 }
 
-/// A body in space with a pendulum on it: the velocity of the body's origin and its angular velocity in axes of the ground.
+/// A body in space with a pendulum on it: the velocity of the body's origin and its angular velocity in axes
+/// of the ground.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Satellite {
     #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
@@ -117,7 +118,8 @@ struct Disk {
     contact: Rolling,
 }
 
-/// A rolling disk with the components of its angular velocity in the leaning axes (Kane and Levinson 1985, ch. 4).
+/// A rolling disk with the components of its angular velocity in the leaning axes (Kane and Levinson 1985,
+/// ch. 4).
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct DiskInSpeeds {
     #[body(mass = 0, inertia = 0)]

@@ -1,4 +1,5 @@
-//! Speeds that do not determine the rates of coordinates in single configurations: nothing moves there, and errors say so.
+//! Speeds that do not determine the rates of coordinates in single configurations: nothing moves there, and
+//! errors say so.
 
 use super::{DiskInSpeeds, Satellite, Speeds, speeds};
 use linkwork::discrete;

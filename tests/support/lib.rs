@@ -1,4 +1,5 @@
-//! What the tests share: reference tables, comparisons, models, random states, mechanisms that several of them look at.
+//! What the tests share: reference tables, comparisons, models, random states, mechanisms that several of
+//! them look at.
 
 pub mod compare;
 pub mod mechanisms;

@@ -1,9 +1,10 @@
-//! Mechanisms in the struct language: one for every joint, the same from pins and sleeves alone, one with every
-//! element that acts, and one that floats.
+//! Mechanisms in the struct language: one for every joint, the same from pins and sleeves alone, one with
+//! every element that acts, and one that floats.
 
 use linkwork::mechanism;
 
-/// Two bodies: a carrier on a pin, and one carried on the joint in question. Nothing is aligned with anything.
+/// Two bodies: a carrier on a pin, and one carried on the joint in question. Nothing is aligned with
+/// anything.
 macro_rules! carried {
     ($(#[$doc:meta])* $name:ident: $joint:ident $(, $argument:ident = $value:tt)*) => {
         $(#[$doc])*

@@ -1,4 +1,5 @@
-//! The robots of `models/urdf`: those of the gallery, and others. Where they are from stands at the top of each file.
+//! The robots of `models/urdf`: those of the gallery, and others. Where they are from stands at the top of
+//! each file.
 
 use linkwork::mechanism;
 

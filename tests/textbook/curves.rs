@@ -1,4 +1,5 @@
-//! Frames along curves and towards points, curvature and torsion, gradients of fields, cables around bodies, elements on lengths.
+//! Frames along curves and towards points, curvature and torsion, gradients of fields, cables around bodies,
+//! elements on lengths.
 
 use linkwork::prelude::*;
 use std::f64::consts::PI;
@@ -28,8 +29,9 @@ struct Helix {
     turning: Vector,
 }
 
-/// Of a helix with the radius `a` and the pitch `b` per radian they are `a / (a² + b²)` and `b / (a² + b²)`; along the tangent the
-/// acceleration is that of the speed, along the normal `κ v²`; the frame turns by `v (τ T + κ B)` (Frenet and Serret).
+/// Of a helix with the radius `a` and the pitch `b` per radian they are `a / (a² + b²)` and `b / (a² + b²)`;
+/// along the tangent the acceleration is that of the speed, along the normal `κ v²`; the frame turns by
+/// `v (τ T + κ B)` (Frenet and Serret).
 #[test]
 fn a_helix_has_constant_curvature_and_torsion() {
     let (m, mut random) = (Helix { a: 0.5, b: 0.2 }, Random::new(4));
@@ -48,7 +50,8 @@ fn a_helix_has_constant_curvature_and_torsion() {
     }
 }
 
-/// A point on the twisted cubic `(s, s², s³)` on a table that turns with its own angle, and an ellipse by another coordinate.
+/// A point on the twisted cubic `(s, s², s³)` on a table that turns with its own angle, and an ellipse by
+/// another coordinate.
 #[mechanism]
 struct Cubic {
     #[body(mass = 1, inertia = sphere(1, 0.1))]
@@ -73,8 +76,8 @@ struct Cubic {
     flat: Scalar,
 }
 
-/// Of the twisted cubic: `κ² = 4 (9 s⁴ + 9 s² + 1) / (9 s⁴ + 4 s² + 1)³`, `τ = 3 / (9 s⁴ + 9 s² + 1)`; of an ellipse
-/// `κ = a b / (a² sin² e + b² cos² e)^(3/2)` (any table of differential geometry).
+/// Of the twisted cubic: `κ² = 4 (9 s⁴ + 9 s² + 1) / (9 s⁴ + 4 s² + 1)³`, `τ = 3 / (9 s⁴ + 9 s² + 1)`; of an
+/// ellipse `κ = a b / (a² sin² e + b² cos² e)^(3/2)` (any table of differential geometry).
 #[test]
 fn cubics_and_ellipses_bend_as_geometry_says() {
     for (s, e) in [(0.3_f64, 0.4_f64), (-0.8, 2.0), (1.2, -1.0)] {
@@ -192,8 +195,8 @@ struct Cables {
     pull: Force,
 }
 
-/// Shortest path of straight lines and a helix, by trying where it comes onto the cylinder and where it leaves: at places that are
-/// seen from the ends.
+/// Shortest path of straight lines and a helix, by trying where it comes onto the cylinder and where it
+/// leaves: at places that are seen from the ends.
 fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
     let length = |[alpha, beta, za, zb]: [f64; 4]| {
         let point = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
@@ -246,7 +249,8 @@ fn cables_take_the_shortest_way_around() {
     assert!((m.ball(&q) - (2.0 * 0.75_f64.sqrt() + 0.5 * angle)).abs() < 1e-14);
 }
 
-/// The slopes of a length are those of its values, on the surface and off it, and a force has their directions.
+/// The slopes of a length are those of its values, on the surface and off it, and a force has their
+/// directions.
 #[test]
 fn cables_have_exact_derivatives() {
     let (m, h) = (Cables { radius: 0.5 }, 1e-5);
@@ -273,7 +277,8 @@ fn cables_have_exact_derivatives() {
     }
 }
 
-/// A lever on a pin with a drum around the pin, which a cable turns; a weight that hangs from a rope over two pegs.
+/// A lever on a pin with a drum around the pin, which a cable turns; a weight that hangs from a rope over two
+/// pegs.
 #[mechanism(gravity = -9.81 * y)]
 struct Tackle {
     drum: f64,
@@ -306,7 +311,8 @@ struct Tackle {
 #[test]
 fn elements_act_on_any_length() {
     let m = Tackle { drum: 0.25, stiffness: 40.0, slack: 5.0 };
-    // Wound around the drum, the cable has the drum's radius for an arm, whatever the angle; free of it, that of the line.
+    // Wound around the drum, the cable has the drum's radius for an arm, whatever the angle; free of it, that
+    // of the line.
     for angle in [1.4, 1.9, 2.3] {
         let q = [angle, 0.3, -1.0].into();
         let torque = m.generalized_forces(&q, &[-10.0].into())[0];

@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 use support::compare::assert_close;
 use support::simulate::{advance, advance_from};
 
-/// Landau and Lifshitz, *Mechanics*, §§ 5 and 30: `m l² θ̈ + m l (g + ÿ) sin θ = 0`; the upper equilibrium is stable if
-/// `a² γ² > 2 g l`.
+/// Landau and Lifshitz, *Mechanics*, §§ 5 and 30: `m l² θ̈ + m l (g + ÿ) sin θ = 0`; the upper equilibrium is
+/// stable if `a² γ² > 2 g l`.
 #[test]
 fn kapitza_pendulum() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.04, 160.0);
@@ -52,8 +52,8 @@ struct PendulumOnCrank {
     pin: Pin,
 }
 
-/// Landau and Lifshitz, *Mechanics*, § 5, problem 3 a. The pivot has the axes of the ground from which it is placed, so
-/// the angle is that from the vertical although the crank turns.
+/// Landau and Lifshitz, *Mechanics*, § 5, problem 3 a. The pivot has the axes of the ground from which it is
+/// placed, so the angle is that from the vertical although the crank turns.
 #[test]
 fn pendulum_on_crank() {
     let (g, m, l, radius, speed) = (9.81, 0.3, 0.5, 0.2, 3.0);
@@ -100,8 +100,8 @@ struct Turntable {
     velocity: Vector,
 }
 
-/// In the rotating frame Coriolis and centrifugal forces appear; seen from the ground the plane of the oscillation stays,
-/// as Foucault's does.
+/// In the rotating frame Coriolis and centrifugal forces appear; seen from the ground the plane of the
+/// oscillation stays, as Foucault's does.
 #[test]
 fn foucault_pendulum_at_the_pole() {
     let (m, k, spin) = (1.4, 20.0, 0.7);
@@ -164,7 +164,8 @@ fn forced_oscillator() {
     assert_close("from another time", &[later[0]], &expected[..1], MOTION);
 }
 
-/// A pendulum on a base that is shaken up and down, whatever the pendulum does, and tilted by a quaternion for good.
+/// A pendulum on a base that is shaken up and down, whatever the pendulum does, and tilted by a quaternion
+/// for good.
 #[mechanism(gravity = -g * y)]
 struct ShakenBase {
     g: f64,

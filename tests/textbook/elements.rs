@@ -29,7 +29,8 @@ fn mass_with_inerter() {
     assert_close("displacement", q.as_slice(), &[-0.2234232688843427], 1e-12);
 }
 
-/// A moving-coil loudspeaker: the charge through its coil is a coordinate that moves no body, whose inertia is the inductance.
+/// A moving-coil loudspeaker: the charge through its coil is a coordinate that moves no body, whose inertia
+/// is the inductance.
 #[mechanism(derivatives)]
 struct Loudspeaker {
     mass: f64,
@@ -82,7 +83,8 @@ fn a_coil_is_the_inertia_of_its_charge() {
     assert_close("resistances", &rates.map(|[i, j]| by_v[(i, j)]), &expected, EXACT);
 }
 
-/// Writes the same two bodies with another law for the springs: between two of their points, on a length, on an angle.
+/// Writes the same two bodies with another law for the springs: between two of their points, on a length, on
+/// an angle.
 macro_rules! duffing {
     ($name:ident: [$($law:tt)*], [$($turning:tt)*]) => {
         #[mechanism(gravity = -9.81 * y)]
@@ -345,8 +347,8 @@ struct Meeting {
     inerter: Inerter,
 }
 
-/// A distance of zero has no direction, and what acts along it does nothing there; one with the free length zero has the
-/// limit zero.
+/// A distance of zero has no direction, and what acts along it does nothing there; one with the free length
+/// zero has the limit zero.
 #[test]
 fn points_that_coincide() {
     for l in [0.0, 0.3] {

@@ -170,7 +170,8 @@ struct PlanetAndSatellite {
     mutual: Gravity,
 }
 
-/// A sphere's inertia has no gradient, so the potential is that of the satellite near a centre with `mu = G M`.
+/// A sphere's inertia has no gradient, so the potential is that of the satellite near a centre with
+/// `mu = G M`.
 #[test]
 fn gravity_gradient_between_bodies() {
     let (both, alone) = (PlanetAndSatellite {}, FreeSatellite {});

@@ -90,8 +90,8 @@ fn gyroscope() {
     assert_close("mass", gyroscope.mass_matrix(&q).as_slice(), mass.as_slice(), EXACT);
 }
 
-/// Gimbal lock: with the axes of precession and spin in line, the mass matrix is singular, everything else is still
-/// right, and the acceleration is not a wrong number but none.
+/// Gimbal lock: with the axes of precession and spin in line, the mass matrix is singular, everything else is
+/// still right, and the acceleration is not a wrong number but none.
 #[test]
 fn gimbal_lock() {
     let gyroscope = Gyroscope { g: 9.81, mass: 1.0, offset: 0.0, axial: 2.0, transverse: 3.0 };

@@ -1,5 +1,6 @@
-//! Problems of the textbooks in the words that they are stated in: free coordinates, moving frames, laws, potentials and
-//! outputs, each against its closed form. Those that the gallery of ready-made mechanisms has are taken from there.
+//! Problems of the textbooks in the words that they are stated in: free coordinates, moving frames, laws,
+//! potentials and outputs, each against its closed form. Those that the gallery of ready-made mechanisms has
+//! are taken from there.
 
 mod coordinates;
 mod curves;

@@ -103,7 +103,8 @@ fn matrices_are_what_their_vectors_say() {
     }
 }
 
-/// A velocity of a free body in three of its directions that are not perpendicular, by reciprocal vectors as expressions.
+/// A velocity of a free body in three of its directions that are not perpendicular, by reciprocal vectors as
+/// expressions.
 #[mechanism]
 struct Oblique {
     #[body(mass = 1, inertia = sphere(1, 1))]
@@ -143,7 +144,8 @@ fn outputs_have_components_in_oblique_frames() {
     }
 }
 
-/// With vectors that are not perpendicular: `g₁ = f₂ × f₃ / (f₁ · f₂ × f₃)` and so on, and Cramer's rule for the components.
+/// With vectors that are not perpendicular: `g₁ = f₂ × f₃ / (f₁ · f₂ × f₃)` and so on, and Cramer's rule for
+/// the components.
 #[test]
 fn components_in_oblique_frames() {
     let mut random = Random::new(6);
@@ -162,7 +164,8 @@ fn components_in_oblique_frames() {
     }
 }
 
-/// `A X + X B = C` is `(1 ⊗ A + Bᵀ ⊗ 1) vec X = vec C`; a wedge product is the cross product's matrix, `(a ∧ b) v = (a × b) × v`.
+/// `A X + X B = C` is `(1 ⊗ A + Bᵀ ⊗ 1) vec X = vec C`; a wedge product is the cross product's matrix,
+/// `(a ∧ b) v = (a × b) × v`.
 #[test]
 fn kronecker_products_solve_sylvester_s_equation() {
     let mut random = Random::new(7);

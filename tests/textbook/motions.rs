@@ -1,4 +1,5 @@
-//! Points that a motion singles out, momenta of several bodies, rates of vectors, points of a body along other axes.
+//! Points that a motion singles out, momenta of several bodies, rates of vectors, points of a body along
+//! other axes.
 
 use linkwork::prelude::*;
 use support::random::Random;
@@ -20,8 +21,8 @@ struct Ladder {
     axis: Vector,
 }
 
-/// The centre of velocity is where the normals of wall and floor meet; so is that of acceleration at the moment when it is let go,
-/// and the acceleration there is zero in any state.
+/// The centre of velocity is where the normals of wall and floor meet; so is that of acceleration at the
+/// moment when it is let go, and the acceleration there is zero in any state.
 #[test]
 fn a_ladder_turns_about_its_instantaneous_centre() {
     let (m, mut random) = (Ladder { l: 3.0 }, Random::new(8));
@@ -133,7 +134,8 @@ struct Bat {
     further: Vector,
 }
 
-/// Of a rod that is held at its end it is at two thirds of the length, and a blow there leaves the end at rest.
+/// Of a rod that is held at its end it is at two thirds of the length, and a blow there leaves the end at
+/// rest.
 #[test]
 fn a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest() {
     let (m, q, v) = (Bat { l: 0.9 }, [0.3, 0.1, 0.7].into(), SVector::zeros());
@@ -191,8 +193,9 @@ struct Carrier {
     parts: Scalar,
 }
 
-/// What several bodies have is what the whole has, and changes by forces and torques from outside alone (Euler's laws); seen from
-/// a frame that turns, a vector changes by less than `ω × h` (the transport theorem).
+/// What several bodies have is what the whole has, and changes by forces and torques from outside alone
+/// (Euler's laws); seen from a frame that turns, a vector changes by less than `ω × h` (the transport
+/// theorem).
 #[test]
 fn euler_s_laws_hold_for_a_set_of_bodies() {
     let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(3));
@@ -239,7 +242,8 @@ struct Rolls {
     contact: Rolling,
 }
 
-/// The wheel of [`Rolls`], whose lowest point is said in the axes of the fork: it is on the ground, and at rest.
+/// The wheel of [`Rolls`], whose lowest point is said in the axes of the fork: it is on the ground, and at
+/// rest.
 #[mechanism(gravity = -9.81 * z)]
 struct Written {
     radius: f64,
@@ -375,7 +379,8 @@ struct Sliding {
     beside: Scalar,
 }
 
-/// Friction takes `μ N s² / √(s² + s₀²)` of a slip `s`, whatever presses; with it the power balance is complete.
+/// Friction takes `μ N s² / √(s² + s₀²)` of a slip `s`, whatever presses; with it the power balance is
+/// complete.
 #[test]
 fn friction_of_a_slipping_contact_takes_power() {
     let m = Sliding { mu: 0.3 };

@@ -246,8 +246,9 @@ fn a_factor_too_few_is_refused() {
     assert!(refused > 40, "{refused} mistakes");
 }
 
-/// A message names the parameter, or one whose unit follows from it, or the definitions that it may stand in. One of the
-/// two entries of a symmetric matrix is refused before, and so is a loop that is locked by a length that is wrong.
+/// A message names the parameter, or one whose unit follows from it, or the definitions that it may stand in.
+/// One of the two entries of a symmetric matrix is refused before, and so is a loop that is locked by a
+/// length that is wrong.
 fn is_refused(messages: &[String], parameter: &str) -> bool {
     let parameter = format!("`{parameter}`");
     let others = [

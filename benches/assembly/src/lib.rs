@@ -1,6 +1,6 @@
-//! Functions that do nothing but call a generated one, so that the machine code of each can be looked at by itself.
-//! The mechanisms are declared here and not taken from `linkwork-models`, where a part of their code would be compiled:
-//! all that a function calls must be in the assembly of this package.
+//! Functions that do nothing but call a generated one, so that the machine code of each can be looked at by
+//! itself. The mechanisms are declared here and not taken from `linkwork-models`, where a part of their code
+//! would be compiled: all that a function calls must be in the assembly of this package.
 #![forbid(unsafe_code)]
 
 use linkwork::prelude::*;

@@ -1,8 +1,8 @@
-//! The machine code of generated functions: how large each is, how much stack it takes and what it calls. Fails if one calls
-//! anything that is not on the list below, such as what panics.
+//! The machine code of generated functions: how large each is, how much stack it takes and what it calls.
+//! Fails if one calls anything that is not on the list below, such as what panics.
 //!
-//! `cargo run --release -p linkwork-benches --bin assembly [native]`: for cargo's default target, or for this computer's
-//! processor. It compiles the package `benches/assembly`.
+//! `cargo run --release -p linkwork-benches --bin assembly [native]`: for cargo's default target, or for this
+//! computer's processor. It compiles the package `benches/assembly`.
 
 use linkwork_benches::assembly::{Routine, name_in_source, routines};
 use object::{Object, ObjectSymbol};

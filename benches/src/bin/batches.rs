@@ -1,10 +1,10 @@
 //! Functions of several states at once next to those of one, in one table.
 //!
-//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin batches`, or without the flag for the
-//! default target. Nanoseconds per state: the least over many rounds, in which all take turns.
+//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin batches`, or without the
+//! flag for the default target. Nanoseconds per state: the least over many rounds, in which all take turns.
 //!
-//! Behind it states in arrays that no cache near the processor holds, on one thread: what `runtime/python/benches/calls.py` measures from
-//! Python.
+//! Behind it states in arrays that no cache near the processor holds, on one thread: what
+//! `runtime/python/benches/calls.py` measures from Python.
 
 use linkwork::Rheonomic;
 use linkwork::nalgebra::SVector;

@@ -1,5 +1,6 @@
-//! Steps of a quadruped with contacts at its feet, and of a humanoid on the corners of its soles: microseconds, and how exact they are,
-//! as JSON for `benches/peers/contact.py`, which has the same robots for MuJoCo.
+//! Steps of a quadruped with contacts at its feet, and of a humanoid on the corners of its soles:
+//! microseconds, and how exact they are, as JSON for `benches/peers/contact.py`, which has the same robots
+//! for MuJoCo.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -80,8 +81,8 @@ fn least(steps: f64, run: impl Fn()) -> f64 {
     times.fold(f64::INFINITY, f64::min) / steps
 }
 
-/// Times of the humanoid while it stands, collapses and is in the air, and its creep in metres a second. Each link turns about its own
-/// joint with 1 kg·m² and more, so that its drives may be stiff.
+/// Times of the humanoid while it stands, collapses and is in the air, and its creep in metres a second. Each
+/// link turns about its own joint with 1 kg·m² and more, so that its drives may be stiff.
 fn humanoid(method: Stepping) -> [f64; 4] {
     let m = Humanoid {};
     let high = m.neutral();

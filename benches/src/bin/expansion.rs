@@ -1,9 +1,10 @@
 //! What the compiler costs, and what rustc costs on its output: time, memory and size, next to the goals.
 //!
-//! `cargo run -p linkwork-benches --bin expansion`, in the dev profile: that is how cargo builds procedural macros.
-//! Each mechanism is expanded in a process of its own, so that its memory can be told from the others'. The last columns
-//! are of rustc reading what came out as cargo's dev profile does, up to the metadata of a library: processor time, and
-//! the most memory. `expansion FIRST [LAST]` prints the lines of some mechanisms, by number.
+//! `cargo run -p linkwork-benches --bin expansion`, in the dev profile: that is how cargo builds procedural
+//! macros. Each mechanism is expanded in a process of its own, so that its memory can be told from the
+//! others'. The last columns are of rustc reading what came out as cargo's dev profile does, up to the
+//! metadata of a library: processor time, and the most memory. `expansion FIRST [LAST]` prints the lines of
+//! some mechanisms, by number.
 
 use linkwork_benches::chains::{Source, chain};
 use linkwork_benches::checked::{Library, check};
@@ -74,7 +75,8 @@ fn mechanisms() -> Vec<(String, &'static str, Source)> {
     list
 }
 
-/// The word before the number of a mechanism and the place of the library, where a line is made in a process of its own.
+/// The word before the number of a mechanism and the place of the library, where a line is made in a process
+/// of its own.
 const LINE: &str = "line";
 
 fn main() -> ExitCode {

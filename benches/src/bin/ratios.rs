@@ -1,7 +1,8 @@
 //! Generated functions and the generic implementation, side by side in one table.
 //!
-//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin ratios`, or without the flag for the
-//! default target. Nanoseconds of one call: the least over many batches, in which both take turns.
+//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin ratios`, or without the
+//! flag for the default target. Nanoseconds of one call: the least over many batches, in which both take
+//! turns.
 
 use linkwork_benches::pairs::{Pair, robots};
 use linkwork_benches::states::STATES;

@@ -1,8 +1,8 @@
 //! Sines and cosines of joint angles next to those of the standard library and of `libm`, in one table.
 //!
-//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin sines`, or without the flag for the
-//! default target, where generated functions ask for AVX2 and FMA as here. Nanoseconds of all angles of a call, which are
-//! within 10⁴ rad: the least over many rounds, in which all take turns.
+//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin sines`, or without the
+//! flag for the default target, where generated functions ask for AVX2 and FMA as here. Nanoseconds of all
+//! angles of a call, which are within 10⁴ rad: the least over many rounds, in which all take turns.
 
 use linkwork::__private::{Arithmetic, Evaluate, dispatch};
 use linkwork_benches::random::Random;

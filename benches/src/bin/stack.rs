@@ -1,7 +1,8 @@
 //! The stack that functions of robots need, with everything that they call.
 //!
-//! `cargo run -p linkwork-benches --bin stack` for debug builds, with `--release` for release builds. Each call is made on a
-//! painted stack of a thread, and what it leaves unpainted is counted: KiB, upwards, for one state and for eight.
+//! `cargo run -p linkwork-benches --bin stack` for debug builds, with `--release` for release builds. Each
+//! call is made on a painted stack of a thread, and what it leaves unpainted is counted: KiB, upwards, for
+//! one state and for eight.
 
 use linkwork::Rheonomic;
 use linkwork::nalgebra::SVector;

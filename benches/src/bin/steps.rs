@@ -1,5 +1,5 @@
-//! A step of the classical Runge-Kutta method with its Jacobians next to C that CasADi generates (`benches/peers/run steps`), and
-//! second derivatives next to first ones, which need no peer.
+//! A step of the classical Runge-Kutta method with its Jacobians next to C that CasADi generates
+//! (`benches/peers/run steps`), and second derivatives next to first ones, which need no peer.
 
 use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;

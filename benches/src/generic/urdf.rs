@@ -1,5 +1,5 @@
-//! A URDF file → a [`Model`]: links that are fixed to others are lumped into them; coordinates depth first, the joints
-//! of one link in alphabetical order.
+//! A URDF file → a [`Model`]: links that are fixed to others are lumped into them; coordinates depth first,
+//! the joints of one link in alphabetical order.
 
 use super::{Frame, Inertia, Link, Model, Motion, Placement};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};

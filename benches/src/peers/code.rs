@@ -8,8 +8,8 @@ use std::sync::OnceLock;
 /// Below, a function does nothing but call others.
 const SMALLEST: u64 = 500;
 
-/// Bytes of the function `name` of the mechanism `M` where it is called by the code at an address, of which it has
-/// become a part or not. Nothing where it only calls other functions, or the system does not tell.
+/// Bytes of the function `name` of the mechanism `M` where it is called by the code at an address, of which
+/// it has become a part or not. Nothing where it only calls other functions, or the system does not tell.
 pub fn bytes<M>(caller: *const (), name: &str) -> Option<u64> {
     static SIZES: OnceLock<Option<Sizes>> = OnceLock::new();
     let sizes = SIZES.get_or_init(Sizes::read).as_ref()?;

@@ -2,14 +2,14 @@
 //!
 //! A library with algorithms for any robot (`peers/pinocchio.cpp`, `peers/rust`) exports
 //!
-//! - `void *peer_open(const char *folder, const double *states, size_t length, size_t count)`: a robot with `count`
-//!   states, which have `length` numbers together, each those of `q`, `v`, `a` and `τ` as Linkwork orders them; null if
-//!   it cannot be had;
-//! - `void (*peer_step(void *robot, size_t function, size_t variant))(void *robot, size_t state)`: what evaluates one
-//!   state, null if there is none;
-//! - `void peer_result(void *robot, size_t function, size_t state, double *out)`: the result of the last step, as
-//!   Linkwork orders it. What the peer keeps in another form is turned round here and in `peer_open`, where no clock
-//!   runs.
+//! - `void *peer_open(const char *folder, const double *states, size_t length, size_t count)`: a robot with
+//!   `count` states, which have `length` numbers together, each those of `q`, `v`, `a` and `τ` as Linkwork
+//!   orders them; null if it cannot be had;
+//! - `void (*peer_step(void *robot, size_t function, size_t variant))(void *robot, size_t state)`: what
+//!   evaluates one state, null if there is none;
+//! - `void peer_result(void *robot, size_t function, size_t state, double *out)`: the result of the last
+//!   step, as Linkwork orders it. What the peer keeps in another form is turned round here and in
+//!   `peer_open`, where no clock runs.
 //!
 //! C that CasADi has generated has an interface of its own.
 
@@ -196,7 +196,8 @@ fn load(path: &Path) -> Option<&'static Library> {
     if !path.exists() {
         return None;
     }
-    // SAFETY: the libraries come from `peers/run`; their initialisers do nothing but those of their languages.
+    // SAFETY: the libraries come from `peers/run`; their initialisers do nothing but those of their
+    // languages.
     match unsafe { Library::new(path) } {
         Ok(library) => Some(Box::leak(Box::new(library))),
         Err(error) => {

@@ -1,5 +1,5 @@
-//! Generated functions next to other libraries, in one process, interleaved, on the same states: what the programs that
-//! compare them share.
+//! Generated functions next to other libraries, in one process, interleaved, on the same states: what the
+//! programs that compare them share.
 
 pub mod clock;
 mod code;

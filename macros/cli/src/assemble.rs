@@ -17,7 +17,8 @@ const UNWOUND: f64 = 1e-10;
 const ATTEMPTS: usize = 50;
 /// A step that must be shorter than this part of Newton's leads nowhere.
 const SHORTEST: f64 = 1e-6;
-/// The least decrease of the residuals that a step is taken for, next to that which its linear equations promise.
+/// The least decrease of the residuals that a step is taken for, next to that which its linear equations
+/// promise.
 const DECREASE: f64 = 1e-4;
 /// Steps in which what is given goes to its values.
 const STEPS: u8 = 40;
@@ -29,7 +30,8 @@ const LONGEST: f64 = 0.3;
 const SINGULAR: f64 = 1e-9;
 
 impl Evaluated<'_, '_> {
-    /// Projects a state onto the constraints: the configuration, then the velocity. `None` where no state is near.
+    /// Projects a state onto the constraints: the configuration, then the velocity. `None` where no state is
+    /// near.
     pub fn settle(&self, t: f64, q: &mut Vec<f64>, v: &mut [f64]) -> Option<()> {
         if !self.is_constrained() {
             return Some(());
@@ -39,7 +41,8 @@ impl Evaluated<'_, '_> {
         self.move_along(t, q, v, &free)
     }
 
-    /// Entries of a configuration that move together, with their velocities: all of a rotation, or of the place of a free body.
+    /// Entries of a configuration that move together, with their velocities: all of a rotation, or of the
+    /// place of a free body.
     fn together(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         self.model
             .charts
@@ -55,7 +58,8 @@ impl Evaluated<'_, '_> {
             .flatten()
     }
 
-    /// The velocities of joints that change marked entries of a configuration, or entries that move together with them.
+    /// The velocities of joints that change marked entries of a configuration, or entries that move together
+    /// with them.
     pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
         for (entries, velocities) in self.together() {
@@ -73,8 +77,8 @@ impl Evaluated<'_, '_> {
         found
     }
 
-    /// The velocities that change no constraint, in this configuration and near it: first those of the joints, then the entries of `v`,
-    /// which differ from them if speeds are declared.
+    /// The velocities that change no constraint, in this configuration and near it: first those of the
+    /// joints, then the entries of `v`, which differ from them if speeds are declared.
     pub fn unreached(&self, t: f64, q: &[f64]) -> [Vec<bool>; 2] {
         [true, false].map(|of_joints| self.unreached_of(t, q, of_joints))
     }
@@ -102,8 +106,9 @@ impl Evaluated<'_, '_> {
         unreached
     }
 
-    /// Where the configuration on the constraints that is next to zero leads as what is given goes to its values, step by step: a loop
-    /// that has several forms keeps the one that it has there. On the constraints or, where what is given contradicts them, beside.
+    /// Where the configuration on the constraints that is next to zero leads as what is given goes to its
+    /// values, step by step: a loop that has several forms keeps the one that it has there. On the
+    /// constraints or, where what is given contradicts them, beside.
     pub fn led(&self, t: f64, q: &[f64], given: &[bool], apart: &[bool], held: &[bool]) -> Vec<f64> {
         let mut zero = self.neutral();
         let is_apart = self.entries(apart);
@@ -126,8 +131,8 @@ impl Evaluated<'_, '_> {
         at
     }
 
-    /// Returns a configuration on the constraints, from `q` or from others that are more and more off in what is not held: the
-    /// first whose angles are within half a turn of the guess, if there is one.
+    /// Returns a configuration on the constraints, from `q` or from others that are more and more off in what
+    /// is not held: the first whose angles are within half a turn of the guess, if there is one.
     pub fn assembled(
         &self,
         t: f64,
@@ -161,8 +166,8 @@ impl Evaluated<'_, '_> {
         units.filter(|(_, unit)| *unit == "rad").map(|(k, _)| k)
     }
 
-    /// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints hold without
-    /// these turns as well: all together, or else each by itself.
+    /// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints
+    /// hold without these turns as well: all together, or else each by itself.
     fn unwound(&self, t: f64, guess: &[f64], q: Vec<f64>) -> Vec<f64> {
         let v = vec![0.0; self.model.nv()];
         let without = |mut q: Vec<f64>, k: usize| {
@@ -183,8 +188,9 @@ impl Evaluated<'_, '_> {
         })
     }
 
-    /// Returns the assembly mode of a configuration, as generated code computes it: the sign of the determinant of the
-    /// derivatives of the constraints by the coordinates that are not held; none where they do not determine one.
+    /// Returns the assembly mode of a configuration, as generated code computes it: the sign of the
+    /// determinant of the derivatives of the constraints by the coordinates that are not held; none where
+    /// they do not determine one.
     pub fn assembly_mode(&self, t: f64, q: &[f64], held: &[bool]) -> Option<i8> {
         let v = vec![0.0; held.len()];
         let state = Values { t, q, v: &v, ..Values::default() };
@@ -209,8 +215,8 @@ impl Evaluated<'_, '_> {
         (determinant.abs() > SINGULAR).then_some(if determinant > 0.0 { 1 } else { -1 })
     }
 
-    /// Brings a configuration onto the constraints by Newton's method, the next one in the metric of the mass matrix, without the
-    /// velocities that are held. Steps that do not bring it nearer are halved.
+    /// Brings a configuration onto the constraints by Newton's method, the next one in the metric of the mass
+    /// matrix, without the velocities that are held. Steps that do not bring it nearer are halved.
     fn configure(&self, t: f64, q: &mut Vec<f64>, held: &[bool]) -> Option<()> {
         let v = vec![0.0; held.len()];
         let residuals = |q: &[f64]| {
@@ -254,7 +260,8 @@ impl Evaluated<'_, '_> {
         None
     }
 
-    /// Changes those velocities that are not held, as little as the constraints allow. `None` where these contradict what is held.
+    /// Changes those velocities that are not held, as little as the constraints allow. `None` where these
+    /// contradict what is held.
     pub fn move_along(&self, t: f64, q: &[f64], v: &mut [f64], held: &[bool]) -> Option<()> {
         let state = Values { t, q, v, ..Values::default() };
         let target: Vec<f64> = self.called("constraint_rates", state)?.iter().map(|rate| -rate).collect();
@@ -264,7 +271,8 @@ impl Evaluated<'_, '_> {
         (off <= CONTRADICTION).then_some(())
     }
 
-    /// A matrix, column by column, that multiplies the entries of `v`, as one that multiplies the velocities of the joints.
+    /// A matrix, column by column, that multiplies the entries of `v`, as one that multiplies the velocities
+    /// of the joints.
     fn by_joints(&self, state: Values<'_>, matrix: Vec<f64>) -> Vec<f64> {
         let n = self.model.nv();
         if self.model.speeds.is_none() || n == 0 {
@@ -281,7 +289,8 @@ impl Evaluated<'_, '_> {
     }
 }
 
-/// The least motion with `jacobian · motion = target`, in the metric of the mass matrix, of the velocities that are not held.
+/// The least motion with `jacobian · motion = target`, in the metric of the mass matrix, of the velocities
+/// that are not held.
 fn nearest(mass: &[f64], jacobian: &[f64], target: &[f64], held: &[bool]) -> Option<(Vec<f64>, f64)> {
     let (n, m) = (held.len(), target.len());
     let free: Vec<usize> = (0..n).filter(|k| !held[*k]).collect();

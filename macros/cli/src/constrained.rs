@@ -1,5 +1,5 @@
-//! Motions under constraints: accelerations by Gauss's principle of least constraint, and states brought back onto the constraints
-//! after every step, in the metric of the mass matrix, as simulations in Rust do it.
+//! Motions under constraints: accelerations by Gauss's principle of least constraint, and states brought back
+//! onto the constraints after every step, in the metric of the mass matrix, as simulations in Rust do it.
 
 /// A mass matrix by its factor: `M = L Lᵀ`, row by row below the diagonal.
 pub struct Metric {
@@ -46,8 +46,8 @@ impl Metric {
         x
     }
 
-    /// The `a` next to `M⁻¹ force` with `jacobian a = target`, for a Jacobian column by column, and how far the equation is off that
-    /// it fulfils least: far only where constraints contradict each other.
+    /// The `a` next to `M⁻¹ force` with `jacobian a = target`, for a Jacobian column by column, and how far
+    /// the equation is off that it fulfils least: far only where constraints contradict each other.
     pub fn nearest(&self, force: Vec<f64>, jacobian: &[f64], target: &[f64]) -> (Vec<f64>, f64) {
         let (n, m) = (self.n, target.len());
         let mut z = self.lower(force);
@@ -89,7 +89,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::Metric;
 
-    /// Two masses that are tied together share a force in the ratio of their masses; the tie said twice changes nothing.
+    /// Two masses that are tied together share a force in the ratio of their masses; the tie said twice
+    /// changes nothing.
     #[test]
     fn redundant_constraints_change_nothing() {
         let metric = Metric::of(&[2.0, 0.0, 0.0, 3.0], 2).expect("it is positive definite");

@@ -270,8 +270,8 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Returns the length or the weighted sum of coordinates that a drive acts on; `None` if it does not change with the motion, and for
-    /// a drive at a point of a body.
+    /// Returns the length or the weighted sum of coordinates that a drive acts on; `None` if it does not
+    /// change with the motion, and for a drive at a point of a body.
     fn length(&self, drive: &Drive) -> Option<String> {
         match &drive.on {
             DriveOn::Length(length) => {
@@ -317,7 +317,8 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Returns the point that a wrench acts at, and its body; notes a wrench with a reaction on another body, which is left out.
+    /// Returns the point that a wrench acts at, and its body; notes a wrench with a reaction on another body,
+    /// which is left out.
     fn body_of(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
         if wrench.against.is_some() {
             self.notes.push(format!("`{name}`, which acts between points of two bodies, has no effect here"));
@@ -451,7 +452,8 @@ fn damper(damping: f64) -> String {
     }
 }
 
-/// Returns the names of the lengths among the drives that do not change with the motion: nothing on them has an effect.
+/// Returns the names of the lengths among the drives that do not change with the motion: nothing on them has
+/// an effect.
 fn constant_lengths(description: &Description) -> BTreeSet<String> {
     let is_length = |drive: &&Drive| matches!(drive.on, DriveOn::Length(_));
     let lengths: Vec<&Drive> = description.drives.iter().filter(is_length).collect();

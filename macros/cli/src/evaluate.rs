@@ -1,5 +1,5 @@
-//! A mechanism's programs with numbers in place of symbols: its accelerations and the places of its frames, without a compiler of
-//! Rust. Slower than generated code, and equal to it.
+//! A mechanism's programs with numbers in place of symbols: its accelerations and the places of its frames,
+//! without a compiler of Rust. Slower than generated code, and equal to it.
 
 use crate::Stop;
 use crate::constrained::Metric;
@@ -122,7 +122,8 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         }
     }
 
-    /// Rates of `q` with velocities of the joints: rotated into the axes of positions, and rates of quaternions.
+    /// Rates of `q` with velocities of the joints: rotated into the axes of positions, and rates of
+    /// quaternions.
     pub fn rates_of_joints(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; q.len()];
         for chart in &self.model.charts {

@@ -1,4 +1,5 @@
-//! `linkwork export`: a mechanism's functions in C, behind C's calling convention, for Python, and in Rust for reading.
+//! `linkwork export`: a mechanism's functions in C, behind C's calling convention, for Python, and in Rust
+//! for reading.
 
 use crate::Stop;
 use crate::commands::given;
@@ -71,7 +72,8 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// A package for Python. That of Linkwork for Python writes it: classes, stubs and documentation are made there.
+/// A package for Python. That of Linkwork for Python writes it: classes, stubs and documentation are made
+/// there.
 pub fn python(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let interpreter = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());

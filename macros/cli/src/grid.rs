@@ -1,4 +1,5 @@
-//! `--table NAME=FILE`: the figures of a table, a line of comma-separated values for each point of its grid: the variables, then the value.
+//! `--table NAME=FILE`: the figures of a table, a line of comma-separated values for each point of its grid:
+//! the variables, then the value.
 
 use crate::Stop;
 use crate::table::text_of;
@@ -119,7 +120,8 @@ impl Grid {
     }
 }
 
-/// The tables that are given, in the order of the mechanism's, which come with the numbers of their variables.
+/// The tables that are given, in the order of the mechanism's, which come with the numbers of their
+/// variables.
 pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Grid>, Stop> {
     let mut found: Vec<Option<Grid>> = vec![None; tables.len()];
     for given in matches.get_many::<String>("table").into_iter().flatten() {

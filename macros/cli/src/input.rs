@@ -45,7 +45,8 @@ pub struct Compiled<'g> {
 }
 
 impl Input {
-    /// The mechanism that is named on the command line; the only one of its file, or the one that `--struct` names.
+    /// The mechanism that is named on the command line; the only one of its file, or the one that `--struct`
+    /// names.
     pub fn one(matches: &ArgMatches) -> Result<Input, Stop> {
         let mut all = Input::all(matches)?;
         if all.len() > 1 {
@@ -151,7 +152,8 @@ impl Input {
 /// The endings of robot files.
 const ENDINGS: [&str; 6] = ["urdf", "xacro", "sdf", "world", "mjcf", "xml"];
 
-/// Advice on the attribute as advice on the command: options are given by `--with`, and a file's ending says its format.
+/// Advice on the attribute as advice on the command: options are given by `--with`, and a file's ending says
+/// its format.
 fn for_command(text: &str) -> String {
     let mut said = text.to_string();
     let mut from = 0;
@@ -242,7 +244,8 @@ fn is_derive(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "derive")
 }
 
-/// The mechanisms of a Rust file, those in modules within it included. Paths in them are relative to the package.
+/// The mechanisms of a Rust file, those in modules within it included. Paths in them are relative to the
+/// package.
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
     let parsed = syn::parse_file(&text).map_err(|error| {

@@ -1,6 +1,7 @@
-//! Ordinary differential equations of any size with adaptive steps: by the pair of Dormand and Prince, *A family of embedded
-//! Runge–Kutta formulae* (1980), and where that needs too many steps, since the equations are stiff, by the linearly implicit method
-//! RODAS (Hairer and Wanner, *Solving Ordinary Differential Equations II*, 1996, § VI.4).
+//! Ordinary differential equations of any size with adaptive steps: by the pair of Dormand and Prince, *A
+//! family of embedded Runge–Kutta formulae* (1980), and where that needs too many steps, since the equations
+//! are stiff, by the linearly implicit method RODAS (Hairer and Wanner, *Solving Ordinary Differential
+//! Equations II*, 1996, § VI.4).
 
 /// Stages: when, and the weights of those before.
 const STAGES: [(f64, &[f64]); 6] = [
@@ -19,7 +20,8 @@ const DIFFERENCE: [f64; 7] =
 const GAMMA: f64 = 0.25;
 /// RODAS: stage times, as fractions of the step.
 const TIMES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
-/// RODAS: weights of the earlier stages in the state at which each stage evaluates the rates; the last row also gives the result.
+/// RODAS: weights of the earlier stages in the state at which each stage evaluates the rates; the last row
+/// also gives the result.
 const STARTS: [&[f64]; 6] = [
     &[],
     &[1.544],
@@ -95,8 +97,8 @@ impl Method {
     }
 }
 
-/// An integration from stop to stop. It begins with the explicit method, and changes the method where a trial shows that the other one
-/// needs less than half of the evaluations.
+/// An integration from stop to stop. It begins with the explicit method, and changes the method where a trial
+/// shows that the other one needs less than half of the evaluations.
 pub struct Integrator {
     tolerance: f64,
     method: Method,
@@ -152,8 +154,8 @@ impl Integrator {
         Err(t)
     }
 
-    /// Tries the other method if its turn has come: goes on by it, and returns the time reached, if it takes less than half of the
-    /// evaluations that the present method took for the same time.
+    /// Tries the other method if its turn has come: goes on by it, and returns the time reached, if it takes
+    /// less than half of the evaluations that the present method took for the same time.
     fn tried(&mut self, system: &System<'_>, (t, to): (f64, f64), y: &mut Vec<f64>) -> Option<f64> {
         let (evaluations, time) = self.observed;
         let other = self.method.other();
@@ -193,7 +195,8 @@ impl Integrator {
         Some(end)
     }
 
-    /// Takes one step towards a time and returns the time reached. `None` if no step is possible, or none within a number of evaluations.
+    /// Takes one step towards a time and returns the time reached. `None` if no step is possible, or none
+    /// within a number of evaluations.
     fn step(
         &mut self,
         method: Method,
@@ -423,8 +426,8 @@ mod tests {
         assert!(done.is_err_and(|t| (t - 1.0).abs() < 1e-3));
     }
 
-    /// `x' = −10⁶ (x − cos t)`, `y'' = −x`: within 10⁻⁶ of `x = cos t + 10⁻⁶ sin t` and `y = cos t`, in few evaluations; an explicit
-    /// method takes two millions in a second.
+    /// `x' = −10⁶ (x − cos t)`, `y'' = −x`: within 10⁻⁶ of `x = cos t + 10⁻⁶ sin t` and `y = cos t`, in few
+    /// evaluations; an explicit method takes two millions in a second.
     #[test]
     fn stiff_equations_are_solved_by_the_implicit_method() {
         let rates = |t: f64, y: &[f64]| vec![-1e6 * (y[0] - t.cos()), y[2], -y[0]];

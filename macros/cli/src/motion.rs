@@ -209,7 +209,8 @@ impl<'a, 'g> Start<'a, 'g> {
         Ok(samples)
     }
 
-    /// A state that the constraints allow: with what is given as it is, if there is one, else the nearest. Says what moved.
+    /// A state that the constraints allow: with what is given as it is, if there is one, else the nearest.
+    /// Says what moved.
     fn begin(&self) -> Result<Vec<f64>, Stop> {
         let (m, [in_q, in_v]) = (&self.mechanism, &self.given);
         if !m.has_inertia(&self.q) {

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-/// The folder of the repository that the command was built from, if it is still there: by `cargo install --path`, or in the
-/// repository itself. A command that was installed from a registry has none.
+/// The folder of the repository that the command was built from, if it is still there: by
+/// `cargo install --path`, or in the repository itself. A command that was installed from a registry has
+/// none.
 pub fn of_command() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?.parent()?;
     let is_there = |crate_: &str| folder.join(crate_).join("Cargo.toml").is_file();

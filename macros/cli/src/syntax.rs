@@ -1,4 +1,5 @@
-//! Syntax errors of Rust files, located as the compiler of Rust locates them: brackets that are not closed, commas that are missing.
+//! Syntax errors of Rust files, located as the compiler of Rust locates them: brackets that are not closed,
+//! commas that are missing.
 
 use crate::input::Mistake;
 use proc_macro2::{Delimiter, LineColumn, TokenStream, TokenTree};
@@ -17,7 +18,8 @@ pub fn located(text: &str, error: &syn::Error) -> Mistake {
     Mistake { at: Some((at.line, at.column + 1)), message, notes, ..Mistake::default() }
 }
 
-/// The error of a text whose brackets do not match, or that has something else than tokens at the place where reading it stopped.
+/// The error of a text whose brackets do not match, or that has something else than tokens at the place where
+/// reading it stopped.
 fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
     let (before, found) = text.split_at(index(text, at));
     let found = found.chars().next();
@@ -48,8 +50,8 @@ fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
     }
 }
 
-/// Of a text that ends before all its brackets are closed, the brace whose partner is indented otherwise than its line: the one that is
-/// missing is rather its own.
+/// Of a text that ends before all its brackets are closed, the brace whose partner is indented otherwise than
+/// its line: the one that is missing is rather its own.
 fn misaligned(text: &str) -> Option<LineColumn> {
     let mut whole = text.to_string();
     // Closed at the end as many brackets as are open there.
@@ -137,8 +139,8 @@ fn index(text: &str, at: LineColumn) -> usize {
 mod tests {
     use super::located;
 
-    /// Places as rustc 1.95 prints them, but for brackets that are open at the end of a file: there it points at the end, and
-    /// labels the bracket.
+    /// Places as rustc 1.95 prints them, but for brackets that are open at the end of a file: there it points
+    /// at the end, and labels the bracket.
     #[test]
     fn errors_are_located_as_rustc_locates_them() {
         for (text, at, message) in [

@@ -219,8 +219,8 @@ fn documentation_is_for_other_readers_too() {
     assert!(header.contains("* Returns 1 where none is found, for an index that is none."), "{header}");
 }
 
-/// With `--expanded` the crate contains the generated code instead of the attribute, and is otherwise the same. The description has
-/// the limits of the joints.
+/// With `--expanded` the crate contains the generated code instead of the attribute, and is otherwise the
+/// same. The description has the limits of the joints.
 #[test]
 fn libraries_contain_the_attribute_or_its_code() {
     let here = folder("expanded");

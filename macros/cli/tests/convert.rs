@@ -173,7 +173,8 @@ fn written(name: &str, text: &str) -> PathBuf {
     file
 }
 
-/// Mass matrix and bias forces of the robot files of other tests. Followers have velocities of their own in structs.
+/// Mass matrix and bias forces of the robot files of other tests. Followers have velocities of their own in
+/// structs.
 #[test]
 fn robot_files_of_the_tests_become_structs() {
     for (format, file, with) in [
@@ -212,7 +213,8 @@ fn robot_files_of_the_tests_become_structs() {
     }
 }
 
-/// In expressions of the medium, of damping and of cables the name is the body's, in those of couplings the joint's.
+/// In expressions of the medium, of damping and of cables the name is the body's, in those of couplings the
+/// joint's.
 #[test]
 fn links_and_joints_share_a_name() {
     let file = written(

@@ -66,8 +66,8 @@ fn programs_and_generated_code_move_alike() {
 
 const JUGGLER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/speeds.rs");
 
-/// With declared speeds configurations move as in Rust, in velocities along the ground's axes and in a mixture of rates; a speed of
-/// twice a rate is not the rate.
+/// With declared speeds configurations move as in Rust, in velocities along the ground's axes and in a
+/// mixture of rates; a speed of twice a rate is not the rate.
 #[test]
 fn declared_speeds_move_configurations() {
     let here = folder("speeds");
@@ -109,8 +109,8 @@ pub struct Rotor {
     assert!(status == 0 && (end[1] - 1.5).abs() < 1e-9 && (end[2] - 3.0).abs() < 1e-12, "{end:?}");
 }
 
-/// States of first order begin at zero or where `--set` says, and move: a lag of 0.5 s, closed form. A log holds them, and a page is
-/// made from it.
+/// States of first order begin at zero or where `--set` says, and move: a lag of 0.5 s, closed form. A log
+/// holds them, and a page is made from it.
 #[test]
 fn states_of_first_order_are_integrated() {
     let here = folder("states");
@@ -158,7 +158,8 @@ pub struct Sled {
     );
 }
 
-/// A stiff arm is integrated by an implicit method, which is told: the spring of 10⁶ N m/rad holds the arm where its weight bends it.
+/// A stiff arm is integrated by an implicit method, which is told: the spring of 10⁶ N m/rad holds the arm
+/// where its weight bends it.
 #[test]
 fn stiff_mechanisms_are_integrated_by_an_implicit_method() {
     let here = folder("stiff");
@@ -249,7 +250,8 @@ fn messages(file: &[u8]) -> Vec<serde_json::Value> {
     found
 }
 
-/// The log for robotics tools holds the states of the table to the last digit, and the placements that generated code gives.
+/// The log for robotics tools holds the states of the table to the last digit, and the placements that
+/// generated code gives.
 #[test]
 fn logs_hold_what_tables_hold() {
     let here = folder("logs");
@@ -338,8 +340,8 @@ pub struct Closed {
 }
 ";
 
-/// A closed loop moves as generated code moves it: the same four-bar linkage, integrated by itself in Rust; its loop stays closed
-/// and, without a motor, its energy what it was.
+/// A closed loop moves as generated code moves it: the same four-bar linkage, integrated by itself in Rust;
+/// its loop stays closed and, without a motor, its energy what it was.
 #[test]
 fn loops_stay_closed() {
     let here = folder("closed");
@@ -431,8 +433,8 @@ pub struct Swing {
 }
 ";
 
-/// A joint that no constraint reaches is not moved where a motion begins. The loop keeps the form that it has at zero, a parallelogram,
-/// however far it swings. Parameters that no mechanism can have are refused.
+/// A joint that no constraint reaches is not moved where a motion begins. The loop keeps the form that it has
+/// at zero, a parallelogram, however far it swings. Parameters that no mechanism can have are refused.
 #[test]
 fn beginnings_move_what_constraints_reach() {
     let here = folder("swing");
@@ -478,7 +480,8 @@ fn what_cannot_be_assembled_is_told() {
     assert!(status == 2 && out.is_empty() && told.contains("--table lift=FILE --table drag=FILE"), "{told}");
 }
 
-/// A parabola by a smooth table of three points is the parabola: the spring that it makes swings as a spring does.
+/// A parabola by a smooth table of three points is the parabola: the spring that it makes swings as a spring
+/// does.
 #[test]
 fn tables_are_read_from_files() {
     let here = folder("tables");
@@ -643,7 +646,8 @@ struct Leg {
 }
 ";
 
-/// Whatever is given of a leg, its angles are found within half a turn, and it is told which way it was assembled.
+/// Whatever is given of a leg, its angles are found within half a turn, and it is told which way it was
+/// assembled.
 #[test]
 fn legs_are_assembled_within_half_a_turn() {
     let here = folder("leg");

@@ -1,7 +1,8 @@
-//! Random mechanisms whose motion is known by another mechanism, or in closed form: declared speeds, states of first order, inputs
-//! over time, stiff springs.
+//! Random mechanisms whose motion is known by another mechanism, or in closed form: declared speeds, states
+//! of first order, inputs over time, stiff springs.
 //!
-//! `LINKWORK_CASES` sets how many mechanisms of each kind are tried, `LINKWORK_COMMAND` names another build of the command.
+//! `LINKWORK_CASES` sets how many mechanisms of each kind are tried, `LINKWORK_COMMAND` names another build
+//! of the command.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -149,7 +150,8 @@ fn declared_speeds_lead_to_the_same_motion() {
     }
 }
 
-/// A state of first order is the velocity of a particle of 1 kg, on a rail of its own, that its rate pushes as a force.
+/// A state of first order is the velocity of a particle of 1 kg, on a rail of its own, that its rate pushes
+/// as a force.
 #[test]
 fn states_move_as_velocities_do() {
     let here = folder("random_states");
@@ -206,8 +208,8 @@ fn states_move_as_velocities_do() {
     }
 }
 
-/// A cart of 1 kg under a force on straight lines between random instants, which jumps and has short pulses: velocity and place are
-/// integrals of the table.
+/// A cart of 1 kg under a force on straight lines between random instants, which jumps and has short pulses:
+/// velocity and place are integrals of the table.
 #[test]
 fn inputs_are_followed_exactly() {
     let here = folder("random_inputs");
@@ -245,8 +247,8 @@ fn inputs_are_followed_exactly() {
     }
 }
 
-/// A cart on a stiff, strongly damped spring under a constant force that begins at rest: `c` and `k` are large, and the motion is the
-/// closed form of an overdamped oscillator.
+/// A cart on a stiff, strongly damped spring under a constant force that begins at rest: `c` and `k` are
+/// large, and the motion is the closed form of an overdamped oscillator.
 #[test]
 fn stiff_springs_are_integrated() {
     let here = folder("random_stiff");

@@ -2,11 +2,12 @@
 //!
 //! `cargo run -p linkwork-compiler --example evaluate -- FORMAT FILE [OPTION…]`
 //!
-//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, as `"passive = ignore"`. Prints the names of
-//! configuration, velocities and inputs, tabs between them, and what is left out; then for each line `q v u
-//! τ` of numbers a line each with the mass matrix, the bias forces, the generalized forces, the
-//! accelerations, and residuals and Jacobian of the constraints, empty where there is none. Errors of the
-//! file go to the standard error. `tests/peers/run` compares what it prints with other programs.
+//! `FORMAT` is `urdf`, `mjcf` or `sdf`; an option is an argument of the attribute, as `"passive = ignore"`.
+//! Prints the names of configuration, velocities and inputs, tabs between them, and what is left out; then
+//! for each line `q v u τ` of numbers a line each with the mass matrix, the bias forces, the generalized
+//! forces, the accelerations, and residuals and Jacobian of the constraints, empty where there is none.
+//! Errors of the file go to the standard error. `tests/peers/run` compares what it prints with other
+//! programs.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};

@@ -2,14 +2,15 @@
 //!
 //! `cargo run -p linkwork-compiler --example expand -- FILE [options]`
 //!
-//! `FILE` is a Rust file with a `#[mechanism(…)]` struct (the first, or the one named by `--struct NAME`), or a URDF
-//! file. Options: `--rust` (default: the generated code), `--counts` (operations of every function), `--time`
-//! (milliseconds of every stage and pass), `--after PASS` with `--function NAME` (the function's programs after a pass, those of
-//! all candidates among them; `--after all`: after each); for a URDF file also `--base free`, `--inertia trust`, `--mimic independent`,
-//! `--passive ignore`.
+//! `FILE` is a Rust file with a `#[mechanism(…)]` struct (the first, or the one named by `--struct NAME`), or
+//! a URDF file. Options: `--rust` (default: the generated code), `--counts` (operations of every function),
+//! `--time` (milliseconds of every stage and pass), `--after PASS` with `--function NAME` (the function's
+//! programs after a pass, those of all candidates among them; `--after all`: after each); for a URDF file
+//! also `--base free`, `--inertia trust`, `--mimic independent`, `--passive ignore`.
 //!
-//! `cargo run -p linkwork-compiler --example expand -- --every FILE…` writes the code of every mechanism in the Rust files
-//! as it is emitted, then once more with all that can be asked for by a word: what `.ci/compare-output` compares.
+//! `cargo run -p linkwork-compiler --example expand -- --every FILE…` writes the code of every mechanism in
+//! the Rust files as it is emitted, then once more with all that can be asked for by a word: what
+//! `.ci/compare-output` compares.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
@@ -313,7 +314,8 @@ impl Stopwatch {
     }
 }
 
-/// What every stage takes, and within `derive` every pass of lowering, over all functions and all candidates for them.
+/// What every stage takes, and within `derive` every pass of lowering, over all functions and all candidates
+/// for them.
 fn time(input: &Input) -> Result<(), Failure> {
     let (mut watch, mut passes) = (Stopwatch::default(), Stopwatch::default());
     for _ in 0..REPEATS {

@@ -1,13 +1,15 @@
-//! Writes all mutants of a copy of this crate into it at once: each behind a question that an environment variable answers, so that
-//! one build serves them all. `.ci/mutate` makes the copy, builds it and has the tests look at the mutants one by one.
+//! Writes all mutants of a copy of this crate into it at once: each behind a question that an environment
+//! variable answers, so that one build serves them all. `.ci/mutate` makes the copy, builds it and has the
+//! tests look at the mutants one by one.
 //!
 //! ```sh
 //! cargo run -p linkwork-compiler --example mutants -- COPY-OF-THE-CRATE [NUMBER-OF-A-MUTANT-TO-LEAVE-OUT …]
 //! ```
 //!
-//! Prints a line for each mutant: its number, the file and line of the original, what stood there and what stands there now.
-//! Expressions of constants are left alone, what stands in macros, and comparisons with limits of `machine`: on which side of these
-//! code is does not change what it computes, and what it costs is counted by other tests.
+//! Prints a line for each mutant: its number, the file and line of the original, what stood there and what
+//! stands there now. Expressions of constants are left alone, what stands in macros, and comparisons with
+//! limits of `machine`: on which side of these code is does not change what it computes, and what it costs is
+//! counted by other tests.
 use proc_macro2::Span;
 use quote::{ToTokens, quote};
 use std::path::{Path, PathBuf};
@@ -17,8 +19,8 @@ use syn::{Arm, BinOp, Block, Expr, Lit, Pat, PatGuard, parse_quote, spanned::Spa
 /// What is mutated: what hands arms, offsets and sizes on.
 const ROOMS: [&str; 4] = ["src/catalogue", "src/derive", "src/derive.rs", "src/emit"];
 
-/// The module of the copy that knows which mutants are asked for. A program that is given a file for it writes there which ones it
-/// comes upon.
+/// The module of the copy that knows which mutants are asked for. A program that is given a file for it
+/// writes there which ones it comes upon.
 const CHOICE: &str = r#"//! The mutants that are asked for.
 use std::env::var;
 use std::fs::File;
@@ -169,7 +171,8 @@ impl VisitMut for Mutator<'_> {
         }
         let (original, instead) = (expr.clone(), Self::changed(expr));
         match expr {
-            // A place that is written to, or a function that is called, stays what it is; so does a condition with `let`.
+            // A place that is written to, or a function that is called, stays what it is; so does a condition
+            // with `let`.
             Expr::Call(call) => call.args.iter_mut().for_each(|argument| self.visit_expr_mut(argument)),
             Expr::Assign(assign) => self.visit_expr_mut(&mut assign.right),
             Expr::Reference(reference) if reference.mutability.is_some() => return,

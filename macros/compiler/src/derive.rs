@@ -160,7 +160,8 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
     }
 }
 
-/// What was derived, if its figures are finite, and if every program has the numbers that its result is made of.
+/// What was derived, if its figures are finite, and if every program has the numbers that its result is made
+/// of.
 fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
     if !output.functions.iter().all(|f| f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
@@ -212,8 +213,8 @@ fn without_momentum(requests: Requests) -> Option<&'static str> {
     asked.into_iter().find_map(|(asked, what)| asked.then_some(what))
 }
 
-/// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many terms as there are
-/// velocities.
+/// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many
+/// terms as there are velocities.
 const MOST_DERIVATIVES: usize = 300_000;
 
 /// What on request would have more lines than a compiler should be given.
@@ -246,7 +247,8 @@ struct Extras<'a, 'g> {
     conserved: Option<Vec<Conserved<'g>>>,
 }
 
-/// The cyclic coordinates for what eliminates them, if that is asked for; `None` where there are none, with the reason in `cx`.
+/// The cyclic coordinates for what eliminates them, if that is asked for; `None` where there are none, with
+/// the reason in `cx`.
 fn cyclic<'g>(
     model: &Model<'g>,
     requests: Requests,
@@ -351,7 +353,8 @@ fn written_alone(model: &Model<'_>) -> Written {
     written((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
 }
 
-/// The equations that are asked for; empty ones where readable ones would be too long, `None` where others are.
+/// The equations that are asked for; empty ones where readable ones would be too long, `None` where others
+/// are.
 fn printed<'g>(
     (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
@@ -424,7 +427,8 @@ fn printed<'g>(
     }
 }
 
-/// The linear equations about declared equilibria, by name. `None` where one is none, with the reason in `cx`.
+/// The linear equations about declared equilibria, by name. `None` where one is none, with the reason in
+/// `cx`.
 fn linear_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],

@@ -4,7 +4,8 @@
 use proc_macro2::{Delimiter, Group, Literal, Span, TokenStream, TokenTree};
 use std::rc::Rc;
 
-/// Where something was said: a token of the user's source and, for an imported file, the line and column there.
+/// Where something was said: a token of the user's source and, for an imported file, the line and column
+/// there.
 #[derive(Clone, Debug)]
 pub struct Place {
     /// The first token that an error is shown at; for an imported file, the token of its path.
@@ -198,8 +199,8 @@ impl Diagnostics {
         self.errors.is_empty()
     }
 
-    /// Names with a number behind them, `leg_0` and `leg_1` of the list `leg`, stand for one thing in the source: what is said
-    /// of several of them alike is said once.
+    /// Names with a number behind them, `leg_0` and `leg_1` of the list `leg`, stand for one thing in the
+    /// source: what is said of several of them alike is said once.
     pub fn count_alike(&mut self, lists: Vec<String>) {
         self.lists = lists;
     }
@@ -267,9 +268,9 @@ fn joined(list: &[String], word: &str) -> String {
     }
 }
 
-/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand. A letter in
-/// the other case is the smallest of slips; something of the name must remain. Else the only candidate of whose words `name` is one:
-/// `elbow_joint` for `elbow`.
+/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand. A
+/// letter in the other case is the smallest of slips; something of the name must remain. Else the only
+/// candidate of whose words `name` is one: `elbow_joint` for `elbow`.
 pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let length = name.chars().count();
     let limit = (length / 3).clamp(1, 3);

@@ -33,8 +33,8 @@ pub use derive::{derive, derive_with, equations, equations_latex};
 pub use source::{Source, read};
 pub use syntax::second_definition;
 
-/// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for each mistake.
-/// Files are looked up in `folder`.
+/// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for
+/// each mistake. Files are looked up in `folder`.
 pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     // What rustc has said of the struct's commas is not said again.
@@ -47,7 +47,8 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     if let Some((model, output)) = &output {
         return source.emit(model, output);
     }
-    // Of a robot whose file cannot be read even the sizes are unknown: whatever is said of them would be a second mistake.
+    // Of a robot whose file cannot be read even the sizes are unknown: whatever is said of them would be a
+    // second mistake.
     if !source.imported {
         return a_type_of_mistakes(&source, cx.distinct().map(Diagnostic::tokens));
     }
@@ -64,8 +65,8 @@ fn a_type_of_mistakes(source: &Source, mut mistakes: impl Iterator<Item = TokenS
     Emitted { tokens, text: String::new() }
 }
 
-/// Of a struct whose derives come before the attribute and have seen its elements: one `compile_error!` for that, in place of
-/// the struct, and those of its grammar.
+/// Of a struct whose derives come before the attribute and have seen its elements: one `compile_error!` for
+/// that, in place of the struct, and those of its grammar.
 pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     let Some(source) = read(arguments, item, folder, &mut cx) else {
@@ -178,8 +179,8 @@ fn model_and_functions<'g>(
     good.then_some((model, output))
 }
 
-/// Reports what is wrong with those parts of a mechanism that mistakes of its grammar do not touch: what has to do with them
-/// would only lead to further complaints.
+/// Reports what is wrong with those parts of a mechanism that mistakes of its grammar do not touch: what has
+/// to do with them would only lead to further complaints.
 pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
     if let Some(rest) = reading.rest(description).filter(|_| source.imported) {

@@ -1,6 +1,6 @@
-//! Processor model of the compiler: latencies, costs and limits that were tuned by measurement. Latencies are typical values of
-//! processors with fused operations; limits were tuned on the robots of `benches`, on x86-64 processors with 512-bit
-//! registers.
+//! Processor model of the compiler: latencies, costs and limits that were tuned by measurement. Latencies are
+//! typical values of processors with fused operations; limits were tuned on the robots of `benches`, on
+//! x86-64 processors with 512-bit registers.
 
 /// Time units per cycle, and operations issued per cycle.
 pub const CYCLE: u32 = 3;
@@ -21,15 +21,16 @@ pub const SINE: u32 = 60 * CYCLE;
 /// Latency of other elementary functions, which are library calls.
 pub const CALL: u32 = 50 * CYCLE;
 
-/// Maximum number of instructions per cycle of the critical path for which a program is scheduled. With more parallelism the
-/// processor is busy in any order, and scheduling only increases register pressure.
+/// Maximum number of instructions per cycle of the critical path for which a program is scheduled. With more
+/// parallelism the processor is busy in any order, and scheduling only increases register pressure.
 pub const MOST_PARALLELISM: f64 = 5.0;
 
-/// Approximate number of instructions that the first-level cache holds. Those of a larger program are fetched on each call.
+/// Approximate number of instructions that the first-level cache holds. Those of a larger program are fetched
+/// on each call.
 pub const CACHED_INSTRUCTIONS: usize = 4000;
 
-/// Returns the cost of an instruction by its number of lanes, in tenths of an instruction on one lane. Eight lanes take two
-/// registers on processors without 512-bit registers.
+/// Returns the cost of an instruction by its number of lanes, in tenths of an instruction on one lane. Eight
+/// lanes take two registers on processors without 512-bit registers.
 pub fn cost_of_lanes(lanes: usize) -> usize {
     match lanes {
         0..=2 => 10,
@@ -48,44 +49,47 @@ pub const CALL_COST: usize = 20;
 /// Cost of fetching an instruction that is not in the first-level cache.
 pub const FETCH_COST: usize = 15;
 
-/// Minimum number of operations of a function that chooses its instruction set at run time. The choice costs about two
-/// nanoseconds and prevents inlining.
+/// Minimum number of operations of a function that chooses its instruction set at run time. The choice costs
+/// about two nanoseconds and prevents inlining.
 pub const DISPATCHED_OPERATIONS: usize = 60;
 
-/// Minimum number of instructions of a function that is emitted once, for matrices of the caller, and wrapped for returned
-/// matrices. rustc reads half as much, and a humanoid's derivatives take 2961 ns instead of 3260, because clearing a matrix is
-/// faster than storing single zeros.
+/// Minimum number of instructions of a function that is emitted once, for matrices of the caller, and wrapped
+/// for returned matrices. rustc reads half as much, and a humanoid's derivatives take 2961 ns instead of
+/// 3260, because clearing a matrix is faster than storing single zeros.
 pub const FILLING_INSTRUCTIONS: usize = 3000;
 
-/// Minimum number of operations of passive forces for which the generalized passive forces are a separate function. The call
-/// costs a few nanoseconds and computes placements twice, which is less than a hundredth of the time of that many operations;
-/// otherwise rustc would read these operations in every function.
+/// Minimum number of operations of passive forces for which the generalized passive forces are a separate
+/// function. The call costs a few nanoseconds and computes placements twice, which is less than a hundredth
+/// of the time of that many operations; otherwise rustc would read these operations in every function.
 pub const CALLED_OPERATIONS: usize = 1000;
 
-/// Maximum number of velocities for which candidates with several choices of link frames, and both algorithms of forward
-/// dynamics, are derived and compared.
+/// Maximum number of velocities for which candidates with several choices of link frames, and both algorithms
+/// of forward dynamics, are derived and compared.
 pub const COMPARED_VELOCITIES: usize = 18;
-/// Maximum number of operations of mass matrix and inverse dynamics together for which all candidates are compared. Beyond it,
-/// candidates with more operations in a first estimate are dropped, and forward dynamics uses articulated bodies. The largest
-/// quadruped has 1940 operations; a chain of 16 spatial pins has 2635, its frames differ by 6 to 9 per cent, and the
-/// factorisation takes twice the operations.
+/// Maximum number of operations of mass matrix and inverse dynamics together for which all candidates are
+/// compared. Beyond it, candidates with more operations in a first estimate are dropped, and forward dynamics
+/// uses articulated bodies. The largest quadruped has 1940 operations; a chain of 16 spatial pins has 2635,
+/// its frames differ by 6 to 9 per cent, and the factorisation takes twice the operations.
 pub const COMPARED_OPERATIONS: usize = 2000;
 
-/// Maximum number of velocities for which every variant of a model is tried for derivatives, expanded to scalars.
+/// Maximum number of velocities for which every variant of a model is tried for derivatives, expanded to
+/// scalars.
 pub const DERIVATIVES_COMPARED: usize = 10;
-/// Maximum number of velocities for which derivatives of forward dynamics of branching mechanisms are expanded to scalars. A
-/// single large function needs much stack in unoptimised builds.
+/// Maximum number of velocities for which derivatives of forward dynamics of branching mechanisms are
+/// expanded to scalars. A single large function needs much stack in unoptimised builds.
 pub const DERIVATIVES_WRITTEN_OUT: usize = 24;
-/// Maximum number of velocities of a trunk, or of a mechanism without branches, for which the inverse of the mass matrix is
-/// expanded to scalars. Beyond it loops are faster: for chains of 12 pins both take the same time; 16 pins take 776 ns in loops
-/// instead of 1105, 24 pins 2376 instead of 5079.
+/// Maximum number of velocities of a trunk, or of a mechanism without branches, for which the inverse of the
+/// mass matrix is expanded to scalars. Beyond it loops are faster: for chains of 12 pins both take the same
+/// time; 16 pins take 776 ns in loops instead of 1105, 24 pins 2376 instead of 5079.
 pub const INVERSE_WRITTEN_OUT: usize = 12;
 
-/// Maximum number of statements for which results of identical limbs are stored at the end, column by column: lanes of several
-/// results are then transposed in registers and stored together.
+/// Maximum number of statements for which results of identical limbs are stored at the end, column by column:
+/// lanes of several results are then transposed in registers and stored together.
 pub const TRANSPOSED_STATEMENTS: usize = 300;
-/// Maximum distance in statements between two vectors whose lanes are stored together. With a larger distance the first one would
-/// be spilled to memory, for few additional pairs: from 60 to 200 a humanoid's mass matrix saves 15 stores.
+/// Maximum distance in statements between two vectors whose lanes are stored together. With a larger distance
+/// the first one would be spilled to memory, for few additional pairs: from 60 to 200 a humanoid's mass
+/// matrix saves 15 stores.
 pub const NEAR_STATEMENTS: usize = 60;
-/// Maximum number of zeros of a column, in the rows of its neighbours, for which it is multiplied together with them.
+/// Maximum number of zeros of a column, in the rows of its neighbours, for which it is multiplied together
+/// with them.
 pub const FILLED_ZEROS: usize = 2;

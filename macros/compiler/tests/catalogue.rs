@@ -30,7 +30,8 @@ fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, 
     f(&model, Facts::of(&model, source.mechanism.requests), output)
 }
 
-/// The public functions of the inherent implementations of a type, without those that only say what is missing.
+/// The public functions of the inherent implementations of a type, without those that only say what is
+/// missing.
 fn public(text: &str, name: &str) -> BTreeSet<String> {
     let file = syn::parse_file(text).unwrap();
     let mut found = BTreeSet::new();
@@ -123,7 +124,8 @@ fn what_is_not_there_has_a_reason() {
     }
 }
 
-/// A number too many or too few in the program of any function, of a link or of a frame does not go unnoticed.
+/// A number too many or too few in the program of any function, of a link or of a frame does not go
+/// unnoticed.
 #[test]
 fn a_program_that_does_not_fit_is_found() {
     let mut in_lanes = 0;

@@ -59,7 +59,8 @@ fn debug_builds_compute_one_state_after_another() {
     }
 }
 
-/// Derivatives of outputs have names; of second derivatives by configuration, velocities and inputs there are six.
+/// Derivatives of outputs have names; of second derivatives by configuration, velocities and inputs there are
+/// six.
 #[test]
 fn debug_builds_have_all_derivatives_of_each_state() {
     let mut item = "struct S {".to_string();

@@ -1,4 +1,5 @@
-//! How much rustc has to read: its time and memory grow with calls, bindings and statements, whatever they become.
+//! How much rustc has to read: its time and memory grow with calls, bindings and statements, whatever they
+//! become.
 
 use linkwork_compiler::expand;
 use std::fmt::Write;

@@ -1,5 +1,6 @@
-//! Mistakes as people make them who come from other tools or from a textbook: each gets one error, whose help points at the
-//! word that was meant. A table has what is written, the first line of what is said, and a part of the help.
+//! Mistakes as people make them who come from other tools or from a textbook: each gets one error, whose help
+//! points at the word that was meant. A table has what is written, the first line of what is said, and a part
+//! of the help.
 
 use linkwork_compiler::check;
 use std::path::Path;

@@ -1,6 +1,7 @@
-//! Slips of the hand in the gallery: one token of a mechanism is lost, doubled, exchanged with its neighbour or taken for
-//! another one. Whatever comes of it, it is said in few words, each with what to do about it. Seeded, so that a failure comes
-//! again; `MUTATIONS=20000` tries more than the usual number, `SEED=2` others.
+//! Slips of the hand in the gallery: one token of a mechanism is lost, doubled, exchanged with its neighbour
+//! or taken for another one. Whatever comes of it, it is said in few words, each with what to do about it.
+//! Seeded, so that a failure comes again; `MUTATIONS=20000` tries more than the usual number, `SEED=2`
+//! others.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -226,7 +227,8 @@ fn messages_of_grammar(arguments: &TokenStream, item: TokenStream) -> Vec<String
     cx.messages()
 }
 
-/// The item with a mistake of grammar in one field: an argument that nothing has, or a type that no parameter has.
+/// The item with a mistake of grammar in one field: an argument that nothing has, or a type that no parameter
+/// has.
 fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
     let mut item: syn::ItemStruct = syn::parse2(item.clone()).unwrap();
     let field = item.fields.iter_mut().nth(at)?;

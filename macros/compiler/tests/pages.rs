@@ -1,4 +1,5 @@
-//! What pages for readers and lists of tests name is what the compiler has: joints, words that ask for functions, passes of programs.
+//! What pages for readers and lists of tests name is what the compiler has: joints, words that ask for
+//! functions, passes of programs.
 
 use linkwork_compiler::lower::pipeline::{DRAFT, FINISH};
 use linkwork_compiler::syntax::{ElementKind, Word, element_kind, joint_kind};
@@ -19,8 +20,8 @@ fn check(names: &[String], places: Places) {
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 
-/// The page of the language, the runtime's tables, the book's joints, what is said to the word `Joint`, and the lists that random
-/// mechanisms are made from.
+/// The page of the language, the runtime's tables, the book's joints, what is said to the word `Joint`, and
+/// the lists that random mechanisms are made from.
 #[test]
 fn joints_are_listed() {
     let names: Vec<String> = joint_kind::names().map(ToString::to_string).collect();
@@ -63,7 +64,8 @@ fn elements_are_listed() {
     );
 }
 
-/// A word as it is written, from the trait that says that it is missing: `AsksForSecondDerivatives` of `second_derivatives`.
+/// A word as it is written, from the trait that says that it is missing: `AsksForSecondDerivatives` of
+/// `second_derivatives`.
 fn written(word: Word) -> String {
     let name = word.reason().trim_start_matches("AsksFor");
     let lower = |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };

@@ -1,5 +1,5 @@
-//! A mechanism with a mistake has every name that it would have without: nothing that uses it is told of a second mistake.
-//! What a mechanism does not have on purpose stands under a bound that says why.
+//! A mechanism with a mistake has every name that it would have without: nothing that uses it is told of a
+//! second mistake. What a mechanism does not have on purpose stands under a bound that says why.
 
 mod generated;
 
@@ -92,8 +92,8 @@ fn code(arguments: &str, name: &str, fields: &str) -> Generated {
     all
 }
 
-/// How names of functions begin whose sizes a mistake may hide: how many constraints, contacts and conserved quantities there are, only
-/// the equations tell.
+/// How names of functions begin whose sizes a mistake may hide: how many constraints, contacts and conserved
+/// quantities there are, only the equations tell.
 const UNSIZED: [&str; 12] = [
     "base_",
     "conserved",
@@ -414,8 +414,8 @@ const LAGGED: &str = "command: Input, lag: f64,
 
 const WELDED: &str = "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,";
 
-/// Names of functions and constants, those for the runtime alone too: what is there, and by reason what is not. Beside them the
-/// traits that are implemented, those of frames and of bodies of functions left out.
+/// Names of functions and constants, those for the runtime alone too: what is there, and by reason what is
+/// not. Beside them the traits that are implemented, those of frames and of bodies of functions left out.
 fn names(arguments: &str, name: &str, fields: &str) -> String {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
@@ -448,7 +448,8 @@ fn names(arguments: &str, name: &str, fields: &str) -> String {
     format!("== {name}, {arguments}\n{}\n", lists.collect::<String>())
 }
 
-/// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test recovery` writes the file anew; read the difference.
+/// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test recovery` writes the file anew; read the
+/// difference.
 #[test]
 fn names_are_those_of_the_table() {
     let others = [

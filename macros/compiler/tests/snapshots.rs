@@ -1,5 +1,6 @@
-//! Generated code of small mechanisms, as a reviewer of a change of the compiler reads it. A difference is no mistake by itself:
-//! look at it, and write the files anew with `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test snapshots`.
+//! Generated code of small mechanisms, as a reviewer of a change of the compiler reads it. A difference is no
+//! mistake by itself: look at it, and write the files anew with
+//! `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test snapshots`.
 
 mod generated;
 
@@ -83,8 +84,8 @@ const SPEEDS: &str = "
     #[speed(rate(rail) * cos(hinge) + 0.3 * rate(hinge))] along: Speed,
     #[speed(1.5 * rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,";
 
-/// Name, arguments of the attribute, fields, and what is shown: functions with their bodies, or with traits (`Trait::*`), of which
-/// what is a call of the function of the same name is left out.
+/// Name, arguments of the attribute, fields, and what is shown: functions with their bodies, or with traits
+/// (`Trait::*`), of which what is a call of the function of the same name is left out.
 const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
     (
         "pendulum",

@@ -1,10 +1,11 @@
-//! A cart with two poles, one on the other, and what keeps them upright. Nothing here needs the standard library: the static
-//! library in `../controller_for_c` is made of this file, too.
+//! A cart with two poles, one on the other, and what keeps them upright. Nothing here needs the standard
+//! library: the static library in `../controller_for_c` is made of this file, too.
 
 use linkwork::optimal::{Policy, Quadratic, Value};
 use linkwork::prelude::*;
 
-/// A cart on a rail with a pole pinned to it, and another pole pinned to the end of the first; both are upright at zero.
+/// A cart on a rail with a pole pinned to it, and another pole pinned to the end of the first; both are
+/// upright at zero.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 #[derive(Clone, Copy, Debug)]
 pub struct Cart {

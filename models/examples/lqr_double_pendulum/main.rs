@@ -1,5 +1,5 @@
-//! A cart keeps two poles upright, one on the other: a linear-quadratic regulator on generated derivatives, and from how far it
-//! brings the poles back.
+//! A cart keeps two poles upright, one on the other: a linear-quadratic regulator on generated derivatives,
+//! and from how far it brings the poles back.
 //!
 //! ```text
 //! cargo run --release --example lqr_double_pendulum -p linkwork-models
@@ -52,7 +52,8 @@ fn three_starts(regulator: &Regulator, to_go: &CostsToGo) -> Result<(), Error> {
         let left = q.amax().max(v.amax());
         println!("{lower:10.2} {upper:12.2} {strongest:19.2} {costs:7.3} {promised:10.3} {left:16.1e}");
         assert!(left < 2e-3, "the poles stand, and the cart is back");
-        // The promise is that of the linear system without a limit: kept where angles are small and the motor strong enough.
+        // The promise is that of the linear system without a limit: kept where angles are small and the motor
+        // strong enough.
         let kept = (costs / promised - 1.0).abs() < 0.01;
         assert!(kept || strongest == 30.0, "{costs} is about {promised}");
     }

@@ -5,8 +5,9 @@ use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::nalgebra::SVector;
 use linkwork::optimal::{Policy, Quadratic, Value, backward};
 
-/// The linear-quadratic regulator about a state of rest, for any mechanism, and the costs to go under it: the recursion of
-/// optimal control with the same step and the same costs again and again, until the costs to go stay as they are.
+/// The linear-quadratic regulator about a state of rest, for any mechanism, and the costs to go under it: the
+/// recursion of optimal control with the same step and the same costs again and again, until the costs to go
+/// stay as they are.
 ///
 /// `None` if they do not, as for a mechanism that cannot be stabilised, or if something is not finite.
 pub fn regulator<M, S, const NQ: usize, const NV: usize, const NU: usize>(

@@ -1,4 +1,5 @@
-//! A transport from trim to modes: how it flies along level, what disturbs it, and how its rudder is answered.
+//! A transport from trim to modes: how it flies along level, what disturbs it, and how its rudder is
+//! answered.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure};
 use linkwork::nalgebra::DVector;
@@ -113,8 +114,8 @@ fn row(name: &str, mode: &Mode) -> Vec<String> {
 
 type Points = Vec<(f64, f64)>;
 
-/// How the speed changes after a gust by the equations of motion and by the linear ones, and the largest difference as a part of
-/// the gust.
+/// How the speed changes after a gust by the equations of motion and by the linear ones, and the largest
+/// difference as a part of the gust.
 fn after_a_gust(
     trim: &SteadyState<7, 6, 4>,
     along: &StateSpace,

@@ -244,7 +244,8 @@ fn median(times: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Time of one call of some generated functions, ns: median and least over batches, each over the states of the motion.
+/// Time of one call of some generated functions, ns: median and least over batches, each over the states of
+/// the motion.
 fn timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
     let arm = PandaArm;
     let states: Vec<(Seven, Seven, Seven)> =

@@ -114,14 +114,15 @@ impl Controller {
         self.swing(q, v)
     }
 
-    /// Åström and Furuta's energy shaping, *Automatica* 36 (2000): the pole's energy `E` seen from the cart is to be
-    /// that of standing upright, and `Ė` is in proportion to the cart's acceleration.
+    /// Åström and Furuta's energy shaping, *Automatica* 36 (2000): the pole's energy `E` seen from the cart
+    /// is to be that of standing upright, and `Ė` is in proportion to the cart's acceleration.
     fn swing(&self, q: &State, v: &State) -> f64 {
         let turning = State::new(0.0, v[1]);
         let top = CART_POLE.potential_energy(&State::zeros());
         let energy = CART_POLE.kinetic_energy(q, &turning) + CART_POLE.potential_energy(q) - top;
         let acceleration = -3.0 * energy * v[1] * q[1].cos() - 14.0 * q[0] - 4.0 * v[0];
-        // The push that gives the cart this acceleration while the pole turns freely: two rows of M v̇ + h = τ.
+        // The push that gives the cart this acceleration while the pole turns freely: two rows of M v̇ + h =
+        // τ.
         let (m, h) = (CART_POLE.mass_matrix(q), CART_POLE.bias_forces(q, v));
         let turn = -(h[1] + m[(1, 0)] * acceleration) / m[(1, 1)];
         m[(0, 0)] * acceleration + m[(0, 1)] * turn + h[0]

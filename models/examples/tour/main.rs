@@ -1,12 +1,12 @@
-//! A tour of Linkwork: six mechanisms, each simulated from generated equations and held against what mechanics
-//! says about it.
+//! A tour of Linkwork: six mechanisms, each simulated from generated equations and held against what
+//! mechanics says about it.
 //!
 //! ```text
 //! cargo run --release --example tour -p linkwork-models
 //! ```
 //!
-//! It prints a report, writes `index.html` with animations and plots (into `target/tour`, or the folder given as the
-//! only argument), and fails if any check does.
+//! It prints a report, writes `index.html` with animations and plots (into `target/tour`, or the folder given
+//! as the only argument), and fails if any check does.
 
 mod aircraft;
 mod arm;

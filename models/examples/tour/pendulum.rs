@@ -115,8 +115,8 @@ fn worst(errors: &[[f64; 2]]) -> f64 {
     errors.iter().map(|e| e[1]).fold(0.0, f64::max)
 }
 
-/// The exact angle: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`; Jacobi's functions by the descending
-/// Landen transformation (Abramowitz and Stegun, 16.4).
+/// The exact angle: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`; Jacobi's functions by the
+/// descending Landen transformation (Abramowitz and Stegun, 16.4).
 fn exact(t: f64) -> f64 {
     let k = (START / 2.0).sin();
     let (mut a, mut b) = (1.0, (START / 2.0).cos());

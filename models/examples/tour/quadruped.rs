@@ -1,4 +1,5 @@
-//! A quadruped turns a somersault: nothing holds it, so its centre of mass and its angular momentum obey Newton alone.
+//! A quadruped turns a somersault: nothing holds it, so its centre of mass and its angular momentum obey
+//! Newton alone.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
 use crate::scene::{Part, Point, Scene, Tone, View, corners, faces, point};

@@ -1,4 +1,5 @@
-//! Moving pictures in space, as data for `player.js`: points that move, and the parts that are drawn between them.
+//! Moving pictures in space, as data for `player.js`: points that move, and the parts that are drawn between
+//! them.
 
 use linkwork::nalgebra::{IsometryMatrix3, Point3};
 use std::fmt::Write;

@@ -48,7 +48,8 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         rate,
     );
 
-    // Released with its axis at rest it falls, to the other root of β (1 − u²) = a² (u₀ − u), and rises to a cusp.
+    // Released with its axis at rest it falls, to the other root of β (1 − u²) = a² (u₀ − u), and rises to a
+    // cusp.
     let (a2, b) = ((spin / across) * (spin / across), 2.0 * weight / across);
     let lowest = (a2 - (a2 * a2 - 4.0 * b * (a2 * TILT.cos() - b)).sqrt()) / (2.0 * b);
     let released = simulate(&TOP).from(q, [0.0, 0.0, SPIN]).method(method);

@@ -1,4 +1,5 @@
-//! Figures of the fighter: one row for each elevator angle, sideslip or Mach number, one column for each angle of attack or height.
+//! Figures of the fighter: one row for each elevator angle, sideslip or Mach number, one column for each
+//! angle of attack or height.
 
 use super::Fighter;
 use linkwork::Table;
@@ -185,7 +186,8 @@ const fn table<const N: usize>(axes: [&'static [f64]; N], values: &'static [f64]
 }
 
 impl Fighter {
-    /// The F-16 with its centre of mass at the moments' reference, 35 % of the chord behind the leading edge, where it is unstable.
+    /// The F-16 with its centre of mass at the moments' reference, 35 % of the chord behind the leading edge,
+    /// where it is unstable.
     pub const F16: Self = Self {
         g: 32.17 * FOOT,
         // 20 500 lb by weight; its reciprocal rounded as in the source.

@@ -77,8 +77,8 @@ fn modes(glider: &Glider, lift: f64) -> FlightModes {
     FlightModes::of(&flight::linear_system(glider, &found.q, &found.v, &found.u).unwrap()).unwrap()
 }
 
-/// With its angle of attack held firmly, `V̇ = −k_D V² − g sin γ` and `V γ̇ = k_L V² − g cos γ`: about the glide at `tan γ = −C_D / C_L`
-/// the trace is `−3 (g / V) C_D / C_L`, a third of it by the path's slope.
+/// With its angle of attack held firmly, `V̇ = −k_D V² − g sin γ` and `V γ̇ = k_L V² − g cos γ`: about the
+/// glide at `tan γ = −C_D / C_L` the trace is `−3 (g / V) C_D / C_L`, a third of it by the path's slope.
 #[test]
 fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     let (lift, firm) = (0.8, Glider { cm_alpha: -1000.0, ..GLIDER });
@@ -217,8 +217,9 @@ fn a_satellite_with_a_spinning_wheel_nutates() {
     is_at(found.first(), 0.0, nutation, 1e-10);
 }
 
-/// Turning about the axis of its middle moment of inertia at `ν` a satellite tumbles; a wheel with the momentum `h` along that axis holds
-/// it if `(h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) > 0`, which over `I₂ I₃` is the square of its nutation (Hughes, § 6.3).
+/// Turning about the axis of its middle moment of inertia at `ν` a satellite tumbles; a wheel with the
+/// momentum `h` along that axis holds it if `(h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) > 0`, which over `I₂ I₃` is
+/// the square of its nutation (Hughes, § 6.3).
 #[test]
 fn a_wheel_holds_a_satellite_that_turns_about_its_middle_axis() {
     let (q, _) = at_rest();

@@ -43,7 +43,8 @@ fn a_transport_cruises() {
     assert_eq!(felt.outputs()[3].name, "felt");
 }
 
-/// The matrices by an independent chain of Etkin's derivatives to 1e-9, and his matrices (ft and s), as printed, to their digits.
+/// The matrices by an independent chain of Etkin's derivatives to 1e-9, and his matrices (ft and s), as
+/// printed, to their digits.
 #[test]
 fn a_transport_has_the_matrices_of_etkin_and_reid() {
     let system = system(&TRANSPORT);
@@ -168,7 +169,8 @@ fn derivatives_without_dimension_are_those_declared() {
     assert!(found.of_force("M", "flaps").unwrap_err().to_string().contains("elevator"));
 }
 
-/// Nelson, *Flight Stability and Automatic Control* (1998), ch. 4 and 5: eigenvalues of the Navion as printed.
+/// Nelson, *Flight Stability and Automatic Control* (1998), ch. 4 and 5: eigenvalues of the Navion as
+/// printed.
 #[test]
 fn a_light_aircraft_has_the_modes_of_nelson() {
     let modes = FlightModes::of(&system(&CruisingAircraft::NAVION)).unwrap();
@@ -179,9 +181,10 @@ fn a_light_aircraft_has_the_modes_of_nelson() {
     is_at(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
 }
 
-/// Teper, *Aircraft Stability and Control Data* (1969), as Cook, *Flight Dynamics Principles* (2007), ch. 7, has it: the DC-8 at
-/// 468.2 ft/s in 15 000 ft. Its lateral derivatives, per ft/s and rad/s, and the characteristic polynomial
-/// `(s + 0.0065) (s + 1.329) (s² + 0.254 s + 1.433)`. Which mass, moments of inertia, area and span make them dimensionless cancels.
+/// Teper, *Aircraft Stability and Control Data* (1969), as Cook, *Flight Dynamics Principles* (2007), ch. 7,
+/// has it: the DC-8 at 468.2 ft/s in 15 000 ft. Its lateral derivatives, per ft/s and rad/s, and the
+/// characteristic polynomial `(s + 0.0065) (s + 1.329) (s² + 0.254 s + 1.433)`. Which mass, moments of
+/// inertia, area and span make them dimensionless cancels.
 #[test]
 fn an_airliner_has_the_modes_of_cook() {
     let (feet, speed) = (0.3048, 468.2 * 0.3048);
@@ -208,8 +211,9 @@ fn an_airliner_has_the_modes_of_cook() {
     is_at(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
 }
 
-/// Cook, *Flight Dynamics Principles* (2007), ch. 5: the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the wind, from the state
-/// matrix as printed: `(s² + 0.033 s + 0.020) (s² + 0.902 s + 2.666)`.
+/// Cook, *Flight Dynamics Principles* (2007), ch. 5: the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body
+/// axes that climb at 13.3° to the wind, from the state matrix as printed:
+/// `(s² + 0.033 s + 0.020) (s² + 0.902 s + 2.666)`.
 #[test]
 fn modes_of_printed_matrices_are_named() {
     let a = DMatrix::from_row_slice(

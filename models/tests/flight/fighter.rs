@@ -87,7 +87,8 @@ fn level(fighter: &Fighter, speed: f64) -> Level {
     Level { q: found.q, v: found.v, u: found.u }
 }
 
-/// Table 3.6-2: throttle, angle of attack and elevator (degrees) over the speed (ft/s) in level flight by the sea.
+/// Table 3.6-2: throttle, angle of attack and elevator (degrees) over the speed (ft/s) in level flight by the
+/// sea.
 #[test]
 fn trimmed_flight_is_that_of_the_book() {
     let published = [
@@ -186,7 +187,8 @@ const LONGITUDINAL: [[f64; 4]; 4] = [
     [0.0, 0.82225, 0.0, -1.0774],
 ];
 
-/// Example 5.3-1: the rows of sideslip, roll rate and yaw rate there, in sideslip, roll rate, yaw rate and bank.
+/// Example 5.3-1: the rows of sideslip, roll rate and yaw rate there, in sideslip, roll rate, yaw rate and
+/// bank.
 const ACROSS: [[f64; 4]; 3] =
     [[-0.3220, 0.0364, -0.9917, 0.0640], [-30.6492, -3.6784, 0.6646, 0.0], [8.5396, -0.0254, -0.4764, 0.0]];
 
@@ -222,8 +224,8 @@ fn linear_motion_is_that_of_the_book() {
     }
 }
 
-/// With its centre of mass far back the fighter has two real modes of pitch, one of which grows; farther forward it has a short
-/// period. Its engine is a mode of its own, and lags by a second.
+/// With its centre of mass far back the fighter has two real modes of pitch, one of which grows; farther
+/// forward it has a short period. Its engine is a mode of its own, and lags by a second.
 #[test]
 fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     let modes = |place| {

@@ -5,8 +5,8 @@ use linkwork_models::BallInDish;
 
 const B: BallInDish = BallInDish { g: 9.81, mass: 0.2, radius: 0.03, curvature: 0.25 };
 
-/// Touching at a point of the dish, unturned: with the velocity of the centre along the dish's two tangents there,
-/// and a spin about the normal.
+/// Touching at a point of the dish, unturned: with the velocity of the centre along the dish's two tangents
+/// there, and a spin about the normal.
 fn state(u: f64, w: f64, along: [f64; 2], spin: f64) -> (SVector<f64, 9>, SVector<f64, 8>) {
     let (first, second) = (Vector3::new(1.0, 0.0, u / B.curvature), Vector3::new(0.0, 1.0, w / B.curvature));
     let normal = first.cross(&second).normalize();
@@ -49,8 +49,9 @@ fn circles_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// Anywhere, by Newton's and Euler's equations without the contact's force: with the centre on the parallel surface,
-/// `v = (r ω) × n` and the weight, `(7/5) a` along the tangents is what the turning of the normal and gravity leave.
+/// Anywhere, by Newton's and Euler's equations without the contact's force: with the centre on the parallel
+/// surface, `v = (r ω) × n` and the weight, `(7/5) a` along the tangents is what the turning of the normal
+/// and gravity leave.
 #[test]
 fn accelerations() {
     for (u, w, along, spin) in [(0.1, 0.15, [0.3, -0.2], 20.0), (-0.2, 0.05, [-0.5, 0.9], -35.0)] {

@@ -55,8 +55,8 @@ fn matrices_are_the_published_ones() {
     }
 }
 
-/// Real and imaginary parts of the eigenvalues, 1/s, by speed, m/s; recomputed from the published parameters with
-/// 40 digits.
+/// Real and imaginary parts of the eigenvalues, 1/s, by speed, m/s; recomputed from the published parameters
+/// with 40 digits.
 const EIGENVALUES: [(f64, [(f64, f64); 4]); 11] = [
     (
         0.0,

@@ -55,7 +55,8 @@ fn circles_meet_at_the_tool() {
     }
 }
 
-/// Held by the torques of virtual work nothing moves; more torque moves it as its inertia in the two angles says.
+/// Held by the torques of virtual work nothing moves; more torque moves it as its inertia in the two angles
+/// says.
 #[test]
 fn statics_and_reduced_inertia() {
     let (left, right) = (2.0, 0.9);

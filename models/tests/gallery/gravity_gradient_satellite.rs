@@ -40,14 +40,15 @@ fn stands_with_the_long_axis_up_alone() -> Result<(), Error> {
     pitch(GravityGradientSatellite { ixx: S.iyy, iyy: S.ixx, ..S }, 3.0 / growth, |t| (growth * t).cosh())
 }
 
-/// The pitch of a satellite that starts a thousandth of a radian off, in eight samples, next to what is expected.
+/// The pitch of a satellite that starts a thousandth of a radian off, in eight samples, next to what is
+/// expected.
 fn pitch(
     satellite: GravityGradientSatellite,
     duration: f64,
     expected: impl Fn(f64) -> f64,
 ) -> Result<(), Error> {
-    // In units of the orbit: radius, gravitational parameter and rate are one. The satellite is so small that its
-    // shape does not disturb the orbit.
+    // In units of the orbit: radius, gravitational parameter and rate are one. The satellite is so small that
+    // its shape does not disturb the orbit.
     let tiny = 1e-11;
     let unit = GravityGradientSatellite {
         mu: 1.0,

@@ -21,7 +21,8 @@ fn eulers_equations() {
     assert_near(TOP.bias_forces(&q, &omega), omega.cross(&(inertia * omega)) - torque, 1e-14);
 }
 
-/// Slow and fast precession for the same spin: the axis stays at its inclination and turns at the rate foretold.
+/// Slow and fast precession for the same spin: the axis stays at its inclination and turns at the rate
+/// foretold.
 #[test]
 fn steady_precession() -> Result<(), Error> {
     let (theta, spin) = (0.5_f64, 150.0);

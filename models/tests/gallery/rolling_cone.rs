@@ -58,8 +58,8 @@ fn swings_about_its_apex() -> Result<(), Error> {
     Ok(())
 }
 
-/// Euler's equation about the apex on a level plane: the moment of the normal force holds the weight and turns the
-/// angular momentum.
+/// Euler's equation about the apex on a level plane: the moment of the normal force holds the weight and
+/// turns the angular momentum.
 #[test]
 fn presses_on_a_line() {
     let c = RollingCone { slope: 0.0, ..C };

@@ -39,7 +39,8 @@ fn slides_under_its_normal_force() {
     }
 }
 
-/// A rough floor under a rod that is pushed ahead: steep it slides, flat it jams, and pulled it always slides.
+/// A rough floor under a rod that is pushed ahead: steep it slides, flat it jams, and pulled it always
+/// slides.
 #[test]
 fn jams() {
     let rough = SlidingRod { friction: 1.8, ..R };

@@ -82,8 +82,8 @@ fn forces_by_virtual_work() {
             Vector6::new(f.x, f.y, f.z, torque.x, torque.y, torque.z)
         };
         lengths.set_column(k, &row(n));
-        // A point at a fixed distance along the leg rises as the head does across the leg; one at a fixed distance
-        // from the head as the head does, less that.
+        // A point at a fixed distance along the leg rises as the head does across the leg; one at a fixed
+        // distance from the head as the head does, less that.
         let across = (Vector3::z() - n * n.z) * (P.leg / 2.0 / length);
         weight += row(across) * P.leg_mass + row(Vector3::z() - across) * P.leg_mass;
     }

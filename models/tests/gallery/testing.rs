@@ -28,8 +28,8 @@ pub fn precisely() -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e-12, 1e-12)
 }
 
-/// Complete elliptic integral of the first kind by the arithmetic–geometric mean: `K(k) = ½π / agm(1, √(1 − k²))`,
-/// given `k²`.
+/// Complete elliptic integral of the first kind by the arithmetic–geometric mean:
+/// `K(k) = ½π / agm(1, √(1 − k²))`, given `k²`.
 pub fn elliptic(k2: f64) -> f64 {
     let (mut a, mut b) = (1.0, (1.0 - k2).sqrt());
     while (a - b).abs() > 1e-15 * a {

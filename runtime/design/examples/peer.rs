@@ -1,5 +1,6 @@
-//! Results for systems that come by standard input, to be compared with python-control (`benches/peers/run control`): a line
-//! `n m p`, then the entries of A, B, C, D by rows. Prints a line a result, then the seconds that each took.
+//! Results for systems that come by standard input, to be compared with python-control
+//! (`benches/peers/run control`): a line `n m p`, then the entries of A, B, C, D by rows. Prints a line a
+//! result, then the seconds that each took.
 
 use linkwork_design::matrices::{Cost, discrete_riccati, lyapunov, riccati};
 use linkwork_design::{Error, Hold, StateSpace};

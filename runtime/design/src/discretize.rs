@@ -38,8 +38,8 @@ impl StateSpace {
         if self.period.is_some() { Err(Error::Time { periods: [self.period, None] }) } else { Ok(()) }
     }
 
-    /// The discrete system that gives the outputs at the instants `0, h, 2 h, …` (Franklin, Powell and Workman, *Digital Control
-    /// of Dynamic Systems*, ch. 4 and 6).
+    /// The discrete system that gives the outputs at the instants `0, h, 2 h, …` (Franklin, Powell and
+    /// Workman, *Digital Control of Dynamic Systems*, ch. 4 and 6).
     ///
     /// ```
     /// use linkwork_design::{Hold, TransferFunction};
@@ -52,8 +52,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Period`] unless it is positive and finite, [`Error::Time`] of a system that is discrete already,
-    /// [`Error::Singular`] where Tustin's rule meets a pole at `2 / h`.
+    /// [`Error::Period`] unless it is positive and finite, [`Error::Time`] of a system that is discrete
+    /// already, [`Error::Singular`] where Tustin's rule meets a pole at `2 / h`.
     pub fn discretize(&self, period: f64, hold: Hold) -> Result<Self, Error> {
         self.expect_continuous()?;
         check_period(period)?;
@@ -97,8 +97,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Time`] of a continuous system; [`Error::Range`] with a pole that is zero or negative, which no held system has;
-    /// [`Error::Singular`] where Tustin's rule meets a pole at −1.
+    /// [`Error::Time`] of a continuous system; [`Error::Range`] with a pole that is zero or negative, which
+    /// no held system has; [`Error::Singular`] where Tustin's rule meets a pole at −1.
     pub fn undiscretize(&self, hold: Hold) -> Result<Self, Error> {
         let Some(period) = self.period else { return Err(Error::Time { periods: [None, Some(0.0)] }) };
         let (n, m) = self.b.shape();

@@ -128,7 +128,8 @@ pub enum Error {
     Constraint(linkwork::ConstraintError),
     /// No steady state near the guess fulfils all conditions.
     NoSteadyState {
-        /// The condition that is violated most: an acceleration (with two primes), a constraint (its rate with a prime), an output.
+        /// The condition that is violated most: an acceleration (with two primes), a constraint (its rate
+        /// with a prime), an output.
         condition: String,
         /// What is left of it, in its own unit.
         residual: f64,
@@ -139,7 +140,8 @@ pub enum Error {
         /// The configuration, then the other unknowns, where the conditions are violated least.
         place: Vec<(String, f64)>,
     },
-    /// The conditions of a steady state leave unknowns open: there are too many, or the equations are singular there.
+    /// The conditions of a steady state leave unknowns open: there are too many, or the equations are
+    /// singular there.
     Undetermined {
         /// The unknowns that can change while all conditions hold.
         unknowns: Vec<String>,
@@ -148,12 +150,14 @@ pub enum Error {
     },
     /// A linear motion was asked for about a state that is not steady.
     NotSteady {
-        /// What should be zero, an acceleration with two primes, a rate with one; or the condition of a trim that does not hold.
+        /// What should be zero, an acceleration with two primes, a rate with one; or the condition of a trim
+        /// that does not hold.
         what: String,
         /// Its rate, m/s², rad/s² or rad/s; what is left of the condition.
         rate: f64,
     },
-    /// Motions have no second-order form: forces depend on a coordinate without an independent speed of its own.
+    /// Motions have no second-order form: forces depend on a coordinate without an independent speed of its
+    /// own.
     NoSecondOrderForm {
         /// The coordinate.
         coordinate: String,

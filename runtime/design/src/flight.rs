@@ -1,7 +1,8 @@
 //! Aircraft: their motion about steady flight in the usual states, flight modes by name, and derivatives.
 //!
-//! A mechanism counts as an aircraft if its first six velocities are those of a `Free` joint between the ground, with axes north,
-//! east and down, and the airframe, with axes forward, right and down, and if no force depends on place over ground or heading.
+//! A mechanism counts as an aircraft if its first six velocities are those of a `Free` joint between the
+//! ground, with axes north, east and down, and the airframe, with axes forward, right and down, and if no
+//! force depends on place over ground or heading.
 //!
 //! ```
 //! use linkwork::prelude::*;

@@ -4,8 +4,8 @@ use crate::matrices::{C, CMatrix, balance_system, complex};
 use crate::{Error, StateSpace};
 use nalgebra::{DMatrix, Hessenberg};
 
-/// A system in Hessenberg form: each frequency takes `n²` operations (Laub, *Efficient multivariable frequency response
-/// computations*, 1981).
+/// A system in Hessenberg form: each frequency takes `n²` operations (Laub, *Efficient multivariable
+/// frequency response computations*, 1981).
 #[derive(Clone, Debug)]
 pub struct FrequencyMap {
     h: DMatrix<f64>,
@@ -252,8 +252,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`], [`Error::Singular`] at a pole on the border of stability, [`Error::Range`] for a frequency that is
-    /// not finite.
+    /// [`Error::Unknown`], [`Error::Singular`] at a pole on the border of stability, [`Error::Range`] for a
+    /// frequency that is not finite.
     pub fn frequency_response<'a>(
         &self,
         output: impl Into<crate::Port<'a>>,
@@ -268,8 +268,9 @@ impl StateSpace {
         Ok(FrequencyResponse { frequencies: frequencies.to_vec(), values, input, output })
     }
 
-    /// Frequencies that show what the system does: from a decade below its slowest pole or zero to a decade above the fastest,
-    /// closer together where poles and zeros are near, rad/s. Up to Nyquist's frequency of a discrete system.
+    /// Frequencies that show what the system does: from a decade below its slowest pole or zero to a decade
+    /// above the fastest, closer together where poles and zeros are near, rad/s. Up to Nyquist's frequency of
+    /// a discrete system.
     ///
     /// # Errors
     ///

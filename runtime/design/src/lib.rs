@@ -1,11 +1,12 @@
 //! Linear systems of mechanisms, and the equilibria and steady motions that they are taken about.
 //!
-//! A [`StateSpace`] has the matrices A, B, C, D with the names and units of its states, inputs and outputs; it comes from a
-//! mechanism ([`mechanism`]) or from matrices. It has [modes](StateSpace::modes), [zeros](StateSpace::zeros),
-//! [transfer functions](StateSpace::transfer_function), [responses](StateSpace::step_response) over time and
-//! [frequency](StateSpace::frequency_response), [margins](StateSpace::margins), [regulators](StateSpace::lqr) and
-//! [estimators](StateSpace::kalman). [`picture`] draws them. [`steady`] finds equilibria and trims motions, by names;
-//! [`flight`] has the modes of aircraft by name, and their derivatives.
+//! A [`StateSpace`] has the matrices A, B, C, D with the names and units of its states, inputs and outputs;
+//! it comes from a mechanism ([`mechanism`]) or from matrices. It has [modes](StateSpace::modes),
+//! [zeros](StateSpace::zeros), [transfer functions](StateSpace::transfer_function),
+//! [responses](StateSpace::step_response) over time and [frequency](StateSpace::frequency_response),
+//! [margins](StateSpace::margins), [regulators](StateSpace::lqr) and [estimators](StateSpace::kalman).
+//! [`picture`] draws them. [`steady`] finds equilibria and trims motions, by names; [`flight`] has the modes
+//! of aircraft by name, and their derivatives.
 //!
 //! The [guide] goes through all of it with one aircraft.
 

@@ -151,7 +151,8 @@ impl Loop {
 }
 
 impl StateSpace {
-    /// The margins of this system as the open loop of a negative feedback: all crossings, and the least distance from −1.
+    /// The margins of this system as the open loop of a negative feedback: all crossings, and the least
+    /// distance from −1.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;

@@ -1,6 +1,6 @@
-//! Matrix equations and functions on dense matrices of any size: eigenvalues, exponential and logarithm, Sylvester's,
-//! Lyapunov's and Riccati's equations. Everything rests on orthogonal transformations: Hessenberg and Schur forms, QR
-//! decompositions with pivoting.
+//! Matrix equations and functions on dense matrices of any size: eigenvalues, exponential and logarithm,
+//! Sylvester's, Lyapunov's and Riccati's equations. Everything rests on orthogonal transformations:
+//! Hessenberg and Schur forms, QR decompositions with pivoting.
 
 use crate::Error;
 use nalgebra::{Complex, DMatrix};

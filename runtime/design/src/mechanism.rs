@@ -20,10 +20,11 @@
 //! # Ok::<(), linkwork_design::Error>(())
 //! ```
 //!
-//! A mechanism that is driven in time is one at an instant, and its system is frozen there: pass `&at(&mechanism, t)`. Trees and
-//! mechanisms without constraints come by [`linear_system`]; those with constraints by [`constrained_system`] from what their
-//! `linearize` gives, in independent coordinates. Outputs come by [`measured_system`], and
-//! under constraints about a steady state by [`Trim::measured_system`](crate::steady::Trim::measured_system).
+//! A mechanism that is driven in time is one at an instant, and its system is frozen there: pass
+//! `&at(&mechanism, t)`. Trees and mechanisms without constraints come by [`linear_system`]; those with
+//! constraints by [`constrained_system`] from what their `linearize` gives, in independent coordinates.
+//! Outputs come by [`measured_system`], and under constraints about a steady state by
+//! [`Trim::measured_system`](crate::steady::Trim::measured_system).
 
 use crate::{Error, SecondOrderForm, Signal, StateSpace};
 use linkwork::constraint::Linearization;
@@ -74,8 +75,8 @@ where
     which.into_iter().filter_map(|k| speeds.get(k).cloned().map(displaced)).collect()
 }
 
-/// Displacements by the names of the velocities, then changes of velocity with a prime, then states of first order, of those
-/// entries of the velocity.
+/// Displacements by the names of the velocities, then changes of velocity with a prime, then states of first
+/// order, of those entries of the velocity.
 pub(crate) fn state_names<M, const NQ: usize, const NV: usize, const NU: usize>(
     coordinates: impl IntoIterator<Item = usize>,
     speeds: impl IntoIterator<Item = usize>,
@@ -114,11 +115,13 @@ fn kept(nv: usize, first_order: usize) -> Vec<usize> {
     (0..nv.saturating_sub(first_order)).chain(nv..2 * nv).collect()
 }
 
-/// The motion of a mechanism without constraints about a state under the inputs `u`, as `ẋ = A x + B δu`. The states are the
-/// displacements (in body axes for ball and free joints), named like the velocities, then the changes of velocity, named with a
-/// prime; they are the outputs, too, and have the units that the compiler infers. States of first order come last, by their own names: of a mechanism with such states pass
-/// `&at(&m.extended(), t)`. Under constraints displacements are not independent: beside the exponents of the motion there are two of
-/// zero for each constraint on configurations, which [`Trim::linear_system`](crate::steady::Trim::linear_system) has not.
+/// The motion of a mechanism without constraints about a state under the inputs `u`, as `ẋ = A x + B δu`. The
+/// states are the displacements (in body axes for ball and free joints), named like the velocities, then the
+/// changes of velocity, named with a prime; they are the outputs, too, and have the units that the compiler
+/// infers. States of first order come last, by their own names: of a mechanism with such states pass
+/// `&at(&m.extended(), t)`. Under constraints displacements are not independent: beside the exponents of the
+/// motion there are two of zero for each constraint on configurations, which
+/// [`Trim::linear_system`](crate::steady::Trim::linear_system) has not.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -179,7 +182,8 @@ fn of_motion<const NV: usize, const NU: usize>(
     StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, NU))
 }
 
-/// The motion with the mechanism's own outputs as `y = C x + D δu`, at the time `t` for functions that the outputs depend on.
+/// The motion with the mechanism's own outputs as `y = C x + D δu`, at the time `t` for functions that the
+/// outputs depend on.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -241,8 +245,9 @@ fn output_matrices<const NY: usize, const NV: usize, const NU: usize>(
     (c, dynamic(&seen.by_u))
 }
 
-/// The motion of a mechanism with constraints, from what its `linearize` gives: in independent coordinates and speeds, which
-/// are the outputs, too. The mechanism's type gives the names; the value itself is not looked at.
+/// The motion of a mechanism with constraints, from what its `linearize` gives: in independent coordinates
+/// and speeds, which are the outputs, too. The mechanism's type gives the names; the value itself is not
+/// looked at.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -291,8 +296,8 @@ where
     Ok(system.with_states(states)?.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
 }
 
-/// What multiplies the accelerations: the mass matrix, or, where forces depend on accelerations, what inverse dynamics makes of each
-/// of them.
+/// What multiplies the accelerations: the mass matrix, or, where forces depend on accelerations, what inverse
+/// dynamics makes of each of them.
 pub(crate) fn effective_mass<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: f64,
@@ -317,8 +322,8 @@ where
 
 /// The second-order form of the motion about a state: `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
 ///
-/// `M` is what multiplies the accelerations: the mass matrix, less what forces that depend on accelerations take from it. Then it need
-/// not be symmetric. Under constraints, about a steady state:
+/// `M` is what multiplies the accelerations: the mass matrix, less what forces that depend on accelerations
+/// take from it. Then it need not be symmetric. Under constraints, about a steady state:
 /// [`Trim::second_order_form`](crate::steady::Trim::second_order_form).
 ///
 /// # Errors

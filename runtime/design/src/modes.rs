@@ -15,13 +15,14 @@ pub struct Mode {
     pub pole: C,
     /// The eigenvalue in continuous time, 1/s; that of a discrete system is `ln(z) / h`.
     pub exponent: C,
-    /// What each state has of the mode, of unit length, the largest entry real. Only directions of one unit compare.
+    /// What each state has of the mode, of unit length, the largest entry real. Only directions of one unit
+    /// compare.
     pub shape: Vec<C>,
-    /// What each state takes part, without units: the magnitudes of `wₖ vₖ` of the left and right eigenvectors, in sum one
-    /// (Pérez-Arriaga, Verghese and Schweppe, *Selective modal analysis*, 1982).
+    /// What each state takes part, without units: the magnitudes of `wₖ vₖ` of the left and right
+    /// eigenvectors, in sum one (Pérez-Arriaga, Verghese and Schweppe, *Selective modal analysis*, 1982).
     pub participation: Vec<f64>,
-    /// How much the eigenvalue changes with the matrix, `1 / |wᴴ v|` of unit vectors in balanced units: one of a symmetric
-    /// matrix, infinite of a defective one.
+    /// How much the eigenvalue changes with the matrix, `1 / |wᴴ v|` of unit vectors in balanced units: one
+    /// of a symmetric matrix, infinite of a defective one.
     pub condition: f64,
     states: Vec<Signal>,
 }
@@ -73,8 +74,8 @@ impl Mode {
         self.exponent.re < 0.0
     }
 
-    /// Whether eigenvectors are missing: the motion has terms `t eˢᵗ`, and shape and participation are those of one of
-    /// several eigenvectors that coincide.
+    /// Whether eigenvectors are missing: the motion has terms `t eˢᵗ`, and shape and participation are those
+    /// of one of several eigenvectors that coincide.
     pub fn is_defective(&self) -> bool {
         self.condition > DEFECTIVE
     }

@@ -14,8 +14,8 @@ pub struct PeakGain {
 }
 
 impl StateSpace {
-    /// The H₂ norm of a stable system: the root mean square of the outputs under white noise of unit intensity; by Parseval's
-    /// theorem the norm of the impulse response.
+    /// The H₂ norm of a stable system: the root mean square of the outputs under white noise of unit
+    /// intensity; by Parseval's theorem the norm of the impulse response.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! Pictures as SVG, one call each: Bode's and Nyquist's, root loci, poles and zeros, motions over time, modes. Drawn by
-//! plotters, labelled with names and units.
+//! Pictures as SVG, one call each: Bode's and Nyquist's, root loci, poles and zeros, motions over time,
+//! modes. Drawn by plotters, labelled with names and units.
 //!
 //! ```
 //! use linkwork_design::{TransferFunction, picture};
@@ -29,7 +29,8 @@ fn title(response: &FrequencyResponse) -> String {
     format!("from {} to {}", response.input.name, response.output.name)
 }
 
-/// Bode's diagram: magnitude in decibels and continuous phase in degrees over the frequency on a logarithmic scale.
+/// Bode's diagram: magnitude in decibels and continuous phase in degrees over the frequency on a logarithmic
+/// scale.
 ///
 /// # Errors
 ///
@@ -51,8 +52,8 @@ pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
     panel::draw(&[above, panel(String::new(), "phase, deg", response.degrees())], (720, 560))
 }
 
-/// Nyquist's diagram: the response in the complex plane, with its mirror image for negative frequencies, and −1. Beyond ten times
-/// the distance of what is near, curves leave the picture.
+/// Nyquist's diagram: the response in the complex plane, with its mirror image for negative frequencies, and
+/// −1. Beyond ten times the distance of what is near, curves leave the picture.
 ///
 /// # Errors
 ///
@@ -84,8 +85,9 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     panel::draw(&[panel], (640, 640))
 }
 
-/// Points on a smooth curve through others, so close together that no corners are seen: splines of Catmull and Rom by the square roots
-/// of chords, which bend evenly where points are unevenly spread (Barry and Goldman, *SIGGRAPH*, 1988).
+/// Points on a smooth curve through others, so close together that no corners are seen: splines of Catmull
+/// and Rom by the square roots of chords, which bend evenly where points are unevenly spread (Barry and
+/// Goldman, *SIGGRAPH*, 1988).
 fn smooth(values: &[C]) -> Vec<C> {
     const PARTS: u32 = 8;
     let mut all = Vec::with_capacity(values.len() * PARTS as usize);

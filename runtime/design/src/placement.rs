@@ -46,7 +46,8 @@ fn scattered(rows: usize, columns: usize, attempt: usize) -> DMatrix<f64> {
     })
 }
 
-/// How far the furthest of the wanted poles is from one of those found, as a part of what rounding excuses where poles repeat.
+/// How far the furthest of the wanted poles is from one of those found, as a part of what rounding excuses
+/// where poles repeat.
 fn miss(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
     let size = wanted.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
     let mut worst: f64 = 0.0;
@@ -67,8 +68,9 @@ fn miss(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
 const ATTEMPTS: usize = 16;
 
 impl StateSpace {
-    /// The gain of the regulator `u = −K x` with which the poles, eigenvalues of `A − B K`, are these; with several inputs the one
-    /// with the best conditioned eigenvectors of some. Of the dual system its transpose is the gain of an observer.
+    /// The gain of the regulator `u = −K x` with which the poles, eigenvalues of `A − B K`, are these; with
+    /// several inputs the one with the best conditioned eigenvectors of some. Of the dual system its
+    /// transpose is the gain of an observer.
     ///
     /// ```
     /// use linkwork_design::StateSpace;
@@ -81,12 +83,14 @@ impl StateSpace {
     /// # Ok::<(), linkwork_design::Error>(())
     /// ```
     ///
-    /// Source: Bhattacharyya and de Souza, *Pole assignment via Sylvester's equation*, Systems & Control Letters 1 (1982).
+    /// Source: Bhattacharyya and de Souza, *Pole assignment via Sylvester's equation*, Systems & Control
+    /// Letters 1 (1982).
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of poles than of states, [`Error::Unpaired`] for a complex pole without its conjugate,
-    /// [`Error::Unstabilizable`] names a mode that no input moves, [`Error::Singular`] where rounding leaves the poles elsewhere.
+    /// [`Error::Count`] for another number of poles than of states, [`Error::Unpaired`] for a complex pole
+    /// without its conjugate, [`Error::Unstabilizable`] names a mode that no input moves, [`Error::Singular`]
+    /// where rounding leaves the poles elsewhere.
     pub fn place(&self, poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
         let (n, m) = self.b.shape();
         if poles.len() != n {

@@ -6,7 +6,8 @@ use nalgebra::DMatrix;
 use std::fmt::{self, Write};
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A polynomial with real coefficients, the highest power first, as one writes it: `[1, 2, 3]` is `s² + 2 s + 3`.
+/// A polynomial with real coefficients, the highest power first, as one writes it: `[1, 2, 3]` is
+/// `s² + 2 s + 3`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial {
     /// Highest power first; the first is not zero, but of the polynomial zero, which has none.

@@ -4,7 +4,8 @@ use crate::matrices::{Cost, Riccati, discrete_riccati, riccati};
 use crate::{Error, Hold, StateSpace};
 use nalgebra::DMatrix;
 
-/// The noise of a system: covariances (intensities of a continuous one) of what disturbs the states, and of the measurements.
+/// The noise of a system: covariances (intensities of a continuous one) of what disturbs the states, and of
+/// the measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noise {
     /// Of the states, `G W Gᵀ`.
@@ -18,7 +19,8 @@ pub struct Noise {
 pub struct Kalman {
     /// `L` of `x̂˙ = A x̂ + B u + L (y − C x̂ − D u)`; of a discrete filter, of its prediction `x̂⁺`.
     pub gain: DMatrix<f64>,
-    /// Of a discrete filter `L = A K` with this gain `K` of its correction; of a continuous one the same as `gain`.
+    /// Of a discrete filter `L = A K` with this gain `K` of its correction; of a continuous one the same as
+    /// `gain`.
     pub correction: DMatrix<f64>,
     /// The covariance of the estimate's error (of a discrete filter before its correction).
     pub covariance: DMatrix<f64>,
@@ -27,7 +29,8 @@ pub struct Kalman {
 }
 
 impl StateSpace {
-    /// The linear–quadratic regulator `u = −K x` of all states: least `∫ xᵀQx + 2xᵀNu + uᵀRu dt`, or a sum of a discrete system.
+    /// The linear–quadratic regulator `u = −K x` of all states: least `∫ xᵀQx + 2xᵀNu + uᵀRu dt`, or a sum of
+    /// a discrete system.
     ///
     /// ```
     /// use linkwork_design::{StateSpace, matrices::Cost};
@@ -50,8 +53,8 @@ impl StateSpace {
         }
     }
 
-    /// The regulator for inputs that are held over `period` seconds, with the cost of the continuous motion in between (Van
-    /// Loan, *Computing integrals involving the matrix exponential*, 1978).
+    /// The regulator for inputs that are held over `period` seconds, with the cost of the continuous motion
+    /// in between (Van Loan, *Computing integrals involving the matrix exponential*, 1978).
     ///
     /// # Errors
     ///
@@ -91,8 +94,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// Those of [`riccati`], of the dual system: [`Error::Undetectable`] names a mode that no output shows, [`Error::Shape`] the noise
-    /// that does not fit.
+    /// Those of [`riccati`], of the dual system: [`Error::Undetectable`] names a mode that no output shows,
+    /// [`Error::Shape`] the noise that does not fit.
     pub fn kalman(&self, noise: &Noise) -> Result<Kalman, Error> {
         let (n, p) = (self.order(), self.outputs.len());
         crate::matrices::check("the states' noise", &noise.states, n, n)?;

@@ -40,8 +40,8 @@ impl Response {
 }
 
 impl StateSpace {
-    /// Instants that show a response: until the slowest pole has settled or some periods of what does not decay are over, s.
-    /// A discrete system has its own.
+    /// Instants that show a response: until the slowest pole has settled or some periods of what does not
+    /// decay are over, s. A discrete system has its own.
     ///
     /// # Errors
     ///
@@ -106,8 +106,8 @@ impl StateSpace {
         self.motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
     }
 
-    /// The outputs after an impulse of one of an input (of a discrete system one divided by the period), from rest. What passes
-    /// directly to outputs is left out of a continuous response, where it is infinite.
+    /// The outputs after an impulse of one of an input (of a discrete system one divided by the period), from
+    /// rest. What passes directly to outputs is left out of a continuous response, where it is infinite.
     ///
     /// # Errors
     ///
@@ -130,19 +130,20 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of states, [`Error::Range`] for instants that are not equally spaced from zero on.
+    /// [`Error::Count`] for another number of states, [`Error::Range`] for instants that are not equally
+    /// spaced from zero on.
     pub fn initial_response(&self, state: &[f64], times: &[f64]) -> Result<Response, Error> {
         let inputs = DMatrix::zeros(self.inputs.len(), times.len());
         self.motion(times, &inputs, &DVector::from_column_slice(state), Hold::Zero)
     }
 
-    /// The outputs under given inputs (a row an input, a column an instant) from an initial state: exact for inputs that are
-    /// constant ([`Hold::Zero`]) or straight ([`Hold::First`]) from one instant to the next.
+    /// The outputs under given inputs (a row an input, a column an instant) from an initial state: exact for
+    /// inputs that are constant ([`Hold::Zero`]) or straight ([`Hold::First`]) from one instant to the next.
     ///
     /// # Errors
     ///
-    /// [`Error::Shape`] of the inputs, [`Error::Count`] of the states, [`Error::Range`] for instants that are not equally spaced
-    /// from zero on (of a discrete system by its period).
+    /// [`Error::Shape`] of the inputs, [`Error::Count`] of the states, [`Error::Range`] for instants that are
+    /// not equally spaced from zero on (of a discrete system by its period).
     pub fn forced_response(
         &self,
         inputs: &DMatrix<f64>,

@@ -40,7 +40,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] unless there is one input and one output, [`Error::AlgebraicLoop`] at a gain of `−1 / D`.
+    /// [`Error::Count`] unless there is one input and one output, [`Error::AlgebraicLoop`] at a gain of
+    /// `−1 / D`.
     pub fn root_locus(&self, gains: &[f64]) -> Result<RootLocus, Error> {
         self.check_single()?;
         let (poles, zeros) = (self.poles()?, self.zeros()?);
@@ -54,8 +55,9 @@ impl StateSpace {
         Ok(RootLocus { gains: gains.to_vec(), branches, poles, zeros, period: self.period })
     }
 
-    /// Gains that show the locus: zero, then on a logarithmic scale from where poles begin to move to where they are near zeros or
-    /// far away, and refined where a pole moves by more than a fortieth of the picture.
+    /// Gains that show the locus: zero, then on a logarithmic scale from where poles begin to move to where
+    /// they are near zeros or far away, and refined where a pole moves by more than a fortieth of the
+    /// picture.
     ///
     /// # Errors
     ///

@@ -8,10 +8,12 @@ use crate::{Error, Polynomial};
 pub enum Special {
     /// Nothing.
     Regular,
-    /// The row began with zeros but was not zero: the row, shifted to its first entry and with the sign of the shift, was added
-    /// (Benidir and Picinbono, *Extended table for eliminating the singularities in Routh's array*, 1990), which needs no ε.
+    /// The row began with zeros but was not zero: the row, shifted to its first entry and with the sign of
+    /// the shift, was added (Benidir and Picinbono, *Extended table for eliminating the singularities in
+    /// Routh's array*, 1990), which needs no ε.
     LeadingZero,
-    /// The row was zero: roots lie symmetric to the origin. The derivative of the polynomial of the row before takes its place.
+    /// The row was zero: roots lie symmetric to the origin. The derivative of the polynomial of the row
+    /// before takes its place.
     ZeroRow,
 }
 
@@ -130,7 +132,8 @@ pub struct GainRange {
 }
 
 impl Polynomial {
-    /// The gains `k` for which this polynomial plus `k` times another has roots with negative real parts alone, as intervals.
+    /// The gains `k` for which this polynomial plus `k` times another has roots with negative real parts
+    /// alone, as intervals.
     ///
     /// ```
     /// use linkwork_design::Polynomial;

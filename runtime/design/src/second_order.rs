@@ -4,8 +4,8 @@ use crate::matrices::{check, check_square, solve};
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
 
-/// `M q̈ + (D + G) q̇ + (K + N) q = B u`: the parts that Kelvin, Tait and Chetaev tell apart. `D` and `K` are symmetric, `G` and
-/// `N` skew (Merkin, *Introduction to the Theory of Stability*, 1997, ch. 6).
+/// `M q̈ + (D + G) q̇ + (K + N) q = B u`: the parts that Kelvin, Tait and Chetaev tell apart. `D` and `K` are
+/// symmetric, `G` and `N` skew (Merkin, *Introduction to the Theory of Stability*, 1997, ch. 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondOrderForm {
     /// `M`: kg between translations, kg·m² between rotations.

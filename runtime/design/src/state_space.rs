@@ -67,8 +67,8 @@ impl<'a> From<&'a str> for Port<'a> {
     }
 }
 
-/// A linear system `ẋ = A x + B u`, `y = C x + D u`, or `x⁺ = A x + B u` from one period to the next, with the names and units of
-/// its states, inputs and outputs.
+/// A linear system `ẋ = A x + B u`, `y = C x + D u`, or `x⁺ = A x + B u` from one period to the next, with
+/// the names and units of its states, inputs and outputs.
 ///
 /// ```
 /// use linkwork_design::StateSpace;
@@ -246,8 +246,8 @@ impl StateSpace {
         self.unstable_pole()?.map_or(Ok(()), |pole| Err(Error::Unstable { pole }))
     }
 
-    /// These states alone, by name and in this order, while all others stay at zero; they are the outputs, too. What aircraft do in
-    /// their plane of symmetry, for instance.
+    /// These states alone, by name and in this order, while all others stay at zero; they are the outputs,
+    /// too. What aircraft do in their plane of symmetry, for instance.
     ///
     /// # Errors
     ///

@@ -1,8 +1,8 @@
 //! Equilibria and steady motions of mechanisms.
 //!
-//! A [`Trim`] lists what is unknown (coordinates, speeds, inputs, parameters) and what is to hold there (accelerations,
-//! constraints, outputs), by name. [`equilibrium`] and [`constrained_equilibrium`] begin with a mechanism at rest: all coordinates
-//! are unknown, and nothing accelerates.
+//! A [`Trim`] lists what is unknown (coordinates, speeds, inputs, parameters) and what is to hold there
+//! (accelerations, constraints, outputs), by name. [`equilibrium`] and [`constrained_equilibrium`] begin with
+//! a mechanism at rest: all coordinates are unknown, and nothing accelerates.
 //!
 //! ```
 //! use linkwork::prelude::*;
@@ -29,9 +29,10 @@
 //! # Ok::<(), linkwork_design::Error>(())
 //! ```
 //!
-//! Names are those of `VELOCITIES`, also for coordinates, which move along `q ⊕ δq`: in body axes for ball and free joints.
-//! The equations are solved by Levenberg–Marquardt steps on the tangent space (Moré, *The Levenberg–Marquardt algorithm:
-//! implementation and theory*, 1978) with generated derivatives, in a bounded number of iterations.
+//! Names are those of `VELOCITIES`, also for coordinates, which move along `q ⊕ δq`: in body axes for ball
+//! and free joints. The equations are solved by Levenberg–Marquardt steps on the tangent space (Moré, *The
+//! Levenberg–Marquardt algorithm: implementation and theory*, 1978) with generated derivatives, in a bounded
+//! number of iterations.
 
 use crate::Error;
 use linkwork::{Constrained, OutputDerivatives, Rheonomic, RheonomicDerivatives};
@@ -68,9 +69,9 @@ type OutputsOf<M, const NQ: usize, const NV: usize, const NU: usize> =
 
 /// What is unknown of a state, and what is to hold there.
 ///
-/// Before anything is said, all coordinates are unknown, speeds and inputs are given (as zero), and no velocity changes. States of
-/// first order, of a mechanism with them among its velocities ([`Extended`](linkwork::Extended)), are unknown unless they are
-/// [fixed](Trim::fix), and come to rest.
+/// Before anything is said, all coordinates are unknown, speeds and inputs are given (as zero), and no
+/// velocity changes. States of first order, of a mechanism with them among its velocities
+/// ([`Extended`](linkwork::Extended)), are unknown unless they are [fixed](Trim::fix), and come to rest.
 /// Constraints always hold.
 pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     source: Source<'m, M>,
@@ -109,8 +110,8 @@ pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
     pub parameters: Vec<f64>,
     /// What holds coordinates: name, and generalized force, N or N·m.
     pub holding: Vec<(String, f64)>,
-    /// Multipliers of the constraints: name, and force or torque (N, N·m) along what the constraint's rate counts. Where
-    /// constraints are redundant, those of least norm.
+    /// Multipliers of the constraints: name, and force or torque (N, N·m) along what the constraint's rate
+    /// counts. Where constraints are redundant, those of least norm.
     pub multipliers: Vec<(&'static str, f64)>,
     /// How many iterations were made.
     pub iterations: usize,
@@ -120,8 +121,8 @@ pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
 
 /// Equilibria of a mechanism without constraints: at rest, and nothing accelerates.
 ///
-/// What is driven in time is looked at in an instant ([`Trim::at_time`]): of a pendulum on a hoop that turns steadily these are the
-/// relative equilibria.
+/// What is driven in time is looked at in an instant ([`Trim::at_time`]): of a pendulum on a hoop that turns
+/// steadily these are the relative equilibria.
 pub fn equilibrium<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M) -> Trim<'_, M, NQ, NV, NU>
 where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
@@ -206,8 +207,8 @@ where
         }
     }
 
-    /// Begins at this configuration; coordinates that are not unknown keep it. The neutral one without this. Constraints need not
-    /// hold there.
+    /// Begins at this configuration; coordinates that are not unknown keep it. The neutral one without this.
+    /// Constraints need not hold there.
     pub fn from(mut self, q: SVector<f64, NQ>) -> Self {
         self.q = q;
         self
@@ -237,8 +238,8 @@ where
         self
     }
 
-    /// These coordinates keep what they are, while the forces along them have to balance all the same: places on a level road,
-    /// the heading of an aircraft.
+    /// These coordinates keep what they are, while the forces along them have to balance all the same: places
+    /// on a level road, the heading of an aircraft.
     pub fn fix<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.fixed.extend(owned(names));
         self
@@ -307,8 +308,8 @@ where
         self
     }
 
-    /// Parameters that are unknown, by names with guesses, and the mechanism that has them. Derivatives by them are central
-    /// differences; all others are generated.
+    /// Parameters that are unknown, by names with guesses, and the mechanism that has them. Derivatives by
+    /// them are central differences; all others are generated.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -361,15 +362,16 @@ where
     ///
     /// # Errors
     ///
-    /// [`Error::NoSteadyState`] where there is none: with the condition that is violated most, and the place at which the
-    /// violation is least. [`Error::Undetermined`] where conditions leave unknowns open. [`Error::Unknown`] for a name that is
-    /// none. [`Error::NotFinite`] where accelerations at the guess are not, [`Error::Constraint`] where friction jams there.
+    /// [`Error::NoSteadyState`] where there is none: with the condition that is violated most, and the place
+    /// at which the violation is least. [`Error::Undetermined`] where conditions leave unknowns open.
+    /// [`Error::Unknown`] for a name that is none. [`Error::NotFinite`] where accelerations at the guess are
+    /// not, [`Error::Constraint`] where friction jams there.
     pub fn find(&self) -> Result<SteadyState<NQ, NV, NU>, Error> {
         solve::find(self)
     }
 
-    /// The different states that are reached from several guesses of the configuration, in that order; guesses from which none is
-    /// reached are passed over. Coordinates of joints that turn count their turns.
+    /// The different states that are reached from several guesses of the configuration, in that order;
+    /// guesses from which none is reached are passed over. Coordinates of joints that turn count their turns.
     ///
     /// # Errors
     ///

@@ -106,8 +106,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole, [`Error::Count`] unless there is one input and one output, [`Error::Range`] for a final
-    /// value of zero.
+    /// [`Error::Unstable`] names a pole, [`Error::Count`] unless there is one input and one output,
+    /// [`Error::Range`] for a final value of zero.
     pub fn step_figures(&self) -> Result<StepFigures, Error> {
         self.step_figures_within(StepLimits::default())
     }

@@ -6,7 +6,8 @@ use crate::matrices::{
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
 
-/// What stands for rounding beside the norm of the matrices: those of computed systems are off by more than one digit.
+/// What stands for rounding beside the norm of the matrices: those of computed systems are off by more than
+/// one digit.
 const ROUNDING: f64 = 1e-12;
 
 /// The controllable part of a system on top: `[A₁₁ A₁₂; 0 A₂₂]`, `[B₁; 0]`.
@@ -55,9 +56,9 @@ impl StateSpace {
         }
     }
 
-    /// The staircase form by orthogonal transformations (Rosenbrock; Varga, *Numerically stable algorithm for standard
-    /// controllability form determination*, 1981). `tolerance` is what counts as zero beside the norm of the matrices; zero
-    /// stands for rounding.
+    /// The staircase form by orthogonal transformations (Rosenbrock; Varga, *Numerically stable algorithm for
+    /// standard controllability form determination*, 1981). `tolerance` is what counts as zero beside the
+    /// norm of the matrices; zero stands for rounding.
     ///
     /// # Errors
     ///
@@ -115,7 +116,8 @@ impl StateSpace {
         self.dual().is_controllable()
     }
 
-    /// `[B, A B, A² B, …]`: for textbooks; ranks of large systems come from [the staircase](Self::controllable_staircase).
+    /// `[B, A B, A² B, …]`: for textbooks; ranks of large systems come from
+    /// [the staircase](Self::controllable_staircase).
     pub fn controllability_matrix(&self) -> DMatrix<f64> {
         let (n, m) = self.b.shape();
         let mut all = DMatrix::zeros(n, n * m);
@@ -157,7 +159,8 @@ impl StateSpace {
         self.dual().controllability_gramian()
     }
 
-    /// Hankel singular values, largest first: how much of each state of a balanced realisation passes from inputs to outputs.
+    /// Hankel singular values, largest first: how much of each state of a balanced realisation passes from
+    /// inputs to outputs.
     ///
     /// # Errors
     ///
@@ -178,8 +181,8 @@ impl StateSpace {
         Ok(values)
     }
 
-    /// For every pole, the smallest singular value of `[A − λ I, B]` in balanced units beside the norm of `A`: how near it is to
-    /// one that no input moves (Popov, Belevitch and Hautus).
+    /// For every pole, the smallest singular value of `[A − λ I, B]` in balanced units beside the norm of
+    /// `A`: how near it is to one that no input moves (Popov, Belevitch and Hautus).
     ///
     /// # Errors
     ///
@@ -236,7 +239,8 @@ impl StateSpace {
         }
     }
 
-    /// The dimensions of Kalman's decomposition; `tolerance` as for [the staircase](Self::controllable_staircase).
+    /// The dimensions of Kalman's decomposition; `tolerance` as for
+    /// [the staircase](Self::controllable_staircase).
     ///
     /// # Errors
     ///

@@ -39,8 +39,9 @@ pub struct ZerosPolesGain {
 }
 
 impl TransferFunction {
-    /// By the coefficients of numerator and denominator, the highest power first. The leading coefficient of the denominator
-    /// becomes one. Improper ones are allowed here (a differentiator), and refused where a result does not exist.
+    /// By the coefficients of numerator and denominator, the highest power first. The leading coefficient of
+    /// the denominator becomes one. Improper ones are allowed here (a differentiator), and refused where a
+    /// result does not exist.
     ///
     /// # Errors
     ///
@@ -154,7 +155,8 @@ impl TransferFunction {
         Ok(ZerosPolesGain { zeros, poles, gain: self.numerator.leading(), period: self.period })
     }
 
-    /// Common factors left out: zeros and poles that are nearer to each other than `tolerance` times their magnitude.
+    /// Common factors left out: zeros and poles that are nearer to each other than `tolerance` times their
+    /// magnitude.
     ///
     /// # Errors
     ///
@@ -173,7 +175,8 @@ impl TransferFunction {
         Ok(Self { numerator, denominator: Polynomial::from_roots(&all.poles), period: self.period })
     }
 
-    /// A minimal realisation, if numerator and denominator have no common factor: the controller form, balanced.
+    /// A minimal realisation, if numerator and denominator have no common factor: the controller form,
+    /// balanced.
     ///
     /// # Errors
     ///
@@ -345,7 +348,8 @@ impl fmt::Display for ZerosPolesGain {
 }
 
 impl StateSpace {
-    /// One channel by zeros, poles and gain. Modes that the input does not move or the output does not show are left out.
+    /// One channel by zeros, poles and gain. Modes that the input does not move or the output does not show
+    /// are left out.
     ///
     /// # Errors
     ///
@@ -359,7 +363,8 @@ impl StateSpace {
         let (zeros, poles) = (channel.zeros()?, channel.poles()?);
         let direct = channel.d[(0, 0)];
         let response = channel.frequency_map()?;
-        // Where neither zeros nor poles are near: beyond the geometric mean of their magnitudes, on the real axis to the right.
+        // Where neither zeros nor poles are near: beyond the geometric mean of their magnitudes, on the real
+        // axis to the right.
         let sizes: Vec<f64> = zeros.iter().chain(&poles).map(|x| x.norm()).filter(|x| *x > 0.0).collect();
         let typical = (sizes.iter().map(|x| x.ln()).sum::<f64>() / sizes.len().max(1) as f64).exp();
         let right = zeros.iter().chain(&poles).map(|x| x.re).fold(0.0, f64::max);

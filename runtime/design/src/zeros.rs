@@ -48,7 +48,8 @@ impl Pencil {
         }
     }
 
-    /// Outputs without a direct way from the inputs hold states fixed, which leave; until `D` has full row rank.
+    /// Outputs without a direct way from the inputs hold states fixed, which leave; until `D` has full row
+    /// rank.
     fn reduce(mut self) -> Self {
         loop {
             let (n, p) = (self.a.nrows(), self.d.nrows());
@@ -85,10 +86,10 @@ impl Pencil {
 }
 
 impl StateSpace {
-    /// The invariant zeros: where the system matrix `[A − s I, B; C, D]` loses rank beside its usual one, by the reduction of
-    /// Emami-Naeini and Van Dooren (*Computation of zeros of linear multivariable systems*, Automatica 18, 1982). Those of a
-    /// controllable and observable system are its transmission zeros; modes that no input moves or no output shows are among
-    /// them, too.
+    /// The invariant zeros: where the system matrix `[A − s I, B; C, D]` loses rank beside its usual one, by
+    /// the reduction of Emami-Naeini and Van Dooren (*Computation of zeros of linear multivariable systems*,
+    /// Automatica 18, 1982). Those of a controllable and observable system are its transmission zeros; modes
+    /// that no input moves or no output shows are among them, too.
     ///
     /// ```
     /// use linkwork_design::StateSpace;
@@ -117,8 +118,8 @@ impl StateSpace {
                 return eigenvalues(&(&reduced.a - &reduced.b * held));
             }
         }
-        // Now D has full column rank, and is square: with `[D C] = [R 0] Qᵀ` the inputs that keep the outputs zero leave a
-        // pencil of the states alone.
+        // Now D has full column rank, and is square: with `[D C] = [R 0] Qᵀ` the inputs that keep the outputs
+        // zero leave a pencil of the states alone.
         let mut both = DMatrix::zeros(reduced.d.nrows(), m + n);
         both.columns_mut(0, m).copy_from(&reduced.d);
         both.columns_mut(m, n).copy_from(&reduced.c);

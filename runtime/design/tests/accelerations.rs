@@ -1,4 +1,5 @@
-//! Linear systems and steady motions under forces that depend on accelerations, against automatic differentiation.
+//! Linear systems and steady motions under forces that depend on accelerations, against automatic
+//! differentiation.
 
 use linkwork::nalgebra::{DMatrix, SVector};
 use linkwork::prelude::*;
@@ -32,7 +33,8 @@ fn agree(what: &str, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
     assert!(error <= ROUNDING * size, "{what} is {error:e} off: found {found}expected {expected}");
 }
 
-/// An aircraft whose lift and pitching moment follow a table and the rate of the angle of attack, with an engine that lags.
+/// An aircraft whose lift and pitching moment follow a table and the rate of the angle of attack, with an
+/// engine that lags.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 struct Unsteady<T: Real> {
     mass: T,
@@ -222,8 +224,8 @@ fn steady_motions_count_what_accelerations_cost() {
     assert!(found.acceleration[1].abs() < 1e-12);
 }
 
-/// Positive stiffness does not make stable what pushes back by accelerations: `M = [[m, s], [−s, m]]`, `K = 1` has the roots
-/// `s² = −1 / (m ± i s)`.
+/// Positive stiffness does not make stable what pushes back by accelerations: `M = [[m, s], [−s, m]]`,
+/// `K = 1` has the roots `s² = −1 / (m ± i s)`.
 #[test]
 fn energy_decides_on_symmetric_inertia_only() {
     let carts = Carts { forth: 0.8, back: -0.8 };

@@ -204,7 +204,8 @@ fn boeing_747() {
     contains(&poles, -0.007277201746158317, 0.0, 1e-10);
 }
 
-/// The benchmark bicycle (Meijaard, Papadopoulos, Ruina and Schwab, 2007): published matrices and eigenvalues.
+/// The benchmark bicycle (Meijaard, Papadopoulos, Ruina and Schwab, 2007): published matrices and
+/// eigenvalues.
 #[test]
 fn whipple_bicycle() {
     use linkwork_design::SecondOrderForm;
@@ -237,8 +238,8 @@ fn whipple_bicycle() {
     }
 }
 
-/// Benner, Laub and Mehrmann, *A collection of benchmark examples for the numerical solution of algebraic Riccati equations* (1995):
-/// those of continuous time with exact solutions, from examples 1, 2, 7 and 12.
+/// Benner, Laub and Mehrmann, *A collection of benchmark examples for the numerical solution of algebraic
+/// Riccati equations* (1995): those of continuous time with exact solutions, from examples 1, 2, 7 and 12.
 #[test]
 fn riccati_benchmarks() {
     let same = |found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64| {
@@ -283,7 +284,8 @@ fn riccati_benchmarks() {
     }
 }
 
-/// Benner, Laub and Mehrmann's collection of discrete time, with exact solutions; the weight of inputs may vanish there.
+/// Benner, Laub and Mehrmann's collection of discrete time, with exact solutions; the weight of inputs may
+/// vanish there.
 #[test]
 fn discrete_riccati_benchmarks() {
     let (a, b) = (dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0]);
@@ -296,7 +298,8 @@ fn discrete_riccati_benchmarks() {
     assert!((x - DMatrix::identity(2, 2)).norm() < 1e-12);
 }
 
-/// `K / (s + 1)ⁿ` crosses the axis at `tan(π/n)`, where its gain is `cosⁿ(π/n)`; `K / (s (s + 1) (s + 5))` at `√5`, with `K / 30`.
+/// `K / (s + 1)ⁿ` crosses the axis at `tan(π/n)`, where its gain is `cosⁿ(π/n)`; `K / (s (s + 1) (s + 5))` at
+/// `√5`, with `K / 30`.
 #[test]
 fn repeated_poles_have_their_margins() {
     for n in [3_usize, 4, 5, 8] {
@@ -321,7 +324,8 @@ fn repeated_poles_have_their_margins() {
     }
 }
 
-/// Ogata, *Modern Control Engineering* (2010), § 5-6: a row that begins with zero, one of zeros, and its roots on the border.
+/// Ogata, *Modern Control Engineering* (2010), § 5-6: a row that begins with zero, one of zeros, and its
+/// roots on the border.
 #[test]
 fn routh_of_ogata() {
     let right = |c: &[f64]| Polynomial::new(c.to_vec()).routh().unwrap().right;

@@ -1,4 +1,5 @@
-//! What does not exist is an error that names what is to blame: each of these mistakes with the words that come of it.
+//! What does not exist is an error that names what is to blame: each of these mistakes with the words that
+//! come of it.
 
 use linkwork::prelude::{FirstOrder, mechanism};
 use linkwork_design::flight::FlightModes;

@@ -1,5 +1,5 @@
-//! Second-order forms under constraints: mass, damping, gyroscopic, stiffness and circulatory matrices in independent coordinates,
-//! against closed forms.
+//! Second-order forms under constraints: mass, damping, gyroscopic, stiffness and circulatory matrices in
+//! independent coordinates, against closed forms.
 
 use linkwork::prelude::*;
 use linkwork_design::steady::constrained_equilibrium;
@@ -37,8 +37,8 @@ struct Blown {
     wind: Force,
 }
 
-/// With the angle `θ` from below: `m L² θ̈ + c L² cos² θ θ̇ + L √((m g)² + F²) θ = 0` about `tan θ = F / (m g)`. By `x = L sin θ`
-/// the matrices are these over `(L cos θ)²`.
+/// With the angle `θ` from below: `m L² θ̈ + c L² cos² θ θ̇ + L √((m g)² + F²) θ = 0` about
+/// `tan θ = F / (m g)`. By `x = L sin θ` the matrices are these over `(L cos θ)²`.
 #[test]
 fn a_particle_on_a_rod_in_wind() {
     let (mass, length, oil, wind) = (2.0, 0.7, 1.3, 8.0);

@@ -112,8 +112,8 @@ struct DampedRotor {
     friction: Force,
 }
 
-/// With `z = x + i y`: `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` (Genta, *Dynamics of Rotating Systems*, 2005, § 2.6); it whirls
-/// by itself above the rate `ω (1 + cₑ / cᵢ)`.
+/// With `z = x + i y`: `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` (Genta, *Dynamics of Rotating Systems*,
+/// 2005, § 2.6); it whirls by itself above the rate `ω (1 + cₑ / cᵢ)`.
 #[test]
 fn rotor_with_internal_damping() {
     let rotor = |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
@@ -182,8 +182,9 @@ struct Satellite {
     gravity: Gravity,
 }
 
-/// Pitch by `Ω √(3 (I_roll − I_yaw) / I_pitch)`, roll and yaw by the roots of `s⁴ + (1 + 3 k₁ + k₁ k₃) Ω² s² + 4 k₁ k₃ Ω⁴` with
-/// `k₁ = (I_pitch − I_yaw) / I_roll` and `k₃ = (I_pitch − I_roll) / I_yaw` (Hughes, *Spacecraft Attitude Dynamics*, 1986, § 9.2).
+/// Pitch by `Ω √(3 (I_roll − I_yaw) / I_pitch)`, roll and yaw by the roots of
+/// `s⁴ + (1 + 3 k₁ + k₁ k₃) Ω² s² + 4 k₁ k₃ Ω⁴` with `k₁ = (I_pitch − I_yaw) / I_roll` and
+/// `k₃ = (I_pitch − I_roll) / I_yaw` (Hughes, *Spacecraft Attitude Dynamics*, 1986, § 9.2).
 #[test]
 fn gravity_holds_a_satellite() {
     let (mu, radius) = (3.986004418e14_f64, 7.0e6_f64);
@@ -291,7 +292,8 @@ fn written(signals: &[Signal]) -> Vec<String> {
     signals.iter().map(ToString::to_string).collect()
 }
 
-/// Names and units of a tree with a state of first order, of a mechanism that is driven in time, and under constraints.
+/// Names and units of a tree with a state of first order, of a mechanism that is driven in time, and under
+/// constraints.
 #[test]
 fn signals_have_names_and_units() {
     let sled = Sled { mass: 2.0, lag: 0.5, thrust: 0.0 };

@@ -1,4 +1,5 @@
-//! Pictures are SVG that is well formed and says names and units; `PICTURES=folder` keeps them to be looked at.
+//! Pictures are SVG that is well formed and says names and units; `PICTURES=folder` keeps them to be looked
+//! at.
 
 use linkwork_design::{StateSpace, TransferFunction, picture};
 use nalgebra::{DMatrix, dmatrix};

@@ -1,4 +1,5 @@
-//! What must hold for every system: residuals, roots, round trips, on random systems, stiff and defective ones among them.
+//! What must hold for every system: residuals, roots, round trips, on random systems, stiff and defective
+//! ones among them.
 
 use linkwork_design::matrices::{
     Cost, discrete_lyapunov, discrete_riccati, discrete_sylvester, eigenvalues, exponential, logarithm,
@@ -316,7 +317,8 @@ fn connections() {
     assert_eq!(direct.feedback_gain(&dmatrix![-1.0]), Err(Error::AlgebraicLoop));
 }
 
-/// `det(s I − A + B K) = Π (s − pᵢ)` away from all poles, with repeated ones and with those that are there already.
+/// `det(s I − A + B K) = Π (s − pᵢ)` away from all poles, with repeated ones and with those that are there
+/// already.
 #[test]
 fn poles_are_put_where_they_should_be() {
     let mut random = Random(31);
@@ -347,7 +349,8 @@ fn poles_are_put_where_they_should_be() {
     assert!(matches!(fixed.place(&[one]), Err(Error::Count { expected: 2, found: 1, .. })));
 }
 
-/// Every crossing that a fine grid sees is found, and is one; at the least distance from −1 the sensitivity is largest.
+/// Every crossing that a fine grid sees is found, and is one; at the least distance from −1 the sensitivity
+/// is largest.
 #[test]
 fn margins_miss_no_crossing() {
     let mut random = Random(7);

@@ -65,8 +65,8 @@ pub struct Batch<'a, N> {
 ///
 /// # Errors
 ///
-/// Arrays of other lengths, before anything is written. Else the first failure, with the number of its state if there are several,
-/// when all are done.
+/// Arrays of other lengths, before anything is written. Else the first failure, with the number of its state
+/// if there are several, when all are done.
 pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> Result<(), Failure> {
     let Batch { arguments, results, states, threads } = batch;
     let lengths = f.arguments.iter().zip(arguments.iter().map(|array| array.len()));

@@ -23,10 +23,11 @@ pub enum Way<N> {
     ImplicitMidpoint(N),
     /// Contacts by their events, by a tolerance.
     EventDriven(N),
-    /// Contacts by impulses in steps. Surfaces that overlap at the start stay so: callers go on from where steps have left them in each
-    /// other.
+    /// Contacts by impulses in steps. Surfaces that overlap at the start stay so: callers go on from where
+    /// steps have left them in each other.
     TimeStepping(N),
-    /// Contacts by impulses in steps through the middle of each: two evaluations of the dynamics in place of four.
+    /// Contacts by impulses in steps through the middle of each: two evaluations of the dynamics in place of
+    /// four.
     TimeSteppingMidpoint(N),
 }
 

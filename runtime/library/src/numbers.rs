@@ -21,7 +21,8 @@ impl Number for f32 {
     const NAN: f32 = f32::NAN;
 }
 
-/// A number of a matrix: of one state, or the same of several side by side. Arrays hold one state after another.
+/// A number of a matrix: of one state, or the same of several side by side. Arrays hold one state after
+/// another.
 pub trait Entry<N>: Copy {
     /// Number `at` of every state, when a state has `length` numbers. What is not there is zero.
     fn read(numbers: &[N], at: usize, length: usize) -> Self;
@@ -216,7 +217,8 @@ impl<'a, 'b, N> Sink<'a, 'b, N> {
     }
 }
 
-/// What a function gives, put into arrays: matrices column by column, placements as matrices of four rows and columns.
+/// What a function gives, put into arrays: matrices column by column, placements as matrices of four rows and
+/// columns.
 pub trait Results<N> {
     /// Puts it there.
     ///

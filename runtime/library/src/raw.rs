@@ -1,5 +1,5 @@
-//! The border: what the functions of a library with C's calling convention do. This module alone handles pointers, and no panic
-//! leaves it.
+//! The border: what the functions of a library with C's calling convention do. This module alone handles
+//! pointers, and no panic leaves it.
 #![allow(unsafe_code, reason = "the border to callers in other languages, who hand over pointers")]
 
 use crate::{Batch, Every, Failure, Library, Motion, Rollout, Way};
@@ -56,9 +56,9 @@ unsafe fn places<'a, N>(to: *mut N, length: usize) -> &'a mut [N] {
 ///
 /// # Safety
 ///
-/// `parameters` points to as many numbers as the mechanism has parameters; `arguments` and `results` to as many pointers as the
-/// function has arguments and results, each to its numbers of all states. Nobody else uses the results meanwhile, and they do not
-/// overlap.
+/// `parameters` points to as many numbers as the mechanism has parameters; `arguments` and `results` to as
+/// many pointers as the function has arguments and results, each to its numbers of all states. Nobody else
+/// uses the results meanwhile, and they do not overlap.
 pub unsafe fn call<M: Library>(
     function: usize,
     parameters: *const M::Number,
@@ -109,8 +109,8 @@ pub unsafe fn copy<N: Copy>(from: &[N], to: *mut N) {
     unsafe { places(to, from.len()) }.copy_from_slice(from);
 }
 
-/// A controller in another language: what it was registered with, time, configuration, velocity, and where the inputs go. It returns
-/// zero, or anything else to end the run.
+/// A controller in another language: what it was registered with, time, configuration, velocity, and where
+/// the inputs go. It returns zero, or anything else to end the run.
 pub type Controller<N> = unsafe extern "C" fn(*mut c_void, N, *const N, *const N, *mut N) -> c_int;
 
 /// Settings of a simulation.
@@ -122,8 +122,9 @@ pub struct Settings<N> {
     pub duration: N,
     /// Time between samples, s.
     pub interval: N,
-    /// The method by name: `dormand_prince`, `dormand_prince8`, `rodas`, `event_driven`, each with its tolerance; `rk4`,
-    /// `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`, each with its step, s.
+    /// The method by name: `dormand_prince`, `dormand_prince8`, `rodas`, `event_driven`, each with its
+    /// tolerance; `rk4`, `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`, each with its step,
+    /// s.
     pub method: *const c_char,
     /// The tolerance or the step.
     pub setting: N,
@@ -139,9 +140,9 @@ pub struct Settings<N> {
 ///
 /// # Safety
 ///
-/// `parameters`, `q` and `v` point to as many numbers as the mechanism has of them, `settings` to settings whose method is a text that
-/// ends with zero, `samples` to so many rows, `count` to a number. The controller can be called with the arrays of a state, and
-/// does not unwind.
+/// `parameters`, `q` and `v` point to as many numbers as the mechanism has of them, `settings` to settings
+/// whose method is a text that ends with zero, `samples` to so many rows, `count` to a number. The controller
+/// can be called with the arrays of a state, and does not unwind.
 #[allow(clippy::too_many_arguments, reason = "the signature of the library")]
 pub unsafe fn simulate<M: Library>(
     [nq, nv, nu]: [usize; 3],
@@ -219,8 +220,9 @@ pub struct RolloutSettings<N> {
 ///
 /// # Safety
 ///
-/// `parameters` points to as many numbers as the mechanism has parameters; `q` and `v` to `steps + 1` configurations and velocities of
-/// each state, which nobody else uses meanwhile; `inputs` to those that the settings name.
+/// `parameters` points to as many numbers as the mechanism has parameters; `q` and `v` to `steps + 1`
+/// configurations and velocities of each state, which nobody else uses meanwhile; `inputs` to those that the
+/// settings name.
 pub unsafe fn roll_out<M: Library>(
     [nq, nv, nu]: [usize; 3],
     parameters: *const M::Number,

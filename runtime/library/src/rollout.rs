@@ -21,7 +21,8 @@ pub struct Rollout<'a, N> {
     pub q: &'a mut [N],
     /// Velocities likewise.
     pub v: &'a mut [N],
-    /// Inputs of every state during the first step, the second one and so on; or those of all states; or none, which are zero.
+    /// Inputs of every state during the first step, the second one and so on; or those of all states; or
+    /// none, which are zero.
     pub inputs: &'a [N],
     /// Every state has inputs of its own.
     pub own_inputs: bool,

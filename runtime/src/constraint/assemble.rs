@@ -1,4 +1,5 @@
-//! Assembly: from a guess to a configuration that fulfils the constraints, and which assembly mode it belongs to.
+//! Assembly: from a guess to a configuration that fulfils the constraints, and which assembly mode it belongs
+//! to.
 
 use super::{ConstraintError, complete, largest, near, off};
 use crate::Real;
@@ -34,9 +35,9 @@ pub struct Loops<R, J, I, const NV: usize, const NC: usize> {
     pub integrate: I,
 }
 
-/// Finds a configuration that fulfils the constraints: by steps from the guess; where these end in a gap that no small
-/// step closes, or lead more than half a turn away, by steps from around it. A `mode` that is asked for must be that of
-/// [`assembly_mode`].
+/// Finds a configuration that fulfils the constraints: by steps from the guess; where these end in a gap that
+/// no small step closes, or lead more than half a turn away, by steps from around it. A `mode` that is asked
+/// for must be that of [`assembly_mode`].
 pub fn assemble<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -54,7 +55,8 @@ pub fn assemble<
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     complete::check::<NV>(held)?;
     let is_wanted = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
-    // Where coordinates are bound to turn farther than half a turn, by gears, the first configuration that was found.
+    // Where coordinates are bound to turn farther than half a turn, by gears, the first configuration that
+    // was found.
     let mut far = None;
     let mut attempt = |from: &SVector<T, NQ>| -> Result<Option<SVector<T, NQ>>, ConstraintError> {
         let found = unwind(loops, q, descend(loops, from, held)?);
@@ -100,8 +102,8 @@ fn turns<T: Real, const NQ: usize>(guess: &SVector<T, NQ>, q: &SVector<T, NQ>, k
     (entry(q) - entry(guess)) / T::two_pi()
 }
 
-/// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints hold without these
-/// turns as well: all together, or else each by itself.
+/// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints hold
+/// without these turns as well: all together, or else each by itself.
 fn unwind<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -207,9 +209,9 @@ fn open_rows<T: Real, const NV: usize, const NH: usize, const NC: usize>(
     })
 }
 
-/// The assembly mode of a configuration: the sign of the determinant of the derivatives of the constraints on configurations
-/// by the coordinates that are not held. `None` in a singular position, and where there are more or fewer coordinates than
-/// such constraints.
+/// The assembly mode of a configuration: the sign of the determinant of the derivatives of the constraints on
+/// configurations by the coordinates that are not held. `None` in a singular position, and where there are
+/// more or fewer coordinates than such constraints.
 pub fn assembly_mode<
     T: Real,
     R,

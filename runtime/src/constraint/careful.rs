@@ -1,5 +1,5 @@
-//! The careful way to accelerations and multipliers: where straight-line elimination would lose digits, with light and
-//! heavy bodies in one loop, near singular positions and in them.
+//! The careful way to accelerations and multipliers: where straight-line elimination would lose digits, with
+//! light and heavy bodies in one loop, near singular positions and in them.
 
 mod passing;
 
@@ -21,12 +21,14 @@ pub struct Structure<const NC: usize> {
     pub rank: usize,
 }
 
-/// `v̇` and the multipliers of least norm: `M v̇ + h = τ + Jᵀ λ`, `J v̇ = −b`, for any masses and in any position.
+/// `v̇` and the multipliers of least norm: `M v̇ + h = τ + Jᵀ λ`, `J v̇ = −b`, for any masses and in any
+/// position.
 ///
-/// In a singular position fewer constraints are independent than elsewhere, and `J v̇ = −b` leaves accelerations open that
-/// are determined a moment before and after; close to it they follow from differences of rounded numbers. There, those of
-/// the motion that passes through are taken, which are continuous. At rest nothing tells the branches from each other;
-/// the least deviation from free motion in the metric of the kinetic energy is taken then (Gauss).
+/// In a singular position fewer constraints are independent than elsewhere, and `J v̇ = −b` leaves
+/// accelerations open that are determined a moment before and after; close to it they follow from differences
+/// of rounded numbers. There, those of the motion that passes through are taken, which are continuous. At
+/// rest nothing tells the branches from each other; the least deviation from free motion in the metric of the
+/// kinetic energy is taken then (Gauss).
 #[cold]
 #[inline(never)]
 pub fn careful_dynamics<
@@ -77,9 +79,9 @@ fn zone<T: Real>() -> T {
     epsilon::<T>().cbrt().sqrt()
 }
 
-/// Accelerations for forces and biases: `M x = f + Jᵀ λ`, `J x = −b`. What is left of constraints near a singular position
-/// is not chased unless it is more than what rounding of the place makes of it, nor more than the place itself is off its
-/// branch: the change of velocity that takes it away would be large there.
+/// Accelerations for forces and biases: `M x = f + Jᵀ λ`, `J x = −b`. What is left of constraints near a
+/// singular position is not chased unless it is more than what rounding of the place makes of it, nor more
+/// than the place itself is off its branch: the change of velocity that takes it away would be large there.
 #[cold]
 #[inline(never)]
 pub fn careful_response<
@@ -129,15 +131,15 @@ where
     (answer.0 + correction.0, answer.1 + correction.1)
 }
 
-/// The size that rows must have near a singular position so that their directions are known, with so much `left` of the
-/// constraints: where that is `r`, the place is off its branch by `r` / σ, and directions, which turn by one over the way σ to
-/// the other branch, by `r` / σ².
+/// The size that rows must have near a singular position so that their directions are known, with so much
+/// `left` of the constraints: where that is `r`, the place is off its branch by `r` / σ, and directions,
+/// which turn by one over the way σ to the other branch, by `r` / σ².
 pub(super) fn turned<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
     (constant::<T>(64.0) * size(left).max(epsilon())).sqrt()
 }
 
-/// Whether a position is singular, or so near to one that a step by `dv` changes the constraints as much as they differ from
-/// dependent ones.
+/// Whether a position is singular, or so near to one that a step by `dv` changes the constraints as much as
+/// they differ from dependent ones.
 #[cold]
 #[inline(never)]
 pub fn nearly_singular<
@@ -164,8 +166,8 @@ where
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
     let length =
         |j: &SMatrix<T, NC, NV>, k: usize| norm(&metric.half(core::array::from_fn(|i| at(&j.data.0[i], k))));
-    // States whose constraints turn more than this, beside how far they are from dependent ones, count as near; a step that
-    // turns all of them is merely long.
+    // States whose constraints turn more than this, beside how far they are from dependent ones, count as
+    // near; a step that turns all of them is merely long.
     let (steps, most) = (constant::<T>(3.0), constant::<T>(0.2));
     let change = later - jacobian;
     let turn = (0..NC).fold(T::zero(), |most, k| {
@@ -180,13 +182,14 @@ where
     span.rank < structure.rank
 }
 
-/// How far it is out of a singular position, m or rad: what rounding and interpolation leave is about the same there.
+/// How far it is out of a singular position, m or rad: what rounding and interpolation leave is about the
+/// same there.
 fn far<T: Real>() -> T {
     constant::<T>(6.0) * zone()
 }
 
-/// What is independent beyond the rank that the constraints have elsewhere, beside what it was: states between the
-/// steps of an integrator do not fulfil constraints that follow from others.
+/// What is independent beyond the rank that the constraints have elsewhere, beside what it was: states
+/// between the steps of an integrator do not fulfil constraints that follow from others.
 fn beyond<T: Real>() -> T {
     if epsilon::<T>() < constant(1e-10) { constant(1e-4) } else { constant(1e-2) }
 }
@@ -245,17 +248,17 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         }
     }
 
-    /// The size of rows that give accelerations like `a` to half of the digits, if it is less than that of all that are
-    /// taken: on constraints that are fulfilled up to a rounding ε, rows of size σ ask for accelerations that are off by
-    /// ε v² / σ³.
+    /// The size of rows that give accelerations like `a` to half of the digits, if it is less than that of
+    /// all that are taken: on constraints that are fulfilled up to a rounding ε, rows of size σ ask for
+    /// accelerations that are off by ε v² / σ³.
     fn clearance(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
         let speed = size(v);
         let clear = (constant::<T>(4.0) * epsilon::<T>().sqrt() * speed * speed / size(a)).cbrt();
         (clear < zone()).then_some(clear)
     }
 
-    /// The solution, and whether the constraints have the rank that they have elsewhere with rows of more than the size
-    /// `clear`.
+    /// The solution, and whether the constraints have the rank that they have elsewhere with rows of more
+    /// than the size `clear`.
     fn solve(&self, structure: &Structure<NC>, clear: T, weak: Weak<T, NV>) -> (Solution<T, NV, NC>, bool) {
         let (mass, force) = self.loaded(structure);
         let metric = Metric::of(&mass);
@@ -269,8 +272,8 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
             Weak::Known(_) | Weak::Dropped => {}
         }
         let free = span.forward(&metric.half(force));
-        // Known accelerations fulfil weak rows as well: only what they lack of the strong ones is left to find. (The biases
-        // themselves contain the part of each row that is weak.)
+        // Known accelerations fulfil weak rows as well: only what they lack of the strong ones is left to
+        // find. (The biases themselves contain the part of each row that is weak.)
         let (mut x, bias) = match weak {
             Weak::Known(a) if !regular => (
                 span.forward(&metric.upper(&a.data.0[0])),
@@ -294,8 +297,8 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         ((SVector::from(a), SVector::from(triangle.multipliers(&span, &lacking))), regular)
     }
 
-    /// Mass matrix and forces with what makes up for coordinates without inertia: with the rows `J` that determine them,
-    /// `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
+    /// Mass matrix and forces with what makes up for coordinates without inertia: with the rows `J` that
+    /// determine them, `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
     fn loaded(&self, structure: &Structure<NC>) -> ([[T; NV]; NV], [T; NV]) {
         let (mut mass, mut force) = (self.mass.data.0, self.force);
         let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));

@@ -1,5 +1,5 @@
-//! Completion of velocities and accelerations, of which some entries are given and the others follow from the constraints,
-//! and the forces that such a motion takes.
+//! Completion of velocities and accelerations, of which some entries are given and the others follow from the
+//! constraints, and the forces that such a motion takes.
 
 use super::{Constrained, ConstraintError, farthest, largest, near, reach, rounding};
 use crate::Real;
@@ -93,8 +93,8 @@ where
     Err(ConstraintError::Acceleration { constraint, acceleration: to_f64(size) })
 }
 
-/// The generalized forces at the velocities `driven` and the multipliers `λ` with `M a + h = τ + Jᵀ λ`: the other velocities
-/// determine the multipliers.
+/// The generalized forces at the velocities `driven` and the multipliers `λ` with `M a + h = τ + Jᵀ λ`: the
+/// other velocities determine the multipliers.
 pub(super) fn drive<
     M,
     T: Real,
@@ -172,8 +172,8 @@ fn add<T: Real, const N: usize>(a: &mut Row<T, N>, factor: T, b: &Row<T, N>) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * *b);
 }
 
-/// Takes a direction of unit length out of rows; twice is enough (Björck, *Numerical Methods for Least Squares Problems*,
-/// 1996, § 2.4.5).
+/// Takes a direction of unit length out of rows; twice is enough (Björck, *Numerical Methods for Least
+/// Squares Problems*, 1996, § 2.4.5).
 fn remove<T: Real, const N: usize, const K: usize>(rows: &mut [Row<T, N>; K], direction: &Row<T, N>) {
     for row in rows {
         for _ in 0..2 {
@@ -197,8 +197,8 @@ fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) 
 
 /// `x` with `J x = −gap` and zeros where velocities are held, of the least `xᵀ M x`.
 ///
-/// A solution by [`least`], then the least energy over what is left of the axes: a basis of all motions. Coordinates are
-/// scaled by their inertia.
+/// A solution by [`least`], then the least energy over what is left of the axes: a basis of all motions.
+/// Coordinates are scaled by their inertia.
 fn correction<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
@@ -229,8 +229,8 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
 
 /// The least `y` with `rows · y = targets`, and the directions of unit length that it is made of.
 ///
-/// By Gram–Schmidt over the rows, that one first which is most independent of those before it, next to its own size. Rows
-/// that depend on others are left out; their targets follow, or cannot be.
+/// By Gram–Schmidt over the rows, that one first which is most independent of those before it, next to its
+/// own size. Rows that depend on others are left out; their targets follow, or cannot be.
 fn least<T: Real, const N: usize, const K: usize>(
     rows: &[Row<T, N>; K],
     sizes: &[T; K],

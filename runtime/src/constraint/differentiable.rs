@@ -1,4 +1,5 @@
-//! Derivatives of the equations of constrained motion, of accelerations, multipliers and projections, for generic code.
+//! Derivatives of the equations of constrained motion, of accelerations, multipliers and projections, for
+//! generic code.
 
 use super::layout::MotionDerivatives;
 use super::{Constrained, Solution};
@@ -10,11 +11,11 @@ use nalgebra::{ArrayStorage, SMatrix, SVector};
 pub type MultiplierDerivatives<T, const NV: usize, const NC: usize> =
     (SMatrix<T, NC, NV>, SMatrix<T, NC, NV>, SMatrix<T, NC, NV>);
 
-/// First derivatives of a mechanism's constrained equations. `#[mechanism(…, derivatives)]` implements it for mechanisms with
-/// constraints whose contacts do not slip.
+/// First derivatives of a mechanism's constrained equations. `#[mechanism(…, derivatives)]` implements it for
+/// mechanisms with constraints whose contacts do not slip.
 ///
-/// A derivative by `q` is along motions of the configuration, whether the constraints allow them or not: column `i` is along
-/// `q ⊕ ε eᵢ`, for ball and free joints in body axes. Time `t` as for [`Constrained`].
+/// A derivative by `q` is along motions of the configuration, whether the constraints allow them or not:
+/// column `i` is along `q ⊕ ε eᵢ`, for ball and free joints in body axes. Time `t` as for [`Constrained`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives of constrained motion",
     note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
@@ -37,9 +38,10 @@ pub trait ConstrainedDerivatives<
         lambda: &SVector<Self::Scalar, NC>,
     ) -> EquationDerivatives<Self::Scalar, NV, NC>;
 
-    /// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers by [`constrained_dynamics`](Constrained::constrained_dynamics); of
-    /// redundant constraints those of least norm. Differentiating both equations gives
-    /// `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)`, `J δv̇ = −∂(J a + b)`.
+    /// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers by
+    /// [`constrained_dynamics`](Constrained::constrained_dynamics); of redundant constraints those of least
+    /// norm. Differentiating both equations gives `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)`,
+    /// `J δv̇ = −∂(J a + b)`.
     fn multiplier_derivatives(
         &self,
         t: Self::Scalar,
@@ -52,7 +54,8 @@ pub trait ConstrainedDerivatives<
     }
 }
 
-/// First derivatives of the equations `M a + h − Jᵀ λ = τ` and `J a + b = 0`, and of the rates `J v + …` of the constraints.
+/// First derivatives of the equations `M a + h − Jᵀ λ = τ` and `J a + b = 0`, and of the rates `J v + …` of
+/// the constraints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquationDerivatives<T, const NV: usize, const NC: usize> {
     /// `∂(M a + h − Jᵀ λ)/∂q`.
@@ -92,7 +95,8 @@ pub(crate) struct Solved<T, const NV: usize, const NC: usize> {
     pub(crate) by: [Changes<T, NV, NC>; 3],
 }
 
-/// Accelerations and multipliers by [`constrained_dynamics`](Constrained::constrained_dynamics) with their derivatives.
+/// Accelerations and multipliers by [`constrained_dynamics`](Constrained::constrained_dynamics) with their
+/// derivatives.
 pub(crate) fn solved_derivatives<
     M,
     T,
@@ -160,7 +164,8 @@ where
 }
 
 /// What is done with a mechanism whose constraints are of any number, by
-/// [`visit_constraints`](crate::Derivatives::visit_constraints): generic code that knows nothing of constraints reaches them.
+/// [`visit_constraints`](crate::Derivatives::visit_constraints): generic code that knows nothing of
+/// constraints reaches them.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// What comes of it.
     type Output;

@@ -1,5 +1,5 @@
-//! What generated functions hand to the runtime, with a name for each part. Generated code makes these structs field by field,
-//! so that neither side counts numbers.
+//! What generated functions hand to the runtime, with a name for each part. Generated code makes these
+//! structs field by field, so that neither side counts numbers.
 
 use crate::Real;
 

@@ -9,13 +9,13 @@ use nalgebra::{SMatrix, SVector};
 
 /// The motion to first order about a state, in independent coordinates and speeds.
 ///
-/// With `NP` independent coordinates and `NS` independent speeds
-/// `ẋ = A x + B δu` with `x` the displacements of the coordinates (body-axes motions for ball and free joints), then the
-/// changes of the speeds. `NX = NP + NS`.
+/// With `NP` independent coordinates and `NS` independent speeds `ẋ = A x + B δu` with `x` the displacements
+/// of the coordinates (body-axes motions for ball and free joints), then the changes of the speeds.
+/// `NX = NP + NS`.
 ///
-/// All other coordinates and speeds follow from the constraints. Constraints on velocities alone leave more coordinates
-/// than speeds: a rolling wheel has somewhere to go that it cannot slide to (Neimark and Fufaev, *Dynamics of
-/// Nonholonomic Systems*, 1972).
+/// All other coordinates and speeds follow from the constraints. Constraints on velocities alone leave more
+/// coordinates than speeds: a rolling wheel has somewhere to go that it cannot slide to (Neimark and Fufaev,
+/// *Dynamics of Nonholonomic Systems*, 1972).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearization<T, const NX: usize, const NU: usize, const NP: usize, const NS: usize> {
     /// `A`.
@@ -86,8 +86,8 @@ pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, NV, NC, NU> {
-    /// In independent coordinates and speeds. Where the constraints have less rank than elsewhere, there are more of
-    /// them than `NP` and `NS`: [`ConstraintError::Singular`].
+    /// In independent coordinates and speeds. Where the constraints have less rank than elsewhere, there are
+    /// more of them than `NP` and `NS`: [`ConstraintError::Singular`].
     pub fn independent<const NX: usize, const NP: usize, const NS: usize>(
         &self,
     ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {

@@ -7,11 +7,12 @@ use crate::blocks::{add_multiple, add_product, product, transposed};
 use crate::{At, Real, RheonomicSecondDerivatives, SecondOrder};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// Second derivatives of a mechanism's constrained equations. `#[mechanism(…, second_derivatives)]` implements it for mechanisms
-/// with constraints whose contacts do not slip.
+/// Second derivatives of a mechanism's constrained equations. `#[mechanism(…, second_derivatives)]`
+/// implements it for mechanisms with constraints whose contacts do not slip.
 ///
-/// Displacements of the configuration are as for [`ConstrainedDerivatives`], whether the constraints allow them or not; along
-/// `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond the first order. Time `t` as for [`Constrained`](super::Constrained).
+/// Displacements of the configuration are as for [`ConstrainedDerivatives`], whether the constraints allow
+/// them or not; along `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond the first order. Time `t` as
+/// for [`Constrained`](super::Constrained).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives of constrained motion",
     note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
@@ -24,8 +25,9 @@ pub trait ConstrainedSecondDerivatives<
     const NC: usize,
 >: ConstrainedDerivatives<NQ, NV, NU, NH, NC> + RheonomicSecondDerivatives<NQ, NV, NU>
 {
-    /// Second derivatives of `wᵀ (M a + h − Jᵀ λ) + zᵀ (J a + b) + yᵀ (J v + …)` at any `a` and `λ`: of the equations of motion, of
-    /// those of the constraints and of the constraints' rates, contracted with `w`, `z` and `y`.
+    /// Second derivatives of `wᵀ (M a + h − Jᵀ λ) + zᵀ (J a + b) + yᵀ (J v + …)` at any `a` and `λ`: of the
+    /// equations of motion, of those of the constraints and of the constraints' rates, contracted with `w`,
+    /// `z` and `y`.
     #[allow(clippy::too_many_arguments, reason = "three factors stand beside the state")]
     fn equation_second_derivatives(
         &self,
@@ -41,8 +43,8 @@ pub trait ConstrainedSecondDerivatives<
 }
 
 /// Second derivatives of the equations of constrained motion, contracted
-/// ([`equation_second_derivatives`](ConstrainedSecondDerivatives::equation_second_derivatives)). Those by velocity and acceleration, by
-/// velocity and multipliers, and by accelerations and multipliers are zero.
+/// ([`equation_second_derivatives`](ConstrainedSecondDerivatives::equation_second_derivatives)). Those by
+/// velocity and acceleration, by velocity and multipliers, and by accelerations and multipliers are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquationSecondDerivatives<T, const NV: usize, const NC: usize> {
     /// By configuration twice.
@@ -72,7 +74,8 @@ pub fn with_curvature<T: Real, const NV: usize, const NC: usize>(
     }
 }
 
-/// What factors `f` of accelerations are for the equations that these solve: `w` and `z` with `M w + Jᵀ z = f`, `J w = 0`.
+/// What factors `f` of accelerations are for the equations that these solve: `w` and `z` with
+/// `M w + Jᵀ z = f`, `J w = 0`.
 pub(crate) fn adjoint<
     M,
     T,
@@ -95,8 +98,8 @@ where
     (w, multipliers(m, t, q, &(f - m.mass_matrix(t, q) * w)))
 }
 
-/// The second derivatives of `fᵀ v̇` under constraints. `M v̇ + h − Jᵀ λ = τ` and `J v̇ + b = 0` hold along all changes of the state;
-/// they are differentiated twice and contracted with the adjoint of `f`.
+/// The second derivatives of `fᵀ v̇` under constraints. `M v̇ + h − Jᵀ λ = τ` and `J v̇ + b = 0` hold along
+/// all changes of the state; they are differentiated twice and contracted with the adjoint of `f`.
 pub fn constrained_second_derivatives<
     M,
     T,

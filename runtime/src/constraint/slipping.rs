@@ -1,4 +1,5 @@
-//! What generated code calls where contacts slip: the signs of their normal forces are found, with which friction acts.
+//! What generated code calls where contacts slip: the signs of their normal forces are found, with which
+//! friction acts.
 
 use super::layout::Elimination;
 use super::solve::{determined, regular_solution};
@@ -7,9 +8,9 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// Accelerations and multipliers with friction in proportion to the magnitudes of the multipliers `rows`. `solve` gives
-/// what [`regular_solution`] takes, for given signs: first all contacts press, then those whose force turns out to pull
-/// change their sign. One contact is decided with the second attempt.
+/// Accelerations and multipliers with friction in proportion to the magnitudes of the multipliers `rows`.
+/// `solve` gives what [`regular_solution`] takes, for given signs: first all contacts press, then those whose
+/// force turns out to pull change their sign. One contact is decided with the second attempt.
 #[inline]
 pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usize>(
     rows: &[usize; K],
@@ -53,7 +54,8 @@ pub fn pressing_solution<T: Real, const NV: usize, const NC: usize>(
     rows.iter().all(presses).then_some(solution)
 }
 
-/// Accelerations by forces and biases, with the signs that the multipliers have: how the motion answers small changes.
+/// Accelerations by forces and biases, with the signs that the multipliers have: how the motion answers small
+/// changes.
 #[inline]
 pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const K: usize>(
     rows: &'a [usize; K],

@@ -7,13 +7,14 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::SVector;
 
-/// What must be left of a constraint's pivot after the other constraints took their part. Pivots are squares of lengths:
-/// the accelerations keep three quarters of the digits.
+/// What must be left of a constraint's pivot after the other constraints took their part. Pivots are squares
+/// of lengths: the accelerations keep three quarters of the digits.
 fn tolerance<T: Real>() -> T {
     epsilon::<T>().sqrt().sqrt()
 }
 
-/// What a constraint must be beside others of its group: less is rounding for the most part. Squares of lengths, too.
+/// What a constraint must be beside others of its group: less is rounding for the most part. Squares of
+/// lengths, too.
 fn noise<T: Real>() -> T {
     epsilon::<T>().cbrt()
 }
@@ -24,8 +25,8 @@ fn of_group<T: Real, const NC: usize>(groups: &[usize; NC], k: usize, each: impl
     (0..NC).filter(own).fold(T::zero(), |sum, i| sum + each(i))
 }
 
-/// Splits the result of an elimination into accelerations and multipliers; `None` if a pivot is too small beside what
-/// it was.
+/// Splits the result of an elimination into accelerations and multipliers; `None` if a pivot is too small
+/// beside what it was.
 #[inline]
 pub fn regular_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
@@ -72,9 +73,9 @@ pub(super) fn determined<T: Real, const NV: usize, const NC: usize>(
     pivot > least * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
 }
 
-/// What [`regular_solution`] does with an elimination whose pivots are entries of the Jacobian, at places chosen in
-/// advance. The pivots are squared, as are the lengths that their rows had. What rounding grows by is at most the product
-/// of what the pivots lack of a third of their rows.
+/// What [`regular_solution`] does with an elimination whose pivots are entries of the Jacobian, at places
+/// chosen in advance. The pivots are squared, as are the lengths that their rows had. What rounding grows by
+/// is at most the product of what the pivots lack of a third of their rows.
 #[inline]
 pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
@@ -91,8 +92,9 @@ pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
     (product > tolerance::<T>() * constant(1e-2)).then(|| found.solution())
 }
 
-/// Accelerations and multipliers of constraints of which some always follow from others. The multipliers are those of least
-/// norm; `None` unless `rank` of the constraints are clearly independent, and the others clearly follow from them.
+/// Accelerations and multipliers of constraints of which some always follow from others. The multipliers are
+/// those of least norm; `None` unless `rank` of the constraints are clearly independent, and the others
+/// clearly follow from them.
 #[inline]
 pub fn least_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
@@ -107,9 +109,9 @@ pub fn least_solution<T: Real, const NV: usize, const NC: usize>(
     Some((SVector::from(a), SVector::from(lambda)))
 }
 
-/// The solution of least norm of `A x = b` for a positive semidefinite `A` of the given rank: with `A = L Lᵀ` for as many
-/// columns of `L` and `L = U S`, `x = U S⁻ᵀ S⁻¹ Uᵀ b` (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002,
-/// § 10.3).
+/// The solution of least norm of `A x = b` for a positive semidefinite `A` of the given rank: with `A = L Lᵀ`
+/// for as many columns of `L` and `L = U S`, `x = U S⁻ᵀ S⁻¹ Uᵀ b` (Higham, *Accuracy and Stability of
+/// Numerical Algorithms*, 2002, § 10.3).
 fn least_norm<T: Real, const N: usize>(
     groups: &[usize; N],
     rank: usize,

@@ -1,11 +1,12 @@
 //! Rows of constraints in the metric of the kinetic energy, with the rank that they have up to rounding.
 //!
-//! With `M = L Lᵀ` the columns of `W = L⁻¹ Jᵀ` are made triangular by reflections with column pivoting, `Qᵀ W = R`. It is
-//! `J` that is factorised, never its square `J M⁻¹ Jᵀ`; a column is scaled by its length and its largest entry is
-//! exchanged to the diagonal, so that light and heavy bodies lose no digits to each other (Powell and Reid, *On applying Householder transformations to
-//! linear least squares problems*, IFIP 1968; Cox and Higham, *Stability of Householder QR factorization for weighted
-//! least squares problems*, 1998). What is left of a column is told from rounding entry by entry: with every entry goes
-//! the largest number that it was computed from.
+//! With `M = L Lᵀ` the columns of `W = L⁻¹ Jᵀ` are made triangular by reflections with column pivoting,
+//! `Qᵀ W = R`. It is `J` that is factorised, never its square `J M⁻¹ Jᵀ`; a column is scaled by its length
+//! and its largest entry is exchanged to the diagonal, so that light and heavy bodies lose no digits to each
+//! other (Powell and Reid, *On applying Householder transformations to linear least squares problems*, IFIP
+//! 1968; Cox and Higham, *Stability of Householder QR factorization for weighted least squares problems*,
+//! 1998). What is left of a column is told from rounding entry by entry: with every entry goes the largest
+//! number that it was computed from.
 
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -140,8 +141,8 @@ pub(super) struct Span<T, const NV: usize, const NC: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
-    /// The rows of a Jacobian. Each entry was computed from numbers as large as what stands in other components of the
-    /// same vector, in the units of the entry; what is rounding beside them is nothing.
+    /// The rows of a Jacobian. Each entry was computed from numbers as large as what stands in other
+    /// components of the same vector, in the units of the entry; what is rounding beside them is nothing.
     pub fn of(metric: &Metric<T, NV>, jacobian: &SMatrix<T, NC, NV>, groups: &[usize; NC]) -> Self {
         let rows: [[T; NV]; NC] =
             core::array::from_fn(|k| core::array::from_fn(|i| at(&jacobian.data.0[i], k)));
@@ -182,14 +183,15 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         self.order.map(|i| at(x, i))
     }
 
-    /// Adds columns to the basis, the longest first, as long as they have an entry of at least `least` of what it was
-    /// computed from, and the basis has at most `most` of them.
+    /// Adds columns to the basis, the longest first, as long as they have an entry of at least `least` of
+    /// what it was computed from, and the basis has at most `most` of them.
     pub fn extend(&mut self, least: T, most: usize) {
         while self.rank < most.min(NV) {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
                 let (length, share) = column.left(self.rank);
-                // Among columns that are as long up to rounding, the first: which it is must not depend on rounding.
+                // Among columns that are as long up to rounding, the first: which it is must not depend on
+                // rounding.
                 if length > best.1 * constant(1.01) && share > least {
                     best = (Some(k), length);
                 }

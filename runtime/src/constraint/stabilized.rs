@@ -11,11 +11,11 @@ use nalgebra::{SMatrix, SVector};
 
 /// A mechanism whose violated constraints decay by themselves.
 ///
-/// Baumgarte's stabilization: `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of
-/// constraints and integrals of motion in dynamical systems*, Comp. Meth. Appl. Mech. Eng. 1, 1972). Integrators then
-/// leave the state as it is, whether it fulfils the constraints or not; the violation is small, not zero. The word `derivatives` gives
-/// derivatives of this motion, too: its linear system has the exponent `−α` twice for each constraint on configurations, and `−2 α` once
-/// for each of the others.
+/// Baumgarte's stabilization: `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of constraints and
+/// integrals of motion in dynamical systems*, Comp. Meth. Appl. Mech. Eng. 1, 1972). Integrators then leave
+/// the state as it is, whether it fulfils the constraints or not; the violation is small, not zero. The word
+/// `derivatives` gives derivatives of this motion, too: its linear system has the exponent `−α` twice for
+/// each constraint on configurations, and `−2 α` once for each of the others.
 ///
 /// ```
 /// # use linkwork::prelude::*;
@@ -42,7 +42,8 @@ pub struct Stabilized<'m, M, T, const NH: usize, const NC: usize> {
     rate: T,
 }
 
-/// The mechanism with violations of its constraints decaying at `rate`, 1/s: a few times the fastest rate of the motion.
+/// The mechanism with violations of its constraints decaying at `rate`, 1/s: a few times the fastest rate of
+/// the motion.
 pub fn stabilized<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     mechanism: &M,
     rate: M::Scalar,
@@ -85,8 +86,9 @@ where
     gap
 }
 
-/// The accelerations under the forces `tau` where violations decay at `rate`, and their derivatives: with these accelerations and
-/// multipliers `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)` and `J δv̇ = −∂(J a + b + 2 α φ̇ + α² φ)`.
+/// The accelerations under the forces `tau` where violations decay at `rate`, and their derivatives: with
+/// these accelerations and multipliers `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)` and
+/// `J δv̇ = −∂(J a + b + 2 α φ̇ + α² φ)`.
 fn to_first_order<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     rate: M::Scalar,

@@ -10,7 +10,8 @@ pub struct Apart<'m, M> {
     mechanism: &'m M,
 }
 
-/// The mechanism without its contacts: bodies pass through each other, and every method of integration simulates it.
+/// The mechanism without its contacts: bodies pass through each other, and every method of integration
+/// simulates it.
 pub fn apart<M>(mechanism: &M) -> Apart<'_, M> {
     Apart { mechanism }
 }

@@ -13,10 +13,11 @@ use crate::{Real, RheonomicDerivatives};
 use core::ops::Range;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// First derivatives of what contacts do. `#[mechanism(…, derivatives)]` implements it for mechanisms with contacts.
+/// First derivatives of what contacts do. `#[mechanism(…, derivatives)]` implements it for mechanisms with
+/// contacts.
 ///
-/// A derivative by `q` is along motions of the configuration, whether contacts allow them or not: column `i` is along `q ⊕ ε eᵢ`,
-/// for ball and free joints in body axes. Time `t` as for [`Contacts`].
+/// A derivative by `q` is along motions of the configuration, whether contacts allow them or not: column `i`
+/// is along `q ⊕ ε eᵢ`, for ball and free joints in body axes. Time `t` as for [`Contacts`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives of its contacts",
     note = "the word asks for them: `#[mechanism(…, derivatives)]`, of a mechanism with contacts"
@@ -29,7 +30,8 @@ pub trait ContactDerivatives<
     const NR: usize,
 >: Contacts<NQ, NV, NU, NK, NR> + RheonomicDerivatives<NQ, NV, NU>
 {
-    /// Derivatives of `Gᵀ f`, of `G a + b` and of the rates, at any accelerations `a` and forces `f` of the contacts, N and N·m.
+    /// Derivatives of `Gᵀ f`, of `G a + b` and of the rates, at any accelerations `a` and forces `f` of the
+    /// contacts, N and N·m.
     fn contact_derivatives(
         &self,
         t: Self::Scalar,
@@ -114,20 +116,21 @@ impl<T: Real, const NV: usize, const NR: usize> HeldDerivatives<T, NV, NR> {
     }
 }
 
-/// The accelerations and contact forces of [`forward_dynamics`](super::forward_dynamics) with given contacts closed, and their
-/// first derivatives by configuration, velocity and generalized forces.
+/// The accelerations and contact forces of [`forward_dynamics`](super::forward_dynamics) with given contacts
+/// closed, and their first derivatives by configuration, velocity and generalized forces.
 ///
-/// Differentiating the equations of motion, and those that hold the contacts, gives with the free response `∂v̇/∂x` under the
-/// forces `τ + Gᵀ f`
+/// Differentiating the equations of motion, and those that hold the contacts, gives with the free response
+/// `∂v̇/∂x` under the forces `τ + Gᵀ f`
 ///
 /// ```text
 /// G M⁻¹ Gᵀ δf = −(∂(G v̇ + b) + G ∂v̇),   δv̇ = ∂v̇ + M⁻¹ Gᵀ δf,
 /// ```
 ///
-/// along the normals alone where surfaces slip, with `δfₜ` from Coulomb's law, whose direction turns with the slip (Mastalli et al.,
-/// *Crocoddyl: An Efficient and Versatile Framework for Multi-Contact Optimal Control*, 2020, without slip). Constraints of the
-/// mechanism are in the free response. A derivative by `q` is along motions that the contacts need not allow; of forces that are
-/// shared by more contacts than the motion can tell apart it is that of least norm, and only along motions that keep them shared.
+/// along the normals alone where surfaces slip, with `δfₜ` from Coulomb's law, whose direction turns with the
+/// slip (Mastalli et al., *Crocoddyl: An Efficient and Versatile Framework for Multi-Contact Optimal
+/// Control*, 2020, without slip). Constraints of the mechanism are in the free response. A derivative by `q`
+/// is along motions that the contacts need not allow; of forces that are shared by more contacts than the
+/// motion can tell apart it is that of least norm, and only along motions that keep them shared.
 ///
 /// ```
 /// use linkwork::contact::{self, Touch};
@@ -297,11 +300,13 @@ where
     let closed = touches.map(|touch| touch != Touch::Open);
     let mut problem = Problem::new(layout, &laws, &closed, &SVector::zeros());
     problem.weigh(&responses.rates);
-    // How the forces answer to the rates, which all of the derivatives share; those of contacts that are open do nothing.
+    // How the forces answer to the rates, which all of the derivatives share; those of contacts that are open
+    // do nothing.
     let answer = problem.answers(touches, &along);
     let (places, count) = closed_rows::<NK, NR>(layout, &closed);
     let places = places.get(..count).unwrap_or(&[]);
-    // What forces do to the rates is what impulses at the contacts do to the velocities, unless forces depend on the motion.
+    // What forces do to the rates is what impulses at the contacts do to the velocities, unless forces depend
+    // on the motion.
     let mut pushed = zeros();
     match M::FEEDBACK {
         true => add_product(&mut pushed, &jacobian, &found.by_tau),
@@ -364,8 +369,8 @@ fn damp<T: Real, const NV: usize, const NK: usize, const NR: usize>(
     }
 }
 
-/// Puts in the change of friction of a contact that slips along `rates`, under a normal force times its coefficient: that of
-/// `−μ fₙ u / |u|`.
+/// Puts in the change of friction of a contact that slips along `rates`, under a normal force times its
+/// coefficient: that of `−μ fₙ u / |u|`.
 fn turn<T: Real, const NV: usize, const NR: usize>(
     turned: &mut SMatrix<T, NR, NV>,
     tangents: Range<usize>,

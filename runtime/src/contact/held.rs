@@ -14,21 +14,23 @@ use nalgebra::SVector;
 pub struct Held<T, const NV: usize, const NR: usize> {
     /// The accelerations.
     pub a: SVector<T, NV>,
-    /// The forces of the contacts, N, and N·m of stops about an axis: of each contact the normal one, which presses where it is
-    /// positive, then those along its tangents.
+    /// The forces of the contacts, N, and N·m of stops about an axis: of each contact the normal one, which
+    /// presses where it is positive, then those along its tangents.
     pub forces: SVector<T, NR>,
 }
 
-/// Forward dynamics with given contacts closed: accelerations under the generalized forces `tau`, and the forces of the contacts.
+/// Forward dynamics with given contacts closed: accelerations under the generalized forces `tau`, and the
+/// forces of the contacts.
 ///
 /// ```text
 /// M v̇ + h = τ + Gᵀ f + Jᵀ λ,   G v̇ + b = 0 where surfaces stick, and along the normals where they slip with fₜ = −μ fₙ uₜ / |uₜ|
 /// ```
 ///
-/// Controllers of legged robots and estimators that know their contacts need it (Featherstone, *Rigid Body Dynamics Algorithms*,
-/// 2008, ch. 11). Gaps are not looked at; forces may pull, and leave the cone of friction: who chooses contacts checks what it
-/// takes to hold them. [`acting`](super::acting) finds out itself which of them hold. Forces that are shared by more contacts than
-/// the motion can tell apart are those of least norm where no surfaces slip.
+/// Controllers of legged robots and estimators that know their contacts need it (Featherstone, *Rigid Body
+/// Dynamics Algorithms*, 2008, ch. 11). Gaps are not looked at; forces may pull, and leave the cone of
+/// friction: who chooses contacts checks what it takes to hold them. [`acting`](super::acting) finds out
+/// itself which of them hold. Forces that are shared by more contacts than the motion can tell apart are
+/// those of least norm where no surfaces slip.
 ///
 /// ```
 /// use linkwork::contact::{self, Touch};
@@ -58,8 +60,8 @@ pub struct Held<T, const NV: usize, const NR: usize> {
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Contact`] with a contact that cannot stay closed, as constraints or other contacts forbid it; those of the
-/// accelerations of a mechanism with constraints.
+/// [`ConstraintError::Contact`] with a contact that cannot stay closed, as constraints or other contacts
+/// forbid it; those of the accelerations of a mechanism with constraints.
 pub fn forward_dynamics<
     M,
     T,
@@ -84,8 +86,9 @@ where
     held(mechanism, t, (q, v), tau, touches, (&rates, [T::zero(); 2])).map(|(held, _)| held)
 }
 
-/// [`forward_dynamics`] with the rates `along` which slip is braked; and what impulses do, if any contact is closed. Gaps and rates of
-/// what is held decay by the gains `kₚ`, 1/s², and `kᵥ`, 1/s: `G v̇ + b = −kᵥ u − kₚ g`.
+/// [`forward_dynamics`] with the rates `along` which slip is braked; and what impulses do, if any contact is
+/// closed. Gaps and rates of what is held decay by the gains `kₚ`, 1/s², and `kᵥ`, 1/s:
+/// `G v̇ + b = −kᵥ u − kₚ g`.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
 pub(super) fn held<
     M,

@@ -27,16 +27,19 @@ impl<M, T: Copy, const NK: usize, const NR: usize> Clone for Holding<'_, M, T, N
     }
 }
 
-/// The mechanism while given contacts stay closed, whatever that takes, as [`forward_dynamics`](super::forward_dynamics) moves it:
-/// for methods of integration, discrete steps with their Jacobians, and optimisers of motions whose contacts are known. With the
-/// word `derivatives` it has derivatives, too.
+/// The mechanism while given contacts stay closed, whatever that takes, as
+/// [`forward_dynamics`](super::forward_dynamics) moves it: for methods of integration, discrete steps with
+/// their Jacobians, and optimisers of motions whose contacts are known. With the word `derivatives` it has
+/// derivatives, too.
 ///
-/// Contacts, and constraints of the mechanism, are kept by accelerations alone: gaps and rates stay what they are at the start but
-/// for errors of the method; [`Holding::stabilized`] lets them decay. Where a held leg straightens, these errors are large unless
-/// steps are short: a quadruped that collapses on four held feet, without torques, lifts them by 0.1 mm in 0.4 s with steps of `Rk4`
-/// of 1 ms, by 0.2 m with 10 ms, and by 2 µm with 0.1 ms. A velocity that fulfils the contacts is that after they
-/// [`land`](super::land). Second derivatives there are none: optimisers model costs by Gauss and Newton
-/// ([`Quadratic::add_squares`](crate::optimal::Quadratic::add_squares)), or have feet that stay in place as joints or constraints.
+/// Contacts, and constraints of the mechanism, are kept by accelerations alone: gaps and rates stay what they
+/// are at the start but for errors of the method; [`Holding::stabilized`] lets them decay. Where a held leg
+/// straightens, these errors are large unless steps are short: a quadruped that collapses on four held feet,
+/// without torques, lifts them by 0.1 mm in 0.4 s with steps of `Rk4` of 1 ms, by 0.2 m with 10 ms, and by 2
+/// µm with 0.1 ms. A velocity that fulfils the contacts is that after they [`land`](super::land). Second
+/// derivatives there are none: optimisers model costs by Gauss and Newton
+/// ([`Quadratic::add_squares`](crate::optimal::Quadratic::add_squares)), or have feet that stay in place as
+/// joints or constraints.
 ///
 /// ```
 /// use linkwork::contact::{self, Touch};
@@ -81,16 +84,18 @@ where
 }
 
 impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
-    /// The mechanism with gaps and rates of what is held decaying at `rate`, 1/s, critically damped (Baumgarte, *Stabilization of
-    /// constraints and integrals of motion in dynamical systems*, 1972): a few times the fastest rate of the motion.
+    /// The mechanism with gaps and rates of what is held decaying at `rate`, 1/s, critically damped
+    /// (Baumgarte, *Stabilization of constraints and integrals of motion in dynamical systems*, 1972): a few
+    /// times the fastest rate of the motion.
     #[must_use]
     pub fn stabilized(self, rate: T) -> Self {
         self.with_gains(rate * rate, rate * constant(2.0))
     }
 
-    /// The mechanism with accelerations of what is held that answer to its gaps `g` and its rates `u` by gains of their own, 1/s² and
-    /// 1/s: `G v̇ + b = −position g − velocity u`, with the gaps along normals alone. With 0 and 50 a foot that lands comes to rest where
-    /// it has landed, as those of Crocoddyl's examples do (its `ContactModel3D` with gains `[0, 50]`).
+    /// The mechanism with accelerations of what is held that answer to its gaps `g` and its rates `u` by
+    /// gains of their own, 1/s² and 1/s: `G v̇ + b = −position g − velocity u`, with the gaps along normals
+    /// alone. With 0 and 50 a foot that lands comes to rest where it has landed, as those of Crocoddyl's
+    /// examples do (its `ContactModel3D` with gains `[0, 50]`).
     #[must_use]
     pub fn with_gains(self, position: T, velocity: T) -> Self {
         Self { gains: [position, velocity], ..self }
@@ -116,8 +121,9 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
         held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains)).map(|(held, _)| held)
     }
 
-    /// [`held`](Self::held) with first derivatives: what costs and limits of contact forces need beside the step, which
-    /// [`discrete::semi_implicit_into`](crate::discrete::semi_implicit_into) makes of the same accelerations.
+    /// [`held`](Self::held) with first derivatives: what costs and limits of contact forces need beside the
+    /// step, which [`discrete::semi_implicit_into`](crate::discrete::semi_implicit_into) makes of the same
+    /// accelerations.
     ///
     /// # Errors
     ///
@@ -135,7 +141,8 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
         derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
     }
 
-    /// [`held_derivatives`](Self::held_derivatives) into what is there, whatever is in it: the matrices are long to copy.
+    /// [`held_derivatives`](Self::held_derivatives) into what is there, whatever is in it: the matrices are
+    /// long to copy.
     ///
     /// # Errors
     ///

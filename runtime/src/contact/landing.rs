@@ -18,9 +18,9 @@ use nalgebra::{SMatrix, SVector};
 /// M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   G v⁺ = 0
 /// ```
 ///
-/// Both hold where surfaces stick; where they slip, along the normals alone and without friction. This is the touchdown between two phases of a
-/// gait whose contacts are known ([`hold`](super::hold)). Gaps are not looked at, and impulses may pull: [`impact`](super::impact)
-/// finds out itself which contacts act.
+/// Both hold where surfaces stick; where they slip, along the normals alone and without friction. This is the
+/// touchdown between two phases of a gait whose contacts are known ([`hold`](super::hold)). Gaps are not
+/// looked at, and impulses may pull: [`impact`](super::impact) finds out itself which contacts act.
 ///
 /// ```
 /// use linkwork::contact::{self, Touch};
@@ -47,7 +47,8 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Contact`] with a contact that cannot stay closed, as constraints or other contacts forbid it.
+/// [`ConstraintError::Contact`] with a contact that cannot stay closed, as constraints or other contacts
+/// forbid it.
 pub fn land<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -114,8 +115,9 @@ pub struct LandedDerivatives<T, const NV: usize, const NR: usize> {
 }
 
 impl<T: Real, const NV: usize, const NR: usize> LandedDerivatives<T, NV, NR> {
-    /// The touchdown at a configuration as a step of no duration, for [`optimal::backward`](crate::optimal::backward): nothing but the
-    /// velocity changes, and inputs do nothing.
+    /// The touchdown at a configuration as a step of no duration, for
+    /// [`optimal::backward`](crate::optimal::backward): nothing but the velocity changes, and inputs do
+    /// nothing.
     pub fn transition<const NQ: usize, const NU: usize>(
         &self,
         q: &SVector<T, NQ>,
@@ -125,8 +127,8 @@ impl<T: Real, const NV: usize, const NR: usize> LandedDerivatives<T, NV, NR> {
     }
 }
 
-/// [`land`] with its first derivatives by configuration and velocity, through the constraints of the mechanism. A derivative by `q` is
-/// along motions that the contacts need not allow.
+/// [`land`] with its first derivatives by configuration and velocity, through the constraints of the
+/// mechanism. A derivative by `q` is along motions that the contacts need not allow.
 ///
 /// # Errors
 ///

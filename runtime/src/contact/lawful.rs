@@ -10,14 +10,15 @@ use crate::private::to_f64;
 pub struct Law<T> {
     /// Of friction, `μ`: zero or more. Of a moment of friction the largest by the normal force, m.
     pub friction: T,
-    /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they met.
+    /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they
+    /// met.
     pub restitution: T,
     /// What it is a ratio of.
     pub hypothesis: Restitution,
 }
 
-/// What a coefficient of restitution is a ratio of. Both are the same where slip keeps its direction in an impact, or where there is
-/// no friction and one contact.
+/// What a coefficient of restitution is a ratio of. Both are the same where slip keeps its direction in an
+/// impact, or where there is no friction and one contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Restitution {
     /// Of velocities along the normal, after an impact and before it.
@@ -31,7 +32,8 @@ pub enum Restitution {
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Coefficient`] for the first that is none: friction that is negative or not finite, restitution beside zero to one.
+/// [`ConstraintError::Coefficient`] for the first that is none: friction that is negative or not finite,
+/// restitution beside zero to one.
 pub(super) fn lawful<
     M,
     T,

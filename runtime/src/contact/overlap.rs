@@ -36,8 +36,8 @@ where
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Overlap`] with the contact whose surfaces overlap most, where that is more than `1e-8` m or rad (`2.3e-4` with
-/// `f32`); [`ConstraintError::NotFinite`].
+/// [`ConstraintError::Overlap`] with the contact whose surfaces overlap most, where that is more than `1e-8`
+/// m or rad (`2.3e-4` with `f32`); [`ConstraintError::NotFinite`].
 pub fn check<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -54,9 +54,10 @@ where
     }
 }
 
-/// A configuration near `q` in which no surfaces overlap, through the constraints of the mechanism. Bodies move in proportion to how
-/// easily they do: the displacement is `M⁻¹ Gᵀ Λ` with `Λ ≥ 0` where gaps are zero and none elsewhere, found by linear steps for the
-/// gaps that overlap, that are pushed open and that might close on the way. Without overlaps nothing moves.
+/// A configuration near `q` in which no surfaces overlap, through the constraints of the mechanism. Bodies
+/// move in proportion to how easily they do: the displacement is `M⁻¹ Gᵀ Λ` with `Λ ≥ 0` where gaps are zero
+/// and none elsewhere, found by linear steps for the gaps that overlap, that are pushed open and that might
+/// close on the way. Without overlaps nothing moves.
 ///
 /// ```
 /// use linkwork::contact;
@@ -85,8 +86,9 @@ where
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Overlap`] with the contact whose surfaces overlap most after 30 displacements, or where no displacement opens it
-/// (a ball between walls that are nearer to each other than it is wide); those of projections onto constraints.
+/// [`ConstraintError::Overlap`] with the contact whose surfaces overlap most after 30 displacements, or where
+/// no displacement opens it (a ball between walls that are nearer to each other than it is wide); those of
+/// projections onto constraints.
 pub fn project<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -135,8 +137,8 @@ where
     Ok(q)
 }
 
-/// The configuration that a simulation starts from: [`project`]'s where surfaces are to be taken apart, else this one if [`check`] does not
-/// refuse it. As generated code calls it.
+/// The configuration that a simulation starts from: [`project`]'s where surfaces are to be taken apart, else
+/// this one if [`check`] does not refuse it. As generated code calls it.
 ///
 /// # Errors
 ///

@@ -1,4 +1,5 @@
-//! What contacts do between events: which of them hold, how the mechanism moves meanwhile, and how far the next event is.
+//! What contacts do between events: which of them hold, how the mechanism moves meanwhile, and how far the
+//! next event is.
 
 use super::held::held;
 use super::lawful::lawful;
@@ -211,8 +212,8 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
         Ok((phase, a))
     }
 
-    /// The rates along which slip is braked: those that there are, or where a contact is only about to slip or has slipped too far
-    /// the way it slips.
+    /// The rates along which slip is braked: those that there are, or where a contact is only about to slip
+    /// or has slipped too far the way it slips.
     fn braked(&self, rates: &SVector<T, NR>, layout: Layout<NK>) -> SVector<T, NR> {
         let mut braked = *rates;
         let slips = self.touches.iter().enumerate().filter(|(_, touch)| **touch == Touch::Slips);
@@ -315,8 +316,8 @@ pub(crate) struct Watch<'a, T, const NQ: usize, const NV: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
-    /// What is left until the first event of the phase: of gaps that close, forces that press, friction that holds, and slip; negative
-    /// where one is past.
+    /// What is left until the first event of the phase: of gaps that close, forces that press, friction that
+    /// holds, and slip; negative where one is past.
     pub(crate) fn left<M, const NU: usize, const NK: usize, const NR: usize>(
         &self,
         phased: &Phased<'_, M, T, NK, NR>,

@@ -30,7 +30,8 @@ const ROUNDINGS: f64 = 64.0;
 
 /// Contacts that are closed, with `u = u₀ + W Λ`: what impulses `Λ` make of the rates.
 ///
-/// Contacts and rates are numbered among those that are closed, so that the first `count` and `size` entries of lists are used.
+/// Contacts and rates are numbered among those that are closed, so that the first `count` and `size` entries
+/// of lists are used.
 #[derive(Debug)]
 pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// Which contacts of the mechanism they are, and which rates these have there.
@@ -38,8 +39,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     count: usize,
     /// Of each contact the first of its rates and how many there are.
     rows: Total<Rows, NK>,
-    /// Of each contact the one whose normal impulse its friction answers to: itself, but for moments of friction, whose rates are of
-    /// turning alone.
+    /// Of each contact the one whose normal impulse its friction answers to: itself, but for moments of
+    /// friction, whose rates are of turning alone.
     pressed_by: Total<usize, NK>,
     size: usize,
     /// Index of each rate among those of the mechanism.
@@ -49,7 +50,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// The impulses of compression, if restitution is a ratio of these, and whether there are any.
     compression: List<T, NR>,
     is_compressed: bool,
-    /// Impulses that act whatever the others are: of compression, and of restitution as far as they are known by it.
+    /// Impulses that act whatever the others are: of compression, and of restitution as far as they are known
+    /// by it.
     base: List<T, NR>,
     /// `u₀`: the rates with what acts anyway.
     free: List<T, NR>,
@@ -60,7 +62,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// The part of the normal impulse of restitution that acts anyway, and presses friction as well.
     floor: Total<T, NK>,
     friction: Total<T, NK>,
-    /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where impulses move nothing.
+    /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where
+    /// impulses move nothing.
     step: Total<T, NK>,
     /// A factor of all steps, with which Newton's method may come nearer.
     scale: T,
@@ -103,7 +106,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         problem
     }
 
-    /// Takes the contacts that are closed into one that has none; of moments of friction those whose contact is.
+    /// Takes the contacts that are closed into one that has none; of moments of friction those whose contact
+    /// is.
     pub(super) fn select(
         &mut self,
         layout: Layout<NK>,
@@ -225,8 +229,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.step[self.pressed_by[k]] * self.scale
     }
 
-    /// What contacts do under impulses that fulfil their laws, and of those that slip where to, as unit vectors at the places of their
-    /// rates.
+    /// What contacts do under impulses that fulfil their laws, and of those that slip where to, as unit
+    /// vectors at the places of their rates.
     pub(super) fn touches(&self, impulses: &List<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
         let (mut touches, mut along) = (Total::<_, NK>::repeat(Touch::Open), SVector::<T, NR>::zeros());
         let modes = self.modes(&self.friction, impulses, &self.rates(impulses));
@@ -275,9 +279,10 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (0..self.count).filter(|k| self.is_gap(*k)).all(|k| entry(gaps, self.contacts[k].0).abs() <= enough)
     }
 
-    /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together and are apart by no more
-    /// than `reach`, and those that part no deeper into each other than they are; where the former cannot all be at once those that
-    /// overlap then are pushed apart. `None` if distances are no more than a little of what is `near`.
+    /// Impulses without friction that, as displacements, bring surfaces to zero distance which stay together
+    /// and are apart by no more than `reach`, and those that part no deeper into each other than they are;
+    /// where the former cannot all be at once those that overlap then are pushed apart. `None` if distances
+    /// are no more than a little of what is `near`.
     pub(super) fn close(
         &self,
         impulses: &List<T, NR>,
@@ -285,7 +290,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
         let Trial { rates, worst, .. } = self.tried(*impulses);
-        // Which of several that share an impulse bear it decides nothing, and what is left of the rates neither.
+        // Which of several that share an impulse bear it decides nothing, and what is left of the rates
+        // neither.
         let rest = self.rounding(impulses).max(worst.0) * constant(ROUNDINGS);
         let (mut kept, mut stay) = (Self::none(), Total::<_, NK>::repeat(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());

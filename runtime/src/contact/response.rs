@@ -40,7 +40,8 @@ where
     }
     let mut rates = SMatrix::<T, NR, NR>::zeros();
     for (rates, velocities) in rates.data.0.iter_mut().zip(&velocities.data.0) {
-        // Bodies that a contact does not reach do not answer, and contacts that are open have no answer at all.
+        // Bodies that a contact does not reach do not answer, and contacts that are open have no answer at
+        // all.
         let answers = velocities.iter().zip(&jacobian.data.0).filter(|(velocity, _)| **velocity != T::zero());
         for (velocity, column) in answers {
             rates.iter_mut().zip(column).for_each(|(rate, entry)| *rate += *entry * *velocity);
@@ -49,8 +50,8 @@ where
     Responses { velocities, rates }
 }
 
-/// The factor `L` of `M = L Lᵀ` (Cholesky) by rows, with the reciprocals of its diagonal; `None` where `M` is not positive
-/// definite.
+/// The factor `L` of `M = L Lᵀ` (Cholesky) by rows, with the reciprocals of its diagonal; `None` where `M` is
+/// not positive definite.
 fn factor<T: Real, const N: usize>(m: SMatrix<T, N, N>) -> Option<[[T; N]; N]> {
     // Symmetric: columns are rows.
     let mut m = m.data.0;

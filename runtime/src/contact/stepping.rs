@@ -19,7 +19,8 @@ const PARTS_OF_RESTITUTION: usize = 12;
 pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
     /// The configuration and the velocity.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
-    /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]), once they are asked for.
+    /// The rates that its velocity has at the contacts where the step ends ([`rates_at_end`]), once they are
+    /// asked for.
     rates: Cell<Option<SVector<T, NR>>>,
     /// How long it has taken.
     h: T,
@@ -52,9 +53,10 @@ impl<'a, T: Real, const NQ: usize, const NV: usize, const NR: usize> Came<'a, T,
     }
 }
 
-/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity `free`: those whose gap is
-/// none there, with or without what contacts have been taken to do, and those that were closed before and did not part. Of these the
-/// other contacts may press any, whichever way it would go without them all.
+/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity
+/// `free`: those whose gap is none there, with or without what contacts have been taken to do, and those that
+/// were closed before and did not part. Of these the other contacts may press any, whichever way it would go
+/// without them all.
 pub(super) fn closed<
     M,
     T,
@@ -111,8 +113,9 @@ where
     Ok(closed.contains(&true).then_some(closed))
 }
 
-/// The rates at contacts that the velocity `v` at the configuration `start` would have where a step has led to the configuration `q`:
-/// there impulses act, and restitution and their work are about the same directions as they are.
+/// The rates at contacts that the velocity `v` at the configuration `start` would have where a step has led
+/// to the configuration `q`: there impulses act, and restitution and their work are about the same directions
+/// as they are.
 fn rates_at_end<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -126,8 +129,9 @@ where
     mechanism.contact_rates(t, q, &mechanism.carry(t, start, &mechanism.difference(start, q), v))
 }
 
-/// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts, a velocity; on the way
-/// they have been taken to add `given` to the velocity. As methods of integration call it; with `h = 0` nothing moves.
+/// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts,
+/// a velocity; on the way they have been taken to add `given` to the velocity. As methods of integration call
+/// it; with `h = 0` nothing moves.
 ///
 /// # Errors
 ///
@@ -251,8 +255,8 @@ where
     Some(problem.displacements(&back))
 }
 
-/// A state with the largest part of all restitutions after which the energy is no more than `most`, and the impulses that lead there;
-/// `None` where it is no more with all of them.
+/// A state with the largest part of all restitutions after which the energy is no more than `most`, and the
+/// impulses that lead there; `None` where it is no more with all of them.
 fn tempered<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -304,9 +308,9 @@ where
     mechanism.kinetic_energy(t, q, v) + mechanism.potential_energy(t, q)
 }
 
-/// The state after a displacement, or the part of it after which the energy is no more than `most`, which is asked for where it grows, or
-/// than before. Where surfaces overlap before, as `gaps` say, none do so deeper after it than the deepest, those of contacts that were
-/// open among them.
+/// The state after a displacement, or the part of it after which the energy is no more than `most`, which is
+/// asked for where it grows, or than before. Where surfaces overlap before, as `gaps` say, none do so deeper
+/// after it than the deepest, those of contacts that were open among them.
 fn pushed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,

@@ -2,8 +2,8 @@
 
 use core::ops::{Deref, DerefMut, Index, IndexMut};
 
-/// An array whose every index names an entry: those past its end name a spare one. Numbers of contacts and of rates come from
-/// tables, and no index from there is a way to panic.
+/// An array whose every index names an entry: those past its end name a spare one. Numbers of contacts and of
+/// rates come from tables, and no index from there is a way to panic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Total<E, const N: usize> {
     entries: [E; N],

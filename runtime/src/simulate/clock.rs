@@ -1,8 +1,8 @@
 //! When samples, control periods and the end of a run are due: instants counted in integers.
 //!
-//! A run does not add up its steps. The `k`-th instant is `k` periods after the start, in double precision whatever the
-//! numbers of the mechanism are, and steps between two instants count time from their own start, so that in single
-//! precision, too, a period of a millisecond lasts that long after hours.
+//! A run does not add up its steps. The `k`-th instant is `k` periods after the start, in double precision
+//! whatever the numbers of the mechanism are, and steps between two instants count time from their own start,
+//! so that in single precision, too, a period of a millisecond lasts that long after hours.
 
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};

@@ -121,8 +121,8 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     /// [`Undefined::Value`] where a function is not a number.
     fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), Undefined>;
 
-    /// The first event between `from` and `to` on a step. Every event remembers where it is itself, if it is not later
-    /// than the first by more than rounding.
+    /// The first event between `from` and `to` on a step. Every event remembers where it is itself, if it is
+    /// not later than the first by more than rounding.
     ///
     /// # Errors
     ///
@@ -148,7 +148,8 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
         later: &P,
     ) -> Flow;
 
-    /// Forgets on which side of their surfaces the motion goes on after the events up to `limit`: the velocity has changed.
+    /// Forgets on which side of their surfaces the motion goes on after the events up to `limit`: the
+    /// velocity has changed.
     fn rebound(&mut self, limit: T);
 }
 
@@ -335,8 +336,8 @@ where
     }
 }
 
-/// To which side `f`, which is zero at `a` up to rounding, leaves on the way to `b`, and from where on that is known: it may be
-/// back before `b`.
+/// To which side `f`, which is zero at `a` up to rounding, leaves on the way to `b`, and from where on that
+/// is known: it may be back before `b`.
 fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
     let rounding = f(a).abs() * constant(4.0);
     for part in [1.5e-8, 1e-6, 6e-5, 4e-3, 0.1, 1.0] {
@@ -349,9 +350,9 @@ fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering)
     (a, Ordering::Equal)
 }
 
-/// The place where `f` changes from negative to `end`, its non-negative value at `b`: bracketed to rounding, the
-/// non-negative end of the bracket. The ITP method: never more than one evaluation above bisection, far fewer for
-/// smooth functions. Oliveira and Takahashi, ACM Trans. Math. Softw. 47 (2020).
+/// The place where `f` changes from negative to `end`, its non-negative value at `b`: bracketed to rounding,
+/// the non-negative end of the bracket. The ITP method: never more than one evaluation above bisection, far
+/// fewer for smooth functions. Oliveira and Takahashi, ACM Trans. Math. Softw. 47 (2020).
 fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2], end: T) -> T {
     let zero = T::zero();
     let (half, two) = (constant::<T>(0.5), constant::<T>(2.0));

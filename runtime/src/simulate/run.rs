@@ -229,7 +229,8 @@ where
         to_f64(*t) - to_f64(self.start.t)
     }
 
-    /// When the next sample is due; `None` if every step is one. Behind the last one that was asked for, at the end.
+    /// When the next sample is due; `None` if every step is one. Behind the last one that was asked for, at
+    /// the end.
     fn next_due(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let Samples::At(times) = self.samples else { return run.clock.sample(run.sample) };
         let end = run.clock.end().unwrap_or(f64::INFINITY);

@@ -3,7 +3,8 @@
 use crate::Real;
 use nalgebra::SVector;
 
-/// `N` numbers that a simulation starts from: a vector, a reference to one (what all functions of mechanisms take), or an array.
+/// `N` numbers that a simulation starts from: a vector, a reference to one (what all functions of mechanisms
+/// take), or an array.
 ///
 /// ```
 /// use linkwork::prelude::*;

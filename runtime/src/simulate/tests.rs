@@ -203,7 +203,8 @@ fn several_events_come_in_order() {
 
 #[test]
 fn a_ball_bounces() {
-    // From 0.5 m under unit gravity it falls for 1 s; every bounce halves the speed: impacts at 1, 2, 2.5, 2.75 s.
+    // From 0.5 m under unit gravity it falls for 1 s; every bounce halves the speed: impacts at 1, 2, 2.5,
+    // 2.75 s.
     let ball = falling();
     let run = simulate(&ball).from([0.5], [0.0]).duration(2.9);
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
@@ -424,7 +425,8 @@ fn single_precision_keeps_time() {
     }
 }
 
-/// An oscillator looked at when one likes, by an adaptive method, which interpolates, and by one with equal steps.
+/// An oscillator looked at when one likes, by an adaptive method, which interpolates, and by one with equal
+/// steps.
 fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     let (start, looked) = (2.0, [2.0, 2.013, 2.5, 2.500_000_1, 5.75]);
     let mass = oscillator::<f64>();
@@ -435,7 +437,8 @@ fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     assert!(samples.iter().all(|sample| exact(sample) < tolerance), "{samples:?}");
     let end = run.clone().sample_at(&looked).finish().unwrap();
     assert!(end.t == 5.75 && exact(&end) < tolerance);
-    // With a duration its end is a sample, too, and what lies beyond is none; the start is one if it is asked for.
+    // With a duration its end is a sample, too, and what lies beyond is none; the start is one if it is asked
+    // for.
     for (duration, expected) in [(4.0, &[2.013, 5.75, 6.0][..]), (3.0, &[2.013, 5.0][..])] {
         let run = run.clone().sample_at(&[2.013, 5.75]).duration(duration);
         assert_eq!(run.map(|sample| sample.unwrap().t).collect::<Vec<_>>(), expected);

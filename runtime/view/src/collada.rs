@@ -1,7 +1,8 @@
-//! Triangles of COLLADA files (`.dae`), versions 1.4 and 1.5: the meshes of the scene, each where its nodes place it, in metres.
+//! Triangles of COLLADA files (`.dae`), versions 1.4 and 1.5: the meshes of the scene, each where its nodes
+//! place it, in metres.
 //!
-//! `up_axis` is not applied. The frames of a robot's file are those of its links, no direction of which is up, and the viewers that such
-//! files are made with (RViz, Gazebo, MoveIt) take the numbers as they stand.
+//! `up_axis` is not applied. The frames of a robot's file are those of its links, no direction of which is
+//! up, and the viewers that such files are made with (RViz, Gazebo, MoveIt) take the numbers as they stand.
 
 use crate::mesh::MAX_TRIANGLES;
 use linkwork::nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3};
@@ -277,7 +278,8 @@ mod tests {
         <input semantic='NORMAL' source='#normals' offset='1'/><p>0 0 1 0 2 0 0 0 2 0 3 0</p></triangles>";
     const SHOWN: &str = "<instance_geometry url='#square'/>";
 
-    /// Triangles, polygons and fans of one square list the same corners; a strip cuts it along the other diagonal.
+    /// Triangles, polygons and fans of one square list the same corners; a strip cuts it along the other
+    /// diagonal.
     #[test]
     fn lists_of_faces_agree() {
         let square = corners(&file("", TWO, "")).unwrap();

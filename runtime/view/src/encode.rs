@@ -1,7 +1,8 @@
-//! Samples as text: steps of a quantum, the differences of successive ones in as few bytes as they need, in base64.
+//! Samples as text: steps of a quantum, the differences of successive ones in as few bytes as they need, in
+//! base64.
 //!
-//! A channel is its first value, then 0 if it keeps it, or 1 and the differences. Integers are written seven bits a byte, lowest
-//! first, with the sign in the lowest bit.
+//! A channel is its first value, then 0 if it keeps it, or 1 and the differences. Integers are written seven
+//! bits a byte, lowest first, with the sign in the lowest bit.
 
 /// Channels one after the other.
 #[derive(Default)]

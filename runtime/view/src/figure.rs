@@ -48,7 +48,8 @@ impl Figure {
         Figure::from_pieces(M::FRAMES.iter().map(ToString::to_string).collect(), M::DRAWING, &numbers)
     }
 
-    /// Pieces with their numbers, in frames of these names. Pieces whose numbers are missing or not finite are left out.
+    /// Pieces with their numbers, in frames of these names. Pieces whose numbers are missing or not finite
+    /// are left out.
     pub fn from_pieces(frames: Vec<String>, pieces: &[Piece], numbers: &[f64]) -> Figure {
         let mut figure = Figure { frames, ..Figure::default() };
         for piece in pieces {
@@ -61,7 +62,8 @@ impl Figure {
         figure
     }
 
-    /// Adds a piece to a frame, to the ground if there is no name. Its numbers are those that [`Kind`] says, m and rad.
+    /// Adds a piece to a frame, to the ground if there is no name. Its numbers are those that [`Kind`] says,
+    /// m and rad.
     ///
     /// # Errors
     ///
@@ -82,11 +84,12 @@ impl Figure {
         Ok(self)
     }
 
-    /// Adds a surface to a frame, to the ground if there is no name: the places, m in the axes of the frame, that a function gives
-    /// for `u` and `w` between these bounds.
+    /// Adds a surface to a frame, to the ground if there is no name: the places, m in the axes of the frame,
+    /// that a function gives for `u` and `w` between these bounds.
     ///
-    /// Surfaces that contacts touch may be given by functions without an end. This draws a part of them, or more of a terrain than
-    /// [`Motion::of`](crate::Motion::of) draws of its own accord. Under a surface no floor is drawn.
+    /// Surfaces that contacts touch may be given by functions without an end. This draws a part of them, or
+    /// more of a terrain than [`Motion::of`](crate::Motion::of) draws of its own accord. Under a surface no
+    /// floor is drawn.
     ///
     /// # Errors
     ///
@@ -112,10 +115,10 @@ impl Figure {
         Ok(self)
     }
 
-    /// Reads the triangles of a robot's meshes, STL, OBJ or COLLADA, from a folder. A path of the robot's file, `package://name/path` or
-    /// a path of its own, is looked for there with all of it, then with ever fewer of its first folders. Without this call, and
-    /// where no file of the name is found, the bodies are drawn by their mass properties, and
-    /// [`missing_meshes`](Self::missing_meshes) lists the files.
+    /// Reads the triangles of a robot's meshes, STL, OBJ or COLLADA, from a folder. A path of the robot's
+    /// file, `package://name/path` or a path of its own, is looked for there with all of it, then with ever
+    /// fewer of its first folders. Without this call, and where no file of the name is found, the bodies are
+    /// drawn by their mass properties, and [`missing_meshes`](Self::missing_meshes) lists the files.
     ///
     /// # Errors
     ///
@@ -192,7 +195,8 @@ impl Figure {
         self.shapes.push(Shape { name, role, kind, frames, numbers, mesh: None, fitted, declared });
     }
 
-    /// Ellipsoids that stand for figures are no longer than the links: the inertias of many files are made up.
+    /// Ellipsoids that stand for figures are no longer than the links: the inertias of many files are made
+    /// up.
     fn fit(&mut self) {
         let length =
             |s: &Shape| (0..3).map(|k| (s.numbers[3 + k] - s.numbers[k]).powi(2)).sum::<f64>().sqrt();
@@ -291,7 +295,8 @@ impl Shape {
 }
 
 /// The homogeneous ellipsoid with a mass and an inertia: with principal moments `I₁ …` its half axes fulfil
-/// `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Moments that no body can have, as those of plane mechanisms, give flat ones.
+/// `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Moments that no body can have, as those of plane mechanisms, give flat
+/// ones.
 fn equivalent(numbers: &[f64]) -> (Kind, Vec<f64>) {
     let [x, y, z, mass, xx, yy, zz, xy, xz, yz] = *numbers else { return (Kind::Point, vec![0.0; 3]) };
     if mass <= 0.0 {

@@ -1,4 +1,5 @@
-//! Free-body diagrams as SVG: a body by the points where something acts on it, forces and torques as arrows, with their figures.
+//! Free-body diagrams as SVG: a body by the points where something acts on it, forces and torques as arrows,
+//! with their figures.
 
 use crate::figure::plain;
 use crate::text::html as escaped;
@@ -59,10 +60,11 @@ impl Side {
 
 /// A free-body diagram as SVG.
 ///
-/// The body is shown by lines from its centre of mass to the points where something acts. Forces are arrows of one scale that begin
-/// at their points; of a torque the part across the picture is an arc with an arrow, counterclockwise where it points to the viewer,
-/// and the rest an arrow with two heads. Beside stand all actions with their figures in the axes of the diagram, and their sum.
-/// Figures that are not finite are not drawn, but listed.
+/// The body is shown by lines from its centre of mass to the points where something acts. Forces are arrows
+/// of one scale that begin at their points; of a torque the part across the picture is an arc with an arrow,
+/// counterclockwise where it points to the viewer, and the rest an arrow with two heads. Beside stand all
+/// actions with their figures in the axes of the diagram, and their sum. Figures that are not finite are not
+/// drawn, but listed.
 ///
 /// ```
 /// use linkwork::prelude::*;

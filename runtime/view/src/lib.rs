@@ -30,8 +30,8 @@ use linkwork::{Drawn, Rheonomic};
 
 /// A page that shows a motion of a mechanism, in one call: [`Motion::of`] on a [`Page`].
 ///
-/// Meshes are not read: bodies that have some are drawn by their mass properties, and the page lists the files
-/// ([`Figure::meshes`] reads them, for [`Motion::figure`]).
+/// Meshes are not read: bodies that have some are drawn by their mass properties, and the page lists the
+/// files ([`Figure::meshes`] reads them, for [`Motion::figure`]).
 ///
 /// # Errors
 ///

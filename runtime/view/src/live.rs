@@ -10,8 +10,9 @@ use linkwork::{Drawn, Rheonomic};
 
 /// A live view: a page on this machine that shows what a running program [shows](Live::show) it.
 ///
-/// The page is that of [`Page`]: the last twenty seconds can be looked at while the loop goes on. Any number of browsers up to
-/// sixteen may look. The page is reached from this machine alone, and only pages of its own may open the socket.
+/// The page is that of [`Page`]: the last twenty seconds can be looked at while the loop goes on. Any number
+/// of browsers up to sixteen may look. The page is reached from this machine alone, and only pages of its own
+/// may open the socket.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -42,8 +43,8 @@ pub struct Live<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     /// How many coordinates are plotted.
     plotted: usize,
     server: Server,
-    /// The newest message: the time in eight bytes, then of each frame its place and its quaternion x y z w, then what is plotted,
-    /// then the inputs, each in four bytes.
+    /// The newest message: the time in eight bytes, then of each frame its place and its quaternion x y z w,
+    /// then what is plotted, then the inputs, each in four bytes.
     message: Vec<u8>,
     samples: u64,
 }
@@ -56,8 +57,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`Error::Port`] if another program has the port, or the system does not give it; those of [`Motion::of`] for the configuration
-    /// zero.
+    /// [`Error::Port`] if another program has the port, or the system does not give it; those of
+    /// [`Motion::of`] for the configuration zero.
     pub fn open(mechanism: &'m M, port: u16) -> Result<Self, Error> {
         Live::of(mechanism, Figure::of(mechanism), port)
     }
@@ -90,8 +91,9 @@ where
         format!("http://{}/", self.server.address())
     }
 
-    /// Shows a sample. It takes the placements of the frames and a copy of them, waits for nothing, and leaves out what a browser
-    /// does not take: of samples that follow each other faster than a screen shows, the newest is seen.
+    /// Shows a sample. It takes the placements of the frames and a copy of them, waits for nothing, and
+    /// leaves out what a browser does not take: of samples that follow each other faster than a screen shows,
+    /// the newest is seen.
     ///
     /// # Errors
     ///

@@ -1,8 +1,8 @@
 //! Logs of motions as files of the format MCAP, with the schemas of Foxglove (<https://mcap.dev/spec>).
 //!
-//! A file is a sequence of records: a byte that says what it is, the length of its content in eight bytes, the content. Numbers are little
-//! endian; strings have their length in four bytes before them. Messages are JSON, and stand one behind the other: without chunks and
-//! without compression.
+//! A file is a sequence of records: a byte that says what it is, the length of its content in eight bytes,
+//! the content. Numbers are little endian; strings have their length in four bytes before them. Messages are
+//! JSON, and stand one behind the other: without chunks and without compression.
 
 use crate::figure::plain;
 use crate::motion::as_plain;
@@ -42,9 +42,10 @@ const TOPICS: [(&str, &str, &str); 3] = [
 /// A motion as the content of an MCAP file, with a message of each of these topics for every sample:
 ///
 /// - `/tf`, `foxglove.FrameTransforms`: the frames of the mechanism in the frame `ground`, m, quaternions;
-/// - `/joint_states`, `foxglove.JointStates`: position and velocity of every coordinate that is one number with a rate of its own name,
-///   m and m/s, rad and rad/s;
-/// - `/state`, `linkwork.State`: time, configuration `q`, velocity `v` and inputs `u` by name, with all their digits, for plots.
+/// - `/joint_states`, `foxglove.JointStates`: position and velocity of every coordinate that is one number
+///   with a rate of its own name, m and m/s, rad and rad/s;
+/// - `/state`, `linkwork.State`: time, configuration `q`, velocity `v` and inputs `u` by name, with all their
+///   digits, for plots.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -125,8 +126,9 @@ pub struct Instant {
     pub placements: Vec<IsometryMatrix3<f64>>,
 }
 
-/// A log in MCAP's format of a motion that comes from elsewhere than generated code: placements of frames (m, in the axes of the
-/// ground), configurations, velocities and inputs in SI units, at the instants of `samples`. [`mcap`] writes the log of a mechanism.
+/// A log in MCAP's format of a motion that comes from elsewhere than generated code: placements of frames (m,
+/// in the axes of the ground), configurations, velocities and inputs in SI units, at the instants of
+/// `samples`. [`mcap`] writes the log of a mechanism.
 ///
 /// # Errors
 ///

@@ -122,8 +122,8 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
     mesh.map_err(|what| Error::Mesh { path: path.to_path_buf(), what })
 }
 
-/// Binary: a header of 80 bytes, the number of triangles, 50 bytes for each; its length tells it from text, which also begins
-/// with `solid`.
+/// Binary: a header of 80 bytes, the number of triangles, 50 bytes for each; its length tells it from text,
+/// which also begins with `solid`.
 fn stl(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(80..84).and_then(|n| n.try_into().ok()).map(u32::from_le_bytes);
     if let Some(count) = count.filter(|n| bytes.len() as u64 == 84 + 50 * u64::from(*n)) {

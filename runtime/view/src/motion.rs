@@ -61,8 +61,8 @@ struct Plot {
 }
 
 impl Motion {
-    /// The motion that samples tell. Up to twelve coordinates are plotted, those of each unit together. Terrain that contacts touch is
-    /// drawn as far as the motion goes.
+    /// The motion that samples tell. Up to twelve coordinates are plotted, those of each unit together.
+    /// Terrain that contacts touch is drawn as far as the motion goes.
     ///
     /// # Errors
     ///
@@ -95,7 +95,8 @@ impl Motion {
         }))
     }
 
-    /// Placements of all frames of a figure at each time, s: of what moves by other means than generated code.
+    /// Placements of all frames of a figure at each time, s: of what moves by other means than generated
+    /// code.
     ///
     /// # Errors
     ///
@@ -153,16 +154,18 @@ impl Motion {
         self.figure.clone()
     }
 
-    /// Draws the terrains of the figure ([`Kind::Terrain`](linkwork::drawing::Kind::Terrain)) as far as the motion goes, and beyond by
-    /// the size of the mechanism: `height` gives, by the number of a terrain, its height at a place along its first two axes, m. One
-    /// without a finite height everywhere there is left out.
+    /// Draws the terrains of the figure ([`Kind::Terrain`](linkwork::drawing::Kind::Terrain)) as far as the
+    /// motion goes, and beyond by the size of the mechanism: `height` gives, by the number of a terrain, its
+    /// height at a place along its first two axes, m. One without a finite height everywhere there is left
+    /// out.
     pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
         let size = Scene::of(&self.figure, &self.placements, &self.shown()).size;
         self.figure.raise(&self.placements, size, height);
         self
     }
 
-    /// Adds a plot over time: curves with a name and a value for each sample. Values that are not finite leave gaps.
+    /// Adds a plot over time: curves with a name and a value for each sample. Values that are not finite
+    /// leave gaps.
     ///
     /// # Errors
     ///
@@ -223,8 +226,9 @@ impl Motion {
         Ok(self)
     }
 
-    /// Draws a force as an arrow that begins at a point of a frame, m in its axes, or of the ground if there is no name: for each
-    /// sample its vector in the ground's axes. The longest force of the motion has half the length of the mechanism.
+    /// Draws a force as an arrow that begins at a point of a frame, m in its axes, or of the ground if there
+    /// is no name: for each sample its vector in the ground's axes. The longest force of the motion has half
+    /// the length of the mechanism.
     ///
     /// What contacts exert is the output `contact_force(…)` of the mechanism:
     ///
@@ -291,7 +295,8 @@ impl Motion {
         self
     }
 
-    /// The samples that are shown: of those that follow each other faster than a screen shows, some are left out.
+    /// The samples that are shown: of those that follow each other faster than a screen shows, some are left
+    /// out.
     fn shown(&self) -> Vec<usize> {
         let last = self.times.len() - 1;
         let apart = (1.0 / RATE).min((self.times[last] - self.times[0]) / SHOWN);

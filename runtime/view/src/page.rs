@@ -5,9 +5,9 @@ use std::path::Path;
 
 /// A page of HTML that shows motions, and needs nothing else: neither files nor a network.
 ///
-/// Motions stand side by side, under one time. Drag to turn, with two fingers or the right button to move, pinch or turn the
-/// wheel to zoom; the space bar plays and stops, arrows step, `+` and `−` zoom, `f` shows frames, `c` follows the motion, `0`
-/// looks as at the beginning.
+/// Motions stand side by side, under one time. Drag to turn, with two fingers or the right button to move,
+/// pinch or turn the wheel to zoom; the space bar plays and stops, arrows step, `+` and `−` zoom, `f` shows
+/// frames, `c` follows the motion, `0` looks as at the beginning.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     title: String,
@@ -21,8 +21,9 @@ impl Page {
         Page { title: title.to_string(), ..Page::default() }
     }
 
-    /// What stands below the title, in paragraphs with blank lines between them: the first one, and the others when they are asked
-    /// for. Lines that begin with `- ` are a list, words in backticks code, and those between asterisks are emphasised.
+    /// What stands below the title, in paragraphs with blank lines between them: the first one, and the
+    /// others when they are asked for. Lines that begin with `- ` are a list, words in backticks code, and
+    /// those between asterisks are emphasised.
     pub fn text(mut self, text: &str) -> Page {
         self.text = text.to_string();
         self

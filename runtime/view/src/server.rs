@@ -1,7 +1,7 @@
 //! A server on this machine for one page, and for web sockets that the page opens (RFC 6455).
 //!
-//! It sends messages and reads none: of the protocol that is a handshake and the frames of a server, for which a library would bring
-//! a dozen crates.
+//! It sends messages and reads none: of the protocol that is a handshake and the frames of a server, for
+//! which a library would bring a dozen crates.
 
 use crate::Error;
 use crate::encode::base64;
@@ -248,7 +248,8 @@ fn forget_answers(stream: &mut TcpStream) -> io::Result<()> {
     found
 }
 
-/// The digest of the handshake (FIPS 180-4, SHA-1). It keeps no secret: the protocol uses it as a sign that it was understood.
+/// The digest of the handshake (FIPS 180-4, SHA-1). It keeps no secret: the protocol uses it as a sign that
+/// it was understood.
 fn sha1(text: &[u8]) -> [u8; 20] {
     let mut bytes = text.to_vec();
     bytes.push(0x80);
@@ -293,7 +294,8 @@ fn sha1(text: &[u8]) -> [u8; 20] {
 mod tests {
     use super::*;
 
-    /// The examples of FIPS 180-4's validation, those at the ends of a block, and the handshake of RFC 6455, section 1.3.
+    /// The examples of FIPS 180-4's validation, those at the ends of a block, and the handshake of RFC 6455,
+    /// section 1.3.
     #[test]
     fn digests_are_those_of_the_standard() {
         let hex =

@@ -18,8 +18,8 @@ pub fn html(text: &str) -> String {
     out
 }
 
-/// Prose as HTML, block by block: paragraphs and lists with blank lines between them. Items begin with `- `, code stands in
-/// backticks, what is emphasised between asterisks, headings behind `#`.
+/// Prose as HTML, block by block: paragraphs and lists with blank lines between them. Items begin with `- `,
+/// code stands in backticks, what is emphasised between asterisks, headings behind `#`.
 pub fn blocks(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let blocks = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty());

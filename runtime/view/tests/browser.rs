@@ -1,4 +1,5 @@
-//! Pages in a browser, where there is one: no error on the console, the controls are there, and the picture could be made.
+//! Pages in a browser, where there is one: no error on the console, the controls are there, and the picture
+//! could be made.
 
 use linkwork::prelude::*;
 use linkwork::simulate::Sample;
@@ -40,8 +41,8 @@ fn sample(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
     Sample { t: start + t, q: [t, -t].into(), v: [1.0, -1.0].into(), u: [t.sin()].into(), event: None }
 }
 
-/// The document of a page after a second and a half, without a word on the console; `meanwhile` is done until then. `None` where
-/// no browser starts.
+/// The document of a page after a second and a half, without a word on the console; `meanwhile` is done until
+/// then. `None` where no browser starts.
 fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String> {
     let Some(browser) = browser() else {
         println!("skipped: no Chromium on the path");

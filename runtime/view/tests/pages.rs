@@ -1,4 +1,5 @@
-//! What stands in pages: the samples to their rounding, the pieces where the mechanism has them, nothing from outside.
+//! What stands in pages: the samples to their rounding, the pieces where the mechanism has them, nothing from
+//! outside.
 
 mod support;
 
@@ -136,8 +137,8 @@ fn every_solid_has_its_numbers() {
     assert_eq!(of("gravity", Role::Gravity)[0].1[3..], [0.0, 0.0, -9.81]);
 }
 
-/// A crank with a rocker: where a joint is drawn on its parent, the bar of its child begins or ends, in every configuration of the
-/// tree.
+/// A crank with a rocker: where a joint is drawn on its parent, the bar of its child begins or ends, in every
+/// configuration of the tree.
 #[test]
 fn joints_and_links_meet() {
     let solids = Solids { m: 2.0, r: 0.2, h: 0.6 };
@@ -179,7 +180,8 @@ fn visual_geometry_of_files_is_drawn() {
     // A quarter of a turn about y takes z to x.
     assert!((Vector3::from_column_slice(&cylinder[3..6]) - Vector3::x()).norm() < 1e-12);
     assert_eq!(cylinder[6..8], [0.03, 0.5]);
-    // A link without visual geometry is drawn by its inertia; so are links with meshes, in place of those that cannot be read.
+    // A link without visual geometry is drawn by its inertia; so are links with meshes, in place of those
+    // that cannot be read.
     let bodies: Vec<&str> = Shapes::DRAWING.iter().filter(|p| p.role == Role::Body).map(|p| p.name).collect();
     assert_eq!(bodies, ["base", "arm", "tip"]);
 
@@ -200,8 +202,8 @@ fn shown(figure: Figure) -> String {
     Page::new("shapes").motion(motion).html()
 }
 
-/// A link whose meshes were all read has no other body; one of a missing mesh is drawn by its mass properties, and the page lists
-/// the file. A folder that does not exist is an error.
+/// A link whose meshes were all read has no other body; one of a missing mesh is drawn by its mass
+/// properties, and the page lists the file. A folder that does not exist is an error.
 #[test]
 fn missing_meshes_are_replaced_and_listed() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
@@ -352,8 +354,8 @@ fn what_cannot_be_shown_is_told() {
     assert!(matches!(wrong, Err(Error::Count { expected: 4, found: 3, .. })));
 }
 
-/// More samples than one looks at are left out, gaps in curves stay gaps: of a second ten times as many as a screen shows at once, of
-/// a minute as many.
+/// More samples than one looks at are left out, gaps in curves stay gaps: of a second ten times as many as a
+/// screen shows at once, of a minute as many.
 #[test]
 fn samples_are_thinned_and_gaps_kept() {
     let sample = |k: i32| {

@@ -1,4 +1,5 @@
-//! What is drawn on request: surfaces that have no end, arrows of forces, meshes of files that name their unit.
+//! What is drawn on request: surfaces that have no end, arrows of forces, meshes of files that name their
+//! unit.
 
 mod support;
 
@@ -56,7 +57,8 @@ fn assert_bounds(surface: &Value, known: [[f64; 2]; 3]) {
     }
 }
 
-/// The bounds of the region, and the heights of the sine between them; the floor makes room for it, and the camera stays near.
+/// The bounds of the region, and the heights of the sine between them; the floor makes room for it, and the
+/// camera stays near.
 #[test]
 fn a_surface_is_drawn_over_a_region() {
     let plain = data(ball());
@@ -69,7 +71,8 @@ fn a_surface_is_drawn_over_a_region() {
     assert_eq!(plain["scene"][2], motion["scene"][2]);
 }
 
-/// Terrain is drawn by what is declared, as far as the motion goes and beyond it by the size of the ball: its diagonal.
+/// Terrain is drawn by what is declared, as far as the motion goes and beyond it by the size of the ball: its
+/// diagonal.
 #[test]
 fn a_terrain_is_drawn_by_its_declaration() {
     let motion = data(ball());

@@ -1,5 +1,5 @@
-//! Functions that choose their instructions at run time agree with those that do not, to rounding; several states at once
-//! do what single states do; and there is no `unsafe` in generated code.
+//! Functions that choose their instructions at run time agree with those that do not, to rounding; several
+//! states at once do what single states do; and there is no `unsafe` in generated code.
 #![forbid(unsafe_code)]
 
 /// The same mechanisms, compiled in two ways.

@@ -1,5 +1,6 @@
-//! Random closed chains in singular positions and driven through them, against the few coordinates that their branches have:
-//! masses over twelve powers of ten, springs of up to a million N·m/rad, and planes that are tilted at random.
+//! Random closed chains in singular positions and driven through them, against the few coordinates that their
+//! branches have: masses over twelve powers of ten, springs of up to a million N·m/rad, and planes that are
+//! tilted at random.
 
 mod branch;
 mod machines;
@@ -24,7 +25,8 @@ where
     if off.is_nan() { f64::INFINITY } else { off }
 }
 
-/// Which seeds of each kind are looked at: as many as usual, or as the variable `LINKWORK_ORACLE` says, `20000` or `400..405`.
+/// Which seeds of each kind are looked at: as many as usual, or as the variable `LINKWORK_ORACLE` says,
+/// `20000` or `400..405`.
 fn cases(usual: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
     let (from, to) = asked.split_once("..").unwrap_or(("0", &asked));
@@ -38,7 +40,8 @@ const STYLES: [Style; 4] = [
     Style { masses: 6.0, springs: 6.0 },
 ];
 
-/// Far from a flat position, near, in it but for rounding, or exactly there; and a rate, one in eight at rest.
+/// Far from a flat position, near, in it but for rounding, or exactly there; and a rate, one in eight at
+/// rest.
 fn approach(random: &mut Random, flat: f64) -> (f64, f64) {
     let distance = 10_f64.powf(-8.0 - random.uniform(8.0)) * random.uniform(1.0).signum();
     let distance = if random.uniform(1.0) > 0.9 { 0.0 } else { distance };
@@ -77,9 +80,9 @@ fn flat(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Bra
     Branch { q: part(0), by: part(1), bend: part(2) * rate * rate, rate: [rate].into() }
 }
 
-/// Seeds of later cases that were hard: a kite with a heavy body at rest, windows of which one turns much faster, linkages
-/// whose lengths differ by parts of 1e-5 from those of a kite that folds, and short cranks at the edge of what is near a flat
-/// position, where weak rows share much with strong ones.
+/// Seeds of later cases that were hard: a kite with a heavy body at rest, windows of which one turns much
+/// faster, linkages whose lengths differ by parts of 1e-5 from those of a kite that folds, and short cranks
+/// at the edge of what is near a flat position, where weak rows share much with strong ones.
 const HARD: [u64; 8] = [4_647, 4_958, 17_407, 66_896, 862_310, 962_679, 1_187_227, 1_242_381];
 
 /// Accelerations everywhere on the branches, in all styles.
@@ -179,8 +182,8 @@ fn stacked_windows_accelerate_as_two_pendulums() {
     });
 }
 
-/// What every method makes of a motion that leads through flat positions: how far it is off at its end, beside another method
-/// with short steps on the same machine with its own coordinates, where there is one.
+/// What every method makes of a motion that leads through flat positions: how far it is off at its end,
+/// beside another method with short steps on the same machine with its own coordinates, where there is one.
 fn gain<M, S, const NV: usize>(
     m: &M,
     (q, v): (SVector<f64, NV>, SVector<f64, NV>),
@@ -197,8 +200,9 @@ where
     Ok((energy(&end.q, &end.v) - start).abs())
 }
 
-/// Seeds of later motions that were hard: steps that end within 1e-6 of a flat position and beside their branch, heavy and
-/// light bodies so near to one that rounding decided on the order of constraints, branches that bend within a step.
+/// Seeds of later motions that were hard: steps that end within 1e-6 of a flat position and beside their
+/// branch, heavy and light bodies so near to one that rounding decided on the order of constraints, branches
+/// that bend within a step.
 const HARD_MOTIONS: [u64; 6] = [836, 2_353, 7_612, 10_079, 14_783, 17_831];
 
 /// Motions that go through flat positions at random places of their steps keep their energy.
@@ -214,8 +218,8 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
         let branch = flat(lengths, at_pi, side, angle - 0.3 - random.uniform(0.1), rate);
         let state = (branch.q, branch.velocity());
         let end = 0.1_f64;
-        // Steps that resolve the fastest turn on the way, and how quickly each velocity changes beside the largest that it has:
-        // by a stiff swing, or where the branch bends.
+        // Steps that resolve the fastest turn on the way, and how quickly each velocity changes beside the
+        // largest that it has: by a stiff swing, or where the branch bends.
         let (mut fast, mut whole) = (SVector::<f64, 3>::repeat(1e-9), 0.0_f64);
         let mut change = SVector::<f64, 3>::zeros();
         // Adaptive steps see what is faster than a grid of samples.
@@ -241,8 +245,9 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
     }
 }
 
-/// A state that a step has left a little beside its branch, at a distance from the flat position that is no larger, keeps the
-/// velocity of the branch: where the place is off by as much as branches are apart, constraints have any direction.
+/// A state that a step has left a little beside its branch, at a distance from the flat position that is no
+/// larger, keeps the velocity of the branch: where the place is off by as much as branches are apart,
+/// constraints have any direction.
 #[test]
 fn states_beside_their_branch_keep_its_velocity() {
     for seed in cases(300) {

@@ -3,8 +3,9 @@
 use linkwork::batch::{Lockstep, Rollout, unwatched};
 use linkwork::prelude::*;
 
-/// Two cranks of equal length with a coupler as long as their distance, in the horizontal plane: the coupler moves without turning,
-/// and the cranks keep their speed. On the line through both pivots the constraints lose rank.
+/// Two cranks of equal length with a coupler as long as their distance, in the horizontal plane: the coupler
+/// moves without turning, and the cranks keep their speed. On the line through both pivots the constraints
+/// lose rank.
 #[mechanism(batch)]
 struct Parallelogram {
     #[body(mass = 1, com = x / 2, inertia = rod(1, 1, x))]

@@ -91,7 +91,8 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
         (error(h) / error(h / 2.0)).log2()
     }
 
-    /// How far the energy is off at most in the first and in the last quarter of a run, and how far on average.
+    /// How far the energy is off at most in the first and in the last quarter of a run, and how far on
+    /// average.
     fn energy<const NU: usize, const NH: usize, const NC: usize, S: Method<f64>>(
         &self,
         method: S,

@@ -1,5 +1,5 @@
-//! Where constraints nearly depend on each other, or seem to: light bodies between heavy ones, and positions in which a
-//! linkage loses rank.
+//! Where constraints nearly depend on each other, or seem to: light bodies between heavy ones, and positions
+//! in which a linkage loses rank.
 
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
@@ -161,7 +161,8 @@ fn linkages_are_released_near_singular_positions() {
         };
         let run = || simulate(&WINDOWS).from(q, v).duration(2.0);
         check(run().method(Rk4::step(2e-3)).finish().expect("it swings"), 1e-7);
-        // By the order of the method: h ω, with ω ≈ 3/s, to its power beside 30 J, or as much as Rosenbrock damps.
+        // By the order of the method: h ω, with ω ≈ 3/s, to its power beside 30 J, or as much as Rosenbrock
+        // damps.
         check(run().method(ImplicitMidpoint::step(2e-3)).finish().expect("it swings"), 1e-5);
         check(run().method(Rosenbrock::step(2e-3)).finish().expect("it swings"), 1e-3);
         check(run().method(SemiImplicitEuler::step(2e-3)).finish().expect("it swings"), 0.2);
@@ -197,7 +198,8 @@ macro_rules! flat {
 }
 
 flat!(Parallelogram, [1, 1, 1, 1]);
-// The shortest and the longest are as long together as the others; accelerations of the joints are not alike here.
+// The shortest and the longest are as long together as the others; accelerations of the joints are not alike
+// here.
 flat!(ChangePoint, [2, 1, 3, 2]);
 
 /// Every method goes straight on where a linkage is flat, turn after turn, at its order.
@@ -257,7 +259,8 @@ macro_rules! four_bar {
 four_bar!(ByMultipliers);
 four_bar!(BySpeeds, formulation = speeds, independent = (third));
 
-/// Where crank and coupler are on one line, the rocker stands still while they move: its speed determines nothing.
+/// Where crank and coupler are on one line, the rocker stands still while they move: its speed determines
+/// nothing.
 #[test]
 fn speeds_are_left_where_others_do_not_follow_from_them() {
     let (plain, speeds) = (ByMultipliers {}, BySpeeds {});
@@ -355,8 +358,8 @@ fn stiff_springs_swing_through_singular_positions() {
             };
         }
         all!(f64, 0.05, 0.0);
-        // What rounding makes of a place in the flat position is chance: of 81 starts from 0.04 to 0.06 half gain less than 3e-3, all
-        // less than 1.2e-2.
+        // What rounding makes of a place in the flat position is chance: of 81 starts from 0.04 to 0.06 half
+        // gain less than 3e-3, all less than 1.2e-2.
         for start in [0.045, 0.048, 0.05, 0.054] {
             all!(f32, start, 1.3e-2);
         }
@@ -386,8 +389,8 @@ fn single_precision_passes_singular_positions() {
     }
 }
 
-/// Angles of many turns are known less well, and fast turns are thrown farther by what is left of the constraints: a linkage
-/// whose bars miss each other by a drift is none with a flat position.
+/// Angles of many turns are known less well, and fast turns are thrown farther by what is left of the
+/// constraints: a linkage whose bars miss each other by a drift is none with a flat position.
 #[test]
 fn single_precision_turns_through_singular_positions_again_and_again() {
     for start in [(1.0, 12.0), (1.0, 37.0), (1.0, -37.0), (0.9, 40.0)] {

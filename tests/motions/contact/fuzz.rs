@@ -1,11 +1,13 @@
-//! States at random, hostile ones among them: whatever comes, answers are numbers that obey the laws, or errors.
+//! States at random, hostile ones among them: whatever comes, answers are numbers that obey the laws, or
+//! errors.
 
 use super::laws::{Chain, Pile, Random};
 use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
 use linkwork::simulate::Overlaps;
 
-/// A block between two walls that are one and the same, and a floor that is there twice: more contacts than can be told apart.
+/// A block between two walls that are one and the same, and a floor that is there twice: more contacts than
+/// can be told apart.
 #[mechanism(gravity = -9.81 * z)]
 struct Twice {
     friction: f64,
@@ -145,8 +147,8 @@ pub fn attacks(seed: u64, count: usize) -> usize {
     errors
 }
 
-/// A block in a corner of surfaces that are there twice, with a friction of 54 254: it turns about two of sixteen points, which neither
-/// gradients nor friction that grows by degrees find.
+/// A block in a corner of surfaces that are there twice, with a friction of 54 254: it turns about two of
+/// sixteen points, which neither gradients nor friction that grows by degrees find.
 #[test]
 fn a_block_turns_about_two_of_many_points() {
     let m = Twice { friction: 54254.21780149019, restitution: 1.0 };
@@ -164,8 +166,9 @@ fn a_block_turns_about_two_of_many_points() {
     super::laws::check(&m, &q, &v);
 }
 
-/// A heavy ball that falls between two others forces a light one away. What takes overlaps away has pushed the light one 14 mm through the
-/// floor that it was just leaving; nothing overlaps by more than a ball moves in a step.
+/// A heavy ball that falls between two others forces a light one away. What takes overlaps away has pushed
+/// the light one 14 mm through the floor that it was just leaving; nothing overlaps by more than a ball moves
+/// in a step.
 #[test]
 fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
     let m = Pile { friction: 24.6, restitution: 0.0 };
@@ -185,8 +188,9 @@ fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
     }
 }
 
-/// All have answers but one in ten thousand, whose error is said. `LINKWORK_ORACLE` is how many blocks of a hundred states of each of the
-/// five mechanisms are tried, or which ones: `20`, or `20..40`; 2000 blocks are a million states.
+/// All have answers but one in ten thousand, whose error is said. `LINKWORK_ORACLE` is how many blocks of a
+/// hundred states of each of the five mechanisms are tried, or which ones: `20`, or `20..40`; 2000 blocks are
+/// a million states.
 #[test]
 fn states_at_random_have_answers() {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();

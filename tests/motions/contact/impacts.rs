@@ -17,8 +17,8 @@ struct Dice {
     wall: Contact,
 }
 
-/// A block on its face and against a wall: up to eight corners at once, some in both, with more impulses than the motion can tell
-/// apart; friction from none to more than anything has.
+/// A block on its face and against a wall: up to eight corners at once, some in both, with more impulses than
+/// the motion can tell apart; friction from none to more than anything has.
 #[test]
 fn a_block_in_a_corner_obeys_the_laws() {
     let mut random = Random(1);
@@ -49,8 +49,8 @@ fn balls_in_a_pile_obey_the_laws() {
     }
 }
 
-/// The double pendulum whose tip strikes the floor: with Newton's restitution and friction it could gain energy (Kane and
-/// Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8), and must not.
+/// The double pendulum whose tip strikes the floor: with Newton's restitution and friction it could gain
+/// energy (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8), and must not.
 #[test]
 fn a_double_pendulum_that_strikes_the_floor_gains_no_energy() {
     let mut random = Random(3);

@@ -58,8 +58,8 @@ fn between_impacts_the_order_is_two() {
     assert!(errors[2][0].max(errors[2][1]) < 1e-3, "{errors:?}");
 }
 
-/// Of a cart on a spring with `ω = 4 rad/s` the leapfrog keeps `(1 − ω² h²/4) v² + ω² x²`, so that its energy is off by `ω² h²/4` of it at
-/// most, after however many oscillations.
+/// Of a cart on a spring with `ω = 4 rad/s` the leapfrog keeps `(1 − ω² h²/4) v² + ω² x²`, so that its energy
+/// is off by `ω² h²/4` of it at most, after however many oscillations.
 #[test]
 fn the_energy_of_oscillations_does_not_drift() {
     let (m, h) = (Cart {}, 0.01);
@@ -75,7 +75,8 @@ fn the_energy_of_oscillations_does_not_drift() {
     assert_eq!(samples.len(), 41);
 }
 
-/// A block that falls on its face slides, comes to rest where Coulomb's law says, and stays there to rounding.
+/// A block that falls on its face slides, comes to rest where Coulomb's law says, and stays there to
+/// rounding.
 #[test]
 fn a_block_slides_and_rests() {
     let m = Block {};

@@ -30,8 +30,8 @@ fn hold(q: &SVector<f64, 19>, v: &SVector<f64, 18>) -> SVector<f64, 12> {
     })
 }
 
-/// It falls on its feet, and stands: on a slope of 10° it neither sinks nor creeps, where other engines creep by
-/// millimetres a second.
+/// It falls on its feet, and stands: on a slope of 10° it neither sinks nor creeps, where other engines creep
+/// by millimetres a second.
 #[test]
 fn a_quadruped_stands() {
     let m = Solo { slope: 10.0_f64.to_radians() };
@@ -75,8 +75,8 @@ struct Humanoid {
     right_heel: [Contact; 2],
 }
 
-/// It drops onto its soles and stands, its joints held by springs and dampers: it does not creep, all of its weight is on its soles, and
-/// what presses does so below its centre of mass.
+/// It drops onto its soles and stands, its joints held by springs and dampers: it does not creep, all of its
+/// weight is on its soles, and what presses does so below its centre of mass.
 #[test]
 fn a_humanoid_stands() {
     let m = Humanoid {};
@@ -138,7 +138,8 @@ struct Crab {
     hand: [Contact; 4],
 }
 
-/// Differences of `M⁻¹ Gᵀ` and `G M⁻¹ Gᵀ` from those by a general factorisation, as a part of their largest entries.
+/// Differences of `M⁻¹ Gᵀ` and `G M⁻¹ Gᵀ` from those by a general factorisation, as a part of their largest
+/// entries.
 fn response_errors<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,

@@ -36,7 +36,8 @@ fn tower() {
     assert_eq!(samples, 5);
 }
 
-/// The matrices of 240 rates are on the stack: an unoptimised build takes more than the two megabytes of a test's thread.
+/// The matrices of 240 rates are on the stack: an unoptimised build takes more than the two megabytes of a
+/// test's thread.
 #[test]
 fn a_tower_of_ten_boxes_stands() {
     thread::Builder::new().stack_size(32 << 20).spawn(tower).unwrap().join().unwrap();

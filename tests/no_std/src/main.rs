@@ -1,7 +1,7 @@
 //! A computed-torque controller of a seven-axis arm with the arm that it moves, a body in flight with every
-//! integrator, an engine with a closed loop, and a sledge that strikes the ground and comes to rest there, without the standard library,
-//! without an allocator and without any way to panic: the panic handler calls a function that does not exist, so that a program with a
-//! panic left in it cannot be linked.
+//! integrator, an engine with a closed loop, and a sledge that strikes the ground and comes to rest there,
+//! without the standard library, without an allocator and without any way to panic: the panic handler calls a
+//! function that does not exist, so that a program with a panic left in it cannot be linked.
 
 #![no_std]
 #![no_main]

@@ -1,7 +1,8 @@
 //! The crate dynibo behind the interface that `src/bin/peers/library.rs` of the benches states.
 //!
-//! It keeps the velocity, acceleration and force of a free base in world axes, angular part first, and has its own
-//! value of g. All of that is turned round where no clock runs: when a robot is opened, and when a result is taken.
+//! It keeps the velocity, acceleration and force of a free base in world axes, angular part first, and has
+//! its own value of g. All of that is turned round where no clock runs: when a robot is opened, and when a
+//! result is taken.
 
 use dynibo::{BaseState, FloatingRobot, Frame, Robot, RobotModel, Twist};
 use nalgebra::{DMatrix, DVector, DVectorView, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
@@ -94,8 +95,8 @@ impl Peer {
         Ok(state)
     }
 
-    /// What turns one of dynibo's vectors of generalized forces into one of the other peers: a rotation, and rows in
-    /// another order.
+    /// What turns one of dynibo's vectors of generalized forces into one of the other peers: a rotation, and
+    /// rows in another order.
     fn change(&self, state: &State) -> DMatrix<f64> {
         let nv = state.lack.len();
         let base = nv - self.order.len();

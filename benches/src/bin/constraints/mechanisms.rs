@@ -44,8 +44,8 @@ impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
     }
 }
 
-/// A mechanism near a configuration, which is brought onto the constraints with a velocity: the first state. The others
-/// are random ones, as far as `spread` away.
+/// A mechanism near a configuration, which is brought onto the constraints with a velocity: the first state.
+/// The others are random ones, as far as `spread` away.
 fn mechanism<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     (title, name): (&'static str, &'static str),
     m: M,

@@ -23,7 +23,8 @@ const LIBRARIES: [(&str, Owner); 4] = [
 /// In the order of the table.
 const COLUMNS: [Owner; 4] = [Owner::Linkwork, Owner::Sympy, Owner::Pinocchio, Owner::Mujoco];
 
-/// Writes the states of every mechanism, each with its accelerations in a line; prints the names of the folders.
+/// Writes the states of every mechanism, each with its accelerations in a line; prints the names of the
+/// folders.
 pub fn write(folder: &Path) -> io::Result<()> {
     for make in mechanisms() {
         let m = make();

@@ -1,5 +1,6 @@
-//! Iterations of an iterative linear-quadratic regulator (iLQR) on an arm, on a quadruped that flies and on one that trots: nanoseconds a node of their
-//! parts, and the costs of the iterates, as JSON for `benches/peers/optimal.py`, which has the same problems for Crocoddyl.
+//! Iterations of an iterative linear-quadratic regulator (iLQR) on an arm, on a quadruped that flies and on
+//! one that trots: nanoseconds a node of their parts, and the costs of the iterates, as JSON for
+//! `benches/peers/optimal.py`, which has the same problems for Crocoddyl.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::optimal::{Policy, Quadratic, Value, backward_into};
@@ -73,8 +74,8 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         0.5 * (weights[0] * off.norm_squared() + weights[1] * v.norm_squared())
     }
 
-    /// Gradients by configuration and velocity, and what of the Hessian is not the same everywhere, without the curvature of the
-    /// difference (Gauss and Newton).
+    /// Gradients by configuration and velocity, and what of the Hessian is not the same everywhere, without
+    /// the curvature of the difference (Gauss and Newton).
     fn model<const NV: usize, const NU: usize>(
         &self,
         (q, v): &State<NQ, NV>,

@@ -1,5 +1,5 @@
-//! A trot whose contacts are known: phases in which feet are held, and touchdowns between them. The gait and its costs are those of
-//! Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
+//! A trot whose contacts are known: phases in which feet are held, and touchdowns between them. The gait and
+//! its costs are those of Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
 
 use super::{ITERATIONS, State, least};
 use linkwork::contact::{self, Held, HeldDerivatives, Touch};
@@ -146,7 +146,8 @@ fn of_joints<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12
     by_u
 }
 
-/// Rows of the friction cone as factors of the normal force and those along tangents, and how far a force is outside of each.
+/// Rows of the friction cone as factors of the normal force and those along tangents, and how far a force is
+/// outside of each.
 fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
     let sides = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| [-FRICTION, x, y]);
     let [normal, x, y] = force;
@@ -363,7 +364,8 @@ impl Trot {
     }
 }
 
-/// Iterations from what holds the robot still, with the line search of Crocoddyl's `SolverDDP`; the figures as JSON.
+/// Iterations from what holds the robot still, with the line search of Crocoddyl's `SolverDDP`; the figures
+/// as JSON.
 pub fn measure() -> String {
     let mut start = Walker {}.neutral();
     start[2] = 0.235;

@@ -72,8 +72,8 @@ macro_rules! derivatives {
     }};
 }
 
-/// Functions whose results go into matrices that keep their zeros: the mass matrix if those are a quarter of it, and
-/// derivatives.
+/// Functions whose results go into matrices that keep their zeros: the mass matrix if those are a quarter of
+/// it, and derivatives.
 macro_rules! kept {
     ($type:ty, $value:expr, Linkwork, $states:expr) => {{
         const N: usize = <$type>::NV;

@@ -11,8 +11,8 @@ use std::path::Path;
 const CASADI: [&str; 2] = ["plain", "shared"];
 const FLAGS: [&str; 2] = ["exact", "fast"];
 
-/// Measures every function of every robot and prints a table. Whatever disagrees is left out; it is an error if that is
-/// generated code of our own.
+/// Measures every function of every robot and prints a table. Whatever disagrees is left out; it is an error
+/// if that is generated code of our own.
 pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.2 };
     println!(

@@ -121,14 +121,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
     if is_mode {
         docs.iter_mut().for_each(|text| *text = text.replace("`None`", "zero"));
     }
-    Some(Function {
-        name: name.to_string(),
-        docs,
-        arguments,
-        results,
-        call,
-        lanes: None,
-    })
+    Some(Function { name: name.to_string(), docs, arguments, results, call, lanes: None })
 }
 
 /// The paragraphs of doc comments.

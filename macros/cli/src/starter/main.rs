@@ -26,7 +26,8 @@ pub struct CartPole {
 /// A page that shows how the pole falls, and how it is kept upright.
 pub fn page() -> Result<Page, Box<dyn std::error::Error>> {
     let cart_pole = CartPole { pole_length: 1.0 };
-    // The start: configuration q and velocity v, with entries named by `CartPole::CONFIGURATION` and `CartPole::VELOCITIES`.
+    // The start: configuration q and velocity v, with entries named by `CartPole::CONFIGURATION` and
+    // `CartPole::VELOCITIES`.
     let motion = || simulate(&cart_pole).from([0.0, 0.2], [0.0, 0.0]).duration(8.0).sample_every(1.0 / 60.0);
     let falls: Vec<_> = motion().collect::<Result<_, _>>()?;
     // The pole leans to the left at positive angles, and the cart has to follow it.

@@ -12,8 +12,8 @@ fn python() -> Option<String> {
     has.then_some(python)
 }
 
-/// What CasADi loads has the values of the functions and their slopes; acados' functions fit together. Without CasADi it is compiled
-/// without a warning.
+/// What CasADi loads has the values of the functions and their slopes; acados' functions fit together.
+/// Without CasADi it is compiled without a warning.
 #[test]
 fn casadi_loads_functions_with_their_jacobians() {
     let Some(compiler) = compilers().into_iter().next() else {

@@ -151,7 +151,8 @@ pub fn compare(case: &Case, found: &[Vec<f64>], tolerance: f64) {
     }
 }
 
-/// Sources of more bytes are compiled as plain as can be alone: what a compiler of C fuses and reorders is in shorter ones, too.
+/// Sources of more bytes are compiled as plain as can be alone: what a compiler of C fuses and reorders is in
+/// shorter ones, too.
 const LONG: u64 = 800_000;
 
 /// Exports, compiles and compares, once as plain as can be and once for this processor.

@@ -1,4 +1,5 @@
-//! What `linkwork export c` writes, compiled by the C compiler of the system, against the same functions in Rust.
+//! What `linkwork export c` writes, compiled by the C compiler of the system, against the same functions in
+//! Rust.
 
 mod casadi;
 mod compiled;
@@ -315,14 +316,16 @@ fn tables_are_looked_up_alike() {
         let mut case = case!("wing", Wing, m, [2.0], time(), of_trees);
         case.prefix = prefix;
         case.tables = [ARRAYS, c];
-        // Slopes by the length of a step are compared with differences, which are not exact where slopes jump.
+        // Slopes by the length of a step are compared with differences, which are not exact where slopes
+        // jump.
         case.tolerance = 1e-9;
         case.entries.extend(steps!(Wing, m, case));
         agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
     }
 }
 
-/// Functions that solve for forces of constraints are not there, which the header and the command say; the others are.
+/// Functions that solve for forces of constraints are not there, which the header and the command say; the
+/// others are.
 #[test]
 fn closed_loops_keep_what_needs_no_solution() {
     let m = FourBar { g: 9.8, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
@@ -351,7 +354,8 @@ fn in_single_precision() {
     compare(&case, &found, 2e-3);
 }
 
-/// Names of mechanisms that are those of helpers, of headers, of arguments or of types: what is written compiles with every one of them.
+/// Names of mechanisms that are those of helpers, of headers, of arguments or of types: what is written
+/// compiles with every one of them.
 #[test]
 fn any_name_of_a_mechanism_compiles() {
     let Some(compiler) = compilers().into_iter().next() else {

@@ -2,7 +2,8 @@
 
 use linkwork::prelude::*;
 
-/// A body in space in velocities along the axes of the ground, with an arm on Cardan's angles in its angular velocity.
+/// A body in space in velocities along the axes of the ground, with an arm on Cardan's angles in its angular
+/// velocity.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 pub struct Juggler {
     pub axial: f64,

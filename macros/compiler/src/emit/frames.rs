@@ -57,12 +57,12 @@ pub fn write_frames(
 
 /// Declarations of a trait's methods, and the methods with their bodies.
 #[derive(Default)]
-struct Steps {
+struct StepMethods {
     declarations: String,
     methods: String,
 }
 
-impl Steps {
+impl StepMethods {
     /// Adds a method with a body.
     fn add(&mut self, attribute: &str, signature: &str, body: &str) {
         let _ = writeln!(self.declarations, "{signature};");
@@ -71,8 +71,8 @@ impl Steps {
 }
 
 /// Writes the private steps of all links and frames.
-fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) -> Steps {
-    let mut steps = Steps::default();
+fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) -> StepMethods {
+    let mut steps = StepMethods::default();
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
         let f = Function::part(name, arguments, n, program.clone());
         let mut body = String::new();
@@ -205,7 +205,7 @@ fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>
 }
 
 /// Writes what is known of a link from the ground on: its placement, its twist, and its twist and acceleration.
-fn write_path(steps: &mut Steps, k: usize, link: &LinkSteps, s: &Signature<'_>) {
+fn write_path(steps: &mut StepMethods, k: usize, link: &LinkSteps, s: &Signature<'_>) {
     use Argument::{A, Q, V};
     let (scalar, t) = (s.scalar.name(), time(s));
     let mut method = |name: &str, arguments: &[Argument], n: usize, body: &str| {
@@ -268,7 +268,7 @@ fn write_jacobian(
 
 /// Writes what the Jacobians of frames need of a link: the placements of the links from the ground to it, and their columns
 /// for a point at `o`. Each calls that of the link's parent, so that their length does not grow with the square of a chain's.
-fn write_path_columns(steps: &mut Steps, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
+fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
     let (scalar, t, link, count) = (s.scalar.name(), time(s), &links[k], links.len());
     let state = s.parameters(&s.timed(&[Argument::Q]));
     let (before, parent) = match link.parent {

@@ -52,7 +52,8 @@ impl<'a> Cx<'a> {
         Cx::of_pieces(&[(text, &path.text)], vec![piece], path.place.span, diagnostics)
     }
 
-    /// The context of a text that is put together from pieces of files, each with its path; the first piece begins it.
+    /// The context of a text that is put together from pieces of files, each with its path; the first piece
+    /// begins it.
     pub(super) fn of_pieces(
         files: &[(&'a str, &str)],
         pieces: Vec<Piece>,
@@ -72,7 +73,8 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// Places are from now on those of a text that has `more` than the file, in a line, from the byte at `offset` on.
+    /// Places are from now on those of a text that has `more` than the file, in a line, from the byte at
+    /// `offset` on.
     pub(super) fn add(&mut self, offset: usize, more: &str) {
         self.added = (offset, more.len(), more.chars().count() as u32);
     }

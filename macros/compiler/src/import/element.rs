@@ -86,8 +86,9 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
     }
 }
 
-/// Reports everything that an element of the file's own vocabulary holds besides attributes with these names: other attributes, text,
-/// elements. It would be lost without a word. Attributes in `foreign` are for other tools.
+/// Reports everything that an element of the file's own vocabulary holds besides attributes with these names:
+/// other attributes, text, elements. It would be lost without a word. Attributes in `foreign` are for other
+/// tools.
 pub(super) fn check_only(
     node: Node<'_>,
     required: &[&str],
@@ -245,11 +246,12 @@ fn read_numbers<const N: usize>(
     good.then_some(Placed { value, place })
 }
 
-/// Largest angle that is taken for one in radians however it is written: a full turn, and more than any rounding adds to it.
+/// Largest angle that is taken for one in radians however it is written: a full turn, and more than any
+/// rounding adds to it.
 const LARGEST_TURN: f64 = 7.0;
 
-/// Reports angles of an orientation that are most likely degrees, whole and half ones beyond a full turn: files have multiples of π too.
-/// `help` says what the format takes.
+/// Reports angles of an orientation that are most likely degrees, whole and half ones beyond a full turn:
+/// files have multiples of π too. `help` says what the format takes.
 pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, cx: &mut Cx<'_>) {
     let is_likely = |n: &&f64| n.abs() > LARGEST_TURN && (2.0 * **n).fract() == 0.0;
     let Some(n) = angles.iter().find(is_likely) else { return };

@@ -14,11 +14,12 @@ pub const LARGEST_FILE: usize = 16 << 20;
 /// Neighbours of a missing file that are looked at.
 const NEIGHBOURS: usize = 1000;
 
-/// Characters without width that Unicode does not count as blanks: a zero-width space, a word joiner, a byte order mark.
+/// Characters without width that Unicode does not count as blanks: a zero-width space, a word joiner, a byte
+/// order mark.
 const INVISIBLE: [char; 3] = ['\u{200b}', '\u{2060}', '\u{feff}'];
 
-/// Returns a text without a byte order mark at its start, and with spaces in the place of invisible characters that parsers of XML and
-/// of numbers do not know, such as no-break spaces.
+/// Returns a text without a byte order mark at its start, and with spaces in the place of invisible
+/// characters that parsers of XML and of numbers do not know, such as no-break spaces.
 pub fn with_plain_blanks(text: &str) -> Cow<'_, str> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_strange = |c: char| !c.is_ascii() && (c.is_whitespace() || INVISIBLE.contains(&c));

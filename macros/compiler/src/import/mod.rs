@@ -1,8 +1,8 @@
 //! Files of other formats → the lists of bodies and joints of a [`Description`](crate::syntax::Description),
 //! with line and column of every word and number.
 //!
-//! Knows XML, URDF, MJCF and SDF; no mechanics. It does not judge masses and inertias, and it does not read geometry,
-//! limits, transmissions or the extensions of simulators.
+//! Knows XML, URDF, MJCF and SDF; no mechanics. It does not judge masses and inertias, and it does not read
+//! geometry, limits, transmissions or the extensions of simulators.
 
 use crate::diag::Diagnostics;
 use crate::syntax::FileFormat;
@@ -28,7 +28,8 @@ mod tests;
 pub use file::{LARGEST_FILE, read_file, with_plain_blanks};
 pub use imported::Imported;
 
-/// Reads the text of a file; other files that it names are looked up beside it, at `options.path` in `folder`.
+/// Reads the text of a file; other files that it names are looked up beside it, at `options.path` in
+/// `folder`.
 ///
 /// Every mistake is reported to `cx`, at the option's literal and with the file's own line and column;
 /// `None` if there was any.

@@ -127,8 +127,8 @@ pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
     about(axis, size.atan2(direction[2]))
 }
 
-/// Roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. One turn after the other is taken off, so that
-/// nothing is lost where two axes meet.
+/// Roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. One turn after the other is taken
+/// off, so that nothing is lost where two axes meet.
 pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
     let mut m = m.map(|row| row.map(|x| if x.abs() < ROUNDING { 0.0 } else { x }));
     let upright = m[0][0].hypot(m[1][0]) < 1e-12;

@@ -1,4 +1,5 @@
-//! Texts that are put together from pieces of several files, which know where they come from. Knows no file format.
+//! Texts that are put together from pieces of several files, which know where they come from. Knows no file
+//! format.
 
 use super::context::{Cx, Piece, position, quote};
 use super::element::Node;

@@ -31,8 +31,8 @@ fn max_depth(format: FileFormat) -> usize {
     }
 }
 
-/// Returns the text of a file with spaces in the place of blanks that XML does not know, and of an XML declaration that follows empty
-/// lines: other readers of URDF take both. Lines and columns are preserved.
+/// Returns the text of a file with spaces in the place of blanks that XML does not know, and of an XML
+/// declaration that follows empty lines: other readers of URDF take both. Lines and columns are preserved.
 pub(super) fn cleaned(text: &str) -> Cow<'_, str> {
     match with_plain_blanks(text.trim_end_matches('\0')) {
         Cow::Borrowed(plain) => without_late_declaration(plain),
@@ -54,10 +54,11 @@ fn without_late_declaration(text: &str) -> Cow<'_, str> {
 /// Prefixes that the root does not declare and that are declared for the file.
 const MOST_PREFIXES: usize = 16;
 
-/// Parses the file; `None` if it is not XML or is a template. `declared` holds its text where that lacks declarations.
+/// Parses the file; `None` if it is not XML or is a template. `declared` holds its text where that lacks
+/// declarations.
 ///
-/// Exporters drop the declarations of simulators' prefixes (`drake:`, `sensor:`) and keep what bears them. All of that is
-/// skipped, so it is no mistake: the prefixes are declared in the root element.
+/// Exporters drop the declarations of simulators' prefixes (`drake:`, `sensor:`) and keep what bears them.
+/// All of that is skipped, so it is no mistake: the prefixes are declared in the root element.
 pub(super) fn parse<'t>(
     text: &'t str,
     declared: &'t OnceCell<String>,
@@ -105,8 +106,8 @@ fn with(text: &str, at: usize, more: &str) -> String {
     [before, more, after].concat()
 }
 
-/// Declarations of prefixes for the text of the root element, those that it declares itself left out: all at once, because
-/// each attempt to parse takes as long as the file.
+/// Declarations of prefixes for the text of the root element, those that it declares itself left out: all at
+/// once, because each attempt to parse takes as long as the file.
 fn declarations(root: &str, prefixes: &[&str]) -> String {
     let tag = &root[..scan_tag(root, 0, &mut Vec::new(), &mut |_| {}).unwrap_or(root.len())];
     let own: Vec<&str> =
@@ -194,8 +195,8 @@ fn end_behind(rest: &str, skip: usize, end: &str) -> usize {
     rest.get(skip..).and_then(|body| body.find(end)).map_or(rest.len(), |k| skip + k + end.len())
 }
 
-/// Length of the start tag at the head of `rest`; the element is added to `open` unless it is empty, and prefixes of names are
-/// noted.
+/// Length of the start tag at the head of `rest`; the element is added to `open` unless it is empty, and
+/// prefixes of names are noted.
 fn scan_tag<'t>(
     rest: &'t str,
     start: usize,

@@ -72,7 +72,8 @@ impl Angles {
 }
 
 impl Angles {
-    /// Returns the angles with most lanes first; angles with equally many lanes in the order of the inputs they depend on.
+    /// Returns the angles with most lanes first; angles with equally many lanes in the order of the inputs
+    /// they depend on.
     pub fn widest_first(&self, program: &Program, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
         let mut list: Vec<&Angle> = self.list.iter().collect();
         list.sort_by_key(|angle| (Reverse(lanes(angle.angle)), input(program, angle.angle)));

@@ -1,6 +1,7 @@
-//! Reordering of sums so that more products fuse. A sum of two products takes a product and a fused instruction. If it is then
-//! added to another value, as in `a + (b c + d e)`, the order `(a + b c) + d e` saves an instruction. The numbers of
-//! multiplications and additions stay the same. The sum keeps its order if `a` is computed so late that the sum would wait.
+//! Reordering of sums so that more products fuse. A sum of two products takes a product and a fused
+//! instruction. If it is then added to another value, as in `a + (b c + d e)`, the order `(a + b c) + d e`
+//! saves an instruction. The numbers of multiplications and additions stay the same. The sum keeps its order
+//! if `a` is computed so late that the sum would wait.
 
 use super::terms::{LONGEST, Sum, Term};
 use super::times::Times;
@@ -54,8 +55,8 @@ impl Program {
         joined(0).or_else(|| joined(1))
     }
 
-    /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it is not, or if the
-    /// sum is too long.
+    /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it
+    /// is not, or if the sum is too long.
     fn descend(&self, top: Term, sum: &mut Sum) -> bool {
         let Some(terms) = self.lone_addition(top.operand).filter(|_| sum.additions.len() < LONGEST) else {
             return false;
@@ -95,7 +96,8 @@ impl Program {
         self.lone_product(term.operand).is_some()
     }
 
-    /// Sorts the instructions so that operands precede operations; `late` instructions come right before their first use.
+    /// Sorts the instructions so that operands precede operations; `late` instructions come right before
+    /// their first use.
     fn sort_instructions(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
         let mut is_placed = vec![false; n];
@@ -127,7 +129,8 @@ mod tests {
     use crate::lower::lower;
     use crate::lower::pipeline::PART;
 
-    /// Sums of tens of thousands of terms with two products at the beginning or at the end, on the small stack of a test thread.
+    /// Sums of tens of thousands of terms with two products at the beginning or at the end, on the small
+    /// stack of a test thread.
     #[test]
     fn long_sums_need_no_stack() {
         let g = Graph::new();

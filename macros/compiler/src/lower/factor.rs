@@ -1,5 +1,5 @@
-//! Factors common to several terms of a sum are taken out: `a b + a c` becomes `a (b + c)`, with one multiplication less. The
-//! number of instructions stays the same where products are fused into sums.
+//! Factors common to several terms of a sum are taken out: `a b + a c` becomes `a (b + c)`, with one
+//! multiplication less. The number of instructions stays the same where products are fused into sums.
 
 use super::terms::{LONGEST, Term};
 use super::{Op, Operand, Program};

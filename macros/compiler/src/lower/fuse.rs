@@ -23,8 +23,8 @@ impl Program {
         Program { simd: None, ..self.clone() }.with_fused_products()
     }
 
-    /// Fuses products into sums. Generated code uses the hardware's fused operation where it exists, and a product and a sum
-    /// elsewhere.
+    /// Fuses products into sums. Generated code uses the hardware's fused operation where it exists, and a
+    /// product and a sum elsewhere.
     pub(super) fn with_fused_products(mut self) -> Program {
         let counts = self.counts;
         for k in 0..self.instructions.len() {

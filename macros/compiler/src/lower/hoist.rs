@@ -1,5 +1,5 @@
-//! Hoisted values, which are computed before a program runs: programs treat them as constants with symbols of their own, one
-//! for each sign. A node of the graph has the same symbol in all programs.
+//! Hoisted values, which are computed before a program runs: programs treat them as constants with symbols of
+//! their own, one for each sign. A node of the graph has the same symbol in all programs.
 
 use super::{Operand, Program};
 use crate::expr::{Id, Node, Symbol};
@@ -57,8 +57,8 @@ pub(super) fn negated(o: Operand) -> Operand {
     }
 }
 
-/// Returns for each node, operands first, whether it depends on known symbols and constants, and on at least one known symbol.
-/// Operations on constants alone are not hoisted.
+/// Returns for each node, operands first, whether it depends on known symbols and constants, and on at least
+/// one known symbol. Operations on constants alone are not hoisted.
 pub(super) fn hoisted_nodes(
     nodes: &[Node],
     place: impl Fn(Id) -> usize,

@@ -4,8 +4,8 @@ use super::{Op, Operand, Program};
 use crate::expr::Function;
 
 impl Program {
-    /// Returns the maximum number of live values: values that are computed and will still be used or returned. Each lane counts;
-    /// arguments and constants do not.
+    /// Returns the maximum number of live values: values that are computed and will still be used or
+    /// returned. Each lane counts; arguments and constants do not.
     pub fn max_live(&self) -> usize {
         let end = self.instructions.len();
         let mut last = vec![0; end];
@@ -34,9 +34,9 @@ impl Program {
         most
     }
 
-    /// Returns the number of instructions that may branch: table lookups, which search their grid, and functions of the math
-    /// library. All sines and cosines count once, since large angles fall back to the library. Square roots, magnitudes, signs,
-    /// minima and maxima do not branch.
+    /// Returns the number of instructions that may branch: table lookups, which search their grid, and
+    /// functions of the math library. All sines and cosines count once, since large angles fall back to the
+    /// library. Square roots, magnitudes, signs, minima and maxima do not branch.
     pub fn branches(&self) -> usize {
         let is_angle = |op: &&Op| matches!(op, Op::Call(Function::Sin | Function::Cos, _));
         let others = self.instructions.iter().filter(|op| match op {

@@ -1,5 +1,5 @@
-//! Lowering of expressions to a straight-line program that computes only the values that the outputs need, each before its
-//! first use, with operations counted. Knows no mechanics.
+//! Lowering of expressions to a straight-line program that computes only the values that the outputs need,
+//! each before its first use, with operations counted. Knows no mechanics.
 
 use crate::expr::{Expr, Graph, Id, Node, Symbol};
 use std::time::Instant;
@@ -25,12 +25,14 @@ pub use angles::{Angle, Angles};
 pub use hoist::{hoisted, place_hoisted};
 pub use program::{Counts, Op, Operand, Program};
 
-/// Drafts a program of the outputs. Products and sums are separate instructions until [`pipeline::FINISH`] or [`pipeline::PART`] fuses them.
+/// Drafts a program of the outputs. Products and sums are separate instructions until [`pipeline::FINISH`] or
+/// [`pipeline::PART`] fuses them.
 pub fn lower(outputs: &[Expr<'_>]) -> Program {
     lower_without(outputs, &|_| false)
 }
 
-/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see [`hoisted`].
+/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see
+/// [`hoisted`].
 pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let start = Instant::now();
     let program = select(outputs, known);
@@ -46,8 +48,8 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
         return Program::default();
     };
     let graph = first.graph();
-    // Position of each node in the order, counted from one. Only the entries of needed nodes are written, so that a small
-    // function does not pay for a large graph.
+    // Position of each node in the order, counted from one. Only the entries of needed nodes are written, so
+    // that a small function does not pay for a large graph.
     let mut places = graph.borrow_table();
     let order = needed(outputs, &mut places);
     let place = |id: Id| places[id as usize] as usize - 1;
@@ -108,8 +110,8 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     program
 }
 
-/// Returns the number of operations of the outputs, without negations and elementary functions: that of a program before its
-/// sums are factored, within a few hundredths. Cheaper than drafting the program.
+/// Returns the number of operations of the outputs, without negations and elementary functions: that of a
+/// program before its sums are factored, within a few hundredths. Cheaper than drafting the program.
 pub fn size(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
     let Some(first) = outputs.first() else { return 0 };
     let graph = first.graph();
@@ -132,15 +134,16 @@ fn nodes_of(graph: &Graph, ids: &[Id]) -> Vec<Node> {
     ids.iter().map(|id| nodes[*id as usize]).collect()
 }
 
-/// Returns the ids of all nodes that the outputs need, operands first, and writes their positions, counted from one, to the
-/// table.
+/// Returns the ids of all nodes that the outputs need, operands first, and writes their positions, counted
+/// from one, to the table.
 fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
     let Some(first) = outputs.first() else {
         return Vec::new();
     };
     let nodes = first.graph().nodes();
     let mut todo: Vec<Id> = Vec::new();
-    // Nodes are created in the order of the algorithm, operands before operations: a bit set keeps this order.
+    // Nodes are created in the order of the algorithm, operands before operations: a bit set keeps this
+    // order.
     let last = outputs.iter().map(|o| o.id()).max().unwrap_or(0);
     let mut bits = vec![0_u64; last as usize / 64 + 1];
     let mut visit = |id: Id, todo: &mut Vec<Id>| {

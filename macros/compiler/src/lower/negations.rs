@@ -1,9 +1,10 @@
-//! Choice between computing `x` and `−x`. A difference costs the same either way, and a constant factor can have either
-//! sign, so most negations can be avoided by computing the negatives of some values.
+//! Choice between computing `x` and `−x`. A difference costs the same either way, and a constant factor can
+//! have either sign, so most negations can be avoided by computing the negatives of some values.
 //!
-//! Every value is stored with a sign: plus if the value itself is stored, minus if its negative is. The signs of differences
-//! and of multiples are free; those of other values follow from their operands. An output must be stored with plus and costs a
-//! negation otherwise. The search starts with all free signs plus and changes single signs while that saves negations.
+//! Every value is stored with a sign: plus if the value itself is stored, minus if its negative is. The signs
+//! of differences and of multiples are free; those of other values follow from their operands. An output must
+//! be stored with plus and costs a negation otherwise. The search starts with all free signs plus and changes
+//! single signs while that saves negations.
 
 use super::hoist::{self, is_constant};
 use super::terms::Term;
@@ -19,8 +20,8 @@ const TRIES: usize = 6;
 const REACH: usize = 400;
 
 impl Program {
-    /// Removes negations by choosing signs. Angles `c - q` become `q - c` if that takes at most one more negation: the offsets of
-    /// all angles are then one vector addition.
+    /// Removes negations by choosing signs. Angles `c - q` become `q - c` if that takes at most one more
+    /// negation: the offsets of all angles are then one vector addition.
     pub(super) fn with_cheap_signs(self) -> Program {
         let reversed = self.reversed_angles();
         if reversed.is_empty() && !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
@@ -170,7 +171,8 @@ impl<'a> Signs<'a> {
         }
     }
 
-    /// Changes the signs along a path where they are free or become free, if that saves at least `least` negations.
+    /// Changes the signs along a path where they are free or become free, if that saves at least `least`
+    /// negations.
     fn try_change(&mut self, path: &[usize], least: isize) -> bool {
         let before: Vec<bool> = path.iter().map(|k| self.choice[*k]).collect();
         for &k in path {

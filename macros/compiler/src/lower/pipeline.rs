@@ -74,7 +74,8 @@ impl Program {
     }
 }
 
-/// Callback after every pass: the function that is being compiled, the name of the pass, the program, and the duration.
+/// Callback after every pass: the function that is being compiled, the name of the pass, the program, and the
+/// duration.
 type Observer = Box<dyn FnMut(&str, &str, &Program, Duration)>;
 
 thread_local! {

@@ -248,8 +248,8 @@ impl Program {
         finite && self.tuples.iter().flatten().all(|c| c.is_finite())
     }
 
-    /// Returns the text of an operation on constants whose result is not finite, if there is one. Operations on constants with a
-    /// finite result may remain where a pass has changed a sign.
+    /// Returns the text of an operation on constants whose result is not finite, if there is one. Operations
+    /// on constants with a finite result may remain where a pass has changed a sign.
     pub fn undefined(&self) -> Option<String> {
         let constant = |o: Operand| match o {
             Operand::Const(c) => Some(c),

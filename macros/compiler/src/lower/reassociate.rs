@@ -1,5 +1,6 @@
-//! Reordering of sums on the critical path by the times at which their terms become available. If a late term is added first, all
-//! other additions wait for it. The numbers of multiplications and additions stay the same.
+//! Reordering of sums on the critical path by the times at which their terms become available. If a late term
+//! is added first, all other additions wait for it. The numbers of multiplications and additions stay the
+//! same.
 //!
 //! Sums off the critical path keep their order: a partial sum that is computed early would occupy a register.
 
@@ -81,7 +82,8 @@ impl Program {
         sums
     }
 
-    /// Sorts the instructions so that operands precede operations; `late` instructions come right after their last operand.
+    /// Sorts the instructions so that operands precede operations; `late` instructions come right after their
+    /// last operand.
     fn move_late(self, late: &[bool]) -> Program {
         let n = self.instructions.len();
         let mut users = vec![Vec::new(); n];
@@ -113,7 +115,8 @@ impl Program {
 }
 
 impl Times {
-    /// Orders the terms of a sum by time, scalars before lanes; at least one of the first two terms is not a product.
+    /// Orders the terms of a sum by time, scalars before lanes; at least one of the first two terms is not a
+    /// product.
     fn ordered(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
         sum.terms
             .sort_by_key(|term| (is_wide(term.operand), self.term(program, *term).0, term.operand.number()));
@@ -126,7 +129,8 @@ impl Times {
 }
 
 impl Program {
-    /// Returns for each instruction the latency from its value to the end of the program, with reordered sums.
+    /// Returns for each instruction the latency from its value to the end of the program, with reordered
+    /// sums.
     fn remaining_latency(&self, sums: &[Option<Sum>]) -> Vec<u32> {
         let mut rest = vec![0; self.instructions.len()];
         let mut is_part = vec![false; self.instructions.len()];

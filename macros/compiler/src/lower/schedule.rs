@@ -1,6 +1,7 @@
-//! List scheduling of instructions by critical path. A processor looks a few hundred instructions ahead of the oldest one that
-//! waits, so independent computations, such as bias forces and factors of the mass matrix, overlap only if their instructions are
-//! interleaved. The next instruction is the one with the longest remaining latency among those whose operands are available.
+//! List scheduling of instructions by critical path. A processor looks a few hundred instructions ahead of
+//! the oldest one that waits, so independent computations, such as bias forces and factors of the mass
+//! matrix, overlap only if their instructions are interleaved. The next instruction is the one with the
+//! longest remaining latency among those whose operands are available.
 
 use super::times::{issue, latency};
 use super::{Operand, Program};
@@ -17,8 +18,8 @@ impl Program {
         }
     }
 
-    /// Returns the estimated time of a call in half cycles: the number of instructions plus the cycles of the critical path,
-    /// since consecutive calls overlap only in part.
+    /// Returns the estimated time of a call in half cycles: the number of instructions plus the cycles of the
+    /// critical path, since consecutive calls overlap only in part.
     pub fn time(&self) -> usize {
         let fused = self.as_fused();
         let longest = fused.critical_latency(&fused.users()).into_iter().max().unwrap_or(0) / CYCLE;
@@ -38,7 +39,8 @@ impl Program {
         users
     }
 
-    /// Returns the latency from the start of each instruction to the end of the program, in thirds of a cycle.
+    /// Returns the latency from the start of each instruction to the end of the program, in thirds of a
+    /// cycle.
     fn critical_latency(&self, users: &[Vec<usize>]) -> Vec<u32> {
         let mut rest = vec![0; users.len()];
         for k in (0..users.len()).rev() {
@@ -48,7 +50,8 @@ impl Program {
         rest
     }
 
-    /// Returns the schedule as indices of instructions, or `None` if the program has enough parallelism in any order.
+    /// Returns the schedule as indices of instructions, or `None` if the program has enough parallelism in
+    /// any order.
     fn order(&self) -> Option<Vec<usize>> {
         let n = self.instructions.len();
         let users = self.users();

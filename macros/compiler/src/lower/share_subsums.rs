@@ -1,7 +1,7 @@
-//! Sums that have terms in common. All sums of a program are written out, as far as they are short, so that what
-//! cancels goes and constants meet; then the two terms that most of them share become a sum of their own, again and
-//! again (the greedy elimination of common subexpressions of linear systems, as for digital filters: Hartley 1996).
-//! What comes of it is kept if it takes fewer instructions.
+//! Sums that have terms in common. All sums of a program are written out, as far as they are short, so that
+//! what cancels goes and constants meet; then the two terms that most of them share become a sum of their
+//! own, again and again (the greedy elimination of common subexpressions of linear systems, as for digital
+//! filters: Hartley 1996). What comes of it is kept if it takes fewer instructions.
 
 use super::lanes::Lanes;
 use super::{Op, Operand, Program};
@@ -21,8 +21,8 @@ const ROUNDS: usize = 5;
 const LONGEST: usize = 32;
 /// Longest sum that is written out.
 const MOST_TERMS: usize = 8;
-/// Up to how many terms a sum is written out in another, and whether also if products would not fuse into it any more:
-/// each is tried.
+/// Up to how many terms a sum is written out in another, and whether also if products would not fuse into it
+/// any more: each is tried.
 const SHORT: [(usize, bool); 5] = [(1, true), (2, true), (4, true), (2, false), (4, false)];
 
 /// What is summed: the number 1, a value that is no sum, or a sum.
@@ -77,8 +77,8 @@ impl Program {
         self
     }
 
-    /// The program with sums shared in a way that takes fewer instructions: of a small program the best one, of others the
-    /// first, with its length once products are fused. `None` if none is shorter than `length`.
+    /// The program with sums shared in a way that takes fewer instructions: of a small program the best one,
+    /// of others the first, with its length once products are fused. `None` if none is shorter than `length`.
     fn sharing_sums(&self, length: usize) -> Option<(usize, Program)> {
         let all = Sums::of(self);
         let is_small = self.instructions.len() <= EXHAUSTIVE_INSTRUCTIONS;

@@ -22,7 +22,8 @@ impl Term {
         Term { negative: self.negative != negative, ..self }
     }
 
-    /// Returns the operation that adds two terms, and true if its result has to be negated: if both terms are negative.
+    /// Returns the operation that adds two terms, and true if its result has to be negated: if both terms are
+    /// negative.
     pub fn sum(a: Term, b: Term) -> (Op, bool) {
         let op = match (a.negative, b.negative) {
             (false, false) | (true, true) => Op::Add(a.operand, b.operand),

@@ -1,4 +1,5 @@
-//! Earliest times at which the values of a program are available, limited by operand latencies alone, with products fused.
+//! Earliest times at which the values of a program are available, limited by operand latencies alone, with
+//! products fused.
 
 use super::terms::Term;
 use super::{Op, Operand, Program};
@@ -29,7 +30,8 @@ impl Times {
         start + if matches!(op, Op::Call(..)) { SINE } else { latency(op) }
     }
 
-    /// Returns the time at which a term can be added, and true if it is a product that fuses; its factors must be available then.
+    /// Returns the time at which a term can be added, and true if it is a product that fuses; its factors
+    /// must be available then.
     pub fn term(&self, program: &Program, term: Term) -> (u32, bool) {
         match program.lone_product(term.operand) {
             Some((a, b)) => (self.value(a).max(self.value(b)), true),

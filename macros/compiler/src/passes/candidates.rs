@@ -18,13 +18,14 @@ pub struct Site {
     pub freedom: Freedom,
     /// Mass properties, if numeric.
     pub mass: Option<Mass>,
-    /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size. The rounding
-    /// error of moments of inertia about the origin grows as the square of this distance.
+    /// Maximum distance by which the link's origin may be moved along its axis: a few times the link's size.
+    /// The rounding error of moments of inertia about the origin grows as the square of this distance.
     pub reach: f64,
 }
 
 impl Site {
-    /// Returns the site of a link of a given size. With `free_parameters`, its mass properties need not be numeric.
+    /// Returns the site of a link of a given size. With `free_parameters`, its mass properties need not be
+    /// numeric.
     pub fn of(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
         let (place, mass) = (Frame::of(&link.placement), Mass::of(&link.inertia));
         let free = freedom(&link.motion);
@@ -53,17 +54,17 @@ impl Site {
 /// Maximum numbers of angles and of shifts that are tried for one link.
 const MAX_CANDIDATES: usize = 5;
 
-/// Maximum distance by which a link's origin may be moved, in units of its size. The common normal of two axes is within this
-/// distance if the sine of the angle between them exceeds its inverse. At this distance rounding costs the link's moments of
-/// inertia at most two digits.
+/// Maximum distance by which a link's origin may be moved, in units of its size. The common normal of two
+/// axes is within this distance if the sine of the angle between them exceeds its inverse. At this distance
+/// rounding costs the link's moments of inertia at most two digits.
 const REACH: f64 = 8.0;
 
-/// Sine of the angle below which axes are also treated as parallel. Only the choice of candidates depends on it: placements are
-/// computed exactly for any chosen frames.
+/// Sine of the angle below which axes are also treated as parallel. Only the choice of candidates depends on
+/// it: placements are computed exactly for any chosen frames.
 const NEARLY_PARALLEL: f64 = 1e-3;
 
-/// Returns candidate frames of link `k`, relative to its present frame, which comes first. `chosen` holds the candidates of
-/// later links.
+/// Returns candidate frames of link `k`, relative to its present frame, which comes first. `chosen` holds the
+/// candidates of later links.
 pub fn candidates(sites: &[Site], k: usize, chosen: &[Vec<Frame>]) -> Vec<Frame> {
     match sites[k].freedom {
         Freedom::None => vec![Frame::IDENTITY],
@@ -97,8 +98,8 @@ struct Choices {
 }
 
 impl Choices {
-    /// Adds the angle, reduced by right angles to within 45°, that aligns an axis of the frame with the component of a vector
-    /// normal to the joint's axis. Right angles cost nothing.
+    /// Adds the angle, reduced by right angles to within 45°, that aligns an axis of the frame with the
+    /// component of a vector normal to the joint's axis. Right angles cost nothing.
     fn head(&mut self, v: Vector) {
         let (x, y) = (v[(self.a + 1) % 3], v[(self.a + 2) % 3]);
         if clean(x.hypot(y), norm(v)) == 0.0 {
@@ -132,7 +133,8 @@ fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices
         }
     }
     if let Some(place) = &sites[k].place {
-        // The point nearest to the parent's origin, and orientations with an axis normal to one of the parent's.
+        // The point nearest to the parent's origin, and orientations with an axis normal to one of the
+        // parent's.
         let back = transposed_times(&place.rotation, place.translation);
         list.shift(-back[a], norm(back));
         let own = column(&place.rotation, a);
@@ -159,8 +161,9 @@ fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
     let scale = norm(p);
     let direction = child.direction();
     if let Some(u) = direction {
-        // The foot of the common normal, computed from the components of both vectors across the axis, without cancellation.
-        // For axes that are parallel up to rounding it is arbitrary, and mostly out of reach.
+        // The foot of the common normal, computed from the components of both vectors across the axis,
+        // without cancellation. For axes that are parallel up to rounding it is arbitrary, and mostly out of
+        // reach.
         let across = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
         let (side, away) = (across(u), across(p));
         if clean(norm(side), 1.0) != 0.0 {
@@ -183,7 +186,8 @@ fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
     list.head(p);
 }
 
-/// Returns candidate frames of a sliding link: oriented like itself, its parent or a child, and at their positions.
+/// Returns candidate frames of a sliding link: oriented like itself, its parent or a child, and at their
+/// positions.
 fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
     let mut rotations = vec![IDENTITY];
     let mut points = vec![[0.0; 3]];

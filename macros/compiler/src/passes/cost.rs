@@ -1,5 +1,5 @@
-//! Estimated costs of placements and mass properties: operations of inverse dynamics, mass matrix and forward dynamics
-//! together, for a link in the middle of an arm.
+//! Estimated costs of placements and mass properties: operations of inverse dynamics, mass matrix and forward
+//! dynamics together, for a link in the middle of an arm.
 
 use super::candidates::Site;
 use super::motions::Freedom;
@@ -21,8 +21,8 @@ pub const PRODUCT: f64 = 12.0;
 /// Fraction of these costs for a joint on the ground, where forces are not needed.
 const GROUND: f64 = 0.02;
 
-/// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost, placement, and the angle
-/// to be added to the joint. Returns `None` if the placement is not numeric.
+/// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost,
+/// placement, and the angle to be added to the joint. Returns `None` if the placement is not numeric.
 pub fn joint(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, f64)> {
     let plain = site.place.as_ref()?.between(parent, frame);
     let mut best = (placement(site, &plain, frame), plain, 0.0);
@@ -65,7 +65,8 @@ fn turns(m: &Matrix) -> f64 {
     }
 }
 
-/// Returns sparse rotations `m R` with their angles, where `R` rotates by the angle about coordinate axis `k`.
+/// Returns sparse rotations `m R` with their angles, where `R` rotates by the angle about coordinate axis
+/// `k`.
 fn alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let u = column(m, k);

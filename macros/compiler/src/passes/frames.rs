@@ -1,9 +1,10 @@
-//! Choice of link frames with sparse placements. As with the frames of Denavit and Hartenberg (1955), a frame may be shifted
-//! along and rotated about its joint's axis. Typically its origin is at the foot of the common normal with a child's axis, an
-//! axis of the frame points along that normal, and the remaining rotation about the joint's axis becomes an offset of the joint.
+//! Choice of link frames with sparse placements. As with the frames of Denavit and Hartenberg (1955), a frame
+//! may be shifted along and rotated about its joint's axis. Typically its origin is at the foot of the common
+//! normal with a child's axis, an axis of the frame points along that normal, and the remaining rotation
+//! about the joint's axis becomes an offset of the joint.
 //!
-//! The cost of a placement depends on the frames of both links, so the candidates of all links are compared together by dynamic
-//! programming from the leaves to the root (Bellman 1957).
+//! The cost of a placement depends on the frames of both links, so the candidates of all links are compared
+//! together by dynamic programming from the leaves to the root (Bellman 1957).
 
 use super::candidates::{Site, candidates};
 use super::cost;
@@ -36,8 +37,8 @@ pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool)
     apply(model, &sites, &steps);
 }
 
-/// Returns the size of every link: the maximum of the distances of its joint from the parent's origin plus its radius of
-/// gyration, and of its children's joints, as far as these are numeric.
+/// Returns the size of every link: the maximum of the distances of its joint from the parent's origin plus
+/// its radius of gyration, and of its children's joints, as far as these are numeric.
 pub fn sizes(model: &Model<'_>) -> Vec<f64> {
     let places: Vec<Option<Frame>> = model.links.iter().map(|link| Frame::of(&link.placement)).collect();
     let length = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
@@ -87,7 +88,8 @@ fn choose(sites: &[Site]) -> Option<Vec<Frame>> {
     Some(frames)
 }
 
-/// Returns the index of the best candidate of a link for a parent's frame, and its cost including all descendants.
+/// Returns the index of the best candidate of a link for a parent's frame, and its cost including all
+/// descendants.
 fn best(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64]) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     for (c, frame) in choices.iter().enumerate() {
@@ -121,10 +123,11 @@ fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
     move_contents(model, &back.collect::<Vec<_>>());
 }
 
-/// Transforms everything that is fixed in the links to their new frames; `back` holds the old frames relative to the new ones.
+/// Transforms everything that is fixed in the links to their new frames; `back` holds the old frames relative
+/// to the new ones.
 pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
-    // All fields are listed, so that rustc asks about each new one. Expressions of the state, such as those of loads and
-    // outputs, do not depend on the link frames any more; the drawing is placed in named frames.
+    // All fields are listed, so that rustc asks about each new one. Expressions of the state, such as those
+    // of loads and outputs, do not depend on the link frames any more; the drawing is placed in named frames.
     let Model {
         graph: _,
         kinematic: _,

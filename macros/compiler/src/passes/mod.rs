@@ -1,5 +1,5 @@
-//! Passes from `Model` to `Model` that choose link frames and redistribute mass properties so that the equations cost less.
-//! Every pass is exact up to rounding and can be switched off.
+//! Passes from `Model` to `Model` that choose link frames and redistribute mass properties so that the
+//! equations cost less. Every pass is exact up to rounding and can be switched off.
 
 use crate::kinematics::{Joint, joints};
 use crate::mechanism::Model;
@@ -93,10 +93,12 @@ pub fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
     variants
 }
 
-/// Maximum number of velocities for which all distributions are tried; beyond it their savings are not worth the time.
+/// Maximum number of velocities for which all distributions are tried; beyond it their savings are not worth
+/// the time.
 const EXHAUSTIVE_VELOCITIES: usize = 18;
 
-/// Distributions: gauge, masses also to children, symbolic properties too, tried for any number of velocities.
+/// Distributions: gauge, masses also to children, symbolic properties too, tried for any number of
+/// velocities.
 const DISTRIBUTIONS: [(Gauge, bool, bool, bool); 6] = [
     (Gauge::Second, false, false, true),
     (Gauge::First, false, false, false),

@@ -1,5 +1,5 @@
-//! Properties of elementary motions that the passes use: the freedom to choose a link's frame, the motion relative to the new
-//! frame, and the mass properties that may be moved to the parent.
+//! Properties of elementary motions that the passes use: the freedom to choose a link's frame, the motion
+//! relative to the new frame, and the mass properties that may be moved to the parent.
 
 use super::number::{Vector, clean};
 use crate::expr::{Sym3, Vec3};
@@ -34,7 +34,8 @@ pub fn freedom(motion: &Motion<'_>) -> Option<Freedom> {
     }
 }
 
-/// Rewrites the motion of a link for its new frame, given relative to the old one and rotated about the joint's axis by `offset`.
+/// Rewrites the motion of a link for its new frame, given relative to the old one and rotated about the
+/// joint's axis by `offset`.
 pub fn seen_from<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
     match motion {
         Motion::Turn { axis, coordinate } => shift(coordinate, *axis, offset),
@@ -54,8 +55,8 @@ fn shift(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
     coordinate.offset = clean(coordinate.offset + angle, scale);
 }
 
-/// Convention that makes a moment of inertia of a revolute link vanish. The joint's axis is `k`; the others are `k + 1` and
-/// `k + 2`, cyclically.
+/// Convention that makes a moment of inertia of a revolute link vanish. The joint's axis is `k`; the others
+/// are `k + 1` and `k + 2`, cyclically.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gauge {
     /// The moment about axis `k + 1` vanishes.
@@ -88,7 +89,8 @@ pub fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
     }
 }
 
-/// Returns the inertia with equal moments about the two axes normal to `k` that makes the moment of the gauge vanish.
+/// Returns the inertia with equal moments about the two axes normal to `k` that makes the moment of the gauge
+/// vanish.
 fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let d = &tensor.diagonal;

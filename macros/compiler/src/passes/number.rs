@@ -173,8 +173,8 @@ impl Mass {
         }
     }
 
-    /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first moment `h`, the tensor is
-    /// reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
+    /// Returns the mass properties about the origin `p` of another frame, in its axes. With the first moment
+    /// `h`, the tensor is reduced by `2 (p · h) 1 − p hᵀ − h pᵀ` and increased by `m (|p|² 1 − p pᵀ)`.
     pub fn seen_from(&self, place: &Frame) -> Mass {
         let (r, p, h) = (&place.rotation, place.translation, self.moment);
         let diagonal = self.mass * dot(p, p) - 2.0 * dot(p, h);

@@ -1,10 +1,10 @@
-//! Successive links on parallel revolute joints, resolved in common axes: the axes before the first of these joints. Vectors
-//! that are passed between these links need no rotation. Instead the constants of each link, its mass properties and the
-//! positions of its children, are rotated by the sum of the angles (Khalil and Dombre, *Modeling, Identification and Control of
-//! Robots*, 2002, ch. 3, for the geometry of arms).
+//! Successive links on parallel revolute joints, resolved in common axes: the axes before the first of these
+//! joints. Vectors that are passed between these links need no rotation. Instead the constants of each link,
+//! its mass properties and the positions of its children, are rotated by the sum of the angles (Khalil and
+//! Dombre, *Modeling, Identification and Control of Robots*, 2002, ch. 3, for the geometry of arms).
 //!
-//! Only the axes in which vectors are resolved change. Velocities and accelerations are still those of the links, so all
-//! vector recursions hold unchanged; a link's mass properties become expressions of its angle.
+//! Only the axes in which vectors are resolved change. Velocities and accelerations are still those of the
+//! links, so all vector recursions hold unchanged; a link's mass properties become expressions of its angle.
 
 use super::Variant;
 use super::motions::coordinate_axis;
@@ -12,13 +12,15 @@ use crate::expr::{Expr, Rotation};
 use crate::kinematics::position_in;
 use crate::mechanism::{Link, Model, Motion};
 
-/// Returns variants in which links on parallel joints are resolved in common axes; none if there are no such joints.
+/// Returns variants in which links on parallel joints are resolved in common axes; none if there are no such
+/// joints.
 pub fn in_common_axes<'g>(variants: &[Variant<'g>]) -> Vec<Variant<'g>> {
     variants.iter().filter_map(with_common_axes).collect()
 }
 
-/// Maximum sine of the angle between axes that are treated as parallel. The equations in common axes are those of exactly
-/// parallel axes, which changes them by this relative amount: less than the error of π with twelve digits in robot files.
+/// Maximum sine of the angle between axes that are treated as parallel. The equations in common axes are
+/// those of exactly parallel axes, which changes them by this relative amount: less than the error of π with
+/// twelve digits in robot files.
 const PARALLEL: f64 = 2.5e-13;
 
 /// Joint about or along a coordinate axis, in a chain of parallel joints.

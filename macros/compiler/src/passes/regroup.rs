@@ -1,10 +1,11 @@
-//! Regrouping of mass properties from links to their parents (Khalil and Kleinfinger 1987; Gautier and Khalil 1990).
+//! Regrouping of mass properties from links to their parents (Khalil and Kleinfinger 1987; Gautier and Khalil
+//! 1990).
 //!
-//! A part `X` of a link's mass properties can be moved across a joint with motion subspace `S` if `X S = 0` and the joint's motion
-//! leaves `X` invariant: wrench, momentum and energy are then the same as if it were fixed to the parent. For a revolute joint
-//! about `z` these are a mass at the origin, a first moment along `z`, and equal moments of inertia about `x` and `y`. For a
-//! prismatic joint they are all moments of inertia, for a screw equal moments about `x` and `y`, for a ball joint a mass at its
-//! centre.
+//! A part `X` of a link's mass properties can be moved across a joint with motion subspace `S` if `X S = 0`
+//! and the joint's motion leaves `X` invariant: wrench, momentum and energy are then the same as if it were
+//! fixed to the parent. For a revolute joint about `z` these are a mass at the origin, a first moment along
+//! `z`, and equal moments of inertia about `x` and `y`. For a prismatic joint they are all moments of
+//! inertia, for a screw equal moments about `x` and `y`, for a ball joint a mass at its centre.
 
 use super::motions::{Gauge, coordinate_axis, movable};
 use super::number::{Frame, Mass};
@@ -45,8 +46,9 @@ pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: 
     }
 }
 
-/// Moves a mass from link `k` to the origin of a revolute or ball joint of a child, so that a component of the link's first moment
-/// vanishes. The force on the mass is its product with an acceleration that is computed anyway.
+/// Moves a mass from link `k` to the origin of a revolute or ball joint of a child, so that a component of
+/// the link's first moment vanishes. The force on the mass is its product with an acceleration that is
+/// computed anyway.
 fn anchor(model: &mut Model<'_>, k: usize) {
     let Motion::Turn { axis, .. } = &model.links[k].motion else { return };
     let (Some(own), Some(mut inertia)) = (coordinate_axis(*axis), Mass::of(&model.links[k].inertia)) else {
@@ -88,8 +90,8 @@ fn anchor(model: &mut Model<'_>, k: usize) {
     }
 }
 
-/// Returns true if the force on a link has an effect in addition to its moment: a revolute joint with a lever arm, or a prismatic
-/// joint, lies between the link and the root.
+/// Returns true if the force on a link has an effect in addition to its moment: a revolute joint with a lever
+/// arm, or a prismatic joint, lies between the link and the root.
 fn pushes(model: &Model<'_>, mut k: usize) -> bool {
     loop {
         let link = &model.links[k];

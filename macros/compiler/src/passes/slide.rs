@@ -1,6 +1,6 @@
-//! Shifts of link frames along revolute axes for symbolic placements. As with the frames of Denavit and Hartenberg (1955), two
-//! lengths along one axis become one. Mass properties in a frame that is shifted by a parameter cost operations, but fewer than
-//! the shift saves.
+//! Shifts of link frames along revolute axes for symbolic placements. As with the frames of Denavit and
+//! Hartenberg (1955), two lengths along one axis become one. Mass properties in a frame that is shifted by a
+//! parameter cost operations, but fewer than the shift saves.
 
 use super::cost::{LENGTH, PRODUCT};
 use super::frames::move_contents;

@@ -1,4 +1,5 @@
-//! What depends on accelerations: rates of expressions that depend on velocities, and forces that are linear in them.
+//! What depends on accelerations: rates of expressions that depend on velocities, and forces that are linear
+//! in them.
 
 use super::builder::Builder;
 use super::quantities::{in_links, vector};
@@ -35,7 +36,8 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// `rate(vector / frame)`: the rate of a vector or a matrix as seen from a frame, which is that of its components there.
+    /// `rate(vector / frame)`: the rate of a vector or a matrix as seen from a frame, which is that of its
+    /// components there.
     pub fn rate_in(
         &self,
         function: &Name,
@@ -117,7 +119,8 @@ impl<'g> Scope<'_, 'g> {
         Some(values.iter().zip(gradients).map(rate).collect())
     }
 
-    /// True for what `rate` takes beside coordinates: a definition, or what is computed of something that moves.
+    /// True for what `rate` takes beside coordinates: a definition, or what is computed of something that
+    /// moves.
     pub fn is_moving(&self, argument: &syntax::Expr) -> bool {
         match &argument.kind {
             ExprKind::Name(name) => self.definitions.iter().any(|definition| definition.name.text == *name),
@@ -177,7 +180,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Reports forces linear in accelerations where the forces of constraints and contacts follow from a symmetric mass matrix.
+    /// Reports forces linear in accelerations where the forces of constraints and contacts follow from a
+    /// symmetric mass matrix.
     pub fn check_acceleration_forces(&self, cx: &mut Diagnostics) {
         let Some(force) = self.model.acceleration_forces.first() else { return };
         let found = match (self.model.constraints.is_empty(), self.model.contacts.is_empty()) {

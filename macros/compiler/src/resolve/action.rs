@@ -28,7 +28,8 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds all force elements and inputs.
     pub fn add_actions(&mut self, _: Moving, cx: &mut Diagnostics) {
-        // Inputs without an element of their own appear in expressions; the others are filled in by their elements.
+        // Inputs without an element of their own appear in expressions; the others are filled in by their
+        // elements.
         for input in &self.description.inputs {
             self.model.inputs.push((input.text.clone(), Input::Named));
         }
@@ -181,8 +182,8 @@ impl<'g> Builder<'_, 'g> {
         true
     }
 
-    /// Central gravity: between two bodies with a gravitational constant, or towards a point with a gravitational
-    /// parameter. It also turns a body with inertia.
+    /// Central gravity: between two bodies with a gravitational constant, or towards a point with a
+    /// gravitational parameter. It also turns a body with inertia.
     fn add_gravity(
         &mut self,
         action: &Action,

@@ -48,8 +48,9 @@ fn normalised(v: [f64; 3]) -> [f64; 3] {
     v.map(|c| c / norm)
 }
 
-/// For a numeric axis off the coordinate axes: the coordinate axis nearest to it and the rotation that takes that one
-/// to it. Then the joint turns about the coordinate axis, which is cheap, and the rotation is a constant.
+/// For a numeric axis off the coordinate axes: the coordinate axis nearest to it and the rotation that takes
+/// that one to it. Then the joint turns about the coordinate axis, which is cheap, and the rotation is a
+/// constant.
 pub fn align<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<'g>, Rotation<'g>) {
     let identity = Rotation::identity(graph);
     let Some(n) = axis.values() else {

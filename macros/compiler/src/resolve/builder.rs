@@ -61,11 +61,14 @@ pub struct Builder<'a, 'g> {
     pub solved_loops: Vec<ClosedFormLoop>,
     /// Joints to be released, and the names of the constraints that a mechanism with released joints keeps.
     pub releasing: Option<(&'a [usize], &'a [Constraint<'g>])>,
-    /// By joint of the tree its frame on the parent, and by body that is placed its own, before they are released.
+    /// By joint of the tree its frame on the parent, and by body that is placed its own, before they are
+    /// released.
     pub joint_frames: BTreeMap<usize, Placed<'g>>,
-    /// By force element, energy and dissipation: its generalized forces on the coordinates of released joints.
+    /// By force element, energy and dissipation: its generalized forces on the coordinates of released
+    /// joints.
     pub applied: Vec<(String, Vec<expr::Expr<'g>>)>,
-    /// Bodies and particles that move by what `at` and `frame` say: number among what can be released, and what carries them.
+    /// Bodies and particles that move by what `at` and `frame` say: number among what can be released, and
+    /// what carries them.
     pub moved_by_place: Vec<(usize, Option<LinkId>)>,
     /// Links of frames that move with respect to what they start from.
     pub frame_links: Vec<LinkId>,
@@ -127,7 +130,8 @@ impl<'g> Builder<'_, 'g> {
         Some(Pose { rotation: rotation?, translation: translation? })
     }
 
-    /// A place for what has a mistake, with figures that nothing else has: where it should have been does not matter.
+    /// A place for what has a mistake, with figures that nothing else has: where it should have been does not
+    /// matter.
     pub fn somewhere(&self, moves: bool) -> Pose<'g> {
         let g = self.scope.graph;
         let mut translation = Vec3::numbers(g, [0.731, 0.417, 0.593]);

@@ -10,12 +10,13 @@ use crate::syntax::{self, ExprKind, Name};
 use std::f64::consts::PI;
 
 impl<'g> Scope<'_, 'g> {
-    /// `cable(a / b, drum.cylinder(radius, axis))`, `cable(a / b, ball.sphere(radius))`: the length of a taut cable between two points,
-    /// laid around a surface where that stands in its way.
+    /// `cable(a / b, drum.cylinder(radius, axis))`, `cable(a / b, ball.sphere(radius))`: the length of a taut
+    /// cable between two points, laid around a surface where that stands in its way.
     ///
-    /// Around a cylinder it turns about the axis from `a` to `b`, by less than a full turn. Across the axis the points have distances `d`, and lie at an angle `θ`
-    /// from each other; what touches is `φ = θ − acos(R / d_a) − acos(R / d_b)`. Where that is positive, the cable runs along tangents
-    /// and a helix, which is straight on the unrolled cylinder; elsewhere it is straight.
+    /// Around a cylinder it turns about the axis from `a` to `b`, by less than a full turn. Across the axis
+    /// the points have distances `d`, and lie at an angle `θ` from each other; what touches is
+    /// `φ = θ − acos(R / d_a) − acos(R / d_b)`. Where that is positive, the cable runs along tangents and a
+    /// helix, which is straight on the unrolled cylinder; elsewhere it is straight.
     pub fn cable(
         &self,
         function: &Name,

@@ -1,8 +1,10 @@
-//! Which particles carry something, so that their axes matter: those from which a place, a direction or a joint starts.
+//! Which particles carry something, so that their axes matter: those from which a place, a direction or a
+//! joint starts.
 
 use crate::syntax::{Description, Expr, ExprKind, Target};
 
-/// True if the axes of a particle are used anywhere: by a joint on it, as `name.at(…)` or `name.x`, by what acts on it.
+/// True if the axes of a particle are used anywhere: by a joint on it, as `name.at(…)` or `name.x`, by what
+/// acts on it.
 pub fn carries(d: &Description, name: &str) -> bool {
     let is_name = |e: &Expr| e.name() == Some(name);
     let on = |target: &Target| matches!(target, Target::On(e) if is_name(e));

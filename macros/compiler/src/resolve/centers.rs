@@ -1,5 +1,5 @@
-//! Points that a motion singles out: instantaneous centres, the screw axis, the centre of percussion. Each is a vector from a
-//! place of the body.
+//! Points that a motion singles out: instantaneous centres, the screw axis, the centre of percussion. Each is
+//! a vector from a place of the body.
 
 use super::quantities::{flatten, vector};
 use super::scope::{Allowed, Placed, PlacedKind, Scope, Terms, Value};
@@ -23,11 +23,13 @@ struct Relative<'g> {
 impl<'g> Scope<'_, 'g> {
     /// With the velocity `v` of a body's origin and its angular velocity `ω`, both with respect to a frame:
     ///
-    /// - `screw_axis(body / frame)` and `instant_center(body / frame)`: `ω × v / ω²`, from the origin to the nearest point of the
-    ///   screw axis (Mozzi, Chasles), which rests where the body does not slide along it;
-    /// - `screw_pitch(body / frame)`: `ω·v / ω²`, how far the body slides along the axis while it turns by 1 rad;
-    /// - `acceleration_center(body / frame)`: `(ω² a + α × a) / (ω⁴ + α²)`, from the origin to the point of a body that moves in a
-    ///   plane whose acceleration is zero.
+    /// - `screw_axis(body / frame)` and `instant_center(body / frame)`: `ω × v / ω²`, from the origin to the
+    ///   nearest point of the screw axis (Mozzi, Chasles), which rests where the body does not slide along
+    ///   it;
+    /// - `screw_pitch(body / frame)`: `ω·v / ω²`, how far the body slides along the axis while it turns by 1
+    ///   rad;
+    /// - `acceleration_center(body / frame)`: `(ω² a + α × a) / (ω⁴ + α²)`, from the origin to the point of a
+    ///   body that moves in a plane whose acceleration is zero.
     pub fn center(
         &self,
         function: &Name,
@@ -106,9 +108,9 @@ impl<'g> Scope<'_, 'g> {
         })
     }
 
-    /// `center_of_percussion(body / point, axis)`: the vector from a point, about which a body turns, to where a blow across the arm
-    /// to its centre of mass leaves the point at rest. With the arm `r` across the axis `n` and the moment of inertia `J` about the
-    /// axis it is `J r / (m r²)`.
+    /// `center_of_percussion(body / point, axis)`: the vector from a point, about which a body turns, to
+    /// where a blow across the arm to its centre of mass leaves the point at rest. With the arm `r` across
+    /// the axis `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
     pub fn center_of_percussion(
         &self,
         function: &Name,

@@ -1,6 +1,7 @@
-//! Loops that are solved in closed form: a Pin closes a loop in a plane between two bodies that are held by Pins, or by a
-//! Pin and a Sleeve. Their coordinates become expressions of the others, by the intersection of two circles, or of a
-//! circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI); `branch` says which of two.
+//! Loops that are solved in closed form: a Pin closes a loop in a plane between two bodies that are held by
+//! Pins, or by a Pin and a Sleeve. Their coordinates become expressions of the others, by the intersection of
+//! two circles, or of a circle and a line (Bottema and Roth, *Theoretical Kinematics*, 1979, ch. XI);
+//! `branch` says which of two.
 
 use super::builder::{Builder, ClosedFormLoop};
 use super::elementary::Elementary;
@@ -156,8 +157,8 @@ impl<'g> Builder<'_, 'g> {
         Some(Side { base, point: out(point), slide })
     }
 
-    /// A vector in the axes of a link, in those of a frame. Joints that are released count as closed: the solution is that of
-    /// the mechanism itself.
+    /// A vector in the axes of a link, in those of a frame. Joints that are released count as closed: the
+    /// solution is that of the mechanism itself.
     fn seen_from(&self, frame: &Placed<'g>, link: Option<LinkId>, v: Vec3<'g>) -> Vec3<'g> {
         let v = change_axes(&self.scope.kinematics.borrow().joints, v, link, frame.link);
         let v = frame.pose.rotation.to_child(v);

@@ -34,7 +34,8 @@ impl<'g> Builder<'_, 'g> {
         Some((motions?, Closing { j, parent, child, on_parent, on_child }))
     }
 
-    /// The rows of a loop that is solved in closed form: its Pin keeps both ends together in the loop's plane.
+    /// The rows of a loop that is solved in closed form: its Pin keeps both ends together in the loop's
+    /// plane.
     pub fn close_in_plane(&mut self, j: usize, cx: &mut Diagnostics) {
         self.group += 1;
         if let Some((motions, ends)) = self.closing(j, cx)
@@ -96,7 +97,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Along the axis of a screw the child's joint frame is where its turn leads: `gap` is from the parent's to it.
+    /// Along the axis of a screw the child's joint frame is where its turn leads: `gap` is from the parent's
+    /// to it.
     fn advance_row(&mut self, ends: &Closing<'g>, (axis, pitch): (Vec3<'g>, Expr<'g>), gap: Vec3<'g>) {
         let Closing { parent, child, on_parent, on_child, .. } = ends;
         let n = self.direction(on_parent, parent.pose.rotation.to_parent(axis)).value;
@@ -150,8 +152,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// A row of a joint, with the force of a length or the torque of an angle on the child that its multiplier is, in the
-    /// axes of the link that carries both ends.
+    /// A row of a joint, with the force of a length or the torque of an angle on the child that its
+    /// multiplier is, in the axes of the link that carries both ends.
     fn push(
         &mut self,
         ends: &Closing<'g>,

@@ -1,6 +1,6 @@
-//! Constraints: joints that close loops, expressions that stay zero, rolling pairs. Each becomes scalar rows with their
-//! rates and the derivatives of those. Motions are taken relative to the nearest link that carries both sides, so
-//! that what both share drops out.
+//! Constraints: joints that close loops, expressions that stay zero, rolling pairs. Each becomes scalar rows
+//! with their rates and the derivatives of those. Motions are taken relative to the nearest link that carries
+//! both sides, so that what both share drops out.
 
 use super::builder::Builder;
 use super::closed_form::Solved;
@@ -104,8 +104,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The components of a vector without those that are zero wherever the mechanism is, as they are across its plane; all
-    /// of them if they all are.
+    /// The components of a vector without those that are zero wherever the mechanism is, as they are across
+    /// its plane; all of them if they all are.
     fn without_idle(&mut self, rows: Vec<(String, Expr<'g>)>) -> Vec<(String, Expr<'g>)> {
         let is_idle = |e: &Expr<'g>| {
             let constant = |q: Quantity| matches!(q, Quantity::Parameter(_));
@@ -220,8 +220,8 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// A rate whose derivatives by the velocities name velocities, but do not depend on them: the same without those. `None` if
-/// they do.
+/// A rate whose derivatives by the velocities name velocities, but do not depend on them: the same without
+/// those. `None` if they do.
 fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Expr<'g>> {
     // Signs and corners show where velocities change their signs, together or not.
     let at = |e: Expr<'g>, pattern: u64| {

@@ -18,8 +18,8 @@ pub const FRAMES: [&str; 3] = ["cylindrical", "spherical", "frenet"];
 const MOVES: usize = 1 << 19;
 
 impl<'g> Scope<'_, 'g> {
-    /// The axes that a vector or a curve gives, in those of a place: `cylindrical(vector)`, `spherical(vector)`,
-    /// `frenet(curve, coordinate)`.
+    /// The axes that a vector or a curve gives, in those of a place: `cylindrical(vector)`,
+    /// `spherical(vector)`, `frenet(curve, coordinate)`.
     pub fn natural_axes(
         &self,
         step: &syntax::Expr,
@@ -92,8 +92,8 @@ impl<'g> Scope<'_, 'g> {
         Some(Rotation::from_matrix(Mat3::from_fn(|i, j| axes[j][i])))
     }
 
-    /// `curvature(curve, s)` is `|r′ × r″| / |r′|³`, `torsion(curve, s)` is `(r′ × r″)·r‴ / |r′ × r″|²`, of a curve `r` that depends on
-    /// a coordinate.
+    /// `curvature(curve, s)` is `|r′ × r″| / |r′|³`, `torsion(curve, s)` is `(r′ × r″)·r‴ / |r′ × r″|²`, of a
+    /// curve `r` that depends on a coordinate.
     pub fn bend(
         &self,
         function: &Name,

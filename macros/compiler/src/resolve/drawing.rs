@@ -1,5 +1,5 @@
-//! What the word `drawing` asks for: pieces that show what is declared, in the axes of named frames, so that no pass over the
-//! links moves them.
+//! What the word `drawing` asks for: pieces that show what is declared, in the axes of named frames, so that
+//! no pass over the links moves them.
 
 use super::builder::Builder;
 use super::joint::drawn;
@@ -82,8 +82,8 @@ impl<'g> Builder<'_, 'g> {
         self.anchor(link, &pose.then(&on_body))
     }
 
-    /// Adds the visual geometry of a file; returns the bodies that have any, and no mesh among it. Those with meshes are drawn by their
-    /// mass properties as well, which are shown where a mesh cannot be read.
+    /// Adds the visual geometry of a file; returns the bodies that have any, and no mesh among it. Those with
+    /// meshes are drawn by their mass properties as well, which are shown where a mesh cannot be read.
     fn draw_visuals(&self, pieces: &mut Vec<Piece<'g>>) -> BTreeSet<String> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.description.visuals {
@@ -319,8 +319,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// The joint with one coordinate that an expression names: whether it turns, the frames and places of its ends, its axis on
-    /// the parent.
+    /// The joint with one coordinate that an expression names: whether it turns, the frames and places of its
+    /// ends, its axis on the parent.
     #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
     fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
         let name = on.name()?;

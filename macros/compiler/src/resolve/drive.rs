@@ -81,7 +81,8 @@ impl<'g> Builder<'_, 'g> {
         stretch.filter(|stretch| !velocity_gradient(stretch.rate).is_empty())
     }
 
-    /// The rate that a force and a torque work on: `f · v + t · ω` of the point, or of it relative to the one that the reaction is on.
+    /// The rate that a force and a torque work on: `f · v + t · ω` of the point, or of it relative to the one
+    /// that the reaction is on.
     fn wrench_stretch(&self, wrench: &Wrench, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let g = self.scope.graph;
         let on = self.scope.place(&wrench.on, cx)?;
@@ -119,7 +120,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// What the model has for single coordinates; false for everything else. A [`Coordinate`] with its ratio is the sum itself.
+    /// What the model has for single coordinates; false for everything else. A [`Coordinate`] with its ratio
+    /// is the sum itself.
     fn add_to_coordinate(&mut self, on: Coordinate, law: DriveLaw) -> bool {
         let g = self.scope.graph;
         match law {

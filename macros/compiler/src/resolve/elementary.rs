@@ -35,8 +35,8 @@ impl<'g> Elementary<'g> {
         }
     }
 
-    /// The motion of a link with its coordinate, or with its first entries of `q` and `v`; and the axes that the link has in those of
-    /// the joint: axes of rotation become coordinate axes.
+    /// The motion of a link with its coordinate, or with its first entries of `q` and `v`; and the axes that
+    /// the link has in those of the joint: axes of rotation become coordinate axes.
     pub fn motion(
         &self,
         graph: &'g Graph,

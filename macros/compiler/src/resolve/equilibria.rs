@@ -1,5 +1,5 @@
-//! Declared equilibria → the values of all coordinates, inputs and states in them. Whether they are equilibria, the equations
-//! of motion tell.
+//! Declared equilibria → the values of all coordinates, inputs and states in them. Whether they are
+//! equilibria, the equations of motion tell.
 
 use super::builder::Builder;
 use crate::diag::Diagnostics;

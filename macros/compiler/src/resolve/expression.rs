@@ -56,8 +56,8 @@ impl<'a, 'g> Scope<'a, 'g> {
         self.vector_or(e, "multiply it by a direction, as in `length * y`", cx)
     }
 
-    /// A vector as a sum over axes, with the help for a scalar in its place. What is in `e` is read once, however deep
-    /// expressions are nested.
+    /// A vector as a sum over axes, with the help for a scalar in its place. What is in `e` is read once,
+    /// however deep expressions are nested.
     pub fn vector_or(
         &self,
         e: &syntax::Expr,
@@ -80,10 +80,11 @@ impl<'a, 'g> Scope<'a, 'g> {
         }
     }
 
-    /// Returns the value of an expression, or reports an error; a value that is not finite is an error as well.
+    /// Returns the value of an expression, or reports an error; a value that is not finite is an error as
+    /// well.
     ///
-    /// The left operands of a chain of operators, such as a long sum, are visited in a loop: the depth of the recursion
-    /// is the nesting of brackets and signs, which `syntax::guard` bounds.
+    /// The left operands of a chain of operators, such as a long sum, are visited in a loop: the depth of the
+    /// recursion is the nesting of brackets and signs, which `syntax::guard` bounds.
     pub fn value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let mut operations = Vec::new();
         let mut first = e;

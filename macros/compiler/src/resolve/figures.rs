@@ -1,4 +1,5 @@
-//! Figures that are too large or too small to compute with: products of two of them must stay finite and reciprocals too.
+//! Figures that are too large or too small to compute with: products of two of them must stay finite and
+//! reciprocals too.
 
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Expr;

@@ -1,5 +1,5 @@
-//! Functions of flight: the standard atmosphere, and the angles of bodies and velocities whose axes are forward, right and
-//! down, the ground's north, east and down.
+//! Functions of flight: the standard atmosphere, and the angles of bodies and velocities whose axes are
+//! forward, right and down, the ground's north, east and down.
 
 use super::expression::sum;
 use super::scope::{Scope, Value};
@@ -79,8 +79,9 @@ impl<'g> Scope<'_, 'g> {
         }))
     }
 
-    /// A vector by its components in the axes of stability, which turn with the angle of attack, or of wind, which turn with the
-    /// sideslip, too: forward along the velocity, right, down (Etkin and Reid, *Dynamics of Flight*, 1996, § 1.6 and appendix A.7).
+    /// A vector by its components in the axes of stability, which turn with the angle of attack, or of wind,
+    /// which turn with the sideslip, too: forward along the velocity, right, down (Etkin and Reid, *Dynamics
+    /// of Flight*, 1996, § 1.6 and appendix A.7).
     pub fn in_flight_axes(
         &self,
         function: &Name,

@@ -1,7 +1,8 @@
-//! Free-body diagrams: all that acts on a body at once, for outputs of the type `FreeBody`. The joints of the body are released,
-//! six motions each; what a force element, a constraint or a contact does to the body is its generalized force on the joint that
-//! holds the body, less those on the joints that the body holds (virtual work: the body moves alone while all others stay). What
-//! joints transmit are their reactions, with the motors, springs and dashpots on their own coordinates.
+//! Free-body diagrams: all that acts on a body at once, for outputs of the type `FreeBody`. The joints of the
+//! body are released, six motions each; what a force element, a constraint or a contact does to the body is
+//! its generalized force on the joint that holds the body, less those on the joints that the body holds
+//! (virtual work: the body moves alone while all others stay). What joints transmit are their reactions, with
+//! the motors, springs and dashpots on their own coordinates.
 
 use super::builder::Builder;
 use super::holders::name_of;
@@ -61,7 +62,8 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
-    /// Remembers what an element has added since then: its generalized forces on the coordinates of released joints.
+    /// Remembers what an element has added since then: its generalized forces on the coordinates of released
+    /// joints.
     pub fn know_applied(&mut self, before: &Counts, name: &str) {
         let Some((joints, _)) = self.releasing else { return };
         if self.description.outputs.iter().all(|output| output.rank != syntax::Rank::FreeBody) {
@@ -144,7 +146,8 @@ impl<'g> Builder<'_, 'g> {
         Some(name.to_string())
     }
 
-    /// What moves as one with a body: its link, its mass and its centre of mass. Reports what moves on it without a joint.
+    /// What moves as one with a body: its link, its mass and its centre of mass. Reports what moves on it
+    /// without a joint.
     fn rigid_part(
         &self,
         name: &str,
@@ -301,7 +304,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// What the joints of the tree transmit to the body, and what holds it, or what it carries, on a place that is given.
+    /// What the joints of the tree transmit to the body, and what holds it, or what it carries, on a place
+    /// that is given.
     fn joints_on(&self, body: &Freed<'g>) -> Vec<Acting<'g>> {
         let g = self.scope.graph;
         let released = self.releasing.map_or(&[][..], |(joints, _)| joints);
@@ -419,8 +423,8 @@ impl<'g> Builder<'_, 'g> {
         Wrench { torque: w.torque - arm.cross(w.force), ..w }
     }
 
-    /// Whether something is left where forces on several joints are added: what acts between two bodies that the same joint
-    /// carries cancels, up to rounding.
+    /// Whether something is left where forces on several joints are added: what acts between two bodies that
+    /// the same joint carries cancels, up to rounding.
     fn acts(&self, wrench: &Wrench<'g>, forces: &[Expr<'g>]) -> bool {
         let all = self.with_released_at_rest(&[wrench.force.0, wrench.torque.0].concat());
         if all.iter().all(|e| e.is_zero()) {

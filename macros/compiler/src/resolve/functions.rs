@@ -19,7 +19,8 @@ pub enum Dependence {
     Reaction,
 }
 
-/// Functions of the language other than the elementary ones, each with the quantities that its value depends on.
+/// Functions of the language other than the elementary ones, each with the quantities that its value depends
+/// on.
 pub const FUNCTIONS: [(&str, Dependence); 57] = [
     ("atan2", Dependence::Arguments),
     ("degrees", Dependence::Arguments),
@@ -85,8 +86,8 @@ pub fn names<'a>() -> impl Iterator<Item = &'a str> {
     FUNCTIONS.iter().map(|(name, _)| *name)
 }
 
-/// Returns the quantities that the value of a function of this name depends on; those of its arguments for an elementary
-/// function or a name that is unknown.
+/// Returns the quantities that the value of a function of this name depends on; those of its arguments for an
+/// elementary function or a name that is unknown.
 pub fn dependence(name: &str) -> Dependence {
     let known = FUNCTIONS.iter().find(|(known, _)| *known == name);
     known.map_or(Dependence::Arguments, |(_, dependence)| *dependence)

@@ -1,4 +1,5 @@
-//! What holds bodies and can be released, for free-body diagrams: joints of the tree, and places that are given by `at` and `frame`.
+//! What holds bodies and can be released, for free-body diagrams: joints of the tree, and places that are
+//! given by `at` and `frame`.
 
 use super::builder::Builder;
 use super::scope::{Placed, PlacedKind};
@@ -24,8 +25,8 @@ pub fn name_of(d: &Description, number: usize) -> Option<&syntax::Name> {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Returns the link of a body or a particle that is placed, if it moves by that; if its place is released, the last of
-    /// six more.
+    /// Returns the link of a body or a particle that is placed, if it moves by that; if its place is
+    /// released, the last of six more.
     pub fn link_of_place(
         &mut self,
         number: usize,
@@ -50,7 +51,8 @@ impl<'g> Builder<'_, 'g> {
         self.release(at, released.len(), link, pose)
     }
 
-    /// Whether a body or a particle is fixed in a frame, not on a body or at a point, in a mechanism with free-body diagrams.
+    /// Whether a body or a particle is fixed in a frame, not on a body or at a point, in a mechanism with
+    /// free-body diagrams.
     fn is_on_frame(&self, number: usize) -> bool {
         let d = self.description;
         let is_placed = |e: &syntax::Expr| {

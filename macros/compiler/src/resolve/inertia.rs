@@ -58,7 +58,8 @@ pub const SOLIDS: [(&str, Solid, &[&str]); 14] = [
 /// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
 const NOTHING: f64 = 1e-18;
 
-/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m²: ten nanometres.
+/// So are those of a body with mass, if its radius of gyration is shorter than the root of this, m²: ten
+/// nanometres.
 const SMALLEST: f64 = 1e-16;
 
 /// Relative tolerance of the checks: published figures are rounded.
@@ -207,8 +208,8 @@ impl<'g> Scope<'_, 'g> {
         complete.then(|| self.solid_inertia(*kind, &numbers, axis))
     }
 
-    /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely the
-    /// arguments stand in another order.
+    /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely
+    /// the arguments stand in another order.
     fn confused(
         &self,
         solid: &Name,
@@ -316,7 +317,8 @@ fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<
     }))
 }
 
-/// Reports an inertia that no real body of this mass can have, if it is given by numbers. `hint` says how to take it anyway.
+/// Reports an inertia that no real body of this mass can have, if it is given by numbers. `hint` says how to
+/// take it anyway.
 pub fn check_inertia(
     body: &str,
     mass: Option<f64>,

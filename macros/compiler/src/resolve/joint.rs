@@ -1,5 +1,5 @@
-//! Joints → elementary motions with their coordinates: a joint of several degrees of freedom is a chain of simple
-//! ones with massless frames between.
+//! Joints → elementary motions with their coordinates: a joint of several degrees of freedom is a chain of
+//! simple ones with massless frames between.
 
 use super::elementary::Elementary;
 use super::scope::Scope;

@@ -85,8 +85,8 @@ impl<'g> Builder<'_, 'g> {
         Some(found)
     }
 
-    /// An inertia that is given about another point, about the centre of mass: less by what the mass adds there at the distance
-    /// between them (the parallel-axis theorem).
+    /// An inertia that is given about another point, about the centre of mass: less by what the mass adds
+    /// there at the distance between them (the parallel-axis theorem).
     fn about_center(
         &self,
         body: &Body,

@@ -1,5 +1,5 @@
-//! Physical matrices, which take vectors to vectors: projectors, rotations, cross products, inertias, with their products,
-//! transposes and rates.
+//! Physical matrices, which take vectors to vectors: projectors, rotations, cross products, inertias, with
+//! their products, transposes and rates.
 
 use super::quantities::{flatten, in_links, vector};
 use super::resolved::Resolved;
@@ -56,9 +56,9 @@ impl<'g> Scope<'_, 'g> {
         None
     }
 
-    /// `projector(n)`: `n nᵀ / n·n`, the projection onto a line; `skew(a)`, with `skew(a) * b = cross(a, b)`; `outer(a, b)`: `a bᵀ`;
-    /// `rotation(B / A)`: `Σ bₖ aₖᵀ`, which turns the axes of A into those of B; `inertia(body / point)`: the physical inertia matrix;
-    /// `identity()`, `transpose(M)`, `trace(M)`.
+    /// `projector(n)`: `n nᵀ / n·n`, the projection onto a line; `skew(a)`, with `skew(a) * b = cross(a, b)`;
+    /// `outer(a, b)`: `a bᵀ`; `rotation(B / A)`: `Σ bₖ aₖᵀ`, which turns the axes of A into those of B;
+    /// `inertia(body / point)`: the physical inertia matrix; `identity()`, `transpose(M)`, `trace(M)`.
     pub fn matrix_function(
         &self,
         function: &Name,

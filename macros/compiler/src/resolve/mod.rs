@@ -1,6 +1,6 @@
-//! What the user wrote → a checked mechanism: names resolved, the tree of links found, joints reduced to elementary
-//! motions, bodies lumped into the links that carry them. All mistakes of the user are found here or before; knows
-//! neither algorithms nor generated code.
+//! What the user wrote → a checked mechanism: names resolved, the tree of links found, joints reduced to
+//! elementary motions, bodies lumped into the links that carry them. All mistakes of the user are found here
+//! or before; knows neither algorithms nor generated code.
 
 mod accelerations;
 mod action;

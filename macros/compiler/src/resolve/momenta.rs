@@ -1,6 +1,6 @@
 //! Momentum, kinetic energy, inertia and centre of mass of bodies and particles: `momentum(body)`,
-//! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`, `moment_of_inertia(body / point, direction)`,
-//! `center_of_mass((first, second) / point)`.
+//! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`,
+//! `moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
 
 use super::quantities::{flatten, vector};
 use super::scope::{Allowed, MassProperties, Placed, Scope, Terms, Value};
@@ -10,8 +10,9 @@ use crate::mechanism::Pose;
 use crate::syntax::{self, ExprKind, Name, words};
 
 impl<'g> Scope<'_, 'g> {
-    /// What bodies have by their motion with respect to the ground, each and in sum. With the velocity `v` of a centre of mass, the
-    /// vector `r` there from a point, and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
+    /// What bodies have by their motion with respect to the ground, each and in sum. With the velocity `v` of
+    /// a centre of mass, the vector `r` there from a point, and the central inertia `I`: `m v`,
+    /// `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
     pub fn momentum(
         &self,
         function: &Name,
@@ -106,9 +107,9 @@ impl<'g> Scope<'_, 'g> {
         Some(vector(sum))
     }
 
-    /// A moment or product of inertia about a point: `a·J b`, with one direction `a·J a`, of the physical inertia matrix
-    /// `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the parallel-axis theorem); of several
-    /// bodies the sum.
+    /// A moment or product of inertia about a point: `a·J b`, with one direction `a·J a`, of the physical
+    /// inertia matrix `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the
+    /// parallel-axis theorem); of several bodies the sum.
     pub fn moment_of_inertia(
         &self,
         function: &Name,

@@ -4,12 +4,14 @@ use super::builder::Builder;
 use crate::kinematics::{accelerations, twists};
 use crate::mechanism::Quantity;
 
-/// That it is known how the links move, so that what names velocities can be read. Comes of [`Builder::know_motion`] alone.
+/// That it is known how the links move, so that what names velocities can be read. Comes of
+/// [`Builder::know_motion`] alone.
 #[derive(Clone, Copy)]
 pub struct Moving(());
 
 impl<'g> Builder<'_, 'g> {
-    /// Twists and accelerations of the links, for the expressions that name velocities. `None` while something has no place.
+    /// Twists and accelerations of the links, for the expressions that name velocities. `None` while
+    /// something has no place.
     pub fn know_motion(&mut self) -> Option<Moving> {
         if !self.is_placed() {
             return None;

@@ -186,7 +186,8 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// The value of a name that moves: a coordinate, time, an input, a definition. `None` if it is none of these.
+    /// The value of a name that moves: a coordinate, time, an input, a definition. `None` if it is none of
+    /// these.
     pub fn moving_name(
         &self,
         name: &str,

@@ -9,8 +9,8 @@ use crate::diag::Diagnostics;
 use crate::mechanism::{Chart, Coordinate};
 
 impl<'g> Builder<'_, 'g> {
-    /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints that follow
-    /// another one come after, since their masters may be declared later.
+    /// Numbers `q` and `v` in the order of declaration; joints that close loops have no coordinates. Joints
+    /// that follow another one come after, since their masters may be declared later.
     pub fn number_coordinates(&mut self, cx: &mut Diagnostics) {
         let closing = tree::closing(self.description);
         self.solved_loops = closed_form::find(self.description, &closing, cx);

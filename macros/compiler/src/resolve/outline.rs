@@ -1,5 +1,6 @@
-//! What can be said of a mechanism that has a mistake: enough for the signatures of what would have been generated, so
-//! that one mistake is not reported again wherever the mechanism is used. Reads what the user wrote and checks nothing.
+//! What can be said of a mechanism that has a mistake: enough for the signatures of what would have been
+//! generated, so that one mistake is not reported again wherever the mechanism is used. Reads what the user
+//! wrote and checks nothing.
 
 use super::carriers::expressions;
 use super::functions::{self, Dependence};

@@ -1,8 +1,9 @@
 //! Laws in pieces that meet: `if x < border { below } else { above }`.
 //!
-//! With `f` the one and `g` the other piece, the value is `f(min(x, b)) + g(max(x, b)) − f(b)`: each piece is evaluated on its own side
-//! alone, so that it need not be defined beyond, and slopes are those of the pieces. Pieces that do not meet at the border are a
-//! mistake: methods of integration, derivatives and energies take forces to be continuous.
+//! With `f` the one and `g` the other piece, the value is `f(min(x, b)) + g(max(x, b)) − f(b)`: each piece is
+//! evaluated on its own side alone, so that it need not be defined beyond, and slopes are those of the
+//! pieces. Pieces that do not meet at the border are a mistake: methods of integration, derivatives and
+//! energies take forces to be continuous.
 
 use super::scope::Scope;
 use crate::diag::Diagnostics;
@@ -42,8 +43,8 @@ impl<'g> Pieces<'g> {
         self.with(0, below) + self.with(1, above) - common
     }
 
-    /// The values of both pieces at the border for some numbers with which borders beside it are in order, if they differ for any;
-    /// `Err` if there are no such numbers.
+    /// The values of both pieces at the border for some numbers with which borders beside it are in order, if
+    /// they differ for any; `Err` if there are no such numbers.
     fn gap(&self, beside: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
         let at_border = [0, 1].map(|piece| self.with(piece, self.border));
         let mut tried = false;

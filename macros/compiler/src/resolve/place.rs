@@ -1,5 +1,5 @@
-//! Placement: joints, bodies, particles, points and frames in an order in which everything stands on what is already
-//! placed. What moves by coordinates or time other than a joint's becomes a link of its own.
+//! Placement: joints, bodies, particles, points and frames in an order in which everything stands on what is
+//! already placed. What moves by coordinates or time other than a joint's becomes a link of its own.
 
 use super::builder::Builder;
 use super::carriers::carries;
@@ -42,7 +42,8 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
     }
 
-    /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are circular.
+    /// Places everything. Items wait until what they name is placed; if nothing can go on, definitions are
+    /// circular.
     pub fn place_all(&mut self, order: &Order, cx: &mut Diagnostics) {
         let d = self.description;
         for (j, child) in &order.joints {
@@ -127,8 +128,8 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     fn report_waiting(&self, rest: &[Item], order: &Order, cx: &mut Diagnostics) {
-        // After another mistake things wait for what failed; that has been said. Joints are read all the same, so that
-        // their own mistakes are reported at once.
+        // After another mistake things wait for what failed; that has been said. Joints are read all the
+        // same, so that their own mistakes are reported at once.
         if !cx.is_empty() {
             for item in rest {
                 if let Item::Joint(k) = item {

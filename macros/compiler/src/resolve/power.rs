@@ -51,8 +51,8 @@ pub fn is_asked(d: &Description, element: &Name) -> bool {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// The power of what an element has added since then: of forces on rates their products, of energies what they lose along the
-    /// motion.
+    /// The power of what an element has added since then: of forces on rates their products, of energies what
+    /// they lose along the motion.
     pub fn power_since(&self, before: &Counts, element: &str) -> Delivered<'g> {
         let (m, now) = (&self.model, Counts::of(&self.model));
         if now.inertances > before.inertances || now.by_acceleration > before.by_acceleration {
@@ -88,7 +88,8 @@ impl<'g> Builder<'_, 'g> {
         Ok(power + self.power_of_input(element))
     }
 
-    /// The power of contacts that slip, for the outputs that name them: of friction, which follows from the normal force.
+    /// The power of contacts that slip, for the outputs that name them: of friction, which follows from the
+    /// normal force.
     pub fn know_slipping(&mut self) {
         let g = self.model.graph;
         for (k, constraint) in self.model.constraints.iter().enumerate() {
@@ -135,8 +136,8 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `power(element)`: what a force element, an input or a contact that slips delivers to the bodies, W; negative where it takes
-    /// energy out.
+    /// `power(element)`: what a force element, an input or a contact that slips delivers to the bodies, W;
+    /// negative where it takes energy out.
     pub fn power(
         &self,
         function: &Name,

@@ -1,5 +1,5 @@
-//! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and the
-//! kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
+//! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and
+//! the kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
 
 use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
@@ -164,8 +164,8 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// Something with a place, or the point of a body that is somewhere at the moment: `body.at(vector)` with a vector of any axes
-    /// and coordinates. Its velocity and acceleration are those of the body there.
+    /// Something with a place, or the point of a body that is somewhere at the moment: `body.at(vector)` with
+    /// a vector of any axes and coordinates. Its velocity and acceleration are those of the body there.
     pub fn place_now(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {

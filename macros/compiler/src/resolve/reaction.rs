@@ -1,7 +1,8 @@
 //! Forces and torques that joints transmit, for the outputs that name them: `reaction_force(joint)`,
-//! `reaction_torque(joint)`. A joint of the tree is released: six motions of the child in the joint's frame on the parent are
-//! added, and what holds them at zero is the reaction (Lanczos, *The Variational Principles of Mechanics*, 1970, § III.7).
-//! A joint that closes a loop transmits what the multipliers of its constraints do.
+//! `reaction_torque(joint)`. A joint of the tree is released: six motions of the child in the joint's frame
+//! on the parent are added, and what holds them at zero is the reaction (Lanczos, *The Variational Principles
+//! of Mechanics*, 1970, § III.7). A joint that closes a loop transmits what the multipliers of its
+//! constraints do.
 
 use super::builder::Builder;
 use super::joint::own_coordinate;
@@ -15,8 +16,9 @@ use crate::syntax::{self, ExprKind, Name};
 /// Coordinates of an released joint: three along axes, three about them.
 pub const RELEASED: usize = 6;
 
-/// The joints to be released: those whose reactions the outputs name, and with them those that loops are solved for in
-/// closed form, whose forces tell what closes the loops; of a body whose free-body diagram is an output, all joints and places.
+/// The joints to be released: those whose reactions the outputs name, and with them those that loops are
+/// solved for in closed form, whose forces tell what closes the loops; of a body whose free-body diagram is
+/// an output, all joints and places.
 pub fn to_release(model: &Model<'_>) -> Vec<usize> {
     let values: Vec<_> = model.outputs.iter().flat_map(|o| o.values.iter().copied()).collect();
     let mut joints: Vec<usize> = symbols_in(&values)
@@ -68,8 +70,8 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `reaction_force(joint)` or `reaction_torque(joint)`: what the parent exerts on the child, at the origin of the
-    /// joint's frame.
+    /// `reaction_force(joint)` or `reaction_torque(joint)`: what the parent exerts on the child, at the
+    /// origin of the joint's frame.
     pub fn reaction(
         &self,
         function: &Name,

@@ -1,4 +1,5 @@
-//! Conditions on figures that follow from parameters: what is a mistake in a number is told at run time of a parameter.
+//! Conditions on figures that follow from parameters: what is a mistake in a number is told at run time of a
+//! parameter.
 
 use super::builder::Builder;
 use super::scope::Scope;
@@ -24,8 +25,8 @@ impl<'g> Scope<'_, 'g> {
 }
 
 impl Builder<'_, '_> {
-    /// Puts all conditions into the model: those of figures, those of bounds, and that parameters are finite of which there is
-    /// no other. One that is kept for the user's own use may be what it likes.
+    /// Puts all conditions into the model: those of figures, those of bounds, and that parameters are finite
+    /// of which there is no other. One that is kept for the user's own use may be what it likes.
     pub fn gather_requirements(&mut self) {
         for limit in &self.model.limits {
             let name = self.model.velocities.get(limit.v.0).map_or("", |(name, _)| name.as_str());

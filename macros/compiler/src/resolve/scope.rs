@@ -1,5 +1,5 @@
-//! What names mean where an expression stands: what is declared, what is placed so far and how it moves, what an expression
-//! may depend on.
+//! What names mean where an expression stands: what is declared, what is placed so far and how it moves, what
+//! an expression may depend on.
 
 use super::resolved::Resolved;
 use crate::expr::{Expr, Graph, Rotation, Sym3, Vec3};
@@ -51,14 +51,15 @@ pub struct Scope<'a, 'g> {
     pub failed: RefCell<BTreeSet<String>>,
     /// A constraint on configurations is being read.
     pub constrains: std::cell::Cell<bool>,
-    /// Definitions that were looked up for the one whose value is asked for: each once, however often the others name it.
+    /// Definitions that were looked up for the one whose value is asked for: each once, however often the
+    /// others name it.
     pub known: RefCell<Known<'g>>,
     /// What figures that follow from parameters must fulfil, as far as it was met.
     pub requirements: RefCell<Vec<Requirement<'g>>>,
 }
 
-/// Values of definitions, by name, by what they may depend on, and by whether `x`, `y` and `z` alone are the ground's; `None`
-/// for those with mistakes.
+/// Values of definitions, by name, by what they may depend on, and by whether `x`, `y` and `z` alone are the
+/// ground's; `None` for those with mistakes.
 pub type Known<'g> = BTreeMap<(String, Allowed, bool), Option<Value<'g>>>;
 
 /// The axes that a vector is given in.
@@ -127,7 +128,8 @@ pub struct Context<'g> {
     pub axes: Option<(Option<LinkId>, Pose<'g>)>,
     /// Names of the place, such as `stretch`.
     pub locals: Vec<(&'static str, Expr<'g>)>,
-    /// What decides between pieces of a law that are being read, as written, and the symbols that stand for it in them.
+    /// What decides between pieces of a law that are being read, as written, and the symbols that stand for
+    /// it in them.
     pub deciding: Vec<(syntax::Expr, Expr<'g>)>,
     /// Definitions that are being looked up.
     pub defining: Vec<String>,

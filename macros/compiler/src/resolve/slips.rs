@@ -1,5 +1,5 @@
-//! What is most likely meant by an expression that has no value: angles in degrees, members and methods of other
-//! languages, arrays that are no matrices.
+//! What is most likely meant by an expression that has no value: angles in degrees, members and methods of
+//! other languages, arrays that are no matrices.
 
 use super::curves::FRAMES;
 use super::functions::is_function;

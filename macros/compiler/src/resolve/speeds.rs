@@ -1,4 +1,5 @@
-//! Generalized speeds of the user's choice: invertible linear combinations of the velocities that joints have.
+//! Generalized speeds of the user's choice: invertible linear combinations of the velocities that joints
+//! have.
 
 use super::builder::Builder;
 use super::constraint::Constrained;

@@ -1,5 +1,5 @@
-//! Force elements that are more than linear springs and dashpots on a coordinate: laws, elements between two points,
-//! gravity towards a point, energies, friction, forces with a value.
+//! Force elements that are more than linear springs and dashpots on a coordinate: laws, elements between two
+//! points, gravity towards a point, energies, friction, forces with a value.
 
 use super::builder::Builder;
 use super::constraint::Constrained;
@@ -61,8 +61,8 @@ impl<'g> Builder<'_, 'g> {
         Some(Stretch { value, rate, square: value.square(), signed: false })
     }
 
-    /// The distance between two points. Where they move along one line, it is the coordinate along that line, so that
-    /// nothing happens when they meet; elsewhere the direction of a zero distance is the zero vector.
+    /// The distance between two points. Where they move along one line, it is the coordinate along that line,
+    /// so that nothing happens when they meet; elsewhere the direction of a zero distance is the zero vector.
     pub fn distance(&self, a: &syntax::Expr, b: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let (first, second) = (self.scope.place(a, cx), self.scope.place(b, cx));
         let (first, second) = (first?, second?);
@@ -97,7 +97,8 @@ impl<'g> Builder<'_, 'g> {
         Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
     }
 
-    /// A force along the line of two points, by a value or as an input. It pushes them apart where it is positive.
+    /// A force along the line of two points, by a value or as an input. It pushes them apart where it is
+    /// positive.
     pub fn add_force_between(
         &mut self,
         action: &syntax::Action,
@@ -280,15 +281,15 @@ impl<'g> Builder<'_, 'g> {
         self.model.loads.push(Load { rate: v, force: -force, dissipative: true });
     }
 
-    /// Attraction `strength / distance²`: potential energy `−strength / distance`. Not finite where the points meet,
-    /// as it has no limit there.
+    /// Attraction `strength / distance²`: potential energy `−strength / distance`. Not finite where the
+    /// points meet, as it has no limit there.
     pub fn add_attraction(&mut self, stretch: &Stretch<'g>, strength: Expr<'g>) {
         let distance = stretch.square.sqrt();
         self.model.potentials.push(-(strength / distance));
     }
 
-    /// Gravity towards a point on a body with inertia, to second order in its size over its distance (MacCullagh):
-    /// `U = −μ m / r − μ (tr I − 3 n · I n) / (2 r³)`.
+    /// Gravity towards a point on a body with inertia, to second order in its size over its distance
+    /// (MacCullagh): `U = −μ m / r − μ (tr I − 3 n · I n) / (2 r³)`.
     pub fn add_gravity_gradient(
         &mut self,
         body: &Placed<'g>,

@@ -7,8 +7,8 @@ pub use crate::syntax::GROUND;
 use crate::syntax::{Description, Expr, ExprKind, Name, words};
 use std::collections::BTreeMap;
 
-/// The joints in an order in which every parent is placed before its children, with the bodies that they hold, and the
-/// joints that close loops.
+/// The joints in an order in which every parent is placed before its children, with the bodies that they
+/// hold, and the joints that close loops.
 pub struct Order {
     /// Joint, child.
     pub joints: Vec<(usize, BodyIndex)>,
@@ -16,8 +16,8 @@ pub struct Order {
     pub closing: Vec<usize>,
 }
 
-/// Which joints close a loop: those whose child is held by an earlier joint or has a place of its own, and those that
-/// would let it hang from itself. All others hold their child: they are the spanning tree.
+/// Which joints close a loop: those whose child is held by an earlier joint or has a place of its own, and
+/// those that would let it hang from itself. All others hold their child: they are the spanning tree.
 pub fn closing(description: &Description) -> Vec<bool> {
     let mut parents: BTreeMap<&str, &str> = BTreeMap::new();
     for point in &description.points {
@@ -131,7 +131,8 @@ pub fn find_tree(
     sound.then_some(Order { joints: order, closing: loops })
 }
 
-/// Reports a body that no joint of the tree holds: its joint may go the wrong way, or let it hang from itself.
+/// Reports a body that no joint of the tree holds: its joint may go the wrong way, or let it hang from
+/// itself.
 fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &mut Diagnostics) {
     let name = &body.text;
     let joints = || loops.iter().map(|j| &description.joints[*j]);
@@ -151,8 +152,8 @@ fn report_unheld(description: &Description, body: &Name, loops: &[usize], cx: &m
     }
 }
 
-/// Joints with what they join, `None` for the ground: depth first from the ground, siblings in declaration order; what
-/// is not reached is left out.
+/// Joints with what they join, `None` for the ground: depth first from the ground, siblings in declaration
+/// order; what is not reached is left out.
 fn sort(
     ends: &[(usize, Option<BodyIndex>, BodyIndex)],
     bodies: usize,

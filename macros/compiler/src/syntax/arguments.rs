@@ -15,8 +15,8 @@ mod slips;
 use parse::parse_arguments;
 use slips::{decimal_comma, names_without_brackets_or_quotes, unnamed};
 
-/// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions (of an
-/// equilibrium any number), and `key = value` in any order.
+/// The arguments of an attribute: at most one relation `a -> b`, at most one equation between two expressions
+/// (of an equilibrium any number), and `key = value` in any order.
 pub struct Arguments {
     relation: Option<(Expr, Expr)>,
     equations: Vec<(Expr, Expr)>,
@@ -147,7 +147,8 @@ impl Arguments {
         std::mem::take(&mut self.plain)
     }
 
-    /// The one place that stands alone where a place has a key: most likely the second of a pair without parentheses.
+    /// The one place that stands alone where a place has a key: most likely the second of a pair without
+    /// parentheses.
     pub fn take_second(&mut self, first: &Expr) -> Option<Expr> {
         let is_place =
             |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
@@ -164,7 +165,8 @@ impl Arguments {
         Some(self.plain.remove(at).place)
     }
 
-    /// Reports a value or parentheses behind a word that stands alone; the word counts as given. True if there are any.
+    /// Reports a value or parentheses behind a word that stands alone; the word counts as given. True if
+    /// there are any.
     pub fn check_word(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
         let is_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
         let call = self.plain.iter().position(is_call).map(|at| self.plain.remove(at).place);
@@ -206,7 +208,8 @@ impl Arguments {
         known: &[&str],
         cx: &mut Diagnostics,
     ) -> Option<Expr> {
-        // A key that is not known is reported as such: most likely it is the missing one. So is a value without a key.
+        // A key that is not known is reported as such: most likely it is the missing one. So is a value
+        // without a key.
         if self.place_of(key).is_none()
             && self.named.iter().all(|(name, _)| known.contains(&name.text.as_str()))
         {
@@ -316,7 +319,8 @@ impl Arguments {
         self.relation.take()
     }
 
-    /// The one equation `a = b`, whose left side may be a single name; `b` is absent if an expression stands alone.
+    /// The one equation `a = b`, whose left side may be a single name; `b` is absent if an expression stands
+    /// alone.
     pub fn take_equation(&mut self) -> Option<(Expr, Option<Expr>)> {
         if let Some((left, right)) = self.equations.pop() {
             return Some((left, Some(right)));
@@ -355,7 +359,8 @@ impl Arguments {
         self
     }
 
-    /// Reports what was not taken; `whose` is the element with its article. Arguments with one answer are one mistake.
+    /// Reports what was not taken; `whose` is the element with its article. Arguments with one answer are one
+    /// mistake.
     pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
         let (owner, example) = (&self.owner, words::example(whose));
         let mut answers: Vec<String> = Vec::new();

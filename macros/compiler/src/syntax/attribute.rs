@@ -1,4 +1,5 @@
-//! The struct and its attributes: which fields are parameters, which are elements, and what their attributes say.
+//! The struct and its attributes: which fields are parameters, which are elements, and what their attributes
+//! say.
 
 use super::expression::name;
 use super::field::{check_duplicates, is_known, read_field};
@@ -138,8 +139,9 @@ fn how_fields_are_written(error: &syn::Error) -> &'static str {
     }
 }
 
-/// The struct's type parameter, if it has one that can be the scalar type. Those that cannot be are taken away, so that
-/// Rust does not complain of them once more, and the names of the types among them are returned.
+/// The struct's type parameter, if it has one that can be the scalar type. Those that cannot be are taken
+/// away, so that Rust does not complain of them once more, and the names of the types among them are
+/// returned.
 fn check_generics(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String>, Vec<Ident>) {
     let (mut found, mut refused) = (None, Vec::new());
     let parameters = std::mem::take(&mut item.generics.params);

@@ -107,7 +107,8 @@ fn read_softness(
 /// The word for what a file says of a link's shape.
 pub const COLLISION: &str = "collision";
 
-/// `link.collision()` gives the link, `collision()` nothing: all links of the file. `link.collision(2)` is the third shape of one.
+/// `link.collision()` gives the link, `collision()` nothing: all links of the file. `link.collision(2)` is
+/// the third shape of one.
 pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
     match &surface.kind {
         ExprKind::Method(link, word, arguments) if word.text == COLLISION && arguments.len() < 2 => {

@@ -1,5 +1,5 @@
-//! `crate = path::to::linkwork` among the arguments of the attribute: where generated code finds the runtime, if its crate
-//! has another name or is re-exported by one.
+//! `crate = path::to::linkwork` among the arguments of the attribute: where generated code finds the runtime,
+//! if its crate has another name or is re-exported by one.
 
 use crate::diag::Diagnostics;
 use proc_macro2::{TokenStream, TokenTree};

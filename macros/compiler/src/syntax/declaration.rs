@@ -1,10 +1,12 @@
-//! The struct as the user wrote it, for its documentation: the source text, and what doc comments say of its fields.
+//! The struct as the user wrote it, for its documentation: the source text, and what doc comments say of its
+//! fields.
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::{Attribute, Expr, ExprLit, ItemStruct, Lit, Meta};
 
-/// The source text of a struct's fields with their braces. None outside of a compilation, and of what a macro has put together.
+/// The source text of a struct's fields with their braces. None outside of a compilation, and of what a macro
+/// has put together.
 pub fn fields(item: &TokenStream) -> Option<String> {
     let braces = item.clone().into_iter().find_map(|token| match token {
         TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => Some(group.span()),

@@ -147,7 +147,8 @@ pub fn is_one_of(attribute: &Attribute, words: &[&str]) -> bool {
 pub const CONDITIONS: &str =
     "put `#[cfg(…)]` on the whole struct, before `#[mechanism]`, and write one struct for each case";
 
-/// True for an attribute that takes a parameter away under a condition, or says under one what the language does.
+/// True for an attribute that takes a parameter away under a condition, or says under one what the language
+/// does.
 pub fn is_conditional(attribute: &Attribute) -> bool {
     let conditional = |list: &syn::MetaList| {
         let parse = syn::punctuated::Punctuated::<Meta, syn::Token![,]>::parse_terminated;
@@ -229,8 +230,8 @@ fn own_arguments(
     found.flatten()
 }
 
-/// Reports an attribute that is none of the language's, unless it is one of Rust's own that may stand. False after an
-/// unknown one: most likely it is the one that the element needs.
+/// Reports an attribute that is none of the language's, unless it is one of Rust's own that may stand. False
+/// after an unknown one: most likely it is the one that the element needs.
 fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut Diagnostics) -> bool {
     match word {
         "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,

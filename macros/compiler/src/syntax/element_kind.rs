@@ -1,5 +1,6 @@
-//! The types of elements: what they are called, which attributes go with them, and which arguments force elements take. Matches
-//! over them have no arm for the rest, so that rustc names every place where a new one is missing.
+//! The types of elements: what they are called, which attributes go with them, and which arguments force
+//! elements take. Matches over them have no arm for the rest, so that rustc names every place where a new one
+//! is missing.
 
 use super::joint_kind::{self, JointKind};
 

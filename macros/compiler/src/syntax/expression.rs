@@ -1,5 +1,5 @@
-//! Expressions: Rust's own grammar of numbers, names, calls, fields and the four operations, in a parser whose depth
-//! is bounded.
+//! Expressions: Rust's own grammar of numbers, names, calls, fields and the four operations, in a parser
+//! whose depth is bounded.
 
 use super::{BinaryOp, Expr, ExprKind, Name, guard};
 use crate::diag::{Place, syn_error};
@@ -214,8 +214,9 @@ struct Branch {
     piece: Parsed,
 }
 
-/// Parses `if a < b { below } else { above }` into a call of `IF` with the operands of the comparison, the piece below and the
-/// piece above the border; `a > b` swaps the pieces. Further branches `else if` are nested in the last argument.
+/// Parses `if a < b { below } else { above }` into a call of `IF` with the operands of the comparison, the
+/// piece below and the piece above the border; `a > b` swaps the pieces. Further branches `else if` are
+/// nested in the last argument.
 fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
     let mut branches = vec![parse_branch(input)?];
     let (mut last, end) = loop {
@@ -386,7 +387,8 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span
     Ok((items, size, close))
 }
 
-/// Parses comma-separated expressions to the end; returns their common size, and whether a comma follows the last one.
+/// Parses comma-separated expressions to the end; returns their common size, and whether a comma follows the
+/// last one.
 fn parse_list(content: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, bool)> {
     let (mut items, mut size, mut trailing) = (Vec::new(), Size::default(), false);
     while !content.is_empty() {

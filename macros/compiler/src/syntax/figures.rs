@@ -1,4 +1,5 @@
-//! `parameters = inertial("trunk")`: which figures of a file are parameters of the mechanism, and the fields that hold them.
+//! `parameters = inertial("trunk")`: which figures of a file are parameters of the mechanism, and the fields
+//! that hold them.
 
 use super::Name;
 use super::expression::parse_name;

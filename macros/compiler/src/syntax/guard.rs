@@ -1,6 +1,6 @@
-//! A first pass over the tokens, without recursion, that rejects input on which the recursive parsers could exhaust their
-//! stack. A level of recursion is a bracket, a prefix operator, or any token of a type, whose grammar is Rust's own and
-//! nests without brackets, as in `&mut &mut f64`.
+//! A first pass over the tokens, without recursion, that rejects input on which the recursive parsers could
+//! exhaust their stack. A level of recursion is a bracket, a prefix operator, or any token of a type, whose
+//! grammar is Rust's own and nests without brackets, as in `&mut &mut f64`.
 
 use crate::diag::Diagnostics;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
@@ -13,12 +13,13 @@ const MAX_TYPE_TOKENS: usize = 100;
 const MAX_DIGITS: usize = 1000;
 /// Maximum number of tokens in one struct.
 const MAX_TOKENS: usize = 400_000;
-/// Stack that an expansion may use, in bytes: a quarter of what rustc gives its threads. A nesting level of the
-/// unoptimised compiler takes at most 32 KiB of it; a test expands the deepest input of every kind within this stack.
+/// Stack that an expansion may use, in bytes: a quarter of what rustc gives its threads. A nesting level of
+/// the unoptimised compiler takes at most 32 KiB of it; a test expands the deepest input of every kind within
+/// this stack.
 pub const MAX_STACK: usize = MAX_DEPTH * (32 << 10) + (512 << 10);
 
 /// An open bracket while the tokens are visited.
-struct Level {
+struct OpenBracket {
     /// Tokens that are not yet visited.
     tokens: proc_macro2::token_stream::IntoIter,
     /// Brackets and prefix operators that its contents are nested in.
@@ -31,23 +32,24 @@ struct Level {
     after_hash: bool,
 }
 
-impl Level {
+impl OpenBracket {
     fn outermost(tokens: &TokenStream, has_types: bool) -> Self {
         Self { tokens: tokens.clone().into_iter(), depth: 1, outer: 0, has_types, after_hash: false }
     }
 }
 
-/// Reports an attribute's arguments that are nested too deeply or are too many. Returns true if parsing may go on.
+/// Reports an attribute's arguments that are nested too deeply or are too many. Returns true if parsing may
+/// go on.
 pub fn check_arguments(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_tokens(Level::outermost(tokens, false), cx)
+    check_tokens(OpenBracket::outermost(tokens, false), cx)
 }
 
 /// Reports an item whose tokens are nested too deeply or are too many. Returns true if parsing may go on.
 pub fn check_item(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_tokens(Level::outermost(tokens, true), cx)
+    check_tokens(OpenBracket::outermost(tokens, true), cx)
 }
 
-fn check_tokens(outermost: Level, cx: &mut Diagnostics) -> bool {
+fn check_tokens(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {
     let mut count = 0;
     let mut angle = 0_usize;
     let mut run = 0_usize;
@@ -89,7 +91,7 @@ fn check_tokens(outermost: Level, cx: &mut Diagnostics) -> bool {
                 }
                 if g.delimiter() != Delimiter::None || !g.stream().is_empty() {
                     let tokens = g.stream().into_iter();
-                    levels.push(Level { tokens, depth, outer: types, has_types, after_hash: false });
+                    levels.push(OpenBracket { tokens, depth, outer: types, has_types, after_hash: false });
                 }
             }
             TokenTree::Ident(_) => run = 0,

@@ -1,5 +1,6 @@
-//! Lists of elements: `leg: [Body; 2]` stands for two fields, `leg_0` and `leg_1`. In the attributes of a list `i` counts its
-//! elements, and everywhere `leg[1]` and `leg[i + 1]` name one of them. What comes after sees plain fields only.
+//! Lists of elements: `leg: [Body; 2]` stands for two fields, `leg_0` and `leg_1`. In the attributes of a
+//! list `i` counts its elements, and everywhere `leg[1]` and `leg[i + 1]` name one of them. What comes after
+//! sees plain fields only.
 
 use super::element::{ATTRIBUTES, is_one_of};
 use crate::diag::Diagnostics;

@@ -1,4 +1,5 @@
-//! What a use of `#[mechanism]` says as a whole: its description, its options, and what remains of the struct.
+//! What a use of `#[mechanism]` says as a whole: its description, its options, and what remains of the
+//! struct.
 
 use super::figures::{FileField, FileFigures};
 use super::request::Requests;

@@ -1,4 +1,5 @@
-//! What the arguments of `#[mechanism(…)]` ask for: gravity, a file with what is read of it, formulation, more functions.
+//! What the arguments of `#[mechanism(…)]` ask for: gravity, a file with what is read of it, formulation,
+//! more functions.
 
 use super::arguments::Arguments;
 use super::figures::{self, FileFigures};
@@ -161,7 +162,8 @@ fn read_inputs(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut D
     }
 }
 
-/// `inertia = check | trust | none`. Without inertia there are no dynamics, so nothing can ask for more of them.
+/// `inertia = check | trust | none`. Without inertia there are no dynamics, so nothing can ask for more of
+/// them.
 fn read_inertias(
     arguments: &mut Arguments,
     asked: &[(&str, Place)],

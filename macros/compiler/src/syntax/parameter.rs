@@ -1,4 +1,5 @@
-//! What fields that are parameters have in common: a scalar type and a unit; and the types of fields as they are written.
+//! What fields that are parameters have in common: a scalar type and a unit; and the types of fields as they
+//! are written.
 
 use super::{Description, Name, ScalarType, element};
 use crate::diag::{Diagnostics, Place};

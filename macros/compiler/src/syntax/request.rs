@@ -1,4 +1,5 @@
-//! What a mechanism asks for by words among the attribute's arguments, beside the functions that every mechanism has.
+//! What a mechanism asks for by words among the attribute's arguments, beside the functions that every
+//! mechanism has.
 
 /// Which equations are printed: `equations = word`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

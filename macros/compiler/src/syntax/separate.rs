@@ -1,5 +1,6 @@
-//! Structs whose fields are not separated by commas, or have no colon. Rustc says so before it gives the struct to the attribute, which is best
-//! served by what was meant: a second error for one mistake helps nobody.
+//! Structs whose fields are not separated by commas, or have no colon. Rustc says so before it gives the
+//! struct to the attribute, which is best served by what was meant: a second error for one mistake helps
+//! nobody.
 
 use super::{element, guard};
 use crate::diag::{Diagnostics, syn_error};
@@ -9,8 +10,8 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Token, Type, Visibility, token};
 
-/// The struct with a comma behind every field, and the first place where there was none. `None` if nothing else would make
-/// it a struct, or nothing is to be mended.
+/// The struct with a comma behind every field, and the first place where there was none. `None` if nothing
+/// else would make it a struct, or nothing is to be mended.
 pub fn separate(item: &TokenStream) -> Option<(TokenStream, syn::Error)> {
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };

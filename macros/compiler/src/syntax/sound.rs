@@ -1,5 +1,5 @@
-//! What of a mechanism can be read in spite of mistakes of grammar: everything that has to do with none of them. What is said
-//! of it is true however they are mended, so that all mistakes are told in one round.
+//! What of a mechanism can be read in spite of mistakes of grammar: everything that has to do with none of
+//! them. What is said of it is true however they are mended, so that all mistakes are told in one round.
 
 use super::{Body, Description, Formulation, Name, RATE_OF_STATE};
 use crate::diag::nearest;
@@ -66,7 +66,8 @@ impl Reading {
         self.lost |= words.iter().any(|word| nearest(word, &FAR).is_some() || FAR.contains(&word.as_str()));
     }
 
-    /// The description without what has a mistake, or names something that has. `None` if nothing is left to be read.
+    /// The description without what has a mistake, or names something that has. `None` if nothing is left to
+    /// be read.
     pub fn rest(&self, whole: &Description) -> Option<Description> {
         if self.lost {
             return None;
@@ -107,7 +108,8 @@ impl Reading {
         (!d.bodies.is_empty() || !d.particles.is_empty()).then_some(d)
     }
 
-    /// The names of fields that cannot be read, those that name them, and so on; and bodies that are known by name alone.
+    /// The names of fields that cannot be read, those that name them, and so on; and bodies that are known by
+    /// name alone.
     fn lost_names(&self) -> (BTreeSet<&str>, Vec<&Name>) {
         let mut lost = BTreeSet::new();
         let mut bodies: Vec<&Name> = Vec::new();

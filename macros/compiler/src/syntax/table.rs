@@ -10,8 +10,8 @@ use syn::{ExprLit, Field, GenericArgument, Lit, PathArguments, Type};
 /// Most tables of a mechanism.
 const MAX_TABLES: usize = 256;
 
-/// How many variables a table has, as it is written: nothing else stands between the angle brackets of its type. `None` for
-/// a type that is no table.
+/// How many variables a table has, as it is written: nothing else stands between the angle brackets of its
+/// type. `None` for a type that is no table.
 pub fn table_variables(ty: &Type) -> Option<Option<usize>> {
     let path = match ty {
         Type::Path(path) => path,

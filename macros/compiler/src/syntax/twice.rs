@@ -1,11 +1,12 @@
-//! Two structs of one name in one module: rustc reports the name once, but also each function that both have. So the second
-//! struct gets no functions.
+//! Two structs of one name in one module: rustc reports the name once, but also each function that both have.
+//! So the second struct gets no functions.
 
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{Attribute, Item, ItemStruct, Stmt};
 
-/// Returns the bare struct if the source file defines its name in the same scope before the attribute's line, counted from one.
+/// Returns the bare struct if the source file defines its name in the same scope before the attribute's line,
+/// counted from one.
 pub fn second_definition(item: &TokenStream, text: &str, line: usize) -> Option<TokenStream> {
     let named = |ident: &str| {
         let definition = format!("struct {ident}");

@@ -1,5 +1,5 @@
-//! Words of other tools and of textbooks, and what they mean here: what is said → what is meant. Nothing else reads these
-//! tables but the help of messages.
+//! Words of other tools and of textbooks, and what they mean here: what is said → what is meant. Nothing else
+//! reads these tables but the help of messages.
 
 use super::{BinaryOp, ElementKind, Expr, ExprKind, ForceKind, JointKind, OtherKind};
 use crate::diag::{Diagnostic, nearest};

@@ -1,4 +1,5 @@
-//! Search for isomorphic limbs: subtrees on one link, or on the ground, with the same joints in the same order.
+//! Search for isomorphic limbs: subtrees on one link, or on the ground, with the same joints in the same
+//! order.
 
 use crate::expr::lanes::MAX_LANES;
 use crate::kinematics::Joint;
@@ -10,15 +11,16 @@ use std::collections::BTreeMap;
 pub struct Group {
     /// Number of limbs.
     pub limbs: usize,
-    /// Corresponding links, one per lane, in the order of the first limb. The number of lanes is a power of two; the last
-    /// limb fills the lanes beyond the number of limbs.
+    /// Corresponding links, one per lane, in the order of the first limb. The number of lanes is a power of
+    /// two; the last limb fills the lanes beyond the number of limbs.
     pub rows: Vec<Vec<usize>>,
 }
 
 /// Shapes of subtrees: the kinds of their joints, link by link.
 struct Shapes {
     children: Vec<Vec<usize>>,
-    /// Shape of the subtree of each link: equal for isomorphic subtrees, zero for subtrees that cannot be limbs.
+    /// Shape of the subtree of each link: equal for isomorphic subtrees, zero for subtrees that cannot be
+    /// limbs.
     shape: Vec<usize>,
 }
 

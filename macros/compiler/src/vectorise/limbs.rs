@@ -1,6 +1,6 @@
-//! Identical limbs, such as legs, arms or fingers, as the SIMD lanes of one limb. The vectorised mechanism has one limb
-//! for each group; its lanes differ in constants and inputs. The algorithms process it like any other mechanism and sum over
-//! the lanes where a limb passes a force or an inertia to its parent link.
+//! Identical limbs, such as legs, arms or fingers, as the SIMD lanes of one limb. The vectorised mechanism
+//! has one limb for each group; its lanes differ in constants and inputs. The algorithms process it like any
+//! other mechanism and sum over the lanes where a limb passes a force or an inertia to its parent link.
 
 use super::find::Group;
 use super::merge::Merge;
@@ -45,8 +45,9 @@ pub struct LimbRows {
 }
 
 impl<'g> Limbs<'g> {
-    /// Returns the mechanism with its identical limbs as lanes; `passive_forces` returns the passive forces of the whole
-    /// mechanism, by velocity. Returns `None` if there are no groups, or if limbs of one shape cannot be merged.
+    /// Returns the mechanism with its identical limbs as lanes; `passive_forces` returns the passive forces
+    /// of the whole mechanism, by velocity. Returns `None` if there are no groups, or if limbs of one shape
+    /// cannot be merged.
     pub fn of(
         model: &Model<'g>,
         joints: &[Joint<'g>],
@@ -131,7 +132,8 @@ impl<'g> Limbs<'g> {
         })
     }
 
-    /// Merges expressions by velocity of the whole mechanism into expressions by velocity of the vectorised mechanism.
+    /// Merges expressions by velocity of the whole mechanism into expressions by velocity of the vectorised
+    /// mechanism.
     fn lane_groups(&self, whole: &[Expr<'g>], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
         let gather = |velocity: &Velocity| {
@@ -151,7 +153,8 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(gather).collect()
     }
 
-    /// Returns the group of each velocity of the vectorised mechanism, identified by its first velocity; `None` outside limbs.
+    /// Returns the group of each velocity of the vectorised mechanism, identified by its first velocity;
+    /// `None` outside limbs.
     pub fn groups(&self) -> Vec<Option<usize>> {
         let mut groups = vec![None; self.velocities.len()];
         let mut of_links: Vec<Option<usize>> = Vec::new();
@@ -170,8 +173,8 @@ impl<'g> Limbs<'g> {
         self.velocities[index].lanes.len()
     }
 
-    /// Returns the limb whose velocities have nonzero entries in a row over the whole mechanism, if it is a single limb that
-    /// occupies one lane.
+    /// Returns the limb whose velocities have nonzero entries in a row over the whole mechanism, if it is a
+    /// single limb that occupies one lane.
     pub fn lane_of(&self, row: &[Expr<'g>], groups: &[Option<usize>]) -> Option<LimbLane> {
         let entries = row.iter().zip(&self.places).filter(|(entry, _)| !entry.is_zero());
         let mut found: Option<LimbLane> = None;
@@ -190,8 +193,9 @@ impl<'g> Limbs<'g> {
         found
     }
 
-    /// Groups rows over the whole mechanism by limbs: the first rows of all limbs of a group correspond, then the second ones, and so
-    /// on. Returns `None` unless each row belongs to one limb of a group and all limbs have the same number of rows.
+    /// Groups rows over the whole mechanism by limbs: the first rows of all limbs of a group correspond, then
+    /// the second ones, and so on. Returns `None` unless each row belongs to one limb of a group and all
+    /// limbs have the same number of rows.
     pub fn limb_rows(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<LimbRows>> {
         let groups = self.groups();
         let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
@@ -208,8 +212,8 @@ impl<'g> Limbs<'g> {
         found.into_iter().map(limb_rows).collect()
     }
 
-    /// Merges corresponding rows over the whole mechanism into one row over the vectorised mechanism, without its signs.
-    /// Returns `None` if the rows have different structures.
+    /// Merges corresponding rows over the whole mechanism into one row over the vectorised mechanism, without
+    /// its signs. Returns `None` if the rows have different structures.
     pub fn merged_rows(&self, rows: &[&[Expr<'g>]], merge: &mut Merge<'g>) -> Option<Vec<Expr<'g>>> {
         let entry = |velocity: &Velocity| {
             let of = |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
@@ -219,7 +223,8 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(entry).collect()
     }
 
-    /// Merges square matrices over the whole mechanism, one per lane, as [`merged_rows`](Self::merged_rows) does.
+    /// Merges square matrices over the whole mechanism, one per lane, as [`merged_rows`](Self::merged_rows)
+    /// does.
     pub fn merged_squares(
         &self,
         lanes: &[Vec<Vec<Expr<'g>>>],
@@ -238,18 +243,21 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(row).collect()
     }
 
-    /// Returns the velocity of the whole mechanism that a velocity is in a lane; the same in all lanes outside the limbs.
+    /// Returns the velocity of the whole mechanism that a velocity is in a lane; the same in all lanes
+    /// outside the limbs.
     fn velocity_in(&self, velocity: &Velocity, lane: usize) -> Option<usize> {
         let is_alone = velocity.lanes.len() == 1;
         velocity.lanes.get(if is_alone { 0 } else { lane }).copied()
     }
 
-    /// Returns for each velocity of the whole mechanism its index in the vectorised mechanism and its lane, if it has one.
+    /// Returns for each velocity of the whole mechanism its index in the vectorised mechanism and its lane,
+    /// if it has one.
     pub fn places(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         self.places.iter().map(|place| (place.index, place.lane))
     }
 
-    /// Joins rows over the whole mechanism, one for each limb of a group, into one row over the vectorised mechanism.
+    /// Joins rows over the whole mechanism, one for each limb of a group, into one row over the vectorised
+    /// mechanism.
     pub fn side_by_side(&self, rows: &[&[Expr<'g>]]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let merge = &mut Merge::new(g);
@@ -266,7 +274,8 @@ impl<'g> Limbs<'g> {
         self.velocities.iter().map(entry).collect()
     }
 
-    /// Returns an expression for each velocity of the whole mechanism; `of` takes its index in the vectorised mechanism and its lane.
+    /// Returns an expression for each velocity of the whole mechanism; `of` takes its index in the vectorised
+    /// mechanism and its lane.
     pub fn scattered_from(&self, of: impl Fn(usize, usize) -> Expr<'g>) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let scatter = |place: &Location| match place.lane {
@@ -281,7 +290,8 @@ impl<'g> Limbs<'g> {
         &self.passive_forces
     }
 
-    /// Splits expressions by velocity of the vectorised mechanism into expressions by velocity of the whole mechanism.
+    /// Splits expressions by velocity of the vectorised mechanism into expressions by velocity of the whole
+    /// mechanism.
     pub fn scattered(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let scatter = |place: &Location| match place.lane {
@@ -291,7 +301,8 @@ impl<'g> Limbs<'g> {
         self.places.iter().map(scatter).collect()
     }
 
-    /// Returns for each velocity of the whole mechanism whether it is outside the limbs and marked in the vectorised mechanism.
+    /// Returns for each velocity of the whole mechanism whether it is outside the limbs and marked in the
+    /// vectorised mechanism.
     pub fn marked_outside_limbs(&self, marked: &[bool]) -> Vec<bool> {
         self.places.iter().map(|place| place.lane.is_none() && marked[place.index]).collect()
     }
@@ -325,7 +336,8 @@ pub fn joined<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
     }
 }
 
-/// Returns for each link the corresponding links of its group, itself first; an empty list for links of later limbs.
+/// Returns for each link the corresponding links of its group, itself first; an empty list for links of later
+/// limbs.
 fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = (0..links).map(|k| vec![k]).collect();
     for row in groups.iter().flat_map(|group| &group.rows) {

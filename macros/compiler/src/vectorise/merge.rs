@@ -1,6 +1,6 @@
-//! Merging of the expressions of several limbs into the SIMD lanes of one expression. The result is correct for any pairing
-//! of operands: every lane has the value of its own expression. Expressions come from users, so depth and steps are
-//! bounded; an expression that exceeds the bounds is not merged.
+//! Merging of the expressions of several limbs into the SIMD lanes of one expression. The result is correct
+//! for any pairing of operands: every lane has the value of its own expression. Expressions come from users,
+//! so depth and steps are bounded; an expression that exceeds the bounds is not merged.
 
 use crate::expr::replace::replace;
 use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
@@ -49,9 +49,10 @@ impl<'g> Merge<'g> {
         self.partners.push(lanes);
     }
 
-    /// Returns a filler for lane `to` when only lane `from` has this term: the coefficient there is zero. The filler has the
-    /// symbols of lane `to`, so that they are gathered once. The expression itself is the filler if it has symbols of other
-    /// lanes too, or may be infinite, since zero times infinity is not zero.
+    /// Returns a filler for lane `to` when only lane `from` has this term: the coefficient there is zero. The
+    /// filler has the symbols of lane `to`, so that they are gathered once. The expression itself is the
+    /// filler if it has symbols of other lanes too, or may be infinite, since zero times infinity is not
+    /// zero.
     fn filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
         let partners = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
         let is_own = |s: &Symbol| partners(*s).is_none_or(|list| list.get(from) == Some(s));
@@ -78,8 +79,8 @@ impl<'g> Merge<'g> {
         made
     }
 
-    /// Returns the expression with these lanes, or the common expression if all lanes are equal. Returns `None` if the
-    /// lanes have different structures.
+    /// Returns the expression with these lanes, or the common expression if all lanes are equal. Returns
+    /// `None` if the lanes have different structures.
     pub fn lanes(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
         let first = *lanes.first()?;
         if lanes.iter().all(|e| *e == first) {
@@ -164,7 +165,8 @@ impl<'g> Merge<'g> {
         Some(self.graph.lane_constants(&offsets) + scaled)
     }
 
-    /// Merges expressions with signs. Signs that differ between lanes are absorbed by constants of the expressions, if possible.
+    /// Merges expressions with signs. Signs that differ between lanes are absorbed by constants of the
+    /// expressions, if possible.
     fn signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
         let sign = *signs.first()?;
         if signs.iter().all(|s| *s == sign) {
@@ -209,7 +211,8 @@ impl<'g> Merge<'g> {
         Some(self.graph.lane_constants(signs) * self.lanes(lanes)?)
     }
 
-    /// Returns the first and second operands of a commutative operation in all lanes, exchanged where that pairs similar ones.
+    /// Returns the first and second operands of a commutative operation in all lanes, exchanged where that
+    /// pairs similar ones.
     fn pair_operands(
         &mut self,
         mut operands: Vec<(Expr<'g>, Expr<'g>)>,
@@ -224,7 +227,8 @@ impl<'g> Merge<'g> {
         Some(operands.into_iter().unzip())
     }
 
-    /// Returns true if two expressions have the same structure down to a depth, or `None` when no steps remain.
+    /// Returns true if two expressions have the same structure down to a depth, or `None` when no steps
+    /// remain.
     fn is_similar(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
         self.spend(1)?;
         let ((.., a), (.., b)) = (affine(a), affine(b));

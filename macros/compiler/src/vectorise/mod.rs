@@ -1,5 +1,5 @@
-//! Vectorisation over SIMD lanes: identical limbs become the lanes of one limb, and quantities that several degrees of
-//! freedom propagate to the root through the same joints become the lanes of one expression.
+//! Vectorisation over SIMD lanes: identical limbs become the lanes of one limb, and quantities that several
+//! degrees of freedom propagate to the root through the same joints become the lanes of one expression.
 
 mod find;
 mod limbs;

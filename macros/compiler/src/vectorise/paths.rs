@@ -1,5 +1,5 @@
-//! Propagation from degrees of freedom to the root, several at a time as SIMD lanes. Degrees of freedom on one path to the root
-//! are transformed by the same joints from the innermost of them on.
+//! Propagation from degrees of freedom to the root, several at a time as SIMD lanes. Degrees of freedom on
+//! one path to the root are transformed by the same joints from the innermost of them on.
 
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial};
@@ -48,7 +48,8 @@ pub struct Paths<'a, 'g> {
 }
 
 impl<'a, 'g> Paths<'a, 'g> {
-    /// Returns the paths of all degrees of freedom, joint by joint, in at most `max_lanes` lanes; one for no lanes.
+    /// Returns the paths of all degrees of freedom, joint by joint, in at most `max_lanes` lanes; one for no
+    /// lanes.
     pub fn of(joints: &'a [Joint<'g>], max_lanes: usize) -> Paths<'a, 'g> {
         let mut widths: Vec<usize> = Vec::with_capacity(joints.len());
         for joint in joints {

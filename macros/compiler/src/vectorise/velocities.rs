@@ -1,4 +1,5 @@
-//! Correspondence between the velocities of a mechanism and those of its vectorised form, where identical limbs are lanes.
+//! Correspondence between the velocities of a mechanism and those of its vectorised form, where identical
+//! limbs are lanes.
 
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::Model;
@@ -6,7 +7,8 @@ use crate::mechanism::Model;
 /// Velocity of the vectorised mechanism.
 #[derive(Clone, Debug)]
 pub struct Velocity {
-    /// Index in the whole mechanism of the velocity in each lane; a single index for a velocity outside the limbs.
+    /// Index in the whole mechanism of the velocity in each lane; a single index for a velocity outside the
+    /// limbs.
     pub lanes: Vec<usize>,
     /// Sign of each lane: minus one if the limb's joint moves in the opposite direction.
     pub signs: Vec<f64>,
@@ -21,8 +23,9 @@ pub struct Location {
     pub lane: Option<usize>,
 }
 
-/// Returns the velocities of the vectorised mechanism, and the location in it of each velocity of the whole mechanism. Each row
-/// holds corresponding links. Returns `None` if the joints of the limbs are coupled differently.
+/// Returns the velocities of the vectorised mechanism, and the location in it of each velocity of the whole
+/// mechanism. Each row holds corresponding links. Returns `None` if the joints of the limbs are coupled
+/// differently.
 pub fn pair_velocities(
     model: &Model<'_>,
     joints: &[Joint<'_>],
@@ -55,7 +58,8 @@ pub fn pair_velocities(
     Some((velocities, places))
 }
 
-/// Returns minus one if two motion subspaces have opposite signs in the first component that is a nonzero number in both.
+/// Returns minus one if two motion subspaces have opposite signs in the first component that is a nonzero
+/// number in both.
 fn sign_between(a: &Spatial<'_>, b: &Spatial<'_>) -> f64 {
     let pairs = a.linear.0.iter().chain(&a.angular.0).zip(b.linear.0.iter().chain(&b.angular.0));
     let mut products = pairs.filter_map(|(x, y)| Some(x.value()? * y.value()?));

@@ -1,5 +1,6 @@
-//! The files of the crate and which of them need which: what `use` and paths in the code name, followed through re-exports
-//! to the file that defines it. A file that only declares modules and passes names on needs nothing.
+//! The files of the crate and which of them need which: what `use` and paths in the code name, followed
+//! through re-exports to the file that defines it. A file that only declares modules and passes names on
+//! needs nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -76,7 +77,8 @@ impl Imports {
         found
     }
 
-    /// The file that defines what a path in a module means; none for modules themselves and for what is not of this crate.
+    /// The file that defines what a path in a module means; none for modules themselves and for what is not
+    /// of this crate.
     fn defining(&self, from: &[String], path: &[String], depth: usize) -> Option<usize> {
         let mut module = from.to_vec();
         let mut rest = path;

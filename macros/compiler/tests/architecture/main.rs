@@ -24,7 +24,8 @@ fn invariants() -> BTreeMap<String, Vec<String>> {
     found
 }
 
-/// The source files of the crate with the module that each belongs to; the pipeline itself may use all of them.
+/// The source files of the crate with the module that each belongs to; the pipeline itself may use all of
+/// them.
 fn sources() -> Vec<(String, PathBuf)> {
     let source = Path::new(ROOT).join("src");
     let mut files = Vec::new();

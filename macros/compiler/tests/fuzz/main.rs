@@ -1,5 +1,5 @@
-//! Mistreated mechanisms: whatever the tokens are, the compiler does not panic, its output is Rust, and neither time
-//! nor stack are without bound. Seeded, so that a failure comes again.
+//! Mistreated mechanisms: whatever the tokens are, the compiler does not panic, its output is Rust, and
+//! neither time nor stack are without bound. Seeded, so that a failure comes again.
 
 mod sizes;
 

@@ -166,7 +166,8 @@ fn definitions(start: &str, n: usize) -> String {
     )
 }
 
-/// Alike carts, driven by so many functions one in another of their own places; the first two are tied to each other.
+/// Alike carts, driven by so many functions one in another of their own places; the first two are tied to
+/// each other.
 fn carts(n: usize) -> String {
     let cart = |name: &str| {
         let laws =

@@ -125,7 +125,8 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
     answers(pins, ROWS);
 }
 
-/// A plate on three cranks that stay parallel: one is redundant wherever they are, and none of them may be left out where they part.
+/// A plate on three cranks that stay parallel: one is redundant wherever they are, and none of them may be
+/// left out where they part.
 #[test]
 fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
     fn cranks(words: &str) -> (String, String) {

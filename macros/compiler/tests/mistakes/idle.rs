@@ -43,7 +43,8 @@ fn what_restricts_some_components_is_not() {
     }
 }
 
-/// A product that is zero wherever the bodies are, which no simplification sees: rounding is all that is left of its row.
+/// A product that is zero wherever the bodies are, which no simplification sees: rounding is all that is left
+/// of its row.
 #[test]
 fn what_is_nothing_but_rounding_is_dropped() {
     let fields = "#[body(mass = 2, com = x, inertia = rod(2, 1, x))] arm: Body,

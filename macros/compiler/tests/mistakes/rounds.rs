@@ -1,4 +1,5 @@
-//! A mistake of grammar and one of the mechanism: both are told in one round, where the first leaves the second true.
+//! A mistake of grammar and one of the mechanism: both are told in one round, where the first leaves the
+//! second true.
 
 use super::{ARM, counts, messages};
 

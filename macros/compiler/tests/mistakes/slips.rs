@@ -1,4 +1,5 @@
-//! Slips of those who know Rust, other tools or mechanics, and not yet the language: each gets one error, which says what to do.
+//! Slips of those who know Rust, other tools or mechanics, and not yet the language: each gets one error,
+//! which says what to do.
 
 use super::{ARM, Row, messages};
 use std::path::Path;

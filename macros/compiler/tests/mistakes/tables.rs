@@ -1,8 +1,9 @@
-//! Mistakes one by one, in the files of `tables`: what is written, the tokens that the message points at between `‹` and `›`,
-//! and the message. `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test mistakes` writes the files anew; read the difference.
+//! Mistakes one by one, in the files of `tables`: what is written, the tokens that the message points at
+//! between `‹` and `›`, and the message. `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test mistakes`
+//! writes the files anew; read the difference.
 //!
-//! A section begins with `== mechanism(arguments)` and the fields that its rows stand among; rows of `== items` are whole
-//! items. Several messages about a row are in the order of their tokens.
+//! A section begins with `== mechanism(arguments)` and the fields that its rows stand among; rows of
+//! `== items` are whole items. Several messages about a row are in the order of their tokens.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -39,7 +40,8 @@ fn said(source: &str) -> Vec<Said> {
         compile(&source, &Graph::new(), &mut cx);
     }
     let texts = cx.messages();
-    // Each is `::core::compile_error! { "…" }`: eight tokens, the first and the last of which have the places.
+    // Each is `::core::compile_error! { "…" }`: eight tokens, the first and the last of which have the
+    // places.
     let errors: Vec<Span> = cx.into_tokens().into_iter().map(|token| token.span()).collect();
     let mut found: Vec<Said> = errors
         .chunks((errors.len() / texts.len().max(1)).max(1))

@@ -105,7 +105,8 @@ fn solids_of_three_lengths_agree_with_quadrature() {
 #[test]
 fn inertias_are_added_and_rotated() {
     assert_near("diagonal(2, 3, 4).rotated(z(pi / 2))", diagonal([3.0, 2.0, 4.0]), 1e-15);
-    // R I Rᵀ with R = R_x(π/2) R_z(π/2), whose columns are the rotated axes (0, 0, 1), (−1, 0, 0), (0, −1, 0).
+    // R I Rᵀ with R = R_x(π/2) R_z(π/2), whose columns are the rotated axes (0, 0, 1), (−1, 0, 0), (0, −1,
+    // 0).
     assert_near("diagonal(2, 3, 4).rotated(x(pi / 2), z(pi / 2))", diagonal([3.0, 4.0, 2.0]), 1e-15);
     let (c, s) = (0.3_f64.cos(), 0.3_f64.sin());
     let rotated =

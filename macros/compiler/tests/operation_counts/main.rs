@@ -1,6 +1,6 @@
-//! Operation counts of generated functions. Twenty-four counts are exact: those of a small chain with parameters, of
-//! a robot, and of a robot whose limbs are SIMD lanes. All other counts are bounds with a margin of two per cent for
-//! changes of the cost model; a change that saves more than that may lower them.
+//! Operation counts of generated functions. Twenty-four counts are exact: those of a small chain with
+//! parameters, of a robot, and of a robot whose limbs are SIMD lanes. All other counts are bounds with a
+//! margin of two per cent for changes of the cost model; a change that saves more than that may lower them.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -72,8 +72,9 @@ fn instructions(program: &Program) -> usize {
     operations.count() - program.counts.calls
 }
 
-/// Multiplications, additions and divisions of the main functions of a robot together, sines and cosines apart, and the
-/// instructions that are left of them when products are fused into sums; of lanes if its limbs are alike and `lanes` says so.
+/// Multiplications, additions and divisions of the main functions of a robot together, sines and cosines
+/// apart, and the instructions that are left of them when products are fused into sums; of lanes if its limbs
+/// are alike and `lanes` says so.
 fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
     let arguments = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
     let all = programs(&arguments, "pub struct Robot;", &MAIN);
@@ -115,7 +116,8 @@ fn robots() {
     }
 }
 
-/// Contacts of four legs, whose rates are lanes as the legs are: instructions of what a step with held contacts needs of them.
+/// Contacts of four legs, whose rates are lanes as the legs are: instructions of what a step with held
+/// contacts needs of them.
 #[test]
 fn contacts_of_legs() {
     let item = "pub struct Robot {
@@ -135,8 +137,8 @@ fn contacts_of_legs() {
     at_most(&alone, &[254, 262, 485, 3486, 3777], &format!("instructions of {functions:?}"));
 }
 
-/// Chains of pins about alternating axes, with numbers and with parameters. Inverse and forward dynamics grow with the
-/// number of joints, the mass matrix with its square.
+/// Chains of pins about alternating axes, with numbers and with parameters. Inverse and forward dynamics grow
+/// with the number of joints, the mass matrix with its square.
 #[test]
 fn chains() {
     let mut before: Option<[usize; 4]> = None;
@@ -152,7 +154,8 @@ fn chains() {
         at_most(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
         let symbolic = totals("gravity = -9.81 * z", &chain(n, true));
         at_most(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
-        // The factorisation gives way to articulated bodies beyond some length, so growth shows from eight on.
+        // The factorisation gives way to articulated bodies beyond some length, so growth shows from eight
+        // on.
         if let Some(before) = before.filter(|_| n >= 16) {
             for k in [0, 1] {
                 assert!(found[k] < before[k] * 5 / 2, "{} grows linearly", MAIN[k]);
@@ -167,9 +170,9 @@ fn chains() {
     }
 }
 
-/// From sixteen joints to sixty-four what inverse and forward dynamics cost is a straight line, and what the mass matrix
-/// and the derivatives cost a parabola: three lengths tell all others, up to a few operations. The expressions
-/// that the compiler makes for all functions together grow with the square at most.
+/// From sixteen joints to sixty-four what inverse and forward dynamics cost is a straight line, and what the
+/// mass matrix and the derivatives cost a parabola: three lengths tell all others, up to a few operations.
+/// The expressions that the compiler makes for all functions together grow with the square at most.
 #[test]
 fn curves_of_growth() {
     let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
@@ -216,8 +219,8 @@ fn placed_chain(n: usize) -> String {
     item
 }
 
-/// What particles have in common is summed once: the mass matrix takes `3/2 n²` operations, factorisation the `n³/3` that a
-/// full matrix takes, and everything else grows linearly.
+/// What particles have in common is summed once: the mass matrix takes `3/2 n²` operations, factorisation the
+/// `n³/3` that a full matrix takes, and everything else grows linearly.
 #[test]
 fn chains_placed_by_expressions() {
     let lines = [
@@ -240,7 +243,8 @@ fn chains_placed_by_expressions() {
     }
 }
 
-/// A mechanism below the size from which nothing is compared any more costs the compiler less than one twice as large.
+/// A mechanism below the size from which nothing is compared any more costs the compiler less than one twice
+/// as large.
 #[test]
 fn comparing_stays_cheaper_than_growing() {
     let chain = |n: usize| {
@@ -274,9 +278,9 @@ fn prepared(arguments: &str) -> [usize; 4] {
     MAIN.map(|name| functions.iter().find(|f| f.name == name).expect("it is there").program.counts.total())
 }
 
-/// Once prepared, a robot whose links' mass properties are parameters takes hardly more operations than the one with the figures
-/// of the file, where its bodies are of no symmetry. What is zero in a file saves operations only as a figure: the UR5, whose bodies
-/// are symmetric, takes twice as many.
+/// Once prepared, a robot whose links' mass properties are parameters takes hardly more operations than the
+/// one with the figures of the file, where its bodies are of no symmetry. What is zero in a file saves
+/// operations only as a figure: the UR5, whose bodies are symmetric, takes twice as many.
 #[test]
 fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";

@@ -1,5 +1,5 @@
-//! Mechanisms that combine loops, driven frames, prescribed bases, rolling, inerters, coordinates of their own and constraints
-//! on velocities, with the masses and elements that the oracle makes of them.
+//! Mechanisms that combine loops, driven frames, prescribed bases, rolling, inerters, coordinates of their
+//! own and constraints on velocities, with the masses and elements that the oracle makes of them.
 
 use crate::combined::Law::{Central, Dashpot, Growing, Inerter, Push, Spring};
 use crate::combined::Row;

@@ -1,7 +1,8 @@
-//! Mechanisms that combine what is seldom combined, against d'Alembert's principle with positions alone: every body is a few
-//! particles with its mass, its centre and its inertia; their accelerations and partial velocities, and those of the lengths
-//! that elements act along, are differences of places (of sixth order) along a motion. What elements do, how velocities,
-//! accelerations, constraints and their derivatives follow from places is the compiler's part, and is not used here.
+//! Mechanisms that combine what is seldom combined, against d'Alembert's principle with positions alone:
+//! every body is a few particles with its mass, its centre and its inertia; their accelerations and partial
+//! velocities, and those of the lengths that elements act along, are differences of places (of sixth order)
+//! along a motion. What elements do, how velocities, accelerations, constraints and their derivatives follow
+//! from places is the compiler's part, and is not used here.
 
 use crate::combinations::ROWS;
 use crate::random::Random;
@@ -267,7 +268,8 @@ impl Case<'_> {
         all
     }
 
-    /// Their masses: those beside the centre, 1 m away, may be negative, for what they have together is the body's.
+    /// Their masses: those beside the centre, 1 m away, may be negative, for what they have together is the
+    /// body's.
     fn weights(&self) -> Vec<f64> {
         let mut all = Vec::new();
         for (_, mass, _, moments) in self.row.masses {

@@ -1,5 +1,6 @@
-//! Random mechanisms with as many drives as velocities: sums of coordinates and ways between points, or their rates, are
-//! functions of time. Accelerations follow from the drives alone, and the multipliers are what Kane's equations leave.
+//! Random mechanisms with as many drives as velocities: sums of coordinates and ways between points, or their
+//! rates, are functions of time. Accelerations follow from the drives alone, and the multipliers are what
+//! Kane's equations leave.
 
 use crate::kane::{self, Measure, State};
 use crate::random::Random;
@@ -78,7 +79,8 @@ fn normalise(spec: &Spec, q: &mut [f64]) {
     }
 }
 
-/// A drive for every velocity: of the coordinates of a joint, some with others; where it has none, of points of its body.
+/// A drive for every velocity: of the coordinates of a joint, some with others; where it has none, of points
+/// of its body.
 fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
     let mut drives = Vec::new();
     let mut before: Vec<(usize, usize)> = Vec::new();

@@ -1,5 +1,6 @@
-//! What generated bodies compute, as Rust says it, without rustc: an interpreter of straight lines on numbers, lanes, arrays and
-//! tuples. Bodies that call more than the operations of `Arithmetic` are not its own to run.
+//! What generated bodies compute, as Rust says it, without rustc: an interpreter of straight lines on
+//! numbers, lanes, arrays and tuples. Bodies that call more than the operations of `Arithmetic` are not its
+//! own to run.
 
 use linkwork_compiler::expr::Function;
 use std::collections::BTreeMap;

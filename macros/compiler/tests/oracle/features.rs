@@ -1,5 +1,6 @@
-//! Random mechanisms of everything that the language has at once. Each compiles, or is answered as a mistake of its author's: never
-//! as one of the compiler's own, every value that generated code names is there, and what it computes agrees with itself.
+//! Random mechanisms of everything that the language has at once. Each compiles, or is answered as a mistake
+//! of its author's: never as one of the compiler's own, every value that generated code names is there, and
+//! what it computes agrees with itself.
 
 mod agreement;
 mod bodies;
@@ -25,7 +26,8 @@ fn values(text: &str) -> BTreeSet<&str> {
         .collect()
 }
 
-/// The values that functions name and do not bind: a binding stands between `let` and `=` or `;`, or before ` = ` at the start of a line.
+/// The values that functions name and do not bind: a binding stands between `let` and `=` or `;`, or before
+/// ` = ` at the start of a line.
 fn unbound(text: &str) -> Vec<String> {
     let mut missing = Vec::new();
     for function in text.split("fn ").skip(1) {
@@ -67,7 +69,8 @@ fn answers(seeds: std::ops::Range<u64>) -> String {
     lines.iter().map(|(n, message)| format!("{n} {message}\n")).collect()
 }
 
-/// The variable `LINKWORK_SOURCES` names a file that those which compile are written to, a module each, for rustc to read.
+/// The variable `LINKWORK_SOURCES` names a file that those which compile are written to, a module each, for
+/// rustc to read.
 #[test]
 fn combinations_compile_or_are_answered() {
     let (mut compiled, mut modules) = (0, String::new());
@@ -93,7 +96,8 @@ fn combinations_compile_or_are_answered() {
     assert!(4 * compiled > most, "only {compiled} of {most} compile; others are answered\n{}", answers(all));
 }
 
-/// However many expressions there is room for, a mechanism that needs more is answered as one whose equations are too long.
+/// However many expressions there is room for, a mechanism that needs more is answered as one whose equations
+/// are too long.
 #[test]
 fn what_is_too_long_is_answered() {
     let tokens = |text: &str| text.parse().expect("the source is Rust");

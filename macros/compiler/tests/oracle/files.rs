@@ -1,4 +1,5 @@
-//! Random URDF and SDF files with joints of every type: places and rotations as the format defines them, and Kane's equations.
+//! Random URDF and SDF files with joints of every type: places and rotations as the format defines them, and
+//! Kane's equations.
 
 use crate::kane::State;
 use crate::random::Random;

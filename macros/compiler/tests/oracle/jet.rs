@@ -1,6 +1,6 @@
-//! Truncated Taylor series in time over complex numbers: position, velocity and acceleration of anything at once, and by
-//! way of an imaginary step its derivative by the state to rounding (Squire and Trapp, *Using complex variables to
-//! estimate derivatives of real functions*, SIAM Review 40, 1998).
+//! Truncated Taylor series in time over complex numbers: position, velocity and acceleration of anything at
+//! once, and by way of an imaginary step its derivative by the state to rounding (Squire and Trapp, *Using
+//! complex variables to estimate derivatives of real functions*, SIAM Review 40, 1998).
 
 use num_complex::Complex;
 use std::array::from_fn;

@@ -1,7 +1,8 @@
-//! The oracle: Kane's equations of a random mechanism, in numbers. Positions are composed joint by joint in ground axes as
-//! Taylor series in time; the forces of inertia are those of Newton and Euler, body by body; generalized forces are
-//! products with partial velocities, which are the velocities themselves where one speed is one and the others zero
-//! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 4 and 5). Nothing here is the compiler's.
+//! The oracle: Kane's equations of a random mechanism, in numbers. Positions are composed joint by joint in
+//! ground axes as Taylor series in time; the forces of inertia are those of Newton and Euler, body by body;
+//! generalized forces are products with partial velocities, which are the velocities themselves where one
+//! speed is one and the others zero (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 4 and
+//! 5). Nothing here is the compiler's.
 
 use crate::jet::{
     C, Jet, Matrix, Vector, cross, difference, dot, identity, product, real, rotation, scaled, still, sum,
@@ -151,7 +152,8 @@ fn length(world: &World, path: &Path) -> Jet {
     }
 }
 
-/// Ends of a cable from the middle of what it may run around: across the axis, and how far one is behind the other along it.
+/// Ends of a cable from the middle of what it may run around: across the axis, and how far one is behind the
+/// other along it.
 fn across(
     world: &World,
     ends: &[End; 2],
@@ -167,7 +169,8 @@ fn across(
     ([level(0), level(1)], heights[1] - heights[0], Some(n))
 }
 
-/// A taut cable in the plane across the axis, or in that of its ends and the middle of a ball: on the unrolled surface it is straight.
+/// A taut cable in the plane across the axis, or in that of its ends and the middle of a ball: on the
+/// unrolled surface it is straight.
 fn cable(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option<[f64; 3]>) -> Jet {
     let ([a, b], rise, n) = across(world, ends, around, axis);
     let normal = cross(a, b);
@@ -288,7 +291,8 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let state = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
     let zero = vec![real(0.0); nv];
     let bias = inverse_dynamics(spec, &state(v, zero.clone()));
-    // Of inertia alone, at rest: what forces add would only be taken away again, and leave its rounding behind.
+    // Of inertia alone, at rest: what forces add would only be taken away again, and leave its rounding
+    // behind.
     let inertial = |element: &&Element| {
         let (Element::Between(law, ..) | Element::On(law, ..) | Element::Along(law, _)) = element else {
             return false;

@@ -69,7 +69,8 @@ pub fn check(spec: &Spec, seed: u64) {
     assert!(checked || kane::sizes(spec).1 > 40, "seed {seed}");
 }
 
-/// Compares the functions of a mechanism that asks for derivatives by `word` with the oracle; false where they are too long.
+/// Compares the functions of a mechanism that asks for derivatives by `word` with the oracle; false where
+/// they are too long.
 fn check_with(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
     let (arguments, item) = words::source(spec, "Random", word);
     let tokens = |text: &str| text.parse().expect("the generated source is Rust");
@@ -162,7 +163,8 @@ impl Case<'_> {
             .map(|(i, j)| 0.5 * v[i] * mass[j * nv + i] * v[j])
             .sum();
         self.close("kinetic_energy", &[kinetic], heavy);
-        // Accelerations are judged by the forces that they would take: of each row, next to the terms of its sum.
+        // Accelerations are judged by the forces that they would take: of each row, next to the terms of its
+        // sum.
         for actual in self.run("forward_dynamics") {
             for i in 0..nv {
                 let terms: Vec<f64> = (0..nv).map(|j| mass[j * nv + i] * actual[j]).collect();
@@ -198,13 +200,14 @@ impl Case<'_> {
         self.close("inverse_dynamics_derivatives", &expected, scale);
     }
 
-    /// The product of the matrices of second derivatives with a direction, against differences along it (of sixth order) of
-    /// derivatives by imaginary steps, and the other way round.
+    /// The product of the matrices of second derivatives with a direction, against differences along it (of
+    /// sixth order) of derivatives by imaginary steps, and the other way round.
     fn check_second_derivatives(&self) {
         let Point { q, v, a, lambda, along, .. } = &self.point;
         let (nv, state) = (v.len(), State::new(q, v, a));
         let expected: Vec<f64> = (0..3 * nv).map(|entry| self.mixed(&state, entry, 0.5 * H)).collect();
-        // What halving the step changes is 64 times what is left: much where points that a spring joins nearly meet.
+        // What halving the step changes is 64 times what is left: much where points that a spring joins
+        // nearly meet.
         let doubt = (0..3 * nv).map(|entry| (self.mixed(&state, entry, H) - expected[entry]).abs());
         let doubt = doubt.fold(0.0, f64::max) / 16.0;
         // Differences round relative to what they are differences of.
@@ -233,8 +236,8 @@ impl Case<'_> {
         }
     }
 
-    /// The second derivative of the power of the factors by one entry of configuration, velocity or acceleration and along the
-    /// direction, the mean of both orders, by differences over steps of `size`.
+    /// The second derivative of the power of the factors by one entry of configuration, velocity or
+    /// acceleration and along the direction, the mean of both orders, by differences over steps of `size`.
     fn mixed(&self, state: &State, entry: usize, size: f64) -> f64 {
         let Point { lambda, along, .. } = &self.point;
         let nv = lambda.len();

@@ -1,4 +1,5 @@
-//! A random robot as an SDF file of any version: poses in the model or in other links, axes in the frames that the version has.
+//! A random robot as an SDF file of any version: poses in the model or in other links, axes in the frames
+//! that the version has.
 
 use crate::random::Random;
 use crate::robot::{KINDS, Link, Robot};
@@ -86,7 +87,8 @@ pub fn text(robot: &Robot, random: &mut Random) -> String {
     if robot.free || random.below(3) > 0 {
         return format!("<sdf version=\"{version}\">{model}</sdf>");
     }
-    // In a world, gravity is an element of `<physics>` before version 1.6, and joints may hold the model since 1.10.
+    // In a world, gravity is an element of `<physics>` before version 1.6, and joints may hold the model
+    // since 1.10.
     let gravity = "<gravity>0 0 -9.81</gravity>";
     let gravity = if minor < 6 { format!("<physics>{gravity}</physics>") } else { gravity.to_string() };
     let held = "<joint name=\"hold\" type=\"fixed\"><parent>world</parent><child>m::l0</child></joint>";
@@ -95,7 +97,8 @@ pub fn text(robot: &Robot, random: &mut Random) -> String {
 }
 
 impl Writer<'_> {
-    /// An attribute of a pose that names an earlier link than `k`, and that link's pose; nothing, and the pose `usual`.
+    /// An attribute of a pose that names an earlier link than `k`, and that link's pose; nothing, and the
+    /// pose `usual`.
     fn base(&self, k: usize, usual: Placed, random: &mut Random) -> (String, Placed) {
         let word = match self.minor {
             ..5 => "",

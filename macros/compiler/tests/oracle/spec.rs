@@ -1,4 +1,5 @@
-//! A random mechanism as plain data: what the oracle and the text in the words of the language are both made from.
+//! A random mechanism as plain data: what the oracle and the text in the words of the language are both made
+//! from.
 
 use crate::random::Random;
 

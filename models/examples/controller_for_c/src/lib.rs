@@ -1,5 +1,5 @@
-//! The regulator of the example `lqr_double_pendulum` as a static library that C programs call: `controller.h` declares what
-//! is here. Neither the standard library nor an allocator is needed.
+//! The regulator of the example `lqr_double_pendulum` as a static library that C programs call:
+//! `controller.h` declares what is here. Neither the standard library nor an allocator is needed.
 //!
 //! ```text
 //! cargo build --release
@@ -24,7 +24,8 @@ pub struct Gains {
     v: [f64; 3],
 }
 
-/// Gains for a controller that is called every `period` seconds; false if there are none, as for a period that is not positive.
+/// Gains for a controller that is called every `period` seconds; false if there are none, as for a period
+/// that is not positive.
 #[unsafe(no_mangle)]
 pub extern "C" fn cart_design(period: f64, gains: &mut Gains) -> bool {
     let (upright, still) = (SVector::zeros(), SVector::zeros());
@@ -44,7 +45,8 @@ pub extern "C" fn cart_push(gains: &Gains, q: &[f64; 3], v: &[f64; 3]) -> f64 {
     control(&regulator, &(*q).into(), &(*v).into())
 }
 
-/// What the cart does in a period, for a simulation; false if the state afterwards is not finite, and it stays as it was.
+/// What the cart does in a period, for a simulation; false if the state afterwards is not finite, and it
+/// stays as it was.
 #[unsafe(no_mangle)]
 pub extern "C" fn cart_step(period: f64, push: f64, q: &mut [f64; 3], v: &mut [f64; 3]) -> bool {
     let (from, method) = ((SVector::from(*q), SVector::from(*v)), Rk4::step(period));

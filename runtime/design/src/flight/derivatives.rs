@@ -24,8 +24,8 @@ pub struct Reference {
     pub span: f64,
 }
 
-/// Derivatives of all forces on an aircraft but gravity and its own inertia: aerodynamic forces and thrust, about the origin of the
-/// airframe, in its axes.
+/// Derivatives of all forces on an aircraft but gravity and its own inertia: aerodynamic forces and thrust,
+/// about the origin of the airframe, in its axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivatives {
     /// By `u`, `v`, `w`, `p`, `q`, `r`: N·s/m, N·s, N·m·s; rows are `X`, `Y`, `Z`, `L`, `M`, `N`.
@@ -54,7 +54,8 @@ fn bias(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64>
 }
 
 impl Derivatives {
-    /// Of a mechanism whose first six velocities are those of a free joint, in a state. The spin of rotors counts among the forces.
+    /// Of a mechanism whose first six velocities are those of a free joint, in a state. The spin of rotors
+    /// counts among the forces.
     ///
     /// ```text
     /// f = M v̇ + v × M v − weight,   ∂f/∂v, ∂f/∂v̇, ∂f/∂u
@@ -98,7 +99,8 @@ impl Derivatives {
         Ok(Self { by_velocity, by_acceleration, by_input, forces, velocity, inputs: M::INPUTS.to_vec() })
     }
 
-    /// In stability axes: turned about the axis to the right, so that the first axis is along the velocity in the plane of symmetry.
+    /// In stability axes: turned about the axis to the right, so that the first axis is along the velocity in
+    /// the plane of symmetry.
     pub fn in_stability_axes(&self) -> Self {
         let (s, c) = self.velocity[2].atan2(self.velocity[0]).sin_cos();
         let mut turn = DMatrix::identity(6, 6);
@@ -116,7 +118,8 @@ impl Derivatives {
         }
     }
 
-    /// A derivative by the names of the force and of what changes: `of_force("M", "q")`, `("Z", "w'")`, `("M", "elevator")`.
+    /// A derivative by the names of the force and of what changes: `of_force("M", "q")`, `("Z", "w'")`,
+    /// `("M", "elevator")`.
     ///
     /// # Errors
     ///
@@ -133,9 +136,10 @@ impl Derivatives {
         Ok(self.by_input[(row, place("velocity or input", &names, by)?.saturating_sub(6))])
     }
 
-    /// The same without dimension, as Etkin and Reid have it (*Dynamics of Flight*, 1996, table 4.1): forces by `½ ρ V² S`, moments
-    /// by that and chord or span; `u` by the speed, at a coefficient that changes, `v` and `w` as the angles `β` and `α`, turning
-    /// by `2 V / b` and, in pitch, `2 V / c`, rates of `v` and `w` likewise.
+    /// The same without dimension, as Etkin and Reid have it (*Dynamics of Flight*, 1996, table 4.1): forces
+    /// by `½ ρ V² S`, moments by that and chord or span; `u` by the speed, at a coefficient that changes, `v`
+    /// and `w` as the angles `β` and `α`, turning by `2 V / b` and, in pitch, `2 V / c`, rates of `v` and `w`
+    /// likewise.
     ///
     /// # Errors
     ///
@@ -167,12 +171,14 @@ impl Derivatives {
         Ok((derivative - own) / (load * arm * unit))
     }
 
-    /// How far the neutral point lies behind the airframe's origin, its centre of mass, in chords: the slope of the pitching moment
-    /// with the downward velocity over that of the force along the downward axis. Positive where the aircraft is stable.
+    /// How far the neutral point lies behind the airframe's origin, its centre of mass, in chords: the slope
+    /// of the pitching moment with the downward velocity over that of the force along the downward axis.
+    /// Positive where the aircraft is stable.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] for a chord that is not positive, [`Error::Singular`] where no force follows the downward velocity.
+    /// [`Error::Range`] for a chord that is not positive, [`Error::Singular`] where no force follows the
+    /// downward velocity.
     pub fn static_margin(&self, chord: f64) -> Result<f64, Error> {
         if !(chord > 0.0 && chord.is_finite()) {
             return Err(Error::Range { what: "a chord", value: chord });

@@ -3,8 +3,9 @@
 use super::{LATERAL, LONGITUDINAL};
 use crate::{Error, Mode, StateSpace};
 
-/// The modes of an aircraft by their names (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6). One that does not exist is `None`:
-/// of an aircraft that is unstable in pitch the short period is two real modes, which are among the others.
+/// The modes of an aircraft by their names (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6). One that does
+/// not exist is `None`: of an aircraft that is unstable in pitch the short period is two real modes, which
+/// are among the others.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FlightModes {

@@ -4,7 +4,8 @@ use crate::{Error, Signal, StateSpace, mechanism};
 use linkwork::{Derivatives, Mechanism};
 use nalgebra::{DMatrix, Matrix3, Quaternion, SVector, UnitQuaternion};
 
-/// The states of motion in the plane of symmetry: forward and downward velocity, pitch rate, pitch angle, height.
+/// The states of motion in the plane of symmetry: forward and downward velocity, pitch rate, pitch angle,
+/// height.
 pub const LONGITUDINAL: [&str; 5] = ["u", "w", "q", "theta", "h"];
 
 /// The states of motion out of it: sideways velocity, roll and yaw rate, bank.
@@ -69,16 +70,18 @@ impl Attitude {
     }
 }
 
-/// The motion of an aircraft about steady flight, as `ẋ = A x + B δu`: of the velocity `u`, `v`, `w` and turning `p`, `q`, `r` in axes
-/// forward, right and down, of bank `phi`, pitch angle `theta` and height `h` (upward), then of what else there is. Of a
-/// mechanism with states of first order pass `&at(&m.extended(), t)`. The states are the outputs, too.
+/// The motion of an aircraft about steady flight, as `ẋ = A x + B δu`: of the velocity `u`, `v`, `w` and
+/// turning `p`, `q`, `r` in axes forward, right and down, of bank `phi`, pitch angle `theta` and height `h`
+/// (upward), then of what else there is. Of a mechanism with states of first order pass
+/// `&at(&m.extended(), t)`. The states are the outputs, too.
 ///
 /// In a climb, where the air changes with height, it is the motion of an instant.
 ///
 /// # Errors
 ///
-/// [`Error::NotSteady`] says what accelerates or turns up most, and by how much; [`Error::Unknown`] where the first joint is not free;
-/// [`Error::Singular`] of a nose straight up or down; [`Error::Range`] where forces depend on place or heading.
+/// [`Error::NotSteady`] says what accelerates or turns up most, and by how much; [`Error::Unknown`] where the
+/// first joint is not free; [`Error::Singular`] of a nose straight up or down; [`Error::Range`] where forces
+/// depend on place or heading.
 pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,

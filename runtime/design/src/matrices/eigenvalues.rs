@@ -7,9 +7,9 @@ use nalgebra::DMatrix;
 /// Steps for one eigenvalue or pair; three are usual.
 const MAX_ITERATIONS: usize = 120;
 
-/// The eigenvalues of a square matrix: after balancing, by Francis' double QR steps on its Hessenberg form (Golub and Van
-/// Loan, *Matrix Computations*, § 7.5). Complex ones come in pairs that are exactly conjugate; sorted by real part, then by
-/// imaginary part.
+/// The eigenvalues of a square matrix: after balancing, by Francis' double QR steps on its Hessenberg form
+/// (Golub and Van Loan, *Matrix Computations*, § 7.5). Complex ones come in pairs that are exactly conjugate;
+/// sorted by real part, then by imaginary part.
 ///
 /// # Errors
 ///

@@ -7,8 +7,8 @@ use nalgebra::DMatrix;
 /// Norm below which the approximation of degree 13 is exact to rounding.
 const LARGEST: f64 = 5.371920351148152;
 
-/// `e^A` by scaling, Padé's approximation of degree 13, and squaring (Higham, *The scaling and squaring method for the matrix
-/// exponential revisited*, 2005).
+/// `e^A` by scaling, Padé's approximation of degree 13, and squaring (Higham, *The scaling and squaring
+/// method for the matrix exponential revisited*, 2005).
 ///
 /// ```
 /// use linkwork_design::matrices::exponential;
@@ -21,8 +21,8 @@ const LARGEST: f64 = 5.371920351148152;
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] for a matrix that is not square or not finite, [`Error::NotFinite`] also for a
-/// result beyond all numbers.
+/// [`Error::Shape`] and [`Error::NotFinite`] for a matrix that is not square or not finite,
+/// [`Error::NotFinite`] also for a result beyond all numbers.
 pub fn exponential(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     const B: [f64; 14] = [
         64764752532480000.0,

@@ -18,8 +18,9 @@ const RULE: [(f64, f64); 8] = [
     (0.9801449282487681, 0.05061426814518813),
 ];
 
-/// The principal logarithm: `X` with `e^X = A` and imaginary parts of eigenvalues within `±π`. Square roots of the Schur form,
-/// then Padé's approximation as partial fractions (Higham, *Functions of Matrices*, 2008, ch. 11).
+/// The principal logarithm: `X` with `e^X = A` and imaginary parts of eigenvalues within `±π`. Square roots
+/// of the Schur form, then Padé's approximation as partial fractions (Higham, *Functions of Matrices*, 2008,
+/// ch. 11).
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
-//! Sylvester's and Lyapunov's equations by Schur forms (Bartels and Stewart, *Solution of the matrix equation AX + XB = C*,
-//! 1972), with a step of refinement.
+//! Sylvester's and Lyapunov's equations by Schur forms (Bartels and Stewart, *Solution of the matrix equation
+//! AX + XB = C*, 1972), with a step of refinement.
 
 use super::{C, CMatrix, Schur, check, check_square, complex, symmetric};
 use crate::Error;
@@ -74,8 +74,8 @@ fn back(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, 
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where an eigenvalue of `A` is minus one of
-/// `B`.
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where an eigenvalue of `A`
+/// is minus one of `B`.
 pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let (n, m) = (check_square("A", a)?, check_square("B", b)?);
     check("C", c, n, m)?;
@@ -89,8 +89,8 @@ pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of an eigenvalue of `A`
-/// with one of `B` is one.
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of an
+/// eigenvalue of `A` with one of `B` is one.
 pub fn discrete_sylvester(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
@@ -108,7 +108,8 @@ pub fn discrete_sylvester(
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where two eigenvalues of `A` cancel.
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where two eigenvalues of
+/// `A` cancel.
 pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
     check("Q", q, n, n)?;
@@ -119,8 +120,8 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Erro
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of two eigenvalues of `A`
-/// is one.
+/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of two
+/// eigenvalues of `A` is one.
 pub fn discrete_lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
     check("Q", q, n, n)?;

@@ -13,7 +13,8 @@ pub(crate) struct Compression {
 }
 
 impl Compression {
-    /// Rows by Householder's reflections; the largest remaining column goes first. Columns below `least` count as zero.
+    /// Rows by Householder's reflections; the largest remaining column goes first. Columns below `least`
+    /// count as zero.
     pub fn rows(m: &DMatrix<f64>, least: f64) -> Self {
         let (rows, columns) = m.shape();
         let (mut r, mut q) = (m.clone(), DMatrix::identity(rows, rows));
@@ -44,11 +45,13 @@ impl Compression {
     }
 }
 
-/// The number of singular values of `m` above `tolerance` times the largest. A tolerance of zero stands for rounding.
+/// The number of singular values of `m` above `tolerance` times the largest. A tolerance of zero stands for
+/// rounding.
 ///
 /// # Errors
 ///
-/// [`Error::NotFinite`] for entries that are infinite or NaN, [`Error::NotConverged`] if the singular values do not settle.
+/// [`Error::NotFinite`] for entries that are infinite or NaN, [`Error::NotConverged`] if the singular values
+/// do not settle.
 pub fn rank(m: &DMatrix<f64>, tolerance: f64) -> Result<usize, Error> {
     check("the matrix", m, m.nrows(), m.ncols())?;
     if m.is_empty() {

@@ -1,5 +1,5 @@
-//! Riccati's equations: the continuous one by an ordered Schur form, the discrete one by doubling, both refined by Newton's
-//! method.
+//! Riccati's equations: the continuous one by an ordered Schur form, the discrete one by doubling, both
+//! refined by Newton's method.
 
 use super::{
     C, CMatrix, Schur, balance_system, balanced, check, check_square, complex, discrete_lyapunov,
@@ -11,7 +11,8 @@ use nalgebra::DMatrix;
 /// Steps of doubling; ten are usual.
 const MAX_ITERATIONS: usize = 60;
 
-/// The weights of a quadratic cost `∫ xᵀQx + 2xᵀNu + uᵀRu dt` (or a sum): `Q` positive semidefinite, `R` positive definite.
+/// The weights of a quadratic cost `∫ xᵀQx + 2xᵀNu + uᵀRu dt` (or a sum): `Q` positive semidefinite, `R`
+/// positive definite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
     /// Of states.
@@ -29,7 +30,8 @@ impl Cost {
         Self { q, r, n }
     }
 
-    /// Weights on the diagonals: Bryson's rule takes one over the square of the largest deviation that is borne.
+    /// Weights on the diagonals: Bryson's rule takes one over the square of the largest deviation that is
+    /// borne.
     pub fn diagonal(states: &[f64], inputs: &[f64]) -> Self {
         let diagonal = |x: &[f64]| DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(x));
         Self::new(diagonal(states), diagonal(inputs))
@@ -83,9 +85,9 @@ pub struct Riccati {
     pub poles: Vec<C>,
 }
 
-/// The continuous equation `Aᵀ X + X A − (X B + N) R⁻¹ (Bᵀ X + Nᵀ) + Q = 0`: the stable invariant subspace of the Hamiltonian
-/// matrix by an ordered Schur form (Laub, *A Schur method for solving algebraic Riccati equations*, 1979), scaled, then
-/// Kleinman's iteration.
+/// The continuous equation `Aᵀ X + X A − (X B + N) R⁻¹ (Bᵀ X + Nᵀ) + Q = 0`: the stable invariant subspace of
+/// the Hamiltonian matrix by an ordered Schur form (Laub, *A Schur method for solving algebraic Riccati
+/// equations*, 1979), scaled, then Kleinman's iteration.
 ///
 /// ```
 /// use linkwork_design::matrices::{Cost, riccati};
@@ -99,8 +101,8 @@ pub struct Riccati {
 ///
 /// # Errors
 ///
-/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`] and
-/// [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
+/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`]
+/// and [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
 pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
     let n = cost.check(a, b)?;
     check_modes(a, b, cost, |mode| mode.re >= 0.0, |mode| mode.re.abs())?;
@@ -133,7 +135,8 @@ pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccat
     Ok(Riccati { x, gain, poles })
 }
 
-/// Powers of two that balance a Hamiltonian matrix and keep it one: the second half of them is one over the first.
+/// Powers of two that balance a Hamiltonian matrix and keep it one: the second half of them is one over the
+/// first.
 fn symplectic(h: &DMatrix<f64>) -> Vec<f64> {
     let n = h.nrows() / 2;
     let sizes = h.map(f64::abs);
@@ -165,8 +168,8 @@ fn refine(
     Ok(x)
 }
 
-/// Refuses problems whose solution does not exist, and names the mode: unstable ones must be moved by inputs, and those on the
-/// border of stability must be seen by the cost.
+/// Refuses problems whose solution does not exist, and names the mode: unstable ones must be moved by inputs,
+/// and those on the border of stability must be seen by the cost.
 fn check_modes(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
@@ -189,7 +192,8 @@ fn check_modes(
     Ok(())
 }
 
-/// Whether `[A − λ I, B]` loses rank beside rounding (Popov, Belevitch and Hautus), each side in its own scale.
+/// Whether `[A − λ I, B]` loses rank beside rounding (Popov, Belevitch and Hautus), each side in its own
+/// scale.
 pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
     let n = a.nrows();
     let (a, b, _, _) = balance_system(a, b, &DMatrix::zeros(0, n));
@@ -205,14 +209,15 @@ pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
     smallest_singular(&m) <= 1e-12 * n as f64
 }
 
-/// The discrete equation `Aᵀ X A − X − (Aᵀ X B + N) (R + Bᵀ X B)⁻¹ (Bᵀ X A + Nᵀ) + Q = 0` by doubling that keeps the structure
-/// (Chu, Fan, Lin and Wang, *Structure-preserving algorithms for periodic discrete-time algebraic Riccati equations*, 2004),
-/// which needs no inverse of `A`; then Newton's method. `R` may be singular where `R + Bᵀ X B` is not.
+/// The discrete equation `Aᵀ X A − X − (Aᵀ X B + N) (R + Bᵀ X B)⁻¹ (Bᵀ X A + Nᵀ) + Q = 0` by doubling that
+/// keeps the structure (Chu, Fan, Lin and Wang, *Structure-preserving algorithms for periodic discrete-time
+/// algebraic Riccati equations*, 2004), which needs no inverse of `A`; then Newton's method. `R` may be
+/// singular where `R + Bᵀ X B` is not.
 ///
 /// # Errors
 ///
-/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`] and
-/// [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
+/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`]
+/// and [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
 pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
     match cost.check(a, b) {
         Err(Error::Singular { .. }) if cost.r.clone().symmetric_eigenvalues().iter().all(|x| *x >= 0.0) => {

@@ -6,8 +6,8 @@ use crate::Error;
 /// Steps for one eigenvalue; three are usual.
 const MAX_ITERATIONS: usize = 120;
 
-/// `A = Q T Qᴴ` with `Q` unitary and `T` upper triangular: the eigenvalues of `A` are on its diagonal (Golub and Van Loan,
-/// *Matrix Computations*, ch. 7).
+/// `A = Q T Qᴴ` with `Q` unitary and `T` upper triangular: the eigenvalues of `A` are on its diagonal (Golub
+/// and Van Loan, *Matrix Computations*, ch. 7).
 pub(crate) struct Schur {
     pub q: CMatrix,
     pub t: CMatrix,
@@ -110,8 +110,8 @@ impl Schur {
         Ok(Self { q, t })
     }
 
-    /// Brings the eigenvalues that are selected to the top, by swaps of neighbours (Bai and Demmel, *On swapping diagonal
-    /// blocks in real Schur form*, 1993, for single entries); gives their number.
+    /// Brings the eigenvalues that are selected to the top, by swaps of neighbours (Bai and Demmel, *On
+    /// swapping diagonal blocks in real Schur form*, 1993, for single entries); gives their number.
     pub fn reorder(&mut self, selected: impl Fn(C) -> bool) -> usize {
         let n = self.t.nrows();
         let mut top = 0;
@@ -141,7 +141,8 @@ impl Schur {
         self.t[(k + 1, k)] = C::new(0.0, 0.0);
     }
 
-    /// The right eigenvector of the eigenvalue in column `k`, of unit length. Of a defective matrix several come out alike.
+    /// The right eigenvector of the eigenvalue in column `k`, of unit length. Of a defective matrix several
+    /// come out alike.
     pub fn right(&self, k: usize) -> CMatrix {
         let n = self.t.nrows();
         let lambda = self.t[(k, k)];

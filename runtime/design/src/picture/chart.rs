@@ -64,8 +64,8 @@ impl Chart {
         self
     }
 
-    /// One more curve through these points, with its name above; without a name where the axis says what it is. Points that are not
-    /// finite interrupt it.
+    /// One more curve through these points, with its name above; without a name where the axis says what it
+    /// is. Points that are not finite interrupt it.
     #[must_use]
     pub fn curve(mut self, name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         self.panel.curves.push(Curve { name: name.into(), points: points.into_iter().collect() });

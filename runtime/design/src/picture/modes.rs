@@ -13,8 +13,8 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Modes, a row each: the parts of the states as phasors (of the largest, whatever their units), which turn and shrink or grow as
-/// the mode does where the viewer animates SVG, and the states that take part most.
+/// Modes, a row each: the parts of the states as phasors (of the largest, whatever their units), which turn
+/// and shrink or grow as the mode does where the viewer animates SVG, and the states that take part most.
 ///
 /// # Errors
 ///
@@ -24,7 +24,8 @@ pub fn modes(modes: &[Mode]) -> Result<String, Error> {
     named_modes(&all)
 }
 
-/// [`modes`] with a name before each, as [`FlightModes::named`](crate::flight::FlightModes::named) gives them.
+/// [`modes`] with a name before each, as [`FlightModes::named`](crate::flight::FlightModes::named) gives
+/// them.
 ///
 /// # Errors
 ///

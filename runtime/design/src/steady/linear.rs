@@ -27,8 +27,8 @@ pub struct Linear {
     pub is_holonomic: bool,
 }
 
-/// What outputs see of the motion: how displacements, velocities and accelerations of all coordinates follow from independent
-/// coordinates, speeds and inputs.
+/// What outputs see of the motion: how displacements, velocities and accelerations of all coordinates follow
+/// from independent coordinates, speeds and inputs.
 struct Seen {
     /// All velocities by independent coordinates, then by speeds.
     velocities: [DMatrix<f64>; 2],
@@ -156,7 +156,8 @@ where
     Ok(Linear { coordinates, shape, speeds, a, b, by_q, mass, motion, is_holonomic })
 }
 
-/// What coordinates that are held fast leave of accelerations: `1 − P Lᵀ (L P Lᵀ)⁻¹ L`, with `P` the accelerations by forces.
+/// What coordinates that are held fast leave of accelerations: `1 − P Lᵀ (L P Lᵀ)⁻¹ L`, with `P` the
+/// accelerations by forces.
 fn locked(by_force: &DMatrix<f64>, held: &[usize]) -> DMatrix<f64> {
     let n = by_force.nrows();
     let (columns, small) = (by_force.select_columns(held), by_force.select_columns(held).select_rows(held));
@@ -175,16 +176,18 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> Trim<'_, M, NQ, NV, N
 where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
-    /// The motion about a steady state as `ẋ = A x + B δu`, in independent coordinates and speeds, which are the outputs, too;
-    /// coordinates that are held stay. Its [modes](StateSpace::modes) decide on stability to first order.
+    /// The motion about a steady state as `ẋ = A x + B δu`, in independent coordinates and speeds, which are
+    /// the outputs, too; coordinates that are held stay. Its [modes](StateSpace::modes) decide on stability
+    /// to first order.
     ///
-    /// Where velocities were left to [change](Trim::accelerating), `A` is that of an instant; its eigenvalues count all the same
-    /// if no force depends on what moves, such as the place and heading of a wheel on a level road.
+    /// Where velocities were left to [change](Trim::accelerating), `A` is that of an instant; its eigenvalues
+    /// count all the same if no force depends on what moves, such as the place and heading of a wheel on a
+    /// level road.
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] where the mass matrix is singular; [`Error::NotSteady`] about a state that this trim's conditions do not hold
-    /// in, with the one that is violated most and by how much.
+    /// [`Error::NotFinite`] where the mass matrix is singular; [`Error::NotSteady`] about a state that this
+    /// trim's conditions do not hold in, with the one that is violated most and by how much.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
         let system = Self::system(&linear(self, found)?)?;
         Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
@@ -196,8 +199,8 @@ where
         system.with_states(state_names::<M, NQ, NV, NU>(coordinates.iter().copied(), speeds.iter().copied()))
     }
 
-    /// [`linear_system`](Self::linear_system) with the declared outputs of the mechanism: `y = C x + D δu`, with what constraints,
-    /// and coordinates that are held, make of positions, velocities and accelerations.
+    /// [`linear_system`](Self::linear_system) with the declared outputs of the mechanism: `y = C x + D δu`,
+    /// with what constraints, and coordinates that are held, make of positions, velocities and accelerations.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -256,12 +259,13 @@ where
         system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(outputs)
     }
 
-    /// The second-order form of the motion about a steady state, `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`, in independent coordinates:
-    /// `M = Γᵀ M₀ Γ`, with the mass matrix `M₀` of all coordinates and all velocities `Γ q̇` that go with the independent ones. What
-    /// constraints bear in the steady state is in `K`.
+    /// The second-order form of the motion about a steady state, `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`,
+    /// in independent coordinates: `M = Γᵀ M₀ Γ`, with the mass matrix `M₀` of all coordinates and all
+    /// velocities `Γ q̇` that go with the independent ones. What constraints bear in the steady state is in
+    /// `K`.
     ///
-    /// Constraints on velocities alone leave coordinates without speeds of their own. They are left out of the form, and no force may
-    /// depend on them: on the place and heading of a wheel on a level road.
+    /// Constraints on velocities alone leave coordinates without speeds of their own. They are left out of
+    /// the form, and no force may depend on them: on the place and heading of a wheel on a level road.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -288,8 +292,9 @@ where
     ///
     /// # Errors
     ///
-    /// Those of [`linear_system`](Self::linear_system); [`Error::NoSecondOrderForm`] where forces depend on a coordinate without a speed
-    /// of its own; [`Error::Count`] of a mechanism with states of first order, which have no such form.
+    /// Those of [`linear_system`](Self::linear_system); [`Error::NoSecondOrderForm`] where forces depend on a
+    /// coordinate without a speed of its own; [`Error::Count`] of a mechanism with states of first order,
+    /// which have no such form.
     pub fn second_order_form(&self, found: &SteadyState<NQ, NV, NU>) -> Result<SecondOrderForm, Error> {
         if M::FIRST_ORDER > 0 {
             let what = "states of first order";

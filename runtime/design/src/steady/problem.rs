@@ -44,8 +44,8 @@ pub fn unit<const N: usize>(k: usize, size: f64) -> SVector<f64, N> {
     SVector::from_fn(|i, _| if i == k { size } else { 0.0 })
 }
 
-/// The constraints of a mechanism. How rates change with the configuration, is not generated for them one by one: central
-/// differences, which cost Newton's method no digits.
+/// The constraints of a mechanism. How rates change with the configuration, is not generated for them one by
+/// one: central differences, which cost Newton's method no digits.
 pub fn bounds<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     t: f64,
@@ -120,8 +120,8 @@ pub struct Accelerated<const NV: usize, const NU: usize> {
     pub by_v: SMatrix<f64, NV, NV>,
     pub by_force: SMatrix<f64, NV, NV>,
     pub by_u: SMatrix<f64, NV, NU>,
-    /// How large changes of accelerations are that count, beside which others are rounding: of the accelerations that constraints
-    /// take away, and of the largest change.
+    /// How large changes of accelerations are that count, beside which others are rounding: of the
+    /// accelerations that constraints take away, and of the largest change.
     scale: f64,
 }
 

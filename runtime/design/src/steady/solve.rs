@@ -12,12 +12,12 @@ const ENOUGH: f64 = 1e-14;
 /// What may be left of conditions, by what they change with unknowns of size one.
 const LEFT: f64 = 1e-9;
 
-/// What may be left of conditions, beside what they change with unknowns of size one, in a state that a linear motion is taken about:
-/// at a double root conditions are less sensitive than on the way to it.
+/// What may be left of conditions, beside what they change with unknowns of size one, in a state that a
+/// linear motion is taken about: at a double root conditions are less sensitive than on the way to it.
 const STEADY: f64 = 1e-5;
 
-/// Singular values below this, of a matrix whose rows and columns have the norm one, count as zero. At a double root the place
-/// is known to half of the digits.
+/// Singular values below this, of a matrix whose rows and columns have the norm one, count as zero. At a
+/// double root the place is known to half of the digits.
 const SINGULAR: f64 = 1e-7;
 
 /// Unknowns whose changes count for less than this, beside others, have no influence but rounding.

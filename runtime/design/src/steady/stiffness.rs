@@ -13,7 +13,8 @@ const FLAT: f64 = 1e-9;
 /// A skew part above this part of the stiffness is not rounding.
 const SKEW: f64 = 1e-7;
 
-/// How forces change about an equilibrium: the Hessian of the potential on the constraints, in independent coordinates.
+/// How forces change about an equilibrium: the Hessian of the potential on the constraints, in independent
+/// coordinates.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Stiffness {
@@ -21,9 +22,11 @@ pub struct Stiffness {
     pub matrix: DMatrix<f64>,
     /// The independent coordinates, by the names of their velocities.
     pub coordinates: Vec<&'static str>,
-    /// Stationary values of `xᵀ K x / xᵀ M x`, 1/s², least first: squares of natural frequencies without damping.
+    /// Stationary values of `xᵀ K x / xᵀ M x`, 1/s², least first: squares of natural frequencies without
+    /// damping.
     pub curvatures: Vec<f64>,
-    /// The largest entry of the skew part of `K`, beside its largest entry: rounding where forces have a potential.
+    /// The largest entry of the skew part of `K`, beside its largest entry: rounding where forces have a
+    /// potential.
     pub asymmetry: f64,
 }
 
@@ -33,8 +36,8 @@ pub struct Stiffness {
 pub enum Verdict {
     /// The potential has a minimum: stable, and with dissipation all the more.
     Stable,
-    /// The potential falls in some direction: unstable without gyroscopic forces, and with complete dissipation whatever they are
-    /// (Kelvin and Chetaev).
+    /// The potential falls in some direction: unstable without gyroscopic forces, and with complete
+    /// dissipation whatever they are (Kelvin and Chetaev).
     Unstable,
     /// The potential is flat in some direction: terms of higher order decide.
     Undecided,
@@ -43,8 +46,8 @@ pub enum Verdict {
 }
 
 impl Stiffness {
-    /// The verdict. It holds if forces that depend on velocities take energy away or do no work (Merkin, *Introduction to the
-    /// Theory of Stability*, 1997, ch. 3 and 6).
+    /// The verdict. It holds if forces that depend on velocities take energy away or do no work (Merkin,
+    /// *Introduction to the Theory of Stability*, 1997, ch. 3 and 6).
     pub fn verdict(&self) -> Verdict {
         let most = self.curvatures.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let least = self.curvatures.first().copied().unwrap_or(f64::INFINITY);
@@ -64,15 +67,16 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> Trim<'_, M, NQ, NV, N
 where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
-    /// The stiffness about an equilibrium, with inputs that stay: whether it is stable by its energy. Of a mechanism that turns
-    /// steadily, driven in time, it is that of the amended potential `U − T₀` (Meirovitch, *Methods of Analytical Dynamics*, 1970,
-    /// § 6.7).
+    /// The stiffness about an equilibrium, with inputs that stay: whether it is stable by its energy. Of a
+    /// mechanism that turns steadily, driven in time, it is that of the amended potential `U − T₀`
+    /// (Meirovitch, *Methods of Analytical Dynamics*, 1970, § 6.7).
     ///
     /// # Errors
     ///
-    /// [`Error::NoPotential`] in motion, where velocities alone are constrained (rolling), where forces by accelerations are not
-    /// those of an inertia (what multiplies the accelerations is not symmetric), and with states of first order;
-    /// [`linear_system`](Trim::linear_system) decides there. [`Error::Indefinite`] where the mass matrix is not positive.
+    /// [`Error::NoPotential`] in motion, where velocities alone are constrained (rolling), where forces by
+    /// accelerations are not those of an inertia (what multiplies the accelerations is not symmetric), and
+    /// with states of first order; [`linear_system`](Trim::linear_system) decides there.
+    /// [`Error::Indefinite`] where the mass matrix is not positive.
     pub fn stiffness(&self, found: &SteadyState<NQ, NV, NU>) -> Result<Stiffness, Error> {
         let Linear { coordinates, shape, by_q, mass, is_holonomic, .. } = linear(self, found)?;
         if found.v.amax() > 0.0 {

@@ -58,7 +58,8 @@ fn a_column_buckles_at_eulers_load() {
         assert_eq!(problem.stiffness(found).unwrap().verdict(), Verdict::Stable);
     }
     assert!((bent[0].q + bent[1].q).amax() < 1e-10);
-    // Which load bends the foot by a hundredth of a radian? Beside the critical one it is larger by the square of the angle.
+    // Which load bends the foot by a hundredth of a radian? Beside the critical one it is larger by the
+    // square of the angle.
     let found = equilibrium(&column).from(vector![0.01, 0.006]).fix(["foot"]);
     let found = found.parameters([("load", 10.0)], |p| Column { load: p[0] }).find().unwrap();
     let more = found.parameters[0] / critical - 1.0;
@@ -129,8 +130,8 @@ struct Platform {
     drive: [Force; 6],
 }
 
-/// Each leg turns its two weights about its foot; what its head carries along the leg, and the weight of the upper half, the
-/// drive holds.
+/// Each leg turns its two weights about its foot; what its head carries along the leg, and the weight of the
+/// upper half, the drive holds.
 #[test]
 fn six_legs_hold_a_platform() {
     let pose = Isometry3::from_parts(

@@ -40,8 +40,8 @@ struct Chain {
     last: Pin,
 }
 
-/// The slopes of a chain of heavy links are `tan φₖ = (k − 5/2) w / H`, with the weight `w` of a link and such a pull `H` that
-/// the links reach from nail to nail.
+/// The slopes of a chain of heavy links are `tan φₖ = (k − 5/2) w / H`, with the weight `w` of a link and
+/// such a pull `H` that the links reach from nail to nail.
 #[test]
 fn a_chain_hangs_in_its_catenary() {
     let (chain, weight) = (Chain { span: 0.9 }, 0.3 * 9.81);
@@ -162,8 +162,9 @@ struct Top {
     axial_rate: Scalar,
 }
 
-/// `A Ω² cos θ − C n Ω + m g h = 0`, slow and fast; nutations about it have `ω² = Ω² − 2 κ cos θ + κ² / Ω²` with `κ = m g h / A`
-/// (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, § 5.7; Routh, *Advanced Rigid Dynamics*, 1905, § 207).
+/// `A Ω² cos θ − C n Ω + m g h = 0`, slow and fast; nutations about it have `ω² = Ω² − 2 κ cos θ + κ² / Ω²`
+/// with `κ = m g h / A` (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, § 5.7; Routh, *Advanced
+/// Rigid Dynamics*, 1905, § 207).
 #[test]
 fn a_top_precesses_slowly_or_fast() {
     let (theta, n) = (0.5_f64, 150.0_f64);
@@ -336,7 +337,8 @@ fn an_aircraft_climbs_and_turns() {
     assert!(system.starts_with("no output `climbs`, perhaps `climb`; there are airspeed"), "{system}");
 }
 
-/// A pendulum of a particle that a constraint holds, and one on a pin: pushed aside, what is measured of both is the same.
+/// A pendulum of a particle that a constraint holds, and one on a pin: pushed aside, what is measured of both
+/// is the same.
 #[test]
 fn outputs_under_constraints_are_those_of_independent_coordinates() {
     #[mechanism(gravity = -9.81 * y, derivatives)]

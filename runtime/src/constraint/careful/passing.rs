@@ -28,13 +28,14 @@ pub(super) fn size<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |most, x| most.max(x.abs()))
 }
 
-/// The acceleration of the motion that passes through a state, with what constraints leave possible interpolated from a
-/// little before and after.
+/// The acceleration of the motion that passes through a state, with what constraints leave possible
+/// interpolated from a little before and after.
 ///
-/// Which accelerations constraints leave possible depends on where a branch is and how fast it is passed, and changes
-/// little over the way. Masses and forces are those at the state: what a heavy body adds that is at rest there, or a stiff
-/// element, changes as much as it likes. The way leads along the velocity of the state or, at rest, along the acceleration
-/// `least`. `None` where the position is singular around as well, or nothing moves.
+/// Which accelerations constraints leave possible depends on where a branch is and how fast it is passed, and
+/// changes little over the way. Masses and forces are those at the state: what a heavy body adds that is at
+/// rest there, or a stiff element, changes as much as it likes. The way leads along the velocity of the state
+/// or, at rest, along the acceleration `least`. `None` where the position is singular around as well, or
+/// nothing moves.
 pub(super) fn acceleration<
     M,
     T: Real,
@@ -55,7 +56,8 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let (speed, rate) = (size(v), size(least));
-    // Velocities have a direction beyond rounding. Where constraints move by themselves, slow ones tell little.
+    // Velocities have a direction beyond rounding. Where constraints move by themselves, slow ones tell
+    // little.
     let driven = size(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
     let clear = speed > epsilon::<T>().cbrt();
     let moves = clear && (!driven || speed * speed > rate * far::<T>() * constant(0.03));
@@ -81,8 +83,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
         Points { way: self, step, clear }
     }
 
-    /// Another way along the branch, for states whose velocity leads out slowly beside that of other coordinates: into a
-    /// direction with all of them, which a little before and after is known well enough.
+    /// Another way along the branch, for states whose velocity leads out slowly beside that of other
+    /// coordinates: into a direction with all of them, which a little before and after is known well enough.
     fn aside<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
@@ -110,8 +112,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
         Way { heading: self.heading - other.heading * part, ..*self }
     }
 
-    /// Time and state `h` along the way, on the constraints: as near as can be in the coordinates themselves, since heavy
-    /// bodies would hold what is near in the metric of the kinetic energy where they are.
+    /// Time and state `h` along the way, on the constraints: as near as can be in the coordinates themselves,
+    /// since heavy bodies would hold what is near in the metric of the kinetic energy where they are.
     fn moved<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
@@ -251,7 +253,8 @@ struct Possible<T, const NV: usize> {
 }
 
 impl<T: Real, const NV: usize> Possible<T, NV> {
-    /// The one that masses and forces choose (Gauss): rows that span what is not possible are constraints like others.
+    /// The one that masses and forces choose (Gauss): rows that span what is not possible are constraints
+    /// like others.
     fn acceleration<const NC: usize>(
         &self,
         structure: &Structure<NC>,

@@ -1,11 +1,11 @@
-//! Random systems of light and heavy bodies under constraints that nearly depend on each other, against an elimination in
-//! twice the precision.
+//! Random systems of light and heavy bodies under constraints that nearly depend on each other, against an
+//! elimination in twice the precision.
 
 use super::*;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number of about 32 digits, as the sum of two (Dekker, *A floating-point technique for extending the available
-/// precision*, Numer. Math. 18, 1971).
+/// A number of about 32 digits, as the sum of two (Dekker, *A floating-point technique for extending the
+/// available precision*, Numer. Math. 18, 1971).
 #[derive(Clone, Copy)]
 struct Double(f64, f64);
 
@@ -83,8 +83,8 @@ struct Sample<const NV: usize, const NC: usize> {
 }
 
 impl<const NV: usize, const NC: usize> Sample<NV, NC> {
-    /// Points of masses that differ by up to `10^(2 spread)` on a chain of coordinates; every other system has a
-    /// constraint that is another one but for a part of `10^-near`.
+    /// Points of masses that differ by up to `10^(2 spread)` on a chain of coordinates; every other system
+    /// has a constraint that is another one but for a part of `10^-near`.
     fn random(random: &mut Random, spread: f64, near: f64) -> Self {
         let mut mass = SMatrix::<f64, NV, NV>::zeros();
         for link in 0..NV {
@@ -226,8 +226,8 @@ fn nearly_dependent_constraints_are_kept() {
     check::<f32, 5, 3>(10, 0.5, 4.0);
 }
 
-/// A constraint that is a combination of others, exactly: the motion is that without it, and the multipliers have the
-/// least norm of those that give this motion.
+/// A constraint that is a combination of others, exactly: the motion is that without it, and the multipliers
+/// have the least norm of those that give this motion.
 #[test]
 fn what_follows_from_others_changes_nothing() {
     let mut random = Random(11);
@@ -284,7 +284,8 @@ fn redundant_constraints_share_the_force() {
     assert!((lambda - SVector::from([10.0, 10.0])).norm() < 1e-14);
 }
 
-/// A mass on a line, and a coordinate without inertia that is twice its place: the force on both moves the mass.
+/// A mass on a line, and a coordinate without inertia that is twice its place: the force on both moves the
+/// mass.
 #[test]
 fn coordinates_without_inertia_are_determined() {
     let structure = Structure { groups: [0], determining: &[0], rank: 1 };

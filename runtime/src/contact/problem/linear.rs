@@ -8,7 +8,8 @@ use crate::private::{constant, epsilon};
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
-/// Rows that are lighter than this part of the heaviest are told apart by a little of their own, so that it stays little beside them.
+/// Rows that are lighter than this part of the heaviest are told apart by a little of their own, so that it
+/// stays little beside them.
 const ALIKE: f64 = 256.0;
 
 /// How often what is left of equations that were told apart by a little is made up for.
@@ -40,7 +41,8 @@ impl<T: Real, const NR: usize> Equations<T, NR> {
 }
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// The impulses that keep some contacts together and stop their slip: of least norm, where they are shared.
+    /// The impulses that keep some contacts together and stop their slip: of least norm, where they are
+    /// shared.
     pub(in super::super) fn together(&self, kept: &Total<bool, NK>) -> List<T, NR> {
         self.together_with(kept, &mut Equations::of(self))
     }
@@ -130,7 +132,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (impulses, known == Content::Factors)
     }
 
-    /// Whether the motion cannot tell the impulses of these contacts apart; of those that slip it matters for the normal ones.
+    /// Whether the motion cannot tell the impulses of these contacts apart; of those that slip it matters for
+    /// the normal ones.
     pub(in super::super) fn is_redundant(&self, touches: &[Touch; NK]) -> bool {
         let touches = Total::new(*touches, Touch::Open);
         let (mut held, mut size) = (List::<_, NR>::repeat(0), 0);
@@ -256,7 +259,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         slips
     }
 
-    /// The matrix of the equations that hold contacts: rates of those that are held, and friction against the slip `rates`.
+    /// The matrix of the equations that hold contacts: rates of those that are held, and friction against the
+    /// slip `rates`.
     fn held_system(&self, slips: &Total<bool, NK>, rates: &SVector<T, NR>) -> Square<T, NR> {
         let places = self.places;
         let mut system = square();
@@ -276,7 +280,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         system
     }
 
-    /// The matrix of [`held_system`](Self::held_system) where rates that depend on each other are told apart by a little.
+    /// The matrix of [`held_system`](Self::held_system) where rates that depend on each other are told apart
+    /// by a little.
     fn lifted(&self, system: &Square<T, NR>, slips: &Total<bool, NK>) -> Square<T, NR> {
         let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
         let mut system = *system;
@@ -289,7 +294,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         system
     }
 
-    /// By how much the forces that [`hold`](Self::hold) contacts change with each of the rates that they have without forces.
+    /// By how much the forces that [`hold`](Self::hold) contacts change with each of the rates that they have
+    /// without forces.
     pub(in super::super) fn answers(
         &self,
         touches: &[Touch; NK],
@@ -378,7 +384,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         epsilon::<T>().sqrt()
     }
 
-    /// Gaussian elimination with pivots of the columns, for several right-hand sides; where there is no pivot, nothing is to be done.
+    /// Gaussian elimination with pivots of the columns, for several right-hand sides; where there is no
+    /// pivot, nothing is to be done.
     pub(super) fn eliminate<const N: usize>(
         &self,
         system: &mut Square<T, NR>,
@@ -408,7 +415,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 if factor == T::zero() {
                     continue;
                 }
-                // Whole rows, whose number of entries is known: what stands before the pivot is not read again.
+                // Whole rows, whose number of entries is known: what stands before the pivot is not read
+                // again.
                 subtract(row, factor, pivots);
                 subtract(other, factor, value);
             }
@@ -422,21 +430,24 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 }
 
-/// The least part of a diagonal entry that is left for its pivot where impulses are told apart by the motion: where bodies of very
-/// different masses touch little is left, but more than rounding would leave of nothing. `ε^(5/8)`.
+/// The least part of a diagonal entry that is left for its pivot where impulses are told apart by the motion:
+/// where bodies of very different masses touch little is left, but more than rounding would leave of nothing.
+/// `ε^(5/8)`.
 fn independent<T: Real>() -> T {
     let half = epsilon::<T>().sqrt();
     half * half.sqrt().sqrt()
 }
 
-/// By how much a row is told apart from others on which it depends; `weight` is its entry on the diagonal, `reach` the largest.
+/// By how much a row is told apart from others on which it depends; `weight` is its entry on the diagonal,
+/// `reach` the largest.
 fn lift<T: Real>(weight: T, reach: T) -> T {
     let own = (weight * constant(ALIKE)).min(reach) * epsilon::<T>().sqrt();
     own.max(reach * epsilon::<T>() * constant(ROUNDINGS))
 }
 
-/// Makes `A` into rows of `U` of `A = Uᵀ D U` (Cholesky without roots), each times its entry of `D`, with the reciprocals of `D` on
-/// the diagonal; false where rows depend on each other, unless they are told apart by a little.
+/// Makes `A` into rows of `U` of `A = Uᵀ D U` (Cholesky without roots), each times its entry of `D`, with the
+/// reciprocals of `D` on the diagonal; false where rows depend on each other, unless they are told apart by a
+/// little.
 fn factorise<T: Real, const NR: usize>(u: &mut Square<T, NR>, size: usize, is_lifted: bool) -> bool {
     let mut given = List::<T, NR>::repeat(T::zero());
     given.iter_mut().zip(u.iter().enumerate()).for_each(|(given, (j, row))| *given = row[j]);

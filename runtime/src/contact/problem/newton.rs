@@ -15,11 +15,11 @@ const SHORTEST: f64 = 1e-3;
 const APART: [f64; 2] = [1e-4, 1e-6];
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// Newton's method on the natural map, from given impulses: the best that it finds. Steps are halved until less is left of
-    /// the map.
+    /// Newton's method on the natural map, from given impulses: the best that it finds. Steps are halved
+    /// until less is left of the map.
     ///
-    /// Where several contacts share what one alone could bear, small changes of the equations are large ones of who bears it, so that
-    /// rows are told apart by much first.
+    /// Where several contacts share what one alone could bear, small changes of the equations are large ones
+    /// of who bears it, so that rows are told apart by much first.
     pub(super) fn newton_twice(&self, start: List<T, NR>) -> Trial<T, NK, NR> {
         let start = self.tried(start);
         let mut best = start;
@@ -33,15 +33,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if other.worst.0 < best.worst.0 { other } else { best }
     }
 
-    /// [`newton_twice`](Self::newton_twice) from impulses that fulfil the laws with other friction, `before`: what contacts do then
-    /// they are taken to do still at first.
+    /// [`newton_twice`](Self::newton_twice) from impulses that fulfil the laws with other friction, `before`:
+    /// what contacts do then they are taken to do still at first.
     pub(super) fn follow(&self, start: List<T, NR>, before: &Total<T, NK>) -> Trial<T, NK, NR> {
         let mut trial = self.tried(start);
         trial.modes = self.modes(before, &start, &trial.rates);
         self.newton_twice(self.stepped(&trial, constant(APART[1]), &mut square()))
     }
 
-    /// Impulses that fulfil the laws as far as rounding of the fastest rate goes, after one more step if the slowest that press need it.
+    /// Impulses that fulfil the laws as far as rounding of the fastest rate goes, after one more step if the
+    /// slowest that press need it.
     pub(super) fn refined(&self, trial: &Trial<T, NK, NR>, lift: T) -> List<T, NR> {
         let Trial { impulses, left, worst, .. } = trial;
         let half = epsilon::<T>().sqrt();

@@ -7,7 +7,8 @@ use crate::private::{constant, epsilon};
 use nalgebra::SVector;
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// Finds the impulses of compression, where surfaces approached each other whose restitution is a ratio of them.
+    /// Finds the impulses of compression, where surfaces approached each other whose restitution is a ratio
+    /// of them.
     ///
     /// # Errors
     ///
@@ -37,8 +38,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Ok(())
     }
 
-    /// What contacts do after compression: this `part` of the restitution. Normal rates are at least that of those before, and no less
-    /// than zero, or normal impulses that of those of compression.
+    /// What contacts do after compression: this `part` of the restitution. Normal rates are at least that of
+    /// those before, and no less than zero, or normal impulses that of those of compression.
     pub(in super::super) fn aim(&mut self, laws: &[Law<T>; NK], before: &SVector<T, NR>, part: T) {
         let none = T::zero();
         self.base = self.compression;

@@ -17,7 +17,8 @@ const SWEEPS: usize = 21;
 const SCALES: [f64; 5] = [1.0, 8.0, 0.125, 64.0, 1.0 / 64.0];
 /// Parts in which friction grows where nothing else helps.
 const DEGREES: u32 = 24;
-/// The friction up to which it grows by its angle, in the first half; what is stronger grows by equal factors in the second.
+/// The friction up to which it grows by its angle, in the first half; what is stronger grows by equal factors
+/// in the second.
 const STEEP: f64 = 4.0;
 /// Contacts of which all selections are tried where nothing else helps.
 const GUESSED: usize = 6;
@@ -150,8 +151,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.friction.iter().take(self.count).all(|friction| *friction == T::zero())
     }
 
-    /// The impulses without friction, by an active set (Lawson and Hanson, *Solving Least Squares Problems*, 1974, ch. 23): the contact
-    /// whose surfaces approach each other most is taken in, and those that would pull are let go on the way.
+    /// The impulses without friction, by an active set (Lawson and Hanson, *Solving Least Squares Problems*,
+    /// 1974, ch. 23): the contact whose surfaces approach each other most is taken in, and those that would
+    /// pull are let go on the way.
     fn press_in_turn(&self) -> List<T, NR> {
         let mut impulses = List::repeat(T::zero());
         let mut is_in = Total::<bool, NK>::repeat(false);
@@ -236,9 +238,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.is_solved(&impulses).then_some(impulses)
     }
 
-    /// Impulses that Newton's method finds from those with which two contacts stick, or one: a body that touches at many points with
-    /// strong friction turns about few of them. Of all that it finds those that leave the least energy, so that the order of contacts
-    /// decides nothing.
+    /// Impulses that Newton's method finds from those with which two contacts stick, or one: a body that
+    /// touches at many points with strong friction turns about few of them. Of all that it finds those that
+    /// leave the least energy, so that the order of contacts decides nothing.
     fn in_pairs(&self) -> Option<List<T, NR>> {
         if self.count > PAIRED {
             return None;
@@ -262,8 +264,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         best.map(|(_, found)| found)
     }
 
-    /// Steps for the impulses that are short enough for all to be taken at once, whatever the directions of the tangents: the inverse of
-    /// what the sizes of the parts of `W` between contacts add up to.
+    /// Steps for the impulses that are short enough for all to be taken at once, whatever the directions of
+    /// the tangents: the inverse of what the sizes of the parts of `W` between contacts add up to.
     fn short_steps(&self) -> List<T, NR> {
         let mut steps = List::<T, NR>::repeat(T::zero());
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
@@ -291,8 +293,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         steps
     }
 
-    /// Sweeps of projected gradient steps with momentum (Nesterov): all contacts at once are brought towards their laws, so that the
-    /// order in which they stand decides nothing.
+    /// Sweeps of projected gradient steps with momentum (Nesterov): all contacts at once are brought towards
+    /// their laws, so that the order in which they stand decides nothing.
     fn relax(&self, impulses: &mut List<T, NR>, sweeps: usize) {
         let steps = self.short_steps();
         let (mut ahead, mut pace) = (*impulses, T::one());

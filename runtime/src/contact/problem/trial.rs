@@ -60,7 +60,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         Trial { impulses, rates, modes, left: all, worst }
     }
 
-    /// Whether no more is left of the laws than rounding of the impulses makes; impulses without bounds solve nothing.
+    /// Whether no more is left of the laws than rounding of the impulses makes; impulses without bounds solve
+    /// nothing.
     pub(super) fn solves(&self, trial: &Trial<T, NK, NR>) -> bool {
         let left = trial.worst.0;
         left <= self.speed() * epsilon::<T>().sqrt() && left <= self.rounding(&trial.impulses)
@@ -100,8 +101,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (normal, Mode::Slip { size, direction: [x / size, y / size] })
     }
 
-    /// The natural map of a contact: its impulses without what they are by their law. Friction that is stronger than what presses
-    /// counts by what would press it, so that rounding of the latter is not taken for more than it is.
+    /// The natural map of a contact: its impulses without what they are by their law. Friction that is
+    /// stronger than what presses counts by what would press it, so that rounding of the latter is not taken
+    /// for more than it is.
     fn map(
         &self,
         k: usize,

@@ -10,7 +10,8 @@ pub fn motions(page: &str) -> Vec<Value> {
     serde_json::from_str(data).unwrap()
 }
 
-/// The channels of a motion: times, then of each frame three places and four numbers of a quaternion, then curves.
+/// The channels of a motion: times, then of each frame three places and four numbers of a quaternion, then
+/// curves.
 pub fn channels(motion: &Value) -> Vec<Vec<i64>> {
     let bytes = base64(motion["data"].as_str().unwrap());
     let count = motion["count"].as_u64().unwrap() as usize;

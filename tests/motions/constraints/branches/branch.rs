@@ -60,12 +60,12 @@ impl Jet {
     }
 }
 
-/// Angles of coupler, against the crank, and rocker of a four-bar linkage that is flat where its crank is at `π`
-/// (`l1 + base = l2 + l3`) or at zero (`±(l1 − base) = l2 − l3`), over the angle of the crank.
+/// Angles of coupler, against the crank, and rocker of a four-bar linkage that is flat where its crank is at
+/// `π` (`l1 + base = l2 + l3`) or at zero (`±(l1 − base) = l2 − l3`), over the angle of the crank.
 ///
-/// With the distance `D` between the crank's tip and the rocker's foot, the height of the triangle of coupler and rocker over
-/// it is a root of `((l2 + l3)² − D²)(D² − (l2 − l3)²)`. One of the factors is a square: `4 base l1 cos²(θ/2)` or
-/// `4 base l1 sin²(θ/2)`, and the branch goes on where its root changes sign.
+/// With the distance `D` between the crank's tip and the rocker's foot, the height of the triangle of coupler
+/// and rocker over it is a root of `((l2 + l3)² − D²)(D² − (l2 − l3)²)`. One of the factors is a square:
+/// `4 base l1 cos²(θ/2)` or `4 base l1 sin²(θ/2)`, and the branch goes on where its root changes sign.
 pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: f64) -> [Jet; 3] {
     let theta = Jet([theta, 1.0, 0.0]);
     let half = theta.scaled(0.5);
@@ -90,7 +90,8 @@ pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: 
     [theta, coupler.plus(theta.scaled(-1.0)), rocker]
 }
 
-/// A branch at a point: where it is, how all coordinates change with `N` of them, and second derivatives along the motion.
+/// A branch at a point: where it is, how all coordinates change with `N` of them, and second derivatives
+/// along the motion.
 pub struct Branch<const NV: usize, const N: usize> {
     pub q: SVector<f64, NV>,
     pub by: SMatrix<f64, NV, N>,
@@ -103,7 +104,8 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
         self.by * self.rate
     }
 
-    /// The acceleration on the branch by Lagrange's equations for its own coordinates, and what to expect of rounding.
+    /// The acceleration on the branch by Lagrange's equations for its own coordinates, and what to expect of
+    /// rounding.
     pub fn acceleration<M>(&self, m: &M) -> (SVector<f64, NV>, f64)
     where
         M: Mechanism<NV, NV, 0, Scalar = f64>,
@@ -125,13 +127,15 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
             x
         };
         let a = self.by * solve(-(self.by.transpose() * force)) + self.bend;
-        // What single forces would do, by how much their bodies move, which is known to a part of 1e-11 m or rad, not better.
+        // What single forces would do, by how much their bodies move, which is known to a part of 1e-11 m or
+        // rad, not better.
         let moved = |k: usize| {
             let by = self.by.row(k).map(|by| by.signum() * by.abs().max(1e-2)).transpose();
             (self.by * solve(by * bias[k])).amax()
         };
         let most = (0..NV).map(moved).fold(0.0, f64::max);
-        // Light bodies with stiff springs would do much if nothing held them: what holds them rounds as that does.
+        // Light bodies with stiff springs would do much if nothing held them: what holds them rounds as that
+        // does.
         let free = mass.cholesky().map_or(0.0, |mass| mass.solve(&bias).amax());
         (a, most + free * 1e-3)
     }

@@ -1,5 +1,6 @@
-//! The straight-line body of a function: values with one use stand where they are used, the others are constants of their own.
-//! All arguments are read before the first result is written, so that results may go where arguments came from.
+//! The straight-line body of a function: values with one use stand where they are used, the others are
+//! constants of their own. All arguments are read before the first result is written, so that results may go
+//! where arguments came from.
 
 use super::pieces::{Piece, Statement};
 use super::scalar::constant;
@@ -37,8 +38,8 @@ struct Writer<'a> {
     support: &'a mut Support,
 }
 
-/// Writes a program: what it reads, its values, and its results to their places. The text of the first result comes back, for
-/// functions that return it.
+/// Writes a program: what it reads, its values, and its results to their places. The text of the first result
+/// comes back, for functions that return it.
 pub fn write_program(
     out: &mut String,
     program: &Program,

@@ -1,9 +1,10 @@
-//! Functions in the shape that CasADi loads (`casadi.external`) and acados takes: a further source file, which calls those of the
-//! mechanism.
+//! Functions in the shape that CasADi loads (`casadi.external`) and acados takes: a further source file,
+//! which calls those of the mechanism.
 //!
-//! A function `f` has `f_n_in`, `f_sparsity_in`, `f_work` and so on beside it; `jac_f` has its Jacobians, with the blocks of all
-//! results by all arguments. Those are there where they are known exactly: for plain coordinates, without time, and where all
-//! parameters are fixed. Matrices are dense, or have no entries where they are always zero.
+//! A function `f` has `f_n_in`, `f_sparsity_in`, `f_work` and so on beside it; `jac_f` has its Jacobians,
+//! with the blocks of all results by all arguments. Those are there where they are known exactly: for plain
+//! coordinates, without time, and where all parameters are fixed. Matrices are dense, or have no entries
+//! where they are always zero.
 
 use super::docs;
 use super::function::{Outline, results, spoken};
@@ -467,7 +468,8 @@ fn sparsity((_, rows, columns, has_entries): &Entry) -> String {
     format!("{}_{rows}_by_{columns}", if *has_entries { "dense" } else { "zero" })
 }
 
-/// The patterns, each once: rows, columns, and 1 where all entries are there, or where none is the beginnings of the columns.
+/// The patterns, each once: rows, columns, and 1 where all entries are there, or where none is the beginnings
+/// of the columns.
 fn write_sparsities(text: &mut String, externals: &[External]) {
     let all = externals.iter().flat_map(|f| f.inputs.iter().chain(&f.outputs));
     let mut shapes: Vec<(usize, usize, bool)> = all.map(|(_, r, c, has)| (*r, *c, *has)).collect();

@@ -1,5 +1,5 @@
-//! Frames: placements, velocities, accelerations and Jacobians of all of them by number. Links are gone through from the ground
-//! outwards, each by its own step.
+//! Frames: placements, velocities, accelerations and Jacobians of all of them by number. Links are gone
+//! through from the ground outwards, each by its own step.
 
 use super::body::{Scope, write_program};
 use super::docs;
@@ -292,7 +292,8 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     body
 }
 
-/// What sums the columns of the links on the way to a frame into its Jacobian, in declared speeds where there are some.
+/// What sums the columns of the links on the way to a frame into its Jacobian, in declared speeds where there
+/// are some.
 fn write_jacobian(body: &mut String, o: &Outline<'_>, most: Option<usize>) {
     let own = if o.has_own() { "self, " } else { "" };
     let time = if o.time { "t, " } else { "" };

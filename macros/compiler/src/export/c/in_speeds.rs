@@ -1,4 +1,5 @@
-//! The configuration space in declared speeds: its functions in terms of hidden ones for the velocities of the joints, as in Rust.
+//! The configuration space in declared speeds: its functions in terms of hidden ones for the velocities of
+//! the joints, as in Rust.
 
 use super::docs;
 use super::function::Outline;

@@ -31,7 +31,8 @@ fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
-/// Definitions. With declared speeds those of the joints are hidden, and what the outside sees is made of them.
+/// Definitions. With declared speeds those of the joints are hidden, and what the outside sees is made of
+/// them.
 pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     for (name, [a, b], _) in MANIFOLD {
         let mut body = String::new();
@@ -77,7 +78,8 @@ pub fn define_all_derivatives(out: &mut String, charts: &[Chart], o: &Outline<'_
     TO_FIRST_ORDER.iter().for_each(|of| define_derivatives(out, of, charts, o, support));
 }
 
-/// A function's derivatives: its name, what they take, their names, and the value of the first one for plain coordinates.
+/// A function's derivatives: its name, what they take, their names, and the value of the first one for plain
+/// coordinates.
 struct ToFirstOrder {
     name: &'static str,
     arguments: &'static [&'static str],
@@ -143,8 +145,8 @@ fn define_derivatives(
     let _ = writeln!(out, "{hidden}{} {{\n{unused}{body}}}\n", derivatives_signature(o, of));
 }
 
-/// The kind of a joint whose displacements are not added, its place among velocities, and how many it has; what is needed for its
-/// derivatives is asked for.
+/// The kind of a joint whose displacements are not added, its place among velocities, and how many it has;
+/// what is needed for its derivatives is asked for.
 pub fn block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize, usize)> {
     match chart {
         Chart::Plain(..) => None,

@@ -239,7 +239,8 @@ const OF_HEADERS: &[&str] = &[
     "yn",
 ];
 
-/// What may stand behind other letters in a name: signs of ASCII become underscores, letters of other alphabets their numbers.
+/// What may stand behind other letters in a name: signs of ASCII become underscores, letters of other
+/// alphabets their numbers.
 pub fn letters(name: &str) -> String {
     let mut text = String::new();
     for c in name.trim_start_matches("r#").chars() {
@@ -252,8 +253,8 @@ pub fn letters(name: &str) -> String {
     text
 }
 
-/// A name as an identifier: words of the language and names in capitals (most macros are) get an underscore behind them, and what
-/// begins with a digit or an underscore a letter before it.
+/// A name as an identifier: words of the language and names in capitals (most macros are) get an underscore
+/// behind them, and what begins with a digit or an underscore a letter before it.
 pub fn identifier(name: &str) -> String {
     let mut text = letters(name);
     if text.starts_with(|c: char| !c.is_ascii_alphabetic()) {
@@ -266,8 +267,8 @@ pub fn identifier(name: &str) -> String {
     text
 }
 
-/// Returns the prefix of all names of a mechanism, which is the name of a type as well: no name of a header, and none that makes a name
-/// of the mechanism begin as those of helpers do, with `lw_`.
+/// Returns the prefix of all names of a mechanism, which is the name of a type as well: no name of a header,
+/// and none that makes a name of the mechanism begin as those of helpers do, with `lw_`.
 pub fn prefix_identifier(name: &str) -> String {
     let mut text = identifier(name);
     if text == "lw" || text.starts_with("lw_") {

@@ -1,8 +1,9 @@
-//! Discrete steps of a tree mechanism under inputs that are held, and their Jacobians: what filters, iLQR and multiple shooting are
-//! made of. Derivatives are carried forwards through the stages, as the runtime does it (`linkwork::discrete`).
+//! Discrete steps of a tree mechanism under inputs that are held, and their Jacobians: what filters, iLQR and
+//! multiple shooting are made of. Derivatives are carried forwards through the stages, as the runtime does it
+//! (`linkwork::discrete`).
 //!
-//! What changes with the start of a step stands in one array: the value, then its derivatives by `q`, `v`, `u` and, where time is
-//! not in the equations, by the length of the step; `NV` numbers each.
+//! What changes with the start of a step stands in one array: the value, then its derivatives by `q`, `v`,
+//! `u` and, where time is not in the equations, by the length of the step; `NV` numbers each.
 
 use super::docs;
 use super::function::Outline;

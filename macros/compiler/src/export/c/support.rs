@@ -1,5 +1,6 @@
-//! Helpers: functions that bodies call in addition to those of the mathematical library, each written where something calls it.
-//! Their names begin with `lw_`, which no name of a mechanism does (`names::prefix_identifier`).
+//! Helpers: functions that bodies call in addition to those of the mathematical library, each written where
+//! something calls it. Their names begin with `lw_`, which no name of a mechanism does
+//! (`names::prefix_identifier`).
 
 /// What a file needs.
 #[derive(Clone, Copy, Debug, Default)]

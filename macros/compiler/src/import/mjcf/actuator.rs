@@ -1,7 +1,8 @@
 //! `<actuator>` → inputs, with the springs and dampers that servos are.
 //!
-//! An actuator has a length: a gear ratio times a coordinate or the length of a tendon, or zero on a site. Its force is `gain · u + b₀ + b₁ length +
-//! b₂ rate` (MuJoCo, *Computation*, "Actuation model", with neither activation nor muscles).
+//! An actuator has a length: a gear ratio times a coordinate or the length of a tendon, or zero on a site.
+//! Its force is `gain · u + b₀ + b₁ length + b₂ rate` (MuJoCo, *Computation*, "Actuation model", with neither
+//! activation nor muscles).
 
 use super::defaults::Element;
 use super::law::{Force, OTHER_INPUTS, read_force};

@@ -22,7 +22,8 @@ pub(super) struct Defaults<'a> {
     names: BTreeMap<&'a str, usize>,
 }
 
-/// An element with its defaults: what it says itself comes first, then what its class says, then what that is made from.
+/// An element with its defaults: what it says itself comes first, then what its class says, then what that is
+/// made from.
 #[derive(Clone)]
 pub(super) struct Element<'a> {
     /// The element.
@@ -93,7 +94,8 @@ impl<'a> Defaults<'a> {
         }
     }
 
-    /// An element with the defaults of its class, `inherited` unless it names one, that are written for any of `tags`.
+    /// An element with the defaults of its class, `inherited` unless it names one, that are written for any
+    /// of `tags`.
     pub(super) fn element(
         &self,
         node: Node<'a>,

@@ -95,7 +95,8 @@ impl<'a> Reader<'a> {
         self.constrain(element, &first, second.as_deref(), polynomial, cx);
     }
 
-    /// `Σ (y − y₀) = a₀ + a₁ d + … + a₄ d⁴` with `d = Σ (x − x₀)` as a condition on coordinates, the sums weighted.
+    /// `Σ (y − y₀) = a₀ + a₁ d + … + a₄ d⁴` with `d = Σ (x − x₀)` as a condition on coordinates, the sums
+    /// weighted.
     fn constrain(
         &mut self,
         element: &Element<'a>,

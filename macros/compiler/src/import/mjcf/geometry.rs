@@ -89,7 +89,8 @@ pub(super) fn of_body<'a>(
     bounded(found, pose, settings)
 }
 
-/// Mass and principal moments are at least what the file wants, and those of bodies that there can be, if it wants that.
+/// Mass and principal moments are at least what the file wants, and those of bodies that there can be, if it
+/// wants that.
 fn bounded(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass> {
     if settings.least_mass == 0.0 && settings.least_inertia == 0.0 && !settings.balance {
         return found;
@@ -179,7 +180,8 @@ fn of_shape<'a>(
     Some(Mass { mass, com: [0.0; 3], inertia }.placed(&pose))
 }
 
-/// Where a shape is, and its half lengths, those that it has: a radius stands first, the half of its length last.
+/// Where a shape is, and its half lengths, those that it has: a radius stands first, the half of its length
+/// last.
 pub(super) fn dimensions(
     kind: &str,
     shape: &Element<'_>,

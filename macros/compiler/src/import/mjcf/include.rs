@@ -1,7 +1,7 @@
 //! `<include file="…"/>` → one text, of pieces that know from which file they are.
 //!
-//! Each file is parsed on its own first, so that what is wrong with one is told at its own place; and each stands once, so that
-//! the whole is never longer than all files together.
+//! Each file is parsed on its own first, so that what is wrong with one is told at its own place; and each
+//! stands once, so that the whole is never longer than all files together.
 
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, position, quote};

@@ -1,8 +1,9 @@
 //! The density and the viscosity of a medium that bodies move through → Rayleigh's functions.
 //!
-//! MuJoCo's model by boxes of the inertia (*Computation*, "Passive forces", "Inertia model"): a body is the box with its mass and
-//! principal moments, and each side of it is braked by itself. With the edges `a`, `b`, `c` and their mean `d`, the density `ρ` and
-//! the viscosity `β`, forces are `−½ ρ b c |v| v − 3π d β v` along the edge `a`, torques `−ρ a (b⁴ + c⁴) |ω| ω / 64 − π d³ β ω`.
+//! MuJoCo's model by boxes of the inertia (*Computation*, "Passive forces", "Inertia model"): a body is the
+//! box with its mass and principal moments, and each side of it is braked by itself. With the edges `a`, `b`,
+//! `c` and their mean `d`, the density `ρ` and the viscosity `β`, forces are `−½ ρ b c |v| v − 3π d β v`
+//! along the edge `a`, torques `−ρ a (b⁴ + c⁴) |ω| ω / 64 − π d³ β ω`.
 
 use super::geometry::Mass;
 use super::joint::IGNORE_PASSIVE;

@@ -1,7 +1,8 @@
 //! Meshes → volume and mass properties, as MuJoCo computes them where no other way is asked for.
 //!
-//! A mesh is the sum of pyramids from a point inside to its triangles (MuJoCo, `mjCMesh::ComputeInertia`): the centroid of the
-//! surface for the centre of mass, that for the inertia. By `inertia="legacy"`, the default, each of them counts as positive.
+//! A mesh is the sum of pyramids from a point inside to its triangles (MuJoCo, `mjCMesh::ComputeInertia`):
+//! the centroid of the surface for the centre of mass, that for the inertia. By `inertia="legacy"`, the
+//! default, each of them counts as positive.
 
 use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
@@ -256,7 +257,8 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(i32::from_le_bytes(word.try_into().ok()?)).ok()
 }
 
-/// Binary STL: a header of 80 bytes, the number of triangles, and of each a normal, three corners and two bytes.
+/// Binary STL: a header of 80 bytes, the number of triangles, and of each a normal, three corners and two
+/// bytes.
 fn stl(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let count = word(bytes, 80)?;
     if bytes.len() != 84 + 50 * count {
@@ -270,7 +272,8 @@ fn stl(bytes: &[u8]) -> Option<Vec<Triangle>> {
         .collect()
 }
 
-/// MuJoCo's own format: the numbers of vertices, normals, texture coordinates and triangles, then all of these.
+/// MuJoCo's own format: the numbers of vertices, normals, texture coordinates and triangles, then all of
+/// these.
 fn msh(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let [vertices, normals, coordinates, faces] =
         [word(bytes, 0)?, word(bytes, 4)?, word(bytes, 8)?, word(bytes, 12)?];
@@ -285,7 +288,8 @@ fn msh(bytes: &[u8]) -> Option<Vec<Triangle>> {
     (0..faces).map(|face| Some([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?])).collect()
 }
 
-/// Wavefront OBJ: lines `v x y z` and `f a/b/c …` with numbers from one, or from the end if they are negative.
+/// Wavefront OBJ: lines `v x y z` and `f a/b/c …` with numbers from one, or from the end if they are
+/// negative.
 fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let text = std::str::from_utf8(bytes).ok()?;
     let (mut vertices, mut triangles): (Vec<Vector>, Vec<Triangle>) = (Vec::new(), Vec::new());

@@ -1,7 +1,7 @@
 //! `<mujoco>` → bodies and joints in coordinate order.
 //!
-//! What would change the equations of motion without contact is taken over, or is a mistake at its place; what would not is left
-//! out, and the generated documentation lists it.
+//! What would change the equations of motion without contact is taken over, or is a mistake at its place;
+//! what would not is left out, and the generated documentation lists it.
 
 use super::context::{Cx, quote};
 use super::element::{Node, elements, place, tag};

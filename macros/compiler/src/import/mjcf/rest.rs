@@ -7,7 +7,8 @@ use crate::import::robot::Origin;
 use crate::syntax::{GROUND, JointKind};
 
 impl Reader<'_> {
-    /// Poses of bodies in the world with each joint where its spring is free; ball and free joints as in the file.
+    /// Poses of bodies in the world with each joint where its spring is free; ball and free joints as in the
+    /// file.
     pub(super) fn poses_at_rest(&self) -> Poses {
         let mut poses = Poses::from([(GROUND.to_string(), Pose::ZERO)]);
         // A joint stands behind the one that carries its parent.

@@ -1,4 +1,5 @@
-//! Actuators on sites: a force and a torque in the axes of a site, or in those of another one that feels the reaction.
+//! Actuators on sites: a force and a torque in the axes of a site, or in those of another one that feels the
+//! reaction.
 
 use super::defaults::Element;
 use super::law::OTHER_INPUTS;
@@ -9,8 +10,8 @@ use crate::import::pose::{Vector, apply};
 use crate::syntax::{BinaryOp, DriveOn, Expr, ExprKind, GROUND, Name, Wrench};
 
 impl<'a> Reader<'a> {
-    /// What an actuator on a site acts on, and whether that turns. Its length is zero without another site (MuJoCo, *Modeling*,
-    /// "general/refsite").
+    /// What an actuator on a site acts on, and whether that turns. Its length is zero without another site
+    /// (MuJoCo, *Modeling*, "general/refsite").
     pub(super) fn site_transmission(
         &self,
         site: &Name,

@@ -1,4 +1,5 @@
-//! `<spatial>`: the path of a cable from site to site, around balls and cylinders → a length in the words of the language.
+//! `<spatial>`: the path of a cable from site to site, around balls and cylinders → a length in the words of
+//! the language.
 //!
 //! The path is MuJoCo's (*Modeling*, "spatial"), which is that of a taut cable. A cable around a cylinder
 //! with a `sidesite` runs about its axis in the direction in which the path by way of that site does in the
@@ -130,8 +131,8 @@ impl<'a> Reader<'a> {
         found.map(|(body, pose)| Spot { body: body.clone(), pose: *pose })
     }
 
-    /// The surface that a part of a path runs around. On which side of it is chosen later; until then a cylinder with a side has
-    /// the direction to that side.
+    /// The surface that a part of a path runs around. On which side of it is chosen later; until then a
+    /// cylinder with a side has the direction to that side.
     fn surface(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Around, Refusal>> {
         let said = name(node, "geom", cx)?;
         let Some((body, shape, outer)) = self.named_shapes.get(&said.text) else {

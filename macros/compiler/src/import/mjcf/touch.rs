@@ -68,8 +68,8 @@ impl Law {
         self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
     }
 
-    /// The larger coefficients in the larger number of dimensions, or those of what comes first (MuJoCo, *Computation*, "Contact"):
-    /// of slip, spin and rolling.
+    /// The larger coefficients in the larger number of dimensions, or those of what comes first (MuJoCo,
+    /// *Computation*, "Contact"): of slip, spin and rolling.
     fn friction_with(&self, other: &Law) -> [f64; 3] {
         let (dimensions, friction) = match self.priority.total_cmp(&other.priority) {
             Ordering::Greater => (self.dimensions, self.friction),

@@ -10,7 +10,8 @@ use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Shape};
 
 impl<'a> Reader<'a> {
-    /// Adds the shapes of a link that are to be seen: those that touch nothing, which files have for this, or else all.
+    /// Adds the shapes of a link that are to be seen: those that touch nothing, which files have for this, or
+    /// else all.
     pub(super) fn add_visuals(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         if !self.options.visuals {
             return;

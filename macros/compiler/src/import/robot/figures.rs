@@ -1,4 +1,5 @@
-//! `parameters = …`: figures of the file that become fields of the mechanism. Where a number stood, its field is named.
+//! `parameters = …`: figures of the file that become fields of the mechanism. Where a number stood, its field
+//! is named.
 
 use super::names::unused;
 use crate::diag::Place;

@@ -26,8 +26,8 @@ impl FileLimits {
         [&self.lower, &self.upper, &self.velocity, &self.effort].into_iter().any(Option::is_some)
     }
 
-    /// The limits of a joint in the words of the language. A joint that follows another one bounds that one's motion, and not
-    /// what drives it.
+    /// The limits of a joint in the words of the language. A joint that follows another one bounds that one's
+    /// motion, and not what drives it.
     pub(in crate::import) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {
         let expression =
             |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number(f.value, &f.place));

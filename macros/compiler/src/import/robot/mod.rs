@@ -1,6 +1,7 @@
 //! A robot as its file says, whatever its format → bodies and joints in coordinate order.
 //!
-//! Importers read a file into a [`Robot`]; names, locks, followers and the order of coordinates are looked at here. Knows no XML.
+//! Importers read a file into a [`Robot`]; names, locks, followers and the order of coordinates are looked at
+//! here. Knows no XML.
 
 mod assemble;
 mod closing;

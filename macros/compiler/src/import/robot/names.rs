@@ -1,4 +1,5 @@
-//! Checks that names are there, and once only: links, joints, the ends of joints, locks. Names that the file leaves open.
+//! Checks that names are there, and once only: links, joints, the ends of joints, locks. Names that the file
+//! leaves open.
 
 use super::joint::FileJoint;
 use super::parts::{Robot, bare_link};
@@ -15,7 +16,8 @@ pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut
 /// The link that files hang from without declaring it.
 const WORLD: &str = "world";
 
-/// Declares the link `world` if joints begin there and nothing says what it is: it is what the root is held by elsewhere.
+/// Declares the link `world` if joints begin there and nothing says what it is: it is what the root is held
+/// by elsewhere.
 pub(in crate::import) fn declare_world(robot: &mut Robot) {
     let is_known = robot.links.iter().any(|link| link.name.text == WORLD)
         || robot.joints.iter().any(|joint| joint.child.text == WORLD);
@@ -25,7 +27,8 @@ pub(in crate::import) fn declare_world(robot: &mut Robot) {
     }
 }
 
-/// Gives a link `ground` another name, which the fixed frame has: `ground_link`. A fixed root may be called so: it is the ground.
+/// Gives a link `ground` another name, which the fixed frame has: `ground_link`. A fixed root may be called
+/// so: it is the ground.
 pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
     if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;

@@ -35,8 +35,8 @@ pub(super) struct Frames {
 /// The first version in which a pose says by `relative_to`, no longer by `frame`, what it is relative to.
 const RELATIVE_TO: (u32, u32) = (1, 7);
 
-/// Reads `<pose relative_to="…">` of an element, `<pose frame="…">` in files of old versions; the pose is relative to `base` if
-/// neither is written.
+/// Reads `<pose relative_to="…">` of an element, `<pose frame="…">` in files of old versions; the pose is
+/// relative to `base` if neither is written.
 pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> Frame {
     let own = |at: Place| Name { text: base.to_string(), place: at };
     let Some(found) = elements(node).find(|child| child.tag_name().name() == "pose") else {
@@ -69,7 +69,8 @@ pub(super) fn reference<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute
     old.or_else(|| written("relative_to"))
 }
 
-/// Returns the whole name of the frame `name` that the link or joint around a pose declares in itself, as versions 1.5 and 1.6 allow.
+/// Returns the whole name of the frame `name` that the link or joint around a pose declares in itself, as
+/// versions 1.5 and 1.6 allow.
 fn own_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
     let owner = pose.ancestors().find(|above| matches!(above.tag_name().name(), "link" | "joint"))?;
     let is_declared = own_frames(owner).any(|frame| frame.attribute("name") == Some(name));
@@ -138,7 +139,8 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
 }
 
 impl Frames {
-    /// The link that carries a frame, with the place of what was said; tells of names that there are not, and of circles.
+    /// The link that carries a frame, with the place of what was said; tells of names that there are not, and
+    /// of circles.
     pub(super) fn carrier(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Name> {
         let mut at = name.clone();
         for _ in 0..MAX_DEPTH {

@@ -1,5 +1,5 @@
-//! `<include>` → the model of another file in its place, with the name and the pose that are given: one text, of pieces that know from
-//! which file they are.
+//! `<include>` → the model of another file in its place, with the name and the pose that are given: one text,
+//! of pieces that know from which file they are.
 //!
 //! Each file is parsed on its own first, so that what is wrong with one is told at its own place.
 
@@ -31,7 +31,8 @@ enum Step {
     Leave,
 }
 
-/// An `<include>`: the file that has it and its first byte, what it names and where, its name and pose, and how deep it is.
+/// An `<include>`: the file that has it and its first byte, what it names and where, its name and pose, and
+/// how deep it is.
 struct Include {
     by: usize,
     from: usize,
@@ -267,8 +268,8 @@ fn trimmed(text: Node<'_>) -> Range {
     range.start + before..range.end.saturating_sub(after).max(range.start + before)
 }
 
-/// Where a file may be: beside the one that includes it or the one that the user names, or one folder above, each with how it is shown.
-/// A folder has its model in `model.sdf`, or where its `model.config` says.
+/// Where a file may be: beside the one that includes it or the one that the user names, or one folder above,
+/// each with how it is shown. A folder has its model in `model.sdf`, or where its `model.config` says.
 fn candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     let rest = ["model://", "file://", "package://"].iter().find_map(|scheme| uri.strip_prefix(scheme));
     let named = rest.unwrap_or(uri);

@@ -116,7 +116,8 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     known.copied()
 }
 
-/// Reads how far a screw advances in a turn, m. The older word for it, in rad/m, is positive for left-handed threads.
+/// Reads how far a screw advances in a turn, m. The older word for it, in rad/m, is positive for left-handed
+/// threads.
 fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     let Some(written) = lead.or(old) else {
         cx.error(&place(node, cx), "screw without `<screw_thread_pitch>`", |d| {
@@ -219,8 +220,8 @@ fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
     is_said
 }
 
-/// Reads an axis, z unless `<xyz>` says another, and returns it in the axes of the child. It is in the axes of `usual` unless it
-/// names a frame.
+/// Reads an axis, z unless `<xyz>` says another, and returns it in the axes of the child. It is in the axes
+/// of `usual` unless it names a frame.
 fn read_axis(
     xyz: Option<Node<'_>>,
     axis: Node<'_>,

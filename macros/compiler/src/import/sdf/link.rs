@@ -17,7 +17,8 @@ const INERTIA: [(&str, f64); 6] =
 /// The first version in which the pose of an `<inertial>` names no frame.
 const IN_LINK: (u32, u32) = (1, 7);
 
-/// Reads a link. What it does not say of its mass is what the format says: 1 kg, and 1 kg·m² about every axis.
+/// Reads a link. What it does not say of its mass is what the format says: 1 kg, and 1 kg·m² about every
+/// axis.
 pub(super) fn read_link(
     node: Node<'_>,
     (name, scope): (&Name, &Scope),

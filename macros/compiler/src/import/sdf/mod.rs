@@ -1,7 +1,7 @@
 //! `<sdf>` → bodies and joints in coordinate order (SDFormat specification, versions 1.2 to 1.12).
 //!
-//! A link, a joint, a model and a `<frame>` are frames, and a pose is relative to any of them. Nested models become one
-//! mechanism; their links and joints have names with `::`.
+//! A link, a joint, a model and a `<frame>` are frames, and a pose is relative to any of them. Nested models
+//! become one mechanism; their links and joints have names with `::`.
 
 use super::context::{Cx, quote};
 use super::element::{Node, check_attributes, check_element_name, content, elements, name, place, tag, word};
@@ -81,7 +81,7 @@ struct Reader<'a> {
 }
 
 /// The models that make the mechanism, each with the text that whole names of its parts begin with.
-struct Top<'a> {
+struct Models<'a> {
     moving: Vec<(Node<'a>, String)>,
     /// Static models of the same world.
     fixed: Vec<(Node<'a>, String)>,
@@ -176,7 +176,7 @@ fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
 }
 
 /// Finds the one model of a file that moves, or several that joints of their world connect.
-fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Top<'a>> {
+fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     let kind = root.tag_name().name();
     if kind != "sdf" {
         let message = format!("expected `<sdf>`, found {}", tag(root));
@@ -213,12 +213,12 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Top<'a>> {
         [one] => {
             fixed.retain(|model| world_of(model) == world && (has("joint") || has("frame")));
             let fixed = prefixed(fixed, &format!("{WORLD}::"));
-            return Some(Top { moving: vec![(*one, String::new())], fixed, world });
+            return Some(Models { moving: vec![(*one, String::new())], fixed, world });
         }
         [_, _, ..] if is_joined => {
             fixed.retain(|model| world_of(model) == world);
             let fixed = prefixed(fixed, &format!("{WORLD}::"));
-            return Some(Top { moving: prefixed(found, ""), fixed, world });
+            return Some(Models { moving: prefixed(found, ""), fixed, world });
         }
         [] => cx.error(&place(root, cx), "SDF file without a model", |d| {
             d.help("expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
@@ -262,7 +262,7 @@ fn gravity(root: Node<'_>, cx: &mut Cx<'_>) -> Option<Expr> {
 
 impl<'a> Reader<'a> {
     /// Gathers the links, joints and frames of the models and of their world.
-    fn read_top(&mut self, top: &Top<'a>, cx: &mut Cx<'_>) -> Option<()> {
+    fn read_top(&mut self, top: &Models<'a>, cx: &mut Cx<'_>) -> Option<()> {
         let all = [top.moving.as_slice(), &top.fixed].concat();
         let world = Scope::World(Rc::new(World::new(top.world, &all)));
         for (model, prefix) in &top.moving {
@@ -280,7 +280,8 @@ impl<'a> Reader<'a> {
         Some(())
     }
 
-    /// Gathers the links, joints and frames of a model and of those in it. A model that is fixed in the world has frames alone.
+    /// Gathers the links, joints and frames of a model and of those in it. A model that is fixed in the world
+    /// has frames alone.
     fn read_models(
         &mut self,
         (top, prefix): (Node<'a>, &str),

@@ -10,7 +10,8 @@ pub(super) const WORLD: &str = "world";
 /// A model or the world: where names are looked up.
 #[derive(Clone, Debug)]
 pub(super) enum Scope {
-    /// A model. The whole names of its parts begin with this text: `arm::hand::`, or nothing for the only model of a file.
+    /// A model. The whole names of its parts begin with this text: `arm::hand::`, or nothing for the only
+    /// model of a file.
     Model(String),
     /// The world around the models.
     World(Rc<World>),

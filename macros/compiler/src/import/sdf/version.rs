@@ -9,7 +9,8 @@ pub(super) const OF_INCLUDED: &str = "sdf_version";
 /// The first version in which links, joints and poses are elements with text.
 const FIRST: (u32, u32) = (1, 2);
 
-/// True if an element belongs to a file of an earlier version than `number`; a file that gives none is of the latest.
+/// True if an element belongs to a file of an earlier version than `number`; a file that gives none is of the
+/// latest.
 pub(super) fn is_before(node: Node<'_>, number: (u32, u32)) -> bool {
     let version = node.ancestors().find_map(|above| {
         above

@@ -28,7 +28,8 @@ fn malformed_xml_has_a_place() {
     }
 }
 
-/// What bears the prefix of a simulator is skipped, declared or not; all else keeps its place, and its mistakes.
+/// What bears the prefix of a simulator is skipped, declared or not; all else keeps its place, and its
+/// mistakes.
 #[test]
 fn prefixes_need_no_declaration() {
     let extensions = "<drake:joint x='1'/><gazebo xsi:y='2'>\n<sensor:camera><ö:b/></sensor:camera></gazebo>";

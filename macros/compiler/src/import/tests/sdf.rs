@@ -201,8 +201,8 @@ fn every_beginning_of_a_file_gets_an_answer() {
     assert!(run(&sdf(), FILE).contains("root_joint"));
 }
 
-/// A model stands in the place of the `<include>` that names it, as often as it is named, with its name and its pose; it moves as if it
-/// were written there.
+/// A model stands in the place of the `<include>` that names it, as often as it is named, with its name and
+/// its pose; it moves as if it were written there.
 #[test]
 fn included_models_stand_in_the_place_of_their_elements() {
     let wheel = "<sdf version='1.9'>\n<model name='wheel'><pose>9 9 9 0 0 0</pose><link name='rim'><pose>0 0 1 0 0 0</pose></link></model></sdf>";
@@ -319,7 +319,8 @@ fn included_files_are_read_in_their_own_version() {
     }
 }
 
-/// Poses of versions 1.5 and 1.6 name frames by `frame`, in inertial frames too, and links have frames of their own.
+/// Poses of versions 1.5 and 1.6 name frames by `frame`, in inertial frames too, and links have frames of
+/// their own.
 #[test]
 fn poses_of_old_versions_name_frames() {
     let text = |version: &str, pose: &str, inertial: &str| {

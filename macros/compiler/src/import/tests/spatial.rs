@@ -52,7 +52,8 @@ fn pulleys_and_gears_are_factors() {
     );
 }
 
-/// The free length is that of the pose in which the springs of joints are free: here `s` is turned by 1 about y.
+/// The free length is that of the pose in which the springs of joints are free: here `s` is turned by 1 about
+/// y.
 #[test]
 fn springs_are_free_at_rest() {
     let spring = |more: &str| {

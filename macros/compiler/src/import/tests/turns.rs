@@ -11,7 +11,8 @@ fn what_is_left_within_a_turn_turns_as_far() {
     assert!((SAME_TURN.sin() - sin).abs() < 1e-14 && (SAME_TURN.cos() - cos).abs() < 1e-14);
 }
 
-/// What is said of each text with the angle 90 in the place of `…`, and that a rounded full turn and one and a half are none of it.
+/// What is said of each text with the angle 90 in the place of `…`, and that a rounded full turn and one and
+/// a half are none of it.
 fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
     let degrees = text.replace('…', "90");
     let said = format!(

@@ -31,7 +31,8 @@ const ELEMENTS: &str = "a joint has elements: `<parent link=\"…\"/>`, `<child 
 /// Coefficients of other tools' controllers in `<dynamics>`.
 const OF_CONTROLLERS: [&str; 4] = ["D", "K", "mu_coulomb", "mu_viscous"];
 
-/// Reads a joint; `None` if it does not say what it joins. Lists in `left_out` a leader that a fixed joint cannot follow.
+/// Reads a joint; `None` if it does not say what it joins. Lists in `left_out` a leader that a fixed joint
+/// cannot follow.
 pub(super) fn read_joint(
     node: Node<'_>,
     options: &FileOptions,

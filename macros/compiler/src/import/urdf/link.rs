@@ -22,8 +22,8 @@ const ASYMMETRY: f64 = 0.01;
 /// The elements of `<inertial>`.
 const PARTS: [&str; 3] = ["origin", "mass", "inertia"];
 
-/// Reads a link; `None` if it has no name. Where nothing needs inertia, it is not read; what `stands` on the ground may lack
-/// some.
+/// Reads a link; `None` if it has no name. Where nothing needs inertia, it is not read; what `stands` on the
+/// ground may lack some.
 pub(super) fn read_link(
     node: Node<'_>,
     stands: impl FnOnce(&str) -> bool,
@@ -89,7 +89,8 @@ fn is_zero(expr: Option<&Expr>) -> bool {
     matches!(expr, Some(Expr { kind: ExprKind::Number(value), .. }) if *value == 0.0)
 }
 
-/// Reads the inertia matrix, rotated from the axes of the inertial frame into those of the link; `None` if it is zero.
+/// Reads the inertia matrix, rotated from the axes of the inertial frame into those of the link; `None` if it
+/// is zero.
 fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr> {
     check_only(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
     let read = INERTIA.map(|entry| number(node, entry, cx));

@@ -1,11 +1,12 @@
-//! Words in robots, links and joints that mean something in another place: they are errors, because otherwise they would be lost
-//! without a word. Elements and attributes of other tools pass.
+//! Words in robots, links and joints that mean something in another place: they are errors, because otherwise
+//! they would be lost without a word. Elements and attributes of other tools pass.
 
 use crate::diag::nearest;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, place, tag};
 
-/// Elements and attributes of URDF and of other formats that say where something is, how heavy it is, or how it moves.
+/// Elements and attributes of URDF and of other formats that say where something is, how heavy it is, or how
+/// it moves.
 const WORDS: [&str; 38] = [
     "armature",
     "axis",
@@ -47,8 +48,8 @@ const WORDS: [&str; 38] = [
     "xyz",
 ];
 
-/// Reports attributes, text, and elements other than `own` in a robot, a link or a joint, if they mean something in another place. Text
-/// between links is a remark.
+/// Reports attributes, text, and elements other than `own` in a robot, a link or a joint, if they mean
+/// something in another place. Text between links is a remark.
 pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
     for child in elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
         // Names that are nearly one of its own are reported by others.

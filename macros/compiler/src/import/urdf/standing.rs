@@ -1,10 +1,12 @@
-//! The links that stand on the ground, found before anything is read: their mass properties enter no equation.
+//! The links that stand on the ground, found before anything is read: their mass properties enter no
+//! equation.
 
 use crate::import::element::{Node, elements};
 use crate::syntax::{Base, FileOptions};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Names of the links that fixed and locked joints hold to a fixed root. A file with mistakes in its tree may have others.
+/// Names of the links that fixed and locked joints hold to a fixed root. A file with mistakes in its tree may
+/// have others.
 pub(super) fn links<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a str> {
     let mut standing = BTreeSet::new();
     if options.base == Base::Free {

@@ -64,8 +64,8 @@ impl Pairs {
     }
 }
 
-/// The numbers of two keys and the ratio of their coefficients, in one number: its highest and its middle 32 bits, and
-/// the lower half.
+/// The numbers of two keys and the ratio of their coefficients, in one number: its highest and its middle 32
+/// bits, and the lower half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Pair(u128);
 

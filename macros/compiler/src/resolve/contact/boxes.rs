@@ -1,15 +1,17 @@
 //! Where two boxes touch.
 //!
-//! Two boxes are apart if a plane is between them whose normal is that of a face of either, or is normal to an edge of each
-//! (Gottschalk, Lin and Manocha, *OBBTree*, 1996). The one of these fifteen directions along which they are farthest apart, or
-//! overlap least, says what touches. If it is a face's normal, what lies before that face is the opposite face of the other box,
-//! clipped by the sides of the first: its edges within these sides, by their ends, and the corners of the first within the other.
-//! If it is normal to two edges, these touch where they are nearest to each other.
+//! Two boxes are apart if a plane is between them whose normal is that of a face of either, or is normal to
+//! an edge of each (Gottschalk, Lin and Manocha, *OBBTree*, 1996). The one of these fifteen directions along
+//! which they are farthest apart, or overlap least, says what touches. If it is a face's normal, what lies
+//! before that face is the opposite face of the other box, clipped by the sides of the first: its edges
+//! within these sides, by their ends, and the corners of the first within the other. If it is normal to two
+//! edges, these touch where they are nearest to each other.
 //!
 //! A capsule on a box is such a line with a radius; its ends are spheres.
 //!
-//! Points that are not of what touches are apart by how much farther the boxes are apart along the direction that says so. A point
-//! that two edges of a face have in common counts once; the other has the size of the boxes for its distance.
+//! Points that are not of what touches are apart by how much farther the boxes are apart along the direction
+//! that says so. A point that two edges of a face have in common counts once; the other has the size of the
+//! boxes for its distance.
 
 use super::surface::Form;
 use super::unilateral::{nearest, within};
@@ -17,7 +19,8 @@ use super::{Contact, Pair, sphere_contact};
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::resolve::builder::Builder;
 
-/// How much farther apart along a direction later ones have to be for it to give way, by the size of the boxes.
+/// How much farther apart along a direction later ones have to be for it to give way, by the size of the
+/// boxes.
 const SAME: f64 = 1e-9;
 /// Square of the sine of an angle between edges that are parallel: faces say where such boxes touch.
 const PARALLEL: f64 = 1e-10;
@@ -131,8 +134,8 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// The points where two boxes may touch, from the centre of the first, which is `c` from that of the second; all directions in
-/// the same axes.
+/// The points where two boxes may touch, from the centre of the first, which is `c` from that of the second;
+/// all directions in the same axes.
 fn touches<'g>(a: &Block<'g>, b: &Block<'g>) -> Vec<Contact<'g>> {
     let size = a.half.into_iter().chain(b.half).fold(a.half[0].zero(), |sum, half| sum + half);
     let cosines = a.axes.map(|own| b.axes.map(|other| own.dot(other)));
@@ -161,9 +164,9 @@ impl<'g> Boxes<'g> {
         self.a.center - self.b.center
     }
 
-    /// The face along whose normal they are farthest apart, and whether it is one of the second box. Of faces that say the same it is
-    /// that of the larger box, and of boxes of one size that of the lower one along some direction: which one was named first
-    /// decides nothing.
+    /// The face along whose normal they are farthest apart, and whether it is one of the second box. Of faces
+    /// that say the same it is that of the larger box, and of boxes of one size that of the lower one along
+    /// some direction: which one was named first decides nothing.
     fn face(&self) -> (Apart<'g>, Expr<'g>) {
         let (zero, one) = (self.size.zero(), self.size.num(1.0));
         let [first, second] = [false, true].map(|is_second| self.face_of(is_second));
@@ -300,8 +303,8 @@ impl<'g> Face<'g> {
         self.axes.map(|axis| v.dot(axis))
     }
 
-    /// From where to where of `start + t direction`, with `t` from −1 to 1, is within the sides; the second is less than the first
-    /// where nothing is.
+    /// From where to where of `start + t direction`, with `t` from −1 to 1, is within the sides; the second
+    /// is less than the first where nothing is.
     fn clipped(&self, start: &[Expr<'g>; 3], direction: &[Expr<'g>; 3]) -> [Expr<'g>; 2] {
         let one = self.size.num(1.0);
         let (mut from, mut to) = (-one, one);
@@ -314,7 +317,8 @@ impl<'g> Face<'g> {
         [from, to]
     }
 
-    /// A contact in the middle between a place from the centre of the box and the face, which are `over` apart.
+    /// A contact in the middle between a place from the centre of the box and the face, which are `over`
+    /// apart.
     fn between(&self, gap: Expr<'g>, place: Vec3<'g>, over: Expr<'g>) -> Contact<'g> {
         self.contact(gap, place - self.axes[0] * (over * 0.5))
     }
@@ -327,9 +331,9 @@ impl<'g> Face<'g> {
     }
 }
 
-/// What of a box lies before the face of another across its axis `which`: of each edge of its nearest face, within the sides of that
-/// one, the end, and the beginning if it is cut off there; and the corners of the face before it. Places are from where the centres
-/// are given.
+/// What of a box lies before the face of another across its axis `which`: of each edge of its nearest face,
+/// within the sides of that one, the end, and the beginning if it is cut off there; and the corners of the
+/// face before it. Places are from where the centres are given.
 fn faces<'g>(
     holder: &Block<'g>,
     other: &Block<'g>,
@@ -387,9 +391,10 @@ fn faces<'g>(
     points
 }
 
-/// The points where the straight line in the middle of a capsule, which leads from its centre by `reach` both ways along `own`, lies
-/// across a box: where it is cut off by the sides of a face, and where it crosses an edge. `c` leads from the centre of the box to
-/// that of the capsule, and places are from there. Its ends are spheres, and touch as such.
+/// The points where the straight line in the middle of a capsule, which leads from its centre by `reach` both
+/// ways along `own`, lies across a box: where it is cut off by the sides of a face, and where it crosses an
+/// edge. `c` leads from the centre of the box to that of the capsule, and places are from there. Its ends are
+/// spheres, and touch as such.
 fn crossed<'g>(
     radius: Expr<'g>,
     (own, reach): (Vec3<'g>, Expr<'g>),

@@ -1,10 +1,11 @@
-//! A cone that rolls on a plane, on a cone or inside of one: they touch along a line. That none of its points slips says
-//! that the apexes stay together and that the bodies turn relative to each other about the line (Poinsot's rolling
-//! cones).
+//! A cone that rolls on a plane, on a cone or inside of one: they touch along a line. That none of its points
+//! slips says that the apexes stay together and that the bodies turn relative to each other about the line
+//! (Poinsot's rolling cones).
 //!
-//! With `a` and `b` the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α` inside, `α + β`
-//! outside), the line lies in the plane of the axes at the angle `α` from `a`, and `± (b cos α − a cos β) / sin δ` is
-//! normal to both surfaces there. A plane is a funnel with the half angle `π/2`.
+//! With `a` and `b` the axes, `α` and `β` the half angles, and `δ` the angle between the axes (`β − α`
+//! inside, `α + β` outside), the line lies in the plane of the axes at the angle `α` from `a`, and
+//! `± (b cos α − a cos β) / sin δ` is normal to both surfaces there. A plane is a funnel with the half angle
+//! `π/2`.
 
 use super::Pair;
 use super::surface::Form;

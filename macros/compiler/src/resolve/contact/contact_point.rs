@@ -1,6 +1,7 @@
-//! A convex body that rolls or slips on a surface of any form, given by its points: `surface(u, w, point)`. Where they
-//! touch does not follow in closed form, so the surface's parameters `u` and `w` are coordinates, which move no mass:
-//! the constraints put them where the body's farthest point against the normal is that point of the surface.
+//! A convex body that rolls or slips on a surface of any form, given by its points: `surface(u, w, point)`.
+//! Where they touch does not follow in closed form, so the surface's parameters `u` and `w` are coordinates,
+//! which move no mass: the constraints put them where the body's farthest point against the normal is that
+//! point of the surface.
 
 use super::surface::Sheet;
 use super::{Contact, Pair, farthest};

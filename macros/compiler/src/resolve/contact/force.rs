@@ -8,7 +8,8 @@ use crate::mechanism::Quantity;
 use crate::resolve::scope::{Allowed, Axes, Scope, Value};
 use crate::syntax::{self, Name};
 
-/// Whether expressions that name forces at contacts name no reactions and accelerations, which are those without contacts.
+/// Whether expressions that name forces at contacts name no reactions and accelerations, which are those
+/// without contacts.
 pub fn stands_alone(values: &[Expr<'_>]) -> bool {
     let quantities: Vec<Quantity> = symbols_in(values).into_iter().map(Quantity::of).collect();
     let any = |f: fn(&Quantity) -> bool| quantities.iter().any(f);
@@ -17,8 +18,8 @@ pub fn stands_alone(values: &[Expr<'_>]) -> bool {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `contact_force(name)` and `contact_moment(name)`: what the second surface exerts on the first, at all points where they touch; of
-    /// moments those of friction against spin and rolling.
+    /// `contact_force(name)` and `contact_moment(name)`: what the second surface exerts on the first, at all
+    /// points where they touch; of moments those of friction against spin and rolling.
     pub fn exerted(
         &self,
         function: &Name,

@@ -1,7 +1,7 @@
-//! Pairs of surfaces that touch. Rolling ones have one velocity at the contact; others slip. The contact is found in closed
-//! form: where a convex body touches a plane is its point farthest along the normal (its support function), a sphere
-//! touches along the normal through its centre, and cones touch along a line. On a surface given by its points two
-//! coordinates say where.
+//! Pairs of surfaces that touch. Rolling ones have one velocity at the contact; others slip. The contact is
+//! found in closed form: where a convex body touches a plane is its point farthest along the normal (its
+//! support function), a sphere touches along the normal through its centre, and cones touch along a line. On
+//! a surface given by its points two coordinates say where.
 
 mod boxes;
 mod collision;
@@ -76,8 +76,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds the rows that keep a pair together: its distance, with the friction that follows from the normal force, and the
-    /// place of the contact on a surface that is given by its points.
+    /// Adds the rows that keep a pair together: its distance, with the friction that follows from the normal
+    /// force, and the place of the contact on a surface that is given by its points.
     fn hold(
         &mut self,
         constraint: &syntax::Constraint,
@@ -86,7 +86,8 @@ impl<'g> Builder<'_, 'g> {
         friction: Vec<FrictionTerm<'g>>,
     ) {
         let ((word, normal), place) = (contact.axes[0], &constraint.name.place);
-        // The normal of such a surface turns with its coordinates: off the contact that moves the distance as well.
+        // The normal of such a surface turns with its coordinates: off the contact that moves the distance as
+        // well.
         let rate = match contact.conditions.is_empty() {
             true => normal.dot(slip),
             false => time_derivative(self.model.space(), contact.gap),
@@ -290,8 +291,8 @@ fn sphere_contact<'g>(
 
 /// The point of a convex body that is farthest along `n`, from its centre.
 ///
-/// Of a rim in the plane across `n` all are; with `least`, the least square of the sine of the angle between axis and `n`,
-/// its centre stands for them.
+/// Of a rim in the plane across `n` all are; with `least`, the least square of the sine of the angle between
+/// axis and `n`, its centre stands for them.
 fn farthest<'g>(
     form: &Form<'g>,
     n: Vec3<'g>,
@@ -319,7 +320,8 @@ fn farthest<'g>(
     })
 }
 
-/// Two tangents for a normal of any direction (Duff et al., *Building an orthonormal basis, revisited*, 2017).
+/// Two tangents for a normal of any direction (Duff et al., *Building an orthonormal basis, revisited*,
+/// 2017).
 fn tangents_of(n: Vec3<'_>) -> (Vec3<'_>, Vec3<'_>) {
     let [x, y, z] = n.0;
     let sign = z.call(Function::Signum);

@@ -1,6 +1,7 @@
-//! Surfaces that touch and slip, with Coulomb's friction: `slips(surface, surface), friction = μ, speed = v₀`. The bodies
-//! are held at their distance, by the normal force `λ`; in the tangent plane acts `−μ |λ| s / √(|s|² + v₀²)` at the slip
-//! `s`, Coulomb's law made smooth around rest.
+//! Surfaces that touch and slip, with Coulomb's friction:
+//! `slips(surface, surface), friction = μ, speed = v₀`. The bodies are held at their distance, by the normal
+//! force `λ`; in the tangent plane acts `−μ |λ| s / √(|s|² + v₀²)` at the slip `s`, Coulomb's law made smooth
+//! around rest.
 
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
@@ -62,7 +63,8 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// Reports slipping contacts whose normal force does not follow from the motion: with their rows goes their friction.
+/// Reports slipping contacts whose normal force does not follow from the motion: with their rows goes their
+/// friction.
 pub fn check_pressed(rows: &[Constraint<'_>], redundant: &[String], cx: &mut Diagnostics) {
     for row in rows.iter().filter(|c| !c.friction.is_empty() && redundant.contains(&c.name)) {
         cx.error(row.place.clone(), "the normal force of this contact does not follow from the motion").help(

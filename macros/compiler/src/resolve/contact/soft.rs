@@ -1,5 +1,6 @@
-//! Contacts whose surfaces yield: forces that follow from overlap and speed (Hunt and Crossley, *Coefficient of restitution
-//! interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is smooth in the slip.
+//! Contacts whose surfaces yield: forces that follow from overlap and speed (Hunt and Crossley, *Coefficient
+//! of restitution interpreted as damping in vibroimpact*, J. Appl. Mech. 42, 1975), with friction that is
+//! smooth in the slip.
 
 use super::unilateral::{Laws, Point};
 use crate::diag::Diagnostics;
@@ -93,8 +94,9 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Adds moments of friction against the angular velocities `turns` about directions: at most `most` by the normal force, and less
-    /// where `most` times the angular velocity is below the speed at which friction falls off. Returns them.
+    /// Adds moments of friction against the angular velocities `turns` about directions: at most `most` by
+    /// the normal force, and less where `most` times the angular velocity is below the speed at which
+    /// friction falls off. Returns them.
     fn add_moment(
         &mut self,
         turns: &[(Vec3<'g>, Expr<'g>)],

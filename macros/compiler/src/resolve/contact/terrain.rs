@@ -1,4 +1,5 @@
-//! Ground whose height is an expression of the place: `terrain(height)`, with `u` and `w` for the place along x and y.
+//! Ground whose height is an expression of the place: `terrain(height)`, with `u` and `w` for the place along
+//! x and y.
 
 use super::{Contact, tangents_of};
 use crate::diag::Diagnostics;
@@ -84,8 +85,9 @@ impl<'g> Terrain<'g> {
         }
     }
 
-    /// The nearest place of the terrain. From straight below Newton's method leads there; spheres far above, for which other
-    /// places might be nearer, are taken to be near, and what that leaves out of the distance is added to it.
+    /// The nearest place of the terrain. From straight below Newton's method leads there; spheres far above,
+    /// for which other places might be nearer, are taken to be near, and what that leaves out of the distance
+    /// is added to it.
     fn nearest(&self, radius: Expr<'g>, c: Vec3<'g>, below: &Local<'g>) -> Nearest<'g> {
         let above = c[2] - below.height;
         if radius.is_zero() {

@@ -403,8 +403,8 @@ fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
     })
 }
 
-/// Directions from the middle of a rim to its lowest point over a plane, and to the three a quarter turn further each. Where
-/// the rim lies flat, every one is lowest: one of the body's own is chosen.
+/// Directions from the middle of a rim to its lowest point over a plane, and to the three a quarter turn
+/// further each. Where the rim lies flat, every one is lowest: one of the body's own is chosen.
 fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, turned: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
     let [(_, own), _] = perpendicular(axis);
     let (a, own) = (turned(axis), turned(own));
@@ -421,9 +421,9 @@ pub(super) fn within<'g>(x: Expr<'g>, most: Expr<'g>) -> Expr<'g> {
     x.extreme(Extreme::Max, -most).extreme(Extreme::Min, most)
 }
 
-/// Where two straight lines of given half lengths are nearest to each other, from their middles along their axes; `c` leads from
-/// the second middle to the first (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). Where they are parallel it is one place
-/// of many.
+/// Where two straight lines of given half lengths are nearest to each other, from their middles along their
+/// axes; `c` leads from the second middle to the first (Ericson, *Real-Time Collision Detection*, 2005, §
+/// 5.1.9). Where they are parallel it is one place of many.
 pub(super) fn nearest<'g>(
     c: Vec3<'g>,
     (own, own_reach): (Vec3<'g>, Expr<'g>),

@@ -1,9 +1,10 @@
 //! Expressions → dimensions: every expression is walked once, and what must be alike is equated.
 //!
-//! A number that is a term or stands alone is a quantity of any unit, and so is a direction that stands alone (it means one
-//! metre where a length is expected). As a factor beside a parameter a number is a plain number, but that of the gravity an acceleration. Beside coordinates, rates,
-//! time and inputs alone it is a coefficient: it takes a unit where nothing else fits, and is a plain number otherwise. Terms of
-//! a sum have one unit. A place takes an expression of coordinates, rates and time alone, whatever its unit is, as a
+//! A number that is a term or stands alone is a quantity of any unit, and so is a direction that stands alone
+//! (it means one metre where a length is expected). As a factor beside a parameter a number is a plain
+//! number, but that of the gravity an acceleration. Beside coordinates, rates, time and inputs alone it is a
+//! coefficient: it takes a unit where nothing else fits, and is a plain number otherwise. Terms of a sum have
+//! one unit. A place takes an expression of coordinates, rates and time alone, whatever its unit is, as a
 //! number of the unit that it needs.
 
 use super::ratio::Ratio;
@@ -70,7 +71,8 @@ const MOST_MISMATCHES: usize = 32;
 pub struct Inference<'a> {
     /// The equations so far.
     pub system: System,
-    /// Names of parameters, coordinates, inputs and definitions. The first unknowns are those of the parameters.
+    /// Names of parameters, coordinates, inputs and definitions. The first unknowns are those of the
+    /// parameters.
     pub names: BTreeMap<String, Meaning>,
     /// Tables by name: the unknowns of their variables, then of their values.
     pub tables: BTreeMap<String, Vec<Variable>>,

@@ -1,6 +1,6 @@
-//! Units, inferred: the dimension of every parameter, coordinate, input and output follows from where it stands, by
-//! unification over exponents of length, mass and time; angles are plain numbers. Runs on what the user wrote, since
-//! values are simplified and know no places.
+//! Units, inferred: the dimension of every parameter, coordinate, input and output follows from where it
+//! stands, by unification over exponents of length, mass and time; angles are plain numbers. Runs on what the
+//! user wrote, since values are simplified and know no places.
 
 mod infer;
 mod owner;
@@ -87,8 +87,8 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     units
 }
 
-/// Gives coordinates, inputs and definitions their dimensions, as far as they are known. Returns the definitions, each
-/// after those that it mentions.
+/// Gives coordinates, inputs and definitions their dimensions, as far as they are known. Returns the
+/// definitions, each after those that it mentions.
 fn name_everything<'a>(
     d: &'a Description,
     coordinates: &Coordinates,
@@ -155,7 +155,8 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     order.into_iter().filter_map(|k| definitions.get(k)).collect()
 }
 
-/// Infers from all places. Places that give the dimension of one name come first, so that the others are compared with them.
+/// Infers from all places. Places that give the dimension of one name come first, so that the others are
+/// compared with them.
 fn solve<'a>(places: Places<'a>, inference: &mut Inference<'a>) {
     let simple = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
         tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))

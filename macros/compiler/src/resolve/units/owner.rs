@@ -3,7 +3,8 @@
 use crate::resolve::inertia::SOLIDS;
 use crate::syntax::{Description, Expr, ExprKind, Target};
 
-/// The argument and the field that an expression stands in, as in ``in `com` of `arm` ``; empty if it is not known.
+/// The argument and the field that an expression stands in, as in ``in `com` of `arm` ``; empty if it is not
+/// known.
 pub fn place_of(d: &Description, e: &Expr) -> String {
     let inside = |whole: &&Expr| whole.parts().into_iter().any(|part| std::ptr::eq(part, e));
     let found = fields(d).into_iter().find(|(.., whole)| inside(whole));

@@ -1,4 +1,5 @@
-//! The places of a description where expressions stand, each with the dimension that it gives to what stands there.
+//! The places of a description where expressions stand, each with the dimension that it gives to what stands
+//! there.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::ratio::Ratio;
@@ -52,7 +53,8 @@ struct Work {
 const ALONG: [&str; 4] = ["N", "N/m", "N·s/m", "kg"];
 const ABOUT: [&str; 4] = ["N·m", "N·m/rad", "N·m·s/rad", "kg·m²"];
 
-/// Collects the places of a description, with its `definitions` in order. What comes from a file is all numbers.
+/// Collects the places of a description, with its `definitions` in order. What comes from a file is all
+/// numbers.
 pub fn collect<'a>(
     d: &'a Description,
     definitions: &[&'a Definition],

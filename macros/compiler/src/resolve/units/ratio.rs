@@ -1,7 +1,7 @@
 //! Exponents: small fractions, since a root of a length is a length to the power one half.
 
-/// A fraction in lowest terms with a positive denominator. Numerator and denominator stay small, so that products of two
-/// never overflow; arithmetic that would leave this range has no result.
+/// A fraction in lowest terms with a positive denominator. Numerator and denominator stay small, so that
+/// products of two never overflow; arithmetic that would leave this range has no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ratio {
     n: i64,

@@ -10,8 +10,8 @@ use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 /// Most places of other uses that one mistake shows.
 const MOST_PLACES: usize = 2;
 
-/// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the same mistake. So
-/// are arguments of one solid.
+/// Reports every contradiction. A parameter that was shown once is not shown again: most likely it is the
+/// same mistake. So are arguments of one solid.
 pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     let mut solids: Vec<&Expr> = Vec::new();
@@ -68,7 +68,8 @@ fn is_number(e: &Expr) -> bool {
     })
 }
 
-/// What is wrong where nothing says which of the things is not what it should be: the definitions among them, too.
+/// What is wrong where nothing says which of the things is not what it should be: the definitions among them,
+/// too.
 fn what_is_missing(d: &Description, names: &[(Variable, &Expr)]) -> String {
     let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
     let defined: Vec<String> =

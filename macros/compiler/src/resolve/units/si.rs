@@ -1,4 +1,5 @@
-//! The units of SI in words: how a dimension is called, how it is written, and how it is read from `#[unit(…)]`.
+//! The units of SI in words: how a dimension is called, how it is written, and how it is read from
+//! `#[unit(…)]`.
 
 use super::ratio::Ratio;
 use super::unify::Dimension;
@@ -167,8 +168,8 @@ fn exponent(e: Ratio) -> String {
     if n.abs() == 1 { String::new() } else { n.abs().to_string().chars().map(digit).collect() }
 }
 
-/// Reads the unit of `#[unit(…)]`: products and quotients of units and their powers. Returns the dimension and the unit
-/// as it is shown.
+/// Reads the unit of `#[unit(…)]`: products and quotients of units and their powers. Returns the dimension
+/// and the unit as it is shown.
 pub fn read(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
     match &e.kind {
         ExprKind::Number(1.0) => Some((PLAIN, "1".to_string())),

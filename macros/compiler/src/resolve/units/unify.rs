@@ -1,5 +1,5 @@
-//! Dimensions with unknowns, and the linear equations between them: unification over exponent vectors of length, mass
-//! and time.
+//! Dimensions with unknowns, and the linear equations between them: unification over exponent vectors of
+//! length, mass and time.
 
 use super::ratio::Ratio;
 
@@ -91,7 +91,8 @@ pub enum Outcome {
     GaveUp,
 }
 
-/// Most terms that are looked at in all: a mechanism of thousands of parameters needs about a hundredth of it.
+/// Most terms that are looked at in all: a mechanism of thousands of parameters needs about a hundredth of
+/// it.
 const MOST_WORK: usize = 1_000_000;
 
 /// The equations so far, solved: every solved unknown in terms of unsolved ones (reduced row echelon form).

@@ -4,11 +4,12 @@ use super::ratio::Ratio;
 use super::si::PLAIN;
 use super::unify::Dimension;
 
-/// Source of a quantity's unit, in rising order: a product or a sum has the highest source of its factors or terms.
+/// Source of a quantity's unit, in rising order: a product or a sum has the highest source of its factors or
+/// terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Anchor {
-    /// Coordinates, rates and time: a number beside them is a coefficient with any unit, and alone they may be numbers
-    /// of another unit.
+    /// Coordinates, rates and time: a number beside them is a coefficient with any unit, and alone they may
+    /// be numbers of another unit.
     Motion,
     /// An input, which has the unit of what it acts on: a number beside it is a coefficient with any unit.
     Input,
@@ -80,7 +81,8 @@ impl Value {
     }
 }
 
-/// The product of factors, of which those marked divide; and whether a number among them may give it another unit.
+/// The product of factors, of which those marked divide; and whether a number among them may give it another
+/// unit.
 pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
     let has = |what: fn(&Value) -> bool| factors.iter().any(|(_, f)| what(f));
     // Nothing has any unit.

@@ -83,8 +83,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A sum of any number of terms. Beside a parameter or an input, terms whose dimension is open take the expected one, so
-    /// that another term is blamed where they do not fit.
+    /// A sum of any number of terms. Beside a parameter or an input, terms whose dimension is open take the
+    /// expected one, so that another term is blamed where they do not fit.
     pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
         let mut at = e;
@@ -115,7 +115,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A product or quotient of any number of factors, those in parentheses among them: `a / (2 * b)` is `a / 2 / b`.
+    /// A product or quotient of any number of factors, those in parentheses among them: `a / (2 * b)` is
+    /// `a / 2 / b`.
     fn product(&mut self, e: &'a Expr) -> Value {
         let mut factors = Vec::new();
         let mut rest = vec![(false, e)];
@@ -393,7 +394,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A power: with an exponent that is no number, nothing is known of it unless its base is plain in the end.
+    /// A power: with an exponent that is no number, nothing is known of it unless its base is plain in the
+    /// end.
     fn power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
         let base = self.value(a);
         let exponent = self.expect(n, &PLAIN, "1", Reason::Argument);

@@ -38,7 +38,8 @@ impl Arguments {
         self.relation.take()
     }
 
-    /// What seems to be meant by the two ends of a joint that has no arrow, and where it stands; taken away if it has keys.
+    /// What seems to be meant by the two ends of a joint that has no arrow, and where it stands; taken away
+    /// if it has keys.
     fn seeming_ends(&mut self, known: &[&str]) -> (Place, Option<[String; 2]>) {
         let spelt = |a: &Expr, b: &Expr| Some([a.spelt(), b.spelt()]);
         if let Some((place, a, b)) = self.take_ends() {

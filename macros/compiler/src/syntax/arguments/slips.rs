@@ -60,7 +60,8 @@ pub fn text_alone(text: &LitStr) -> syn::Error {
     syn_error(text.span(), "expected an expression, found a text", "write it without quotes")
 }
 
-/// The error at what stands in the place of the arrow of a joint, or of the sign behind the name of an argument.
+/// The error at what stands in the place of the arrow of a joint, or of the sign behind the name of an
+/// argument.
 pub fn no_arrow(input: ParseStream<'_>, first: &Expr, arguments: &Arguments) -> Option<syn::Error> {
     let is_place =
         |e: &Expr| matches!(e.kind, ExprKind::Name(_) | ExprKind::Method(..) | ExprKind::Field(..));
@@ -100,7 +101,8 @@ fn is_double(input: ParseStream<'_>) -> bool {
     ahead.parse::<Token![->]>().is_ok() && ahead.peek(Token![>])
 }
 
-/// The error at a number with a decimal comma: the value of an argument ends in a whole number, and another one follows.
+/// The error at a number with a decimal comma: the value of an argument ends in a whole number, and another
+/// one follows.
 pub fn decimal_comma(tokens: &TokenStream) -> Option<syn::Error> {
     let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
     let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());

@@ -73,7 +73,8 @@ pub struct Description {
     pub equilibria: Vec<Equilibrium>,
     /// Coordinates of their own.
     pub coordinates: Vec<FreeCoordinate>,
-    /// Names of all inputs, in order: those of force elements without a value, and fields that are inputs themselves.
+    /// Names of all inputs, in order: those of force elements without a value, and fields that are inputs
+    /// themselves.
     pub inputs: Vec<Name>,
     /// Frames.
     pub frames: Vec<Frame>,

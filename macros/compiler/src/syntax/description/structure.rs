@@ -45,7 +45,8 @@ pub struct Body {
     pub com: Option<Expr>,
     /// Inertia in body axes; zero if absent.
     pub inertia: Option<Expr>,
-    /// The point that the inertia is about, in body axes from the body's origin; the centre of mass if absent.
+    /// The point that the inertia is about, in body axes from the body's origin; the centre of mass if
+    /// absent.
     pub about: Option<Expr>,
     /// Where its origin is, for a body placed by expressions.
     pub at: Option<Expr>,

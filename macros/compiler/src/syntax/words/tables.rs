@@ -1,7 +1,7 @@
 //! The tables: what is said → what is meant.
 
-/// Words, separated by spaces, and what is meant by them: a word of the language, or a sentence if it holds a space.
-/// Words are looked up in lower case and without underscores.
+/// Words, separated by spaces, and what is meant by them: a word of the language, or a sentence if it holds a
+/// space. Words are looked up in lower case and without underscores.
 pub type Words = &'static [(&'static str, &'static str)];
 
 const ONE_SIDED: &str =

@@ -1,6 +1,6 @@
-//! What must agree among the functions of one mechanism, whatever it is: derivatives with differences, forward with inverse
-//! dynamics, momenta, energies and powers with each other, constraints with their rates, and every function with itself as other
-//! passes, prepared numbers or vector registers make it.
+//! What must agree among the functions of one mechanism, whatever it is: derivatives with differences,
+//! forward with inverse dynamics, momenta, energies and powers with each other, constraints with their rates,
+//! and every function with itself as other passes, prepared numbers or vector registers make it.
 
 use super::source;
 use super::values::{By, Values, difference, slope};
@@ -36,7 +36,8 @@ pub fn check(seed: u64) -> usize {
     check_all(&arguments, &item, &[], seed)
 }
 
-/// Everything of a mechanism, which has some functions at least, in the state of a seed. The number of comparisons that were possible.
+/// Everything of a mechanism, which has some functions at least, in the state of a seed. The number of
+/// comparisons that were possible.
 pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> usize {
     let name = format!("seed {seed}\n#[mechanism({arguments})]\n{item}");
     let mut compared = 0;
@@ -100,7 +101,8 @@ impl Case<'_, '_> {
         self.run(name, &self.values)
     }
 
-    /// Compares lists; `more` is what may be doubtful of them. Where mechanisms have no value, both have none.
+    /// Compares lists; `more` is what may be doubtful of them. Where mechanisms have no value, both have
+    /// none.
     pub(super) fn close(&mut self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
         assert_eq!(found.len(), expected.len(), "{what} of {}", self.name);
         self.compared += 1;
@@ -161,7 +163,8 @@ impl Case<'_, '_> {
         assert!(rest.is_empty(), "{what} has more than derivatives, {}", self.name);
     }
 
-    /// The values with one entry changed: where speeds are declared, a displacement is measured in them, as they are at the start.
+    /// The values with one entry changed: where speeds are declared, a displacement is measured in them, as
+    /// they are at the start.
     fn changer(&self) -> impl Fn(&Values, By, usize, f64) -> Values + use<> {
         let charts = self.model.charts.clone();
         let (columns, nv) = (self.here("__rate_matrix"), self.values.v.len());
@@ -299,7 +302,8 @@ impl Case<'_, '_> {
         self.check_constraint_curvature();
     }
 
-    /// Columns of forward dynamics that are known, and those of the forces that are multiplied by the inverse.
+    /// Columns of forward dynamics that are known, and those of the forces that are multiplied by the
+    /// inverse.
     fn check_forward_derivatives(&mut self) {
         let Some(function) = self.function("forward_dynamics_derivatives").cloned() else { return };
         let get = |name: &str| self.function(name).cloned();
@@ -354,8 +358,8 @@ impl Case<'_, '_> {
         self.compare_blocks(what, &found, blocks, &|x| dot(&x.run(output, &function), &factors));
     }
 
-    /// Compares second derivatives of a number by two things each with differences of differences; those by configuration twice
-    /// with the mean of both orders.
+    /// Compares second derivatives of a number by two things each with differences of differences; those by
+    /// configuration twice with the mean of both orders.
     pub(super) fn compare_blocks(
         &mut self,
         what: &str,

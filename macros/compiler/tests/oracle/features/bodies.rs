@@ -1,5 +1,5 @@
-//! What is written computes what its programs compute: bodies are run as the Rust that they are, for one state, for one in debug
-//! builds, and for several at once. So do constants say what their functions compute.
+//! What is written computes what its programs compute: bodies are run as the Rust that they are, for one
+//! state, for one in debug builds, and for several at once. So do constants say what their functions compute.
 
 use super::agreement::{SAME, size, sum};
 use super::values::Values;
@@ -15,7 +15,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{Block, Expr, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, Pat, Stmt};
 
-/// The functions and constants of the mechanism's own implementations, and the bodies that those of a number dispatch to.
+/// The functions and constants of the mechanism's own implementations, and the bodies that those of a number
+/// dispatch to.
 struct Written {
     functions: BTreeMap<String, ImplItemFn>,
     constants: BTreeMap<String, Expr>,
@@ -153,7 +154,8 @@ pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
     run
 }
 
-/// Which entries of the generalized forces the inputs are, and which velocities those of ball and free joints, as constants say.
+/// Which entries of the generalized forces the inputs are, and which velocities those of ball and free
+/// joints, as constants say.
 fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64, about: &str) {
     let constant = |name: &str| written.constants.get(name).map(places);
     let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
@@ -171,7 +173,8 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     let range = [ends.iter().min(), ends.iter().max()].map(|end| end.copied().unwrap_or(0));
     assert_eq!(turned, model.speeds.is_none().then(|| range.to_vec()), "velocities that turn, {about}");
 
-    // Elsewhere, with other parameters, and for other inputs, the forces change like the inputs, or they do not.
+    // Elsewhere, with other parameters, and for other inputs, the forces change like the inputs, or they do
+    // not.
     let all = [seed, seed + 1000].map(|seed| Values::random(model, seed));
     let u = all[0].u.clone();
     let unit = |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };

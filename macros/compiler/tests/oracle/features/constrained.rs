@@ -24,7 +24,8 @@ impl Case<'_, '_> {
         self.check_constrained_dynamics(&jacobian);
     }
 
-    /// What elimination finds, where it says that it is to be trusted: it fulfils the equations of motion and the constraints.
+    /// What elimination finds, where it says that it is to be trusted: it fulfils the equations of motion and
+    /// the constraints.
     fn check_constrained_dynamics(&mut self, jacobian: &[f64]) {
         let Some(function) = self.function("__constrained_dynamics").cloned() else { return };
         let Shape::Record(Record::Elimination(nv, nc)) = function.shape else { return };
@@ -46,7 +47,8 @@ impl Case<'_, '_> {
         self.close("constrained accelerations", &change, &vec![0.0; nc], 1e-4 * TOLERANCE * scale);
     }
 
-    /// `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`, twice differentiated, and `−J w` by configuration, whose rows are the multipliers.
+    /// `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`, twice differentiated, and `−J w` by configuration, whose rows
+    /// are the multipliers.
     pub(super) fn check_constraint_curvature(&mut self) {
         let found = self.here("__constraint_curvature");
         let get = |name: &str| self.function(name).cloned();
@@ -90,7 +92,8 @@ impl Case<'_, '_> {
             }
             first += contact.rates.len();
         }
-        // Of the rim of a cylinder those points count that are there at the moment: their gaps are not followed.
+        // Of the rim of a cylinder those points count that are there at the moment: their gaps are not
+        // followed.
         if self.name.contains(source::RIMS) {
             return;
         }

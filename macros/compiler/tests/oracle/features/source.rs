@@ -1,5 +1,6 @@
-//! A random mechanism in the words of the language: joints of all types, loops, force elements, values and outputs that are
-//! expressions of anything, states, speeds, contacts, limits, constraints, and words that ask for functions.
+//! A random mechanism in the words of the language: joints of all types, loops, force elements, values and
+//! outputs that are expressions of anything, states, speeds, contacts, limits, constraints, and words that
+//! ask for functions.
 
 use crate::random::Random;
 use std::fmt::Write;
@@ -271,7 +272,8 @@ impl Source {
         }
     }
 
-    /// A form with scalars, vectors, points and bodies in the places of its letters; a `B` is one scalar throughout.
+    /// A form with scalars, vectors, points and bodies in the places of its letters; a `B` is one scalar
+    /// throughout.
     fn filled(&mut self, form: &str) -> String {
         let same = self.scalar();
         let mut text = String::new();

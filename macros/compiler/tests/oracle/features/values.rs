@@ -211,7 +211,8 @@ pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     (0..one.0.len()).map(at).collect()
 }
 
-/// Such a derivative, and what is doubtful of it: halving the step changes 63 times what is left of the error.
+/// Such a derivative, and what is doubtful of it: halving the step changes 63 times what is left of the
+/// error.
 pub fn slope(of: &dyn Fn(f64) -> Vec<f64>) -> (Vec<f64>, f64) {
     let (wide, narrow) = (difference(H, of), difference(0.5 * H, of));
     let doubt = wide.iter().zip(&narrow).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
