@@ -83,7 +83,7 @@ const ACTIONS: [&str; 21] = [
     "#[energy(0.3 * dot(r(bead / hook), r(bead / hook)) + sin(first) * cos(@) + dot(r(hung / ground), x + base.y))] e13: Potential,",
     "#[dissipation(0.2 * dot(v(bead / base / ground), v(bead / base / ground)) + pow(rate(first), 4))] e14: Rayleigh,",
     "#[acts(on = hung.at([#, #, #]), value = throttle * base.x + sin(@) * ground.y - 0.3 * v(hung / ground / ground))] e15: Force,",
-    "#[acts(on = placed, value = (throttle * rate(pin) + measure) * carried.x + # * omega(hung / placed))] e16: Torque,",
+    "#[acts(on = placed, value = (throttle * rate(pin) + # * measure) * carried.x + # * omega(hung / placed))] e16: Torque,",
     "#[acts(on = second, value = cos(@) * throttle + # * rate(first))] e17: Force,",
     "#[acts(on = bead, value = cross(v(bead / ground / ground), 0.4 * turning.z) + throttle * x)] e18: Force,",
     "#[acts(on = hook, value = [#, #, #] * first)] e19: Force,",
@@ -122,7 +122,7 @@ impl World {
         for (name, value, axes) in OUTPUTS {
             let _ = writeln!(template, "    #[output({value}, resolved_in = {axes})] {name}: Vector,");
         }
-        let _ = writeln!(template, "    #[output(measure + norm(r(bead / still)))] size: Scalar,");
+        let _ = writeln!(template, "    #[output(measure + dot(v(bead / still / ground), v(hook / still / ground)))] size: Scalar,");
         let (joint, axes) = ROOTS[self.root].split_once(", ").unwrap_or((ROOTS[self.root], ""));
         let axes = if axes.is_empty() { String::new() } else { format!(", {axes}") };
         let template = template.replace('%', joint).replace('&', &axes);

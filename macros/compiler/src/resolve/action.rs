@@ -36,7 +36,8 @@ impl<'g> Builder<'_, 'g> {
         for action in &self.description.actions {
             let before = Counts::of(&self.model);
             self.add_action(action, cx);
-            if cx.is_empty() && Counts::of(&self.model) == before && !self.is_input(&action.name.text) {
+            // An element without an effect may be zero by its values; an input has an entry of `u` in any case.
+            if cx.is_empty() && is_command(&action.kind) && !self.is_input(&action.name.text) {
                 report_lost(&action.name, cx);
             }
             self.know_applied(&before, &action.name.text);
@@ -263,11 +264,16 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// Reports an element that is declared and has come to nothing without an error.
+/// Returns true for a force or torque without a value: an entry of `u` commands it.
+fn is_command(kind: &ActionKind) -> bool {
+    matches!(kind, ActionKind::Force { value: None, .. } | ActionKind::Torque { value: None, .. })
+}
+
+/// Reports an input that is declared and acts nowhere, although no error was reported.
 pub fn report_lost(name: &Name, cx: &mut Diagnostics) {
     cx.error(
         name.place.clone(),
-        format!("internal error: nothing came of the force element `{}`", name.text),
+        format!("internal error: the input `{}` acts nowhere", name.text),
     )
     .help("please report this with the mechanism");
 }
