@@ -69,7 +69,7 @@ const PLACES: &str = "
 const ACTIONS: [&str; 21] = [
     "#[acts(between = (bead, base.at([#, #, 0.3])), stiffness = 3, free_length = 0.4)] e0: Spring,",
     "#[acts(between = (hook, pendant), force = 3 * stretch + 2 * pow(stretch, 3) + 0.4, free_length = 0.2)] e1: Spring,",
-    "#[acts(between = (still, placed), energy = cosh(0.3 * stretch) + sin(length), free_length = 0.1)] e2: Spring,",
+    "#[acts(between = (still, placed), energy = 0.9 * cosh(0.3 * stretch) + 1.1 * sin(length), free_length = 0.1)] e2: Spring,",
     "#[acts(on = first, stiffness = 2, free_angle = #)] e3: Spring,",
     "#[acts(on = second, damping = 0.7)] e4: Dashpot,",
     "#[acts(between = (bead, hung), damping = 0.6)] e5: Dashpot,",
@@ -80,9 +80,9 @@ const ACTIONS: [&str; 21] = [
     "#[acts(between = (bead, plain), constant = 0.7)] e10: Gravity,",
     "#[acts(between = (still, placed), mu = 2)] e11: Gravity,",
     "#[acts(between = (still, hung.at([#, #, #])), strength = 0.6)] e12: Attraction,",
-    "#[energy(0.3 * dot(r(bead / hook), r(bead / hook)) + sin(first) * cos(@) + dot(r(hung / ground), x + base.y))] e13: Potential,",
-    "#[dissipation(0.2 * dot(v(bead / base / ground), v(bead / base / ground)) + pow(rate(first), 4))] e14: Rayleigh,",
-    "#[acts(on = hung.at([#, #, #]), value = throttle * base.x + sin(@) * ground.y - 0.3 * v(hung / ground / ground))] e15: Force,",
+    "#[energy(0.3 * dot(r(bead / hook), r(bead / hook)) + 0.8 * sin(first) * cos(@) + 1.1 * dot(r(hung / ground), x + base.y))] e13: Potential,",
+    "#[dissipation(0.2 * dot(v(bead / base / ground), v(bead / base / ground)) + 0.9 * pow(rate(first), 4))] e14: Rayleigh,",
+    "#[acts(on = hung.at([#, #, #]), value = throttle * base.x + 0.7 * sin(@) * ground.y - 0.3 * v(hung / ground / ground))] e15: Force,",
     "#[acts(on = placed, value = (throttle * rate(pin) + # * measure) * carried.x + # * omega(hung / placed))] e16: Torque,",
     "#[acts(on = second, value = cos(@) * throttle + # * rate(first))] e17: Force,",
     "#[acts(on = bead, value = cross(v(bead / ground / ground), 0.4 * turning.z) + throttle * x)] e18: Force,",
@@ -122,7 +122,10 @@ impl World {
         for (name, value, axes) in OUTPUTS {
             let _ = writeln!(template, "    #[output({value}, resolved_in = {axes})] {name}: Vector,");
         }
-        let _ = writeln!(template, "    #[output(measure + dot(v(bead / still / ground), v(hook / still / ground)))] size: Scalar,");
+        let _ = writeln!(
+            template,
+            "    #[output(measure + dot(v(bead / still / ground), v(hook / still / ground)))] size: Scalar,"
+        );
         let (joint, axes) = ROOTS[self.root].split_once(", ").unwrap_or((ROOTS[self.root], ""));
         let axes = if axes.is_empty() { String::new() } else { format!(", {axes}") };
         let template = template.replace('%', joint).replace('&', &axes);

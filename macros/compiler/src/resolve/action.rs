@@ -271,11 +271,8 @@ fn is_command(kind: &ActionKind) -> bool {
 
 /// Reports an input that is declared and acts nowhere, although no error was reported.
 pub fn report_lost(name: &Name, cx: &mut Diagnostics) {
-    cx.error(
-        name.place.clone(),
-        format!("internal error: the input `{}` acts nowhere", name.text),
-    )
-    .help("please report this with the mechanism");
+    cx.error(name.place.clone(), format!("internal error: the input `{}` acts nowhere", name.text))
+        .help("please report this with the mechanism");
 }
 
 /// True for force elements that are not on a coordinate or a body as a whole, or have a law or a value.
