@@ -22,22 +22,22 @@ pub fn command() -> Command {
         .subcommand(
             with_motion(with_input(
                 Command::new("simulate")
-                    .about("Prints a motion as comma-separated values: t, q.…, v.…, u.…; a file that ends in .mcap is a log for robotics tools"),
+                    .about("Simulates a motion and prints it as comma-separated values: t, q.…, v.…, u.… (with `--out NAME.mcap` as a log for robotics tools)"),
             ))
             .arg(out_file()),
         )
         .subcommand(view())
         .subcommand(
             with_input(
-                Command::new("convert").about("Writes a robot file as the struct that one goes on editing"),
+                Command::new("convert").about("Converts a robot file to a Rust struct"),
             )
             .arg(out_file()),
         )
         .subcommand(
-            Command::new("new").about("Makes a project that runs: a mechanism, a controller, a page").arg(
+            Command::new("new").about("Creates a project with a mechanism, a controller and a page").arg(
                 Arg::new("folder")
                     .value_name("FOLDER")
-                    .help("Where it goes; its last part is the package's name")
+                    .help("Folder of the project; its last part is the package's name")
                     .required(true)
                     .value_parser(value_parser!(PathBuf)),
             )
@@ -48,7 +48,7 @@ pub fn command() -> Command {
         )
         .subcommand(
             Command::new("completions")
-                .about("Prints what a shell completes of this command")
+                .about("Prints a completion script for a shell")
                 .arg(Arg::new("shell").required(true).value_parser(value_parser!(clap_complete::Shell))),
         )
         .subcommand(export())
@@ -59,16 +59,20 @@ fn view() -> Command {
         Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
     ))
     .arg(
-        text("motion", "FILE", "A motion to be shown: comma-separated values with the columns t and q.…")
-            .value_parser(value_parser!(PathBuf))
-            .conflicts_with_all(["duration", "inputs"]),
+        text(
+            "motion",
+            "FILE",
+            "Motion to show, instead of simulating one: comma-separated values with the columns t and q.…",
+        )
+        .value_parser(value_parser!(PathBuf))
+        .conflicts_with_all(["duration", "inputs"]),
     )
     .arg(
-        text("meshes", "FOLDER", "Where the meshes of a robot file are [default: next to it]")
+        text("meshes", "FOLDER", "Folder of the meshes of a robot file [default: next to it]")
             .value_parser(value_parser!(PathBuf)),
     )
     .arg(
-        text("out", "FILE", "Where the page goes [default: the mechanism's name with .html]")
+        text("out", "FILE", "Output file [default: the mechanism's name with .html]")
             .short('o')
             .value_parser(value_parser!(PathBuf)),
     )
@@ -83,26 +87,25 @@ fn export() -> Command {
         .subcommand(export_library())
         .subcommand(export_python())
         .subcommand(
-            with_input(Command::new("rust").about("What the attribute generates, for reading"))
-                .arg(out_file()),
+            with_input(Command::new("rust").about("The generated Rust code, for reading")).arg(out_file()),
         )
 }
 
 fn export_c() -> Command {
     with_input(Command::new("c").about("C99: a source file and a header that need libm alone"))
         .arg(
-            text("out", "FOLDER", "Where the two files go")
+            text("out", "FOLDER", "Output folder of the two files")
                 .short('o')
                 .default_value(".")
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(text("prefix", "NAME", "What names and files begin with [default: the mechanism's name]"))
+        .arg(text("prefix", "NAME", "Prefix of names and files [default: the mechanism's name]"))
         .arg(
             text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
                 .value_parser(["double", "float"]),
         )
         .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
-        .arg(switch("casadi", "A third file: the functions as CasADi and acados take them"))
+        .arg(switch("casadi", "Writes a third file: the functions in the form that CasADi and acados call"))
         .arg(
             text("set", "NAME=VALUE", "Fixes a parameter in the functions for CasADi and acados")
                 .action(ArgAction::Append)
@@ -115,9 +118,9 @@ fn export_python() -> Command {
         Command::new("python")
             .about("A package for Python: a module, its library and its stubs, for machines without Rust"),
     ))
-    .arg(switch("native", "For the very processor at hand, not for all of its kind"))
+    .arg(switch("native", "Compiles for this computer's processor only"))
     .arg(
-        text("out", "FOLDER", "Where the package goes [default: .]")
+        text("out", "FOLDER", "Output folder of the package [default: .]")
             .short('o')
             .value_parser(value_parser!(PathBuf)),
     )
@@ -129,11 +132,11 @@ fn export_library() -> Command {
             .about("A crate and a header: all functions on plain arrays, as a shared and a static library"),
     ))
     .arg(
-        text("out", "FOLDER", "Where the crate goes [default: the prefix]")
+        text("out", "FOLDER", "Output folder of the crate [default: the prefix]")
             .short('o')
             .value_parser(value_parser!(PathBuf)),
     )
-    .arg(text("prefix", "NAME", "What names begin with [default: the mechanism's name]"))
+    .arg(text("prefix", "NAME", "Prefix of names [default: the mechanism's name]"))
     .arg(text(
         "linkwork",
         "FOLDER",
@@ -156,7 +159,7 @@ fn with_input(command: Command) -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(text("struct", "NAME", "The struct in a Rust file that has several"))
+        .arg(text("struct", "NAME", "Name of the struct, for Rust files with several"))
         .arg(text(
             "with",
             "OPTIONS",
@@ -169,7 +172,7 @@ fn with_tables(command: Command) -> Command {
         text(
             "table",
             "NAME=FILE",
-            "Figures of a table: a line of comma-separated values for each point of its grid, the variables, then the value; `,smooth` and `,extrapolated` behind FILE say how it goes on",
+            "Values of a table: a line for each grid point with its variables, then its value, separated by commas. `,smooth` after FILE interpolates by splines, `,extrapolated` continues the table beyond its grid",
         )
         .action(ArgAction::Append),
     )
@@ -185,7 +188,7 @@ fn with_motion(command: Command) -> Command {
             text(
                 "set",
                 "NAME=VALUE",
-                "A parameter, or at the beginning q.NAME or v.NAME, or the input u.NAME",
+                "Value of a parameter, of an initial coordinate q.NAME or velocity v.NAME, or of an input u.NAME",
             )
             .action(ArgAction::Append),
         )
@@ -193,7 +196,7 @@ fn with_motion(command: Command) -> Command {
             text(
                 "guess",
                 "q.NAME=VALUE",
-                "About where the mechanism begins, of what constraints put: chooses among the forms of a loop",
+                "Guess of an initial coordinate that constraints determine; selects the assembly mode of a loop",
             )
             .action(ArgAction::Append),
         )
@@ -201,10 +204,10 @@ fn with_motion(command: Command) -> Command {
             text("inputs", "FILE", "Inputs over time: comma-separated values with the columns t and u.…")
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(number("duration", "SECONDS", "How long [default: 10]"))
+        .arg(number("duration", "SECONDS", "Duration of the motion [default: 10]"))
         .arg(number("every", "SECONDS", "Time between samples [default: 1/60]"))
-        .arg(number("tolerance", "NUMBER", "Error of a step, relative and absolute [default: 1e-8]"))
-        .arg(switch("without-contacts", "Lets bodies pass through each other"))
+        .arg(number("tolerance", "NUMBER", "Relative and absolute error of a step [default: 1e-8]"))
+        .arg(switch("without-contacts", "Ignores contacts: bodies pass through each other"))
 }
 
 fn text(name: &'static str, value: &'static str, help: &'static str) -> Arg {
@@ -220,7 +223,7 @@ fn json() -> Arg {
 }
 
 fn out_file() -> Arg {
-    text("out", "FILE", "Where it goes [default: standard output]")
+    text("out", "FILE", "Output file [default: standard output]")
         .short('o')
         .value_parser(value_parser!(PathBuf))
 }
