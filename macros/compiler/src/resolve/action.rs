@@ -37,7 +37,8 @@ impl<'g> Builder<'_, 'g> {
             let before = Counts::of(&self.model);
             self.add_action(action, cx);
             // An element without an effect may be zero by its values; an input has an entry of `u` in any case.
-            if cx.is_empty() && is_command(&action.kind) && !self.is_input(&action.name.text) {
+            let is_lost = Counts::of(&self.model) == before && !self.is_input(&action.name.text);
+            if cx.is_empty() && is_command(&action.kind) && is_lost {
                 report_lost(&action.name, cx);
             }
             self.know_applied(&before, &action.name.text);
