@@ -331,7 +331,8 @@ fn what_moves_is_added_to_like() {
     );
 }
 
-/// The number that the mechanism's gravity has is an acceleration beside parameters, too; no other number is.
+/// The number of the mechanism's gravity is an acceleration also as a factor of a parameter; no other number
+/// is.
 #[test]
 fn the_number_of_gravity_is_an_acceleration() {
     let hovering = |gravity: &str, number: &str| {
@@ -345,7 +346,7 @@ fn the_number_of_gravity_is_an_acceleration() {
     assert!(!hovering("gravity = -9.81 * y", "9.8") && !hovering("", "9.81"));
 }
 
-/// Whatever its value is, a number beside a parameter is a plain factor.
+/// A number that multiplies a parameter is a plain factor, for all values.
 #[test]
 fn numbers_beside_parameters_are_plain() {
     for number in ["0.5", "0.6", "9.81", "40", "2 / 7", "1e-3", "sin(0.3)", "pi"] {

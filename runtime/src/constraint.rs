@@ -330,14 +330,15 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         self.constraint_response(t, q, p, &gap)
     }
 
-    /// A configuration near `q` in which the constraints hold, by damped Newton steps of bounded length and
-    /// number (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3), if need be
-    /// from around `q`. The coordinates whose velocities have the indices `held` stay as they are. Angles are
-    /// found within half a turn of `q`, unless the constraints turn them farther, as gears do.
+    /// Returns a configuration near `q` in which the constraints hold, by damped Newton steps of bounded
+    /// length and number (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3),
+    /// starting from `q` and, if that fails, from points around it. The coordinates whose velocities have the
+    /// indices `held` keep their values. Angles are found within half a turn of `q`, unless the constraints
+    /// rotate them farther, as gears do.
     ///
-    /// Most linkages can be assembled in several ways. The one that is found is usually next to `q`:
-    /// [`assembly_mode`](Self::assembly_mode) tells which it is, [`assemble_in_mode`](Self::assemble_in_mode)
-    /// finds another.
+    /// Most linkages can be assembled in several ways. The result is usually in the mode next to `q`:
+    /// [`assembly_mode`](Self::assembly_mode) returns the mode, [`assemble_in_mode`](Self::assemble_in_mode)
+    /// finds another one.
     ///
     /// # Errors
     ///
@@ -477,8 +478,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Acceleration`] where the held entries contradict the constraints or nothing finite
-    /// follows from them, [`ConstraintError::Held`] for an index that is none.
+    /// [`ConstraintError::Acceleration`] if the held entries contradict the constraints or nothing finite
+    /// follows from them, [`ConstraintError::Held`] for an index that is not less than `NV`.
     fn complete_acceleration(
         &self,
         t: Self::Scalar,
@@ -490,17 +491,18 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         complete::complete_acceleration(self, t, (q, v), a, held)
     }
 
-    /// Inverse dynamics under the constraints: the generalized forces `τ` at the velocities `driven`
-    /// (indices) and the multipliers `λ` that give a motion, `M a + h = τ + Jᵀ λ`. As many velocities are
-    /// driven as there are degrees of freedom, none where the constraints drive the mechanism themselves:
-    /// then the drives are in `λ`. Where constraints are redundant or more velocities are driven, the
-    /// multipliers of least norm. Dry friction of contacts that slip is left out.
+    /// Returns the generalized forces `τ` (N and N·m) of drives at the velocities with the indices `driven`,
+    /// zero elsewhere, and the multipliers `λ` of the constraints, for a motion that fulfils the constraints:
+    /// `M a + h = τ + Jᵀ λ` (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 8). Usually as many
+    /// velocities are driven as there are degrees of freedom, and none if the constraints drive the mechanism
+    /// themselves: the drives are then in `λ`. If constraints are redundant or more velocities are driven,
+    /// the multipliers have the least norm. Dry friction of slipping contacts is left out.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Velocity`] and [`ConstraintError::Acceleration`] for a motion that does not fulfil
-    /// the constraints, [`ConstraintError::Undriven`] where forces at other velocities would be needed,
-    /// [`ConstraintError::Held`] for an index that is none.
+    /// [`ConstraintError::Velocity`] and [`ConstraintError::Acceleration`] for a motion that violates the
+    /// constraints, [`ConstraintError::Undriven`] if forces at other velocities would be needed,
+    /// [`ConstraintError::Held`] for an index that is not less than `NV`.
     fn constrained_inverse_dynamics(
         &self,
         t: Self::Scalar,

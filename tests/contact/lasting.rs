@@ -205,7 +205,7 @@ fn spinning(method: Stepping) -> f64 {
     (s.v.fixed_rows::<3>(0).norm() - 1.0).abs() + (s.q[0] - 1.0).abs() + s.q[1].abs() + (s.q[2] - 0.1).abs()
 }
 
-/// How far a block moves that sticks on a slope under a load that grows.
+/// Returns the creep of a block that sticks on a slope under a growing load.
 fn ramp(method: Stepping) -> f64 {
     let m = Slope { slope: 0.1, friction: 0.6 };
     let run = simulate(&m).from([0.0; 3], [0.0; 3]).inputs(|t, _, _| [-2.0 * t, 1.5 * t].into());

@@ -1,4 +1,4 @@
-//! Light feet: closed forms, whatever their masses are.
+//! Light feet against closed forms, for feet of any mass.
 
 use super::laws::Random;
 use linkwork::contact::{self, Touch};
@@ -21,8 +21,8 @@ struct Walker {
     toe: Contact,
 }
 
-/// The leg is an inverted pendulum, whose foot bears its own weight besides. After touchdown the hip keeps
-/// its velocity across the leg.
+/// The leg is an inverted pendulum; its foot also bears its own weight. After touchdown the hip keeps its
+/// velocity across the leg.
 #[test]
 fn light_feet_lose_no_digits() {
     let mut random = Random(8);

@@ -63,7 +63,7 @@ fn wrapped(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
-/// How far angles are from each other, whole turns apart.
+/// Returns the difference of angles modulo whole turns.
 fn distance(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
     (a - b).iter().fold(0.0, |most, off| most.max(wrapped(*off).abs()))
 }

@@ -3,7 +3,7 @@
 use linkwork::prelude::*;
 use support::compare::assert_close;
 
-/// A round disk on a shaft beside its centre under a flat follower.
+/// A round disk on an eccentric shaft under a flat follower.
 #[mechanism(gravity = -9.81 * y)]
 struct Cam {
     speed: f64,

@@ -1,5 +1,5 @@
-//! The prelude alone is enough for mechanisms that stand for others: with held contacts, decaying violations,
-//! states of first order and contacts left out.
+//! The prelude is enough for wrapped mechanisms: with contacts enforced, stabilised constraints, states of
+//! first order, and without contacts.
 
 use linkwork::constraint::stabilized;
 use linkwork::contact::{Touch, apart, hold};

@@ -63,7 +63,7 @@ fn machine(more: &str) -> String {
     )
 }
 
-/// What is reported of a machine with an element more, one message each.
+/// Returns the messages for a machine with an additional element, one for each.
 fn messages(more: &str) -> Vec<String> {
     let mut cx = Diagnostics::new();
     let source = read("".parse().unwrap(), machine(more).parse().unwrap(), Path::new(""), &mut cx).unwrap();

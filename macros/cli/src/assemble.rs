@@ -106,9 +106,9 @@ impl Evaluated<'_, '_> {
         unreached
     }
 
-    /// Where the configuration on the constraints that is next to zero leads as what is given goes to its
-    /// values, step by step: a loop that has several forms keeps the one that it has there. On the
-    /// constraints or, where what is given contradicts them, beside.
+    /// Returns a configuration that follows the given entries from the configuration on the constraints
+    /// nearest to zero, in small steps, so that a loop keeps the assembly mode that it has there. If the
+    /// given entries contradict the constraints, the configuration is off them.
     pub fn led(&self, t: f64, q: &[f64], given: &[bool], apart: &[bool], held: &[bool]) -> Vec<f64> {
         let mut zero = self.neutral();
         let is_apart = self.entries(apart);
@@ -239,7 +239,7 @@ impl Evaluated<'_, '_> {
             let mass = self.by_joints(state, transposed(&self.by_joints(state, mass), held.len()));
             let (moved, _) = nearest(&mass, &jacobian, &target, held)?;
             let rates = self.rates_of_joints(q, &moved);
-            // Steps of declared speeds have no unit that tells rotations.
+            // The units of declared speeds do not distinguish rotations from translations.
             let units = self.model.speeds.is_none().then_some(&self.model.units.velocities);
             let rotations =
                 moved.iter().zip(units.into_iter().flatten()).filter(|(_, unit)| *unit == "rad/s");

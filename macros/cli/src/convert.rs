@@ -457,7 +457,7 @@ fn damper(damping: f64) -> String {
 fn constant_lengths(description: &Description) -> BTreeSet<String> {
     let is_length = |drive: &&Drive| matches!(drive.on, DriveOn::Length(_));
     let lengths: Vec<&Drive> = description.drives.iter().filter(is_length).collect();
-    // A force of another magnitude on each length tells which of them the model has.
+    // The forces on the lengths have different magnitudes, so that the model shows which of them it has.
     let push =
         |(k, drive): (usize, &&Drive)| Drive { law: DriveLaw::Push(k as f64 + 1.0), ..(*drive).clone() };
     let probe = Description { drives: lengths.iter().enumerate().map(push).collect(), ..description.clone() };

@@ -274,7 +274,7 @@ fn explicit(
 
 /// Derivatives of the rates, by differences.
 struct Linear {
-    /// By the state, column by column.
+    /// Derivatives of the rates by the state, column by column.
     by_state: Vec<Vec<f64>>,
     by_time: Vec<f64>,
 }

@@ -50,11 +50,11 @@ fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
     }
 }
 
-/// Of a text that ends before all its brackets are closed, the brace whose partner is indented otherwise than
-/// its line: the one that is missing is rather its own.
+/// Returns the position of the opening brace that is probably not closed, in a text that ends before all its
+/// brackets are closed: the first brace whose partner is indented differently from the line of the brace.
 fn misaligned(text: &str) -> Option<LineColumn> {
     let mut whole = text.to_string();
-    // Closed at the end as many brackets as are open there.
+    // Closes all open brackets at the end of the text.
     let tokens = loop {
         match TokenStream::from_str(&whole) {
             Ok(tokens) => break tokens,

@@ -61,8 +61,8 @@ impl Table {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
 
-    /// The value of a column at a time: on straight lines between those that are given, and as they are
-    /// before and after. Where it jumps it is the value after the jump.
+    /// Returns the value of a column at a time, linear between the samples and constant before the first and
+    /// after the last one. At a jump it is the value after the jump.
     pub fn at(&self, values: &[f64], t: f64) -> f64 {
         self.behind(values, t, self.times.partition_point(|known| *known <= t))
     }

@@ -15,7 +15,7 @@ pub fn angle(text: &str) -> String {
     if turns { format!("1 * {text}") } else { text.to_string() }
 }
 
-/// What a name in an expression stands for: a link and a joint of a file may share one.
+/// Role of a name in an expression: a link and a joint of a file may share one name.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// A body: in arguments of functions, and where it has a point or an axis.

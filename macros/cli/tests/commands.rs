@@ -123,7 +123,8 @@ fn what_cannot_be_done_is_said() {
     }
 }
 
-/// What a robot file needs is said as an option of the command, which has no attribute; and it works.
+/// Advice on a robot file, which has no attribute, names an option of the command; with this option the file
+/// is accepted.
 #[test]
 fn advice_names_options_of_the_command() {
     let here = folder("advice");
@@ -255,7 +256,7 @@ fn block(language: &str) -> String {
     rest.split_once("```").unwrap().0.to_string()
 }
 
-/// The commands of the guide run as they are written, from the folder of the repository.
+/// Every command of the guide runs from the folder of the repository.
 #[test]
 #[cfg(unix)]
 fn documented_commands_run() {

@@ -70,7 +70,7 @@ fn check(format: &str, file: &Path, with: &str) {
     check_beside(format, file, with, &[]);
 }
 
-/// Compares a struct with its file; `notes` are told besides names.
+/// Compares a struct with its file; `notes` are printed in addition to the list of renamed things.
 fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let (code, told) = converted(file, with);
     let (arguments, item) = parts(&code);

@@ -158,8 +158,8 @@ pub struct Sled {
     );
 }
 
-/// A stiff arm is integrated by an implicit method, which is told: the spring of 10⁶ N m/rad holds the arm
-/// where its weight bends it.
+/// A stiff arm is integrated by an implicit method, with a message. The spring of 10⁶ N m/rad supports the
+/// arm where its weight deflects it.
 #[test]
 fn stiff_mechanisms_are_integrated_by_an_implicit_method() {
     let here = folder("stiff");
@@ -646,8 +646,8 @@ struct Leg {
 }
 ";
 
-/// Whatever is given of a leg, its angles are found within half a turn, and it is told which way it was
-/// assembled.
+/// From any subset of a leg's angles the others are found within half a turn, and the assembly mode is
+/// printed.
 #[test]
 fn legs_are_assembled_within_half_a_turn() {
     let here = folder("leg");

@@ -159,7 +159,7 @@ fn states_move_as_velocities_do() {
         let random = &mut Random(2 * case + 2);
         let (linkage, joints, loops) = linkage(random);
         let j = &joints[0];
-        // Parameters have whatever units fit.
+        // Units of parameters are inferred.
         let parameters = ["lag", "lift", "drag", "wave", "scale", "gain"];
         let values = [
             random.between(0.5, 20.0),

@@ -198,7 +198,7 @@ const MEASURED: &str = "command: Input,
     #[contact(wing.sphere(1), ground.plane(z), friction = 0.3, torsional = 0.1)] floor: Contact,
     #[define(v(wing / ground / ground))] wind: Vector,";
 
-/// An error elsewhere changes the arguments of no output, whichever function of the language it is made of.
+/// An error elsewhere changes the arguments of no output, for every function of the language.
 #[test]
 fn an_error_keeps_the_arguments_of_every_measure() {
     let listed = include_str!("../src/resolve/functions.rs").lines();
@@ -260,7 +260,7 @@ impl Generated {
     }
 }
 
-/// What generated code alone calls is hidden from documentation, that of binaries included.
+/// Functions that only generated code calls are hidden from documentation, that of binaries included.
 #[test]
 fn internals_are_hidden() {
     for (name, fields) in MECHANISMS {

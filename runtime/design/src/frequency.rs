@@ -139,7 +139,7 @@ impl Factors {
 #[derive(Clone, Copy)]
 pub(crate) struct Sample {
     pub value: C,
-    /// Its derivative with respect to the complex frequency.
+    /// Derivative of the value by the complex frequency.
     pub slope: C,
     /// Bound of what rounding of the matrices changes.
     pub error: f64,

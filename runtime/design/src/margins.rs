@@ -130,8 +130,8 @@ impl Loop {
         self.map.sample(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
     }
 
-    /// Frequencies where `f` changes its sign from one of the grid to the next. Where rounding decides the
-    /// sign, it is none.
+    /// Returns the frequencies where `f` changes its sign between neighbours of the grid. Points at which
+    /// rounding decides the sign are skipped.
     fn crossings(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
         let value = |w: f64| self.at(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();

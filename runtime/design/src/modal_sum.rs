@@ -294,8 +294,8 @@ impl ModalSum {
         ends.windows(2).filter(|pair| pair[0] < pair[1]).map(|pair| (pair[0], pair[1])).collect()
     }
 
-    /// Where a function of the sum changes its sign on a monotone piece; of a sampled sum the sample on the
-    /// side that is not negative.
+    /// Returns the time at which a function of the sum changes its sign on a monotone piece. For a sampled
+    /// sum it is the sample on the side that is not negative.
     fn sign_change(&self, f: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
         if !self.sampled {
             return root_between(|t| f(self.at(t)), from, to);

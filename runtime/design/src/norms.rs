@@ -9,7 +9,7 @@ use crate::{Error, StateSpace};
 pub struct PeakGain {
     /// The largest singular value of the response.
     pub gain: f64,
-    /// Its frequency, rad/s; infinite where high frequencies approach it.
+    /// Frequency of the peak, rad/s; infinite if the gain approaches it at high frequencies.
     pub frequency: f64,
 }
 
@@ -104,7 +104,7 @@ impl StateSpace {
     }
 }
 
-/// Which gain is looked for; the least one of single channels only.
+/// Extreme of the gain that is searched; the least one for single channels only.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Extreme {
     Largest,

@@ -316,8 +316,9 @@ fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
     Polynomial::new(one.to_vec()).stable_gains(&Polynomial::new(other.to_vec())).unwrap()
 }
 
-/// By Hurwitz' criterion: `s³ + (3 + k) s² + 3 s + 1 + k` needs `k > −1`, and `s³ + k (s² + 2 s + 1)` needs
-/// `2 k² > k`; a polynomial and its multiple are as stable as the one for all gains that do not cancel them.
+/// Hurwitz' criterion: `s³ + (3 + k) s² + 3 s + 1 + k` is stable for `k > −1`, and `s³ + k (s² + 2 s + 1)`
+/// for `2 k² > k`. A polynomial plus a multiple of itself is stable for all gains that do not cancel it, if
+/// it is stable itself.
 #[test]
 fn stable_gains_by_hurwitz() {
     let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);

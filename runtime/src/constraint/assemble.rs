@@ -249,7 +249,7 @@ where
     let mut sign = 1;
     for k in 0..NV {
         let pivot = (k..NV).fold(k, |best, i| if rows[i][k].abs() > rows[best][k].abs() { i } else { best });
-        // A pivot that is not a number is none.
+        // This is false for a pivot that is NaN.
         let is_regular = rows[pivot][k].abs() > epsilon::<T>().sqrt();
         if !is_regular {
             return None;

@@ -227,7 +227,7 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
     SVector::from_fn(|i, _| y[i] * scale[i])
 }
 
-/// The least `y` with `rows · y = targets`, and the directions of unit length that it is made of.
+/// Returns the least `y` with `rows · y = targets`, and the unit directions that span it.
 ///
 /// By Gram–Schmidt over the rows, that one first which is most independent of those before it, next to its
 /// own size. Rows that depend on others are left out; their targets follow, or cannot be.

@@ -46,7 +46,7 @@ pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
         Some((SVector::from(metric.back(span.backward(z))), impulses))
     };
     let (x, impulses) = solve(changes)?;
-    // Velocities of light bodies are large beside what rounding leaves of them: the rows fix them.
+    // Velocities of light bodies are much larger than their rounding errors, because the rows determine them.
     let (rest, more) = solve(&(changes - rows * x))?;
     Some((x + rest, impulses + more))
 }

@@ -1,4 +1,4 @@
-//! Contacts that stick, of mechanisms with bodies that are very light beside others.
+//! Sticking contacts of mechanisms with bodies that are much lighter than others.
 
 use super::layout::Layout;
 use super::{Contacts, Law, Touch};

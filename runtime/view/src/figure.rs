@@ -26,9 +26,9 @@ pub(crate) struct Shape {
     pub(crate) frames: [Option<usize>; 2],
     pub(crate) numbers: Vec<f64>,
     pub(crate) mesh: Option<Mesh>,
-    /// An ellipsoid made of mass and moments, for which no form is declared.
+    /// True for an ellipsoid of mass and moments, drawn if no shape is declared.
     fitted: bool,
-    /// It is declared by the mechanism, not added by the program.
+    /// True if the mechanism declares the piece; false if the program adds it.
     declared: bool,
 }
 

@@ -311,7 +311,7 @@ impl Motion {
         shown
     }
 
-    /// Paths of meshes of its figure that were not read.
+    /// Paths of meshes of the mechanism that were not read.
     pub(crate) fn missing_meshes(&self) -> Vec<&str> {
         self.figure.missing_meshes()
     }

@@ -1,4 +1,4 @@
-//! Names in lists are checked wherever they stand.
+//! Names in lists are checked in all contexts.
 
 use linkwork::index;
 use linkwork::prelude::*;

@@ -12,8 +12,7 @@ fn python() -> Option<String> {
     has.then_some(python)
 }
 
-/// What CasADi loads has the values of the functions and their slopes; acados' functions fit together.
-/// Without CasADi it is compiled without a warning.
+/// CasADi loads functions with the right values and slopes, and acados' functions have consistent sizes.
 #[test]
 fn casadi_loads_functions_with_their_jacobians() {
     let Some(compiler) = compilers().into_iter().next() else {

@@ -1,4 +1,4 @@
-//! What `linkwork export c` writes, compiled by the C compiler of the system, against the same functions in
+//! The C code of `linkwork export c`, compiled by the C compiler of the system, against the same functions in
 //! Rust.
 
 mod casadi;

@@ -86,8 +86,8 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
     }
 }
 
-/// Reports everything that an element of the file's own vocabulary holds besides attributes with these names:
-/// other attributes, text, elements. It would be lost without a word. Attributes in `foreign` are for other
+/// Reports all contents of an element of the file's own vocabulary except attributes with these names: other
+/// attributes, text and child elements, which would be ignored. Attributes in `foreign` belong to other
 /// tools.
 pub(super) fn check_only(
     node: Node<'_>,

@@ -64,7 +64,7 @@ impl Program {
         Some(terms)
     }
 
-    /// Groups the terms of a sum by common factors. Returns `None` if there are none.
+    /// Groups the terms of a sum by common factors. Returns `None` if no factor is common to two terms.
     fn grouped(&self, mut open: Vec<Term>) -> Option<Vec<Group>> {
         if !self.may_share_factors(&open) {
             return None;

@@ -5,7 +5,7 @@ use crate::expr::Function;
 /// The quantities that the value of a function depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dependence {
-    /// Those of its arguments, and the configuration.
+    /// The configuration, and the quantities that its arguments depend on.
     Arguments,
     /// Velocities.
     Motion,

@@ -82,7 +82,7 @@ impl<'g> Builder<'_, 'g> {
         Limit { q: c.q, v: c.v, lower, upper, speed, effort }
     }
 
-    /// Adds bounds of a coordinate, and reports those that leave no room beside one of `earlier` limits.
+    /// Adds bounds of a coordinate, and reports bounds that contradict one of the `earlier` limits.
     fn bound(
         &mut self,
         limit: &syntax::Limit,

@@ -36,7 +36,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// The value of a name.
     pub fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        // Expressions of a file name its joints, whatever the language calls so.
+        // Expressions of a file name its joints, also if the language has another meaning for the name.
         if e.place.file.is_some()
             && let Some(value) = self.coordinate(name, e, cx)
         {

@@ -156,7 +156,7 @@ fn laws(action: &Action) -> impl Iterator<Item = &Expr> {
     law.into_iter()
 }
 
-/// Returns the quantities that an expression depends on, as the list of functions tells it.
+/// Returns the quantities that an expression depends on, by the list of functions.
 fn uses(d: &Description, e: &Expr) -> Uses {
     let inputs = || !entries(d).2.is_empty();
     let mut uses = Uses::default();

@@ -56,7 +56,7 @@ fn kind_of(whose: &str) -> &str {
     whose.strip_suffix(" constraint").unwrap_or(whose).rsplit(' ').next().unwrap_or(whose)
 }
 
-/// How an element is written; `whose` is its type, with or without an article.
+/// Returns advice that shows how an element is declared; `whose` is its type, with or without an article.
 pub fn example(whose: &str) -> &'static str {
     let Some(element) = ElementKind::of_name(kind_of(whose)) else {
         return "#[mechanism(gravity = -9.81 * y)]";

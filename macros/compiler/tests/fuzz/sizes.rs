@@ -242,7 +242,7 @@ fn nested(n: usize, before: &str, inside: &str, after: &str) -> String {
     before.repeat(n) + inside + &after.repeat(n)
 }
 
-/// What nests without brackets, or costs much stack for each level, is refused or fits the stack.
+/// Input that nests without brackets, or needs much stack for each level, is refused or fits the stack.
 #[test]
 fn nesting_of_every_kind_fits_the_stack() {
     let mut cases: Vec<(String, String)> = Vec::new();

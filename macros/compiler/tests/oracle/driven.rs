@@ -1,6 +1,6 @@
-//! Random mechanisms with as many drives as velocities: sums of coordinates and ways between points, or their
-//! rates, are functions of time. Accelerations follow from the drives alone, and the multipliers are what
-//! Kane's equations leave.
+//! Random mechanisms with one drive for each velocity: sums of coordinates, displacements between points, or
+//! their rates, are functions of time. Accelerations follow from the drives alone, and the multipliers are
+//! the residuals of Kane's equations.
 
 use crate::kane::{self, Measure, State};
 use crate::random::Random;
@@ -31,7 +31,7 @@ pub fn check(seed: u64) -> bool {
     let style = Style { bodies: 4, limbs: 0, decades: 0.3, noise: None };
     let mut spec = spec(9_000_000 + seed, style);
     for body in &mut spec.bodies {
-        // A slider's coordinate is none that a drive names.
+        // No drive constrains the coordinate of a slider.
         body.slider = None;
     }
     let (nq, nv) = kane::sizes(&spec);

@@ -110,7 +110,7 @@ fn random_files_move_as_the_format_says() {
     assert!(seeds(20).end < 20 || kinds.iter().all(|count| *count >= 3), "{kinds:?}");
 }
 
-/// The same in all versions of SDF, which place links and give axes in different frames.
+/// All versions of SDF, which place links and give axes in different frames, give the same motion.
 #[test]
 fn random_sdf_files_move_as_their_version_says() {
     for seed in seeds(40) {

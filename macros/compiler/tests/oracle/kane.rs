@@ -200,7 +200,7 @@ pub enum Measure {
     Way(End, End, usize),
 }
 
-/// What a measure is in a state, with its first and second rates.
+/// Value of a measure in a state, with its first and second rates.
 pub fn measured(spec: &Spec, state: &State, measure: &Measure) -> Jet {
     let world = world(spec, state);
     match measure {

@@ -60,11 +60,11 @@ impl Placed {
     }
 }
 
-/// What a file of one version is written with.
+/// Data for writing a file of one version.
 struct Writer<'a> {
     robot: &'a Robot,
     minor: usize,
-    /// By link: its pose in the model while all coordinates are zero.
+    /// Pose of each link in the model while all coordinates are zero.
     placed: Vec<Placed>,
 }
 

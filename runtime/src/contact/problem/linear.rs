@@ -26,9 +26,9 @@ pub(in super::super) struct Equations<T, const NR: usize> {
 enum Content {
     /// All of `W`.
     Weights,
-    /// Its factors.
+    /// Factors of `W`.
     Factors,
-    /// Its factors with rows told apart by a little.
+    /// Factors of `W` with a small addition to its diagonal, which makes dependent rows independent.
     Lifted,
     Other,
 }
@@ -61,8 +61,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.reach((&held, size), (&self.free, &wanted), equations, PASSES).0
     }
 
-    /// Impulses that change the rates of all contacts by `changes`, and whether the motion tells them apart;
-    /// otherwise they are those of least norm, and less exact.
+    /// Returns impulses that change the contact velocities of all contacts by `changes`, and true if they are
+    /// unique; otherwise they have the least norm and are less exact.
     pub(in super::super) fn impulses_for(
         &self,
         changes: &SVector<T, NR>,
@@ -91,8 +91,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (held, size)
     }
 
-    /// Impulses in the first `size` rows `held` that change their rates from `free` to `wanted`, and whether
-    /// the motion tells them apart. Impulses that are shared are improved in as many `passes`.
+    /// Returns impulses in the first `size` rows `held` that change the contact velocities of these rows from
+    /// `free` to `wanted`, and true if they are unique. Otherwise they are refined in `passes` passes.
     fn reach(
         &self,
         (held, size): (&List<usize, NR>, usize),
@@ -167,9 +167,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
     }
 
-    /// The forces that hold contacts as they are said to be, where impulses are forces and rates
-    /// accelerations; `rates` are those of all contacts, along which slip is braked. Sets `loses_digits`
-    /// where nothing slips and `W` does not determine them well.
+    /// Returns the forces that enforce the contact modes `touches`, where impulses are forces and contact
+    /// velocities are contact accelerations. `rates` holds the contact velocities of all contacts, whose
+    /// direction friction opposes. Sets `loses_digits` if nothing slips and `W` determines the forces badly.
     ///
     /// # Errors
     ///

@@ -15,7 +15,7 @@ const LARGEST: f64 = 0.125;
 pub(in super::super) struct Start<T, const NR: usize> {
     /// The impulses that change the rates as much.
     pub(super) impulses: List<T, NR>,
-    /// Whether the motion tells them apart.
+    /// True if the impulses are unique.
     pub(super) is_regular: bool,
 }
 

@@ -40,7 +40,7 @@ struct Inside<'a> {
     shapes: Vec<Shaped<'a>>,
     sites: Vec<Shaped<'a>>,
     inertial: Option<(Node<'a>, Pose)>,
-    /// Joints, with the poses of the frames in the body that they stand in, and their classes.
+    /// Joints, each with the pose in the body of the frame that contains it, and its class.
     jointed: Vec<(Node<'a>, Pose, usize)>,
 }
 

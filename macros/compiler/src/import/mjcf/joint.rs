@@ -153,7 +153,7 @@ impl<'a> Reader<'a> {
         if found.is_none() && element.with(range).is_some() {
             return None;
         }
-        // Two zeros stand for no range.
+        // A range of two zeros means no range.
         let found = found.filter(|found| found.value != [0.0; 2]);
         match (said, &found) {
             (Some(false), _) | (None, None) => return None,

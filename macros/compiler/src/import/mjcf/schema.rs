@@ -7,10 +7,9 @@ use crate::import::robot::check_unique;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
-/// Elements with their attributes as MuJoCo 4.0.0 prints them (`mj_printSchema`), with words of older
-/// versions that mean the same today. The motion of a mechanism without contacts does not depend on
-/// attributes behind the bar. A name that begins with `@` stands for a list of attributes. Elements that are
-/// refused as a whole have no attributes here.
+/// Elements with their attributes as MuJoCo 4.0.0 prints them (`mj_printSchema`), and names of older versions
+/// with the same meaning. Attributes after the bar do not affect the motion of a mechanism without contacts.
+/// A name that begins with `@` is a list of attributes. Elements that are refused have no attributes here.
 const SCHEMA: &str = "
 @axes: quat axisangle euler xyaxes zaxis
 @soft: solref solimp
@@ -230,7 +229,7 @@ fn check_names(root: Node<'_>, cx: &mut Cx<'_>) {
     }
 }
 
-/// Where the schema lists an element with this parent.
+/// Returns the key of an element with this parent in the schema.
 fn key(parent: Node<'_>, name: &str) -> String {
     let parent = match (parent.tag_name().name(), name) {
         ("mujoco", _) | ("default", "default") => return name.to_string(),

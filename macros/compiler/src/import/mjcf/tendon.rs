@@ -178,11 +178,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A spring of a tendon. It is free where the tendon says, or while all joints stand where their own springs
-/// are free: of any two lengths, and of any one but −1, which stands for none.
+/// Reads the spring of a tendon. Its free length is given by the tendon, either as a range or as one length
+/// other than −1, which means that none is given. Otherwise the spring is free while all joints are at the
+/// free positions of their own springs.
 fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
     const NONE: f64 = -1.0;
-    // One length of a tendon stands for two equal ones, whatever its defaults have.
+    // One length means two equal ones, also if the defaults have two.
     let found = element.with("springlength").and_then(|node| some(node, "springlength", [f64::NAN; 2], cx));
     let [low, high] = found.as_ref().map_or([NONE; 2], |found| found.value);
     let high = if high.is_nan() { low } else { high };

@@ -20,9 +20,9 @@ pub(super) enum Scope {
 /// The names of a world.
 #[derive(Debug, Default)]
 pub(super) struct World {
-    /// By model: the text that the whole names of its parts begin with.
+    /// Prefix of the full names of each model's parts.
     models: BTreeMap<String, String>,
-    /// By frame and joint of the world: its whole name.
+    /// Full name of each frame and joint of the world.
     parts: BTreeMap<String, String>,
 }
 
@@ -51,7 +51,7 @@ impl World {
 }
 
 impl Scope {
-    /// Returns the whole name that `name` stands for in a reference.
+    /// Returns the full name that `name` refers to.
     pub(super) fn whole_name(&self, name: &str) -> String {
         match (self, name) {
             (_, WORLD) => WORLD.to_string(),

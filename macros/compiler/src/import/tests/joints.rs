@@ -354,7 +354,7 @@ fn parts_of_joints_are_attributes_of_their_elements() {
         &chain(&[("revolute", "")]).replace("<joint ", "<joint axis='0 0 1' "),
         &format!("r.urdf:3:8: unknown attribute `axis` of `<joint>`\n{elements}"),
     );
-    // Words of other tools, and an orientation that is none, are no parts of the joint.
+    // Elements and attributes of other tools, and an identity orientation, do not affect the joint.
     check_chain(
         &defaults(),
         &[(

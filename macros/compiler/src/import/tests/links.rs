@@ -255,7 +255,7 @@ fn parts_of_links_are_attributes_of_their_elements() {
         "<link name='a'/><inertial><mass value='1'/></inertial>",
         "r.urdf:2:17: unexpected `<inertial>` in `<robot>`\n= help: expected `<link>` and `<joint>`, which hold all that moves",
     );
-    // What other tools read passes, and a place that is none.
+    // Elements of other tools, and an identity pose, are accepted.
     check_robot(
         "<gazebo reference='a'><inertial/></gazebo><transmission name='t'><joint name='j'/></transmission>\
          <ros2_control name='c'><joint name='j'/></ros2_control><link name='a' type='laser'><origin xyz='0 0 0'/>\

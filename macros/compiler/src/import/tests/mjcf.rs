@@ -78,7 +78,7 @@ fn classes_are_handed_down() {
     );
 }
 
-/// What would change the motion is not left out in silence.
+/// Attributes that would change the motion are not ignored.
 #[test]
 fn what_is_not_supported_is_said() {
     for (inside, at, message, help) in [
@@ -478,7 +478,7 @@ fn lists_are_completed_by_defaults() {
     );
 }
 
-/// What MuJoCo refuses is refused, each error once.
+/// Input that MuJoCo refuses is refused, with one error for each fault.
 #[test]
 fn what_mujoco_refuses() {
     let body =

@@ -1,4 +1,5 @@
-//! Attributes of MJCF: each that may change a motion changes what is made of a file, or is refused.
+//! Attributes of MJCF: each attribute that may change a motion changes the imported description or is
+//! refused.
 
 use super::mjcf::mjcf;
 use super::*;
@@ -39,7 +40,7 @@ const LISTS: [(&str, &str); 4] = [
 const REFUSED: [&str; 8] =
     ["intvelocity", "damper", "cylinder", "muscle", "adhesion", "orientation", "pid", "dcmotor"];
 
-/// What is made of a file, or the errors.
+/// Returns the imported description as text, or the errors.
 fn answer(text: &str) -> String {
     let mut cx = Diagnostics::new();
     match import_text(text, &mjcf(), &mut cx) {

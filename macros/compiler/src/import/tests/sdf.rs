@@ -396,7 +396,7 @@ fn joints_of_the_world_hold_models() {
                  Sleeve world::a: world.at([0, 5, 0]) -> a.at([-1, 5, -1]) along [1, 0, 0]\nleft out static models of the world: 1"
             ),
         ),
-        // A frame that no joint needs is none of the robot's links.
+        // A frame that no joint needs does not become a link.
         (
             "<frame name='a'/>".to_string(),
             format!("body a {ONE}\nWeld root_joint: ground.at([1, 0, 1]) -> a"),

@@ -104,7 +104,7 @@ fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<
     let Some(axis) = axis else {
         return default(place(node, cx));
     };
-    // Some exporters write an orientation that is none.
+    // Some exporters write an identity orientation.
     let has_rpy =
         axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
     check_only(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);

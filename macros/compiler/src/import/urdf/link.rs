@@ -73,7 +73,7 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
     }
 }
 
-/// Reports what `<inertial>` holds besides its parts.
+/// Reports contents of `<inertial>` other than its parts.
 fn check_parts(node: Node<'_>, cx: &mut Cx<'_>) {
     let help = "expected `<origin>`, `<mass>` and `<inertia>`";
     for child in elements(node).filter(|child| !PARTS.contains(&child.tag_name().name())) {

@@ -1,10 +1,10 @@
 //! Expressions → dimensions: every expression is walked once, and what must be alike is equated.
 //!
-//! A number that is a term or stands alone is a quantity of any unit, and so is a direction that stands alone
-//! (it means one metre where a length is expected). As a factor beside a parameter a number is a plain
-//! number, but that of the gravity an acceleration. Beside coordinates, rates, time and inputs alone it is a
-//! coefficient: it takes a unit where nothing else fits, and is a plain number otherwise. Terms of a sum have
-//! one unit. A place takes an expression of coordinates, rates and time alone, whatever its unit is, as a
+//! A number that is a term or an operand by itself may have any unit, and so may a direction by itself (one
+//! metre where a length is expected). A number that multiplies a parameter is a plain factor, except the
+//! number of the mechanism's gravity, which is an acceleration. A number that multiplies coordinates, rates,
+//! time or inputs alone is a coefficient: it takes the unit that is missing, and is plain otherwise. All
+//! terms of a sum have one unit. An argument accepts an expression of coordinates, rates and time alone as a
 //! number of the unit that it needs.
 
 use super::ratio::Ratio;
@@ -82,7 +82,7 @@ pub struct Inference<'a> {
     pub origins: BTreeMap<Variable, Origin<'a>>,
     /// By unknown: how its unit is written where it stands alone.
     pub hints: BTreeMap<Variable, String>,
-    /// The numbers of the mechanism's gravity, which are accelerations beside parameters, too.
+    /// Numbers of the mechanism's gravity, which are accelerations also as factors of parameters.
     pub gravity: Vec<f64>,
     /// What is a plain number unless something else demands a unit; the second one if the first is.
     pub wishes: Vec<(Dimension, Option<Dimension>)>,

@@ -87,8 +87,8 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     units
 }
 
-/// Gives coordinates, inputs and definitions their dimensions, as far as they are known. Returns the
-/// definitions, each after those that it mentions.
+/// Gives coordinates, inputs and definitions their known dimensions. Returns the definitions, each after
+/// those that it mentions.
 fn name_everything<'a>(
     d: &'a Description,
     coordinates: &Coordinates,

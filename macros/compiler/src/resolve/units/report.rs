@@ -48,7 +48,7 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
     }
 }
 
-/// How a number beside a parameter gets a unit.
+/// Advice on giving a number that multiplies a parameter a unit.
 const NUMBER_WITH_UNIT: &str = "a number beside a parameter is a plain factor; one with a unit is a parameter, or has a name: `#[define(9.81)] g: Scalar`";
 
 /// True if a number multiplies or divides something in an expression.

@@ -8,12 +8,13 @@ use super::unify::Dimension;
 /// terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Anchor {
-    /// Coordinates, rates and time: a number beside them is a coefficient with any unit, and alone they may
-    /// be numbers of another unit.
+    /// Coordinates, rates and time: a number that multiplies them is a coefficient with any unit, and by
+    /// themselves they may be numbers of another unit.
     Motion,
-    /// An input, which has the unit of what it acts on: a number beside it is a coefficient with any unit.
+    /// An input, which has the unit of the quantity that it acts on: a number that multiplies it is a
+    /// coefficient with any unit.
     Input,
-    /// A parameter: a number beside it is a plain factor.
+    /// A parameter: a number that multiplies it is a plain factor.
     Parameter,
 }
 
@@ -28,10 +29,10 @@ pub enum Value {
     Quantity {
         /// Its dimension.
         dimension: Dimension,
-        /// What gives it its unit.
+        /// Source of the unit.
         anchor: Anchor,
     },
-    /// Nothing is known, or an error was found.
+    /// The dimension is unknown, or an error was found.
     Unknown,
 }
 

@@ -83,8 +83,8 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// A sum of any number of terms. Beside a parameter or an input, terms whose dimension is open take the
-    /// expected one, so that another term is blamed where they do not fit.
+    /// A sum of any number of terms. If a term has a parameter or an input, terms of open dimension take the
+    /// expected one, so that the error points at the other term.
     pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
         let mut at = e;
