@@ -6,16 +6,39 @@ use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
-/// How often what rounding has left of the rates is taken away.
-const MOST_STEPS: usize = 3;
+/// Maximum number of corrections: the first one solves the equations, the others remove its rounding errors.
+const MAX_CORRECTIONS: usize = 3;
 
-/// An error for the first of the indices `held` that is none of `NV` velocities.
+/// Returns an error for the first of the indices `held` that is not less than `NV`.
 pub(super) fn check<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
     let outside = held.iter().copied().find(|index| *index >= NV);
     outside.map_or(Ok(()), |index| Err(ConstraintError::Held { index, velocities: NV }))
 }
 
-/// The velocity with the entries `held` of `v` that fulfils the constraints.
+/// Corrects the entries of `x` that are not `held` until the `gap` of the constraints is exact, with the least
+/// change in the metric of the mass matrix. Returns `x`, and the index and magnitude of its largest gap.
+fn corrected<T: Real, const NV: usize, const NC: usize>(
+    mass: &SMatrix<T, NV, NV>,
+    jacobian: &SMatrix<T, NC, NV>,
+    held: &[usize],
+    mut x: SVector<T, NV>,
+    gap: impl Fn(&SVector<T, NV>) -> SVector<T, NC>,
+    is_exact: impl Fn(T, &SVector<T, NV>) -> bool,
+) -> Result<(SVector<T, NV>, (usize, T)), ConstraintError> {
+    for _ in 0..MAX_CORRECTIONS {
+        let found = gap(&x);
+        let worst = largest(&found)?;
+        if is_exact(worst.1, &x) {
+            return Ok((x, worst));
+        }
+        x += correction(mass, jacobian, held, &found);
+        largest(&x)?;
+    }
+    let worst = largest(&gap(&x))?;
+    Ok((x, worst))
+}
+
+/// Returns the velocity with the entries `held` of `v` that fulfils the constraints.
 pub(super) fn complete<
     M,
     const NQ: usize,
@@ -34,25 +57,16 @@ where
     M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
 {
     check::<NV>(held)?;
-    let mut v = *v;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
-    for _ in 0..MOST_STEPS {
-        let rates = mechanism.constraint_rates(t, q, &v);
-        if largest(&rates)?.1 <= rounding(&v) {
-            return Ok(v);
-        }
-        v += correction(&mass, &jacobian, held, &rates);
-        largest(&v)?;
-    }
-    let (worst, size) = largest(&mechanism.constraint_rates(t, q, &v))?;
+    let rates = |v: &SVector<M::Scalar, NV>| mechanism.constraint_rates(t, q, v);
+    let (v, (worst, size)) = corrected(&mass, &jacobian, held, *v, rates, |size, v| size <= rounding(v))?;
     if near(size, &v) {
         return Ok(v);
     }
-    let constraint = M::CONSTRAINTS.get(worst).copied().unwrap_or_default();
-    Err(ConstraintError::Velocity { constraint, rate: to_f64(size) })
+    Err(ConstraintError::Velocity { constraint: named::<M, NQ, NV, NU, NH, NC>(worst), rate: to_f64(size) })
 }
 
-/// The acceleration with the entries `held` of `a` that keeps the constraints.
+/// Returns the acceleration with the entries `held` of `a` that fulfils the constraints.
 pub(super) fn complete_acceleration<
     M,
     T: Real,
@@ -72,29 +86,32 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     check::<NV>(held)?;
-    let mut a = *a;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let bias = mechanism.constraint_bias(t, q, v);
-    // Digits that the product with the Jacobian can keep.
+    // Magnitude of the terms of the gap, relative to which it is rounded.
     let scale = |a: &SVector<T, NV>| reach(&bias).max(reach(a) * farthest(&jacobian));
-    for _ in 0..MOST_STEPS {
-        let gap = jacobian * a + bias;
-        if largest(&gap)?.1 <= epsilon::<T>() * scale(&a) {
-            return Ok(a);
-        }
-        a += correction(&mass, &jacobian, held, &gap);
-        largest(&a)?;
-    }
-    let (worst, size) = largest(&(jacobian * a + bias))?;
+    let gap = |a: &SVector<T, NV>| jacobian * a + bias;
+    let is_exact = |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * scale(a);
+    let (a, (worst, size)) = corrected(&mass, &jacobian, held, *a, gap, is_exact)?;
     if size <= epsilon::<T>().sqrt() * scale(&a) {
         return Ok(a);
     }
-    let constraint = M::CONSTRAINTS.get(worst).copied().unwrap_or_default();
+    let constraint = named::<M, NQ, NV, NU, NH, NC>(worst);
     Err(ConstraintError::Acceleration { constraint, acceleration: to_f64(size) })
 }
 
-/// The generalized forces at the velocities `driven` and the multipliers `λ` with `M a + h = τ + Jᵀ λ`: the
-/// other velocities determine the multipliers.
+/// Returns the name of a constraint.
+fn named<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+    index: usize,
+) -> &'static str
+where
+    M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
+{
+    M::CONSTRAINTS.get(index).copied().unwrap_or_default()
+}
+
+/// Returns the generalized forces at the velocities `driven` and the multipliers `λ` with
+/// `M a + h = τ + Jᵀ λ`; the equations of the other velocities determine the multipliers.
 pub(super) fn drive<
     M,
     T: Real,
@@ -115,7 +132,7 @@ where
 {
     check::<NV>(driven)?;
     let (worst, rate) = largest(&mechanism.constraint_rates(t, q, v))?;
-    let named = |worst: usize| M::CONSTRAINTS.get(worst).copied().unwrap_or_default();
+    let named = named::<M, NQ, NV, NU, NH, NC>;
     if !near(rate, v) {
         return Err(ConstraintError::Velocity { constraint: named(worst), rate: to_f64(rate) });
     }
