@@ -32,7 +32,7 @@ mod implicit_midpoint;
 mod local;
 mod path;
 mod rk4;
-mod rodas;
+pub(crate) mod rodas;
 mod rosenbrock;
 mod semi_implicit_euler;
 mod stages;

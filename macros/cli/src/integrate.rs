@@ -3,7 +3,9 @@
 //! are stiff, by the linearly implicit method RODAS (Hairer and Wanner, *Solving Ordinary Differential
 //! Equations II*, 1996, § VI.4).
 
-/// Stages: when, and the weights of those before.
+use linkwork::__private::rodas::{ADDED, GAMMA, IN_TIME, STARTS, TIMES};
+
+/// Stages of Dormand and Prince: their times, as fractions of the step, and the weights of the earlier stages.
 const STAGES: [(f64, &[f64]); 6] = [
     (1.0 / 5.0, &[1.0 / 5.0]),
     (3.0 / 10.0, &[3.0 / 40.0, 9.0 / 40.0]),
@@ -15,38 +17,6 @@ const STAGES: [(f64, &[f64]); 6] = [
 /// Weights of the difference between the fifth and the fourth order.
 const DIFFERENCE: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
-
-/// RODAS: the diagonal of its matrix.
-const GAMMA: f64 = 0.25;
-/// RODAS: stage times, as fractions of the step.
-const TIMES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
-/// RODAS: weights of the earlier stages in the state at which each stage evaluates the rates; the last row
-/// also gives the result.
-const STARTS: [&[f64]; 6] = [
-    &[],
-    &[1.544],
-    &[0.946_678_528_081_582_6, 0.255_701_169_898_328_4],
-    &[3.314_825_187_068_521, 2.896_124_015_972_201, 0.998_641_913_997_781_7],
-    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895],
-    &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
-];
-/// RODAS: weights of the earlier stages, divided by the step, that are added to the rates.
-const ADDED: [&[f64]; 6] = [
-    &[],
-    &[-5.6688],
-    &[-2.430_093_356_833_875, -0.206_359_915_709_191_5],
-    &[-0.107_352_905_815_137_5, -9.594_562_251_023_355, -20.470_286_148_096_16],
-    &[7.496_443_313_967_647, -10.246_804_314_643_52, -33.999_903_528_199_05, 11.708_908_932_061_6],
-    &[
-        8.083_246_795_921_522,
-        -7.981_132_988_064_893,
-        -31.521_594_328_743_71,
-        16.319_305_431_231_36,
-        -6.058_818_238_834_054,
-    ],
-];
-/// RODAS: weights of the partial derivative of the rates by time, times the step.
-const IN_TIME: [f64; 6] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
 
 /// Maximum number of steps from one stop to the next.
 const MAX_STEPS: usize = 1_000_000;
