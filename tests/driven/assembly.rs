@@ -6,27 +6,37 @@ use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-#[mechanism(gravity = -9.81 * y)]
-pub struct FourBar {
-    pub base: f64,
-    pub first: f64,
-    pub second: f64,
-    pub third: f64,
-    #[body(mass = 1, com = first / 3 * x, inertia = rod(1, first, x))]
-    crank: Body,
-    #[body(mass = 1.5, com = second / 2 * x + 0.1 * y, inertia = rod(1.5, second, x))]
-    coupler: Body,
-    #[body(mass = 0.8, com = third / 2 * x, inertia = rod(0.8, third, x))]
-    rocker: Body,
-    #[joint(ground -> crank, about = z)]
-    shaft: Pin,
-    #[joint(crank.at(first * x) -> coupler, about = z)]
-    knee: Pin,
-    #[joint(ground.at(base * x) -> rocker, about = z)]
-    pivot: Pin,
-    #[joint(coupler.at(second * x) -> rocker.at(third * x), about = z)]
-    last: Pin,
+/// Declares a four-bar with further fields.
+macro_rules! four_bar {
+    ($(#[$about:meta])* $visibility:vis $name:ident, { $($more:tt)* }) => {
+        $(#[$about])*
+        #[mechanism(gravity = -9.81 * y)]
+        $visibility struct $name {
+            $visibility base: f64,
+            $visibility first: f64,
+            $visibility second: f64,
+            $visibility third: f64,
+            #[body(mass = 1, com = first / 3 * x, inertia = rod(1, first, x))]
+            crank: Body,
+            #[body(mass = 1.5, com = second / 2 * x + 0.1 * y, inertia = rod(1.5, second, x))]
+            coupler: Body,
+            #[body(mass = 0.8, com = third / 2 * x, inertia = rod(0.8, third, x))]
+            rocker: Body,
+            #[joint(ground -> crank, about = z)]
+            shaft: Pin,
+            #[joint(crank.at(first * x) -> coupler, about = z)]
+            knee: Pin,
+            #[joint(ground.at(base * x) -> rocker, about = z)]
+            pivot: Pin,
+            #[joint(coupler.at(second * x) -> rocker.at(third * x), about = z)]
+            last: Pin,
+            $($more)*
+        }
+    };
 }
+pub(super) use four_bar;
+
+four_bar!(pub FourBar, {});
 
 impl FourBar {
     /// Angles of the joints.

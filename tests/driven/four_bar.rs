@@ -1,47 +1,30 @@
 //! Random four-bars at random speeds and accelerations of the crank: d'Alembert's principle on corners by
 //! circles.
 
-use super::assembly::{FourBar, corners, random};
+use super::assembly::{FourBar, corners, four_bar, random};
+use super::derivative;
 use linkwork::prelude::*;
 use support::compare::assert_close;
 use support::random::Random;
 
-/// The same linkage with a crank that time drives.
-#[mechanism(gravity = -9.81 * y)]
-struct Driven {
-    base: f64,
-    first: f64,
-    second: f64,
-    third: f64,
-    start: f64,
-    speed: f64,
-    growth: f64,
-    #[body(mass = 1, com = first / 3 * x, inertia = rod(1, first, x))]
-    crank: Body,
-    #[body(mass = 1.5, com = second / 2 * x + 0.1 * y, inertia = rod(1.5, second, x))]
-    coupler: Body,
-    #[body(mass = 0.8, com = third / 2 * x, inertia = rod(0.8, third, x))]
-    rocker: Body,
-    #[joint(ground -> crank, about = z)]
-    shaft: Pin,
-    #[joint(crank.at(first * x) -> coupler, about = z)]
-    knee: Pin,
-    #[joint(ground.at(base * x) -> rocker, about = z)]
-    pivot: Pin,
-    #[joint(coupler.at(second * x) -> rocker.at(third * x), about = z)]
-    last: Pin,
-    #[constraint(shaft = start + speed * t + growth * t * t / 2)]
-    motor: Holonomic,
-}
+four_bar!(
+    /// The linkage with a crank that time drives.
+    Driven,
+    {
+        start: f64,
+        speed: f64,
+        growth: f64,
+        #[constraint(shaft = start + speed * t + growth * t * t / 2)]
+        motor: Holonomic,
+    }
+);
 
-/// First and second derivatives, by differences of order six.
+/// Returns the first and second derivatives at zero, by central differences of order six.
 fn differences(f: impl Fn(f64) -> f64) -> [f64; 2] {
     let h = 2e-3;
-    let [a, b, c, d, e, g, m] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 0.0].map(|k| f(k * h));
-    [
-        (g - a - 9.0 * (e - b) + 45.0 * (d - c)) / (60.0 * h),
-        (2.0 * (a + g) - 27.0 * (b + e) + 270.0 * (c + d) - 490.0 * m) / (180.0 * h * h),
-    ]
+    let even = |k: f64| f(k * h) + f(-k * h);
+    let second = (2.0 * even(3.0) - 27.0 * even(2.0) + 270.0 * even(1.0) - 490.0 * f(0.0)) / (180.0 * h * h);
+    [derivative(f, 0.0), second]
 }
 
 /// The torque on the crank.

@@ -77,53 +77,51 @@ slider_crank!(Whole, (, derivatives, second_derivatives, batch, prepare, sensiti
     gas: Force,
 });
 
-/// The crank is placed by time.
-#[mechanism(gravity = -9.81 * y)]
-struct Framed {
-    omega: f64,
-    #[frame(ground, z(omega * t))]
-    turned: Frame,
-    #[body(mass = 1.2, com = 0.02 * x, inertia = rod(1.2, 0.04, x), frame = turned)]
-    crank: Body,
-    #[body(mass = 0.8, com = 0.065 * x, inertia = rod(0.8, 0.13, x))]
-    rod: Body,
-    #[body(mass = 0.5)]
-    piston: Body,
-    #[joint(crank.at(0.04 * x) -> rod, about = z)]
-    big_end: Pin,
-    #[joint(ground -> piston, along = x)]
-    cylinder: Sleeve,
-    #[joint(rod.at(0.13 * x) -> piston, about = z)]
-    small_end: Pin,
-    #[output(crank)]
-    on_crank: FreeBody,
+/// Declares a slider-crank whose crank is placed by time, with an argument of its last joint and further fields.
+macro_rules! placed_by_time {
+    ($(#[$about:meta])* $name:ident, ($($joint:tt)*), { $($more:tt)* }) => {
+        $(#[$about])*
+        #[mechanism(gravity = -9.81 * y)]
+        struct $name {
+            omega: f64,
+            #[frame(ground, z(omega * t))]
+            turned: Frame,
+            #[body(mass = 1.2, com = 0.02 * x, inertia = rod(1.2, 0.04, x), frame = turned)]
+            crank: Body,
+            #[body(mass = 0.8, com = 0.065 * x, inertia = rod(0.8, 0.13, x))]
+            rod: Body,
+            #[body(mass = 0.5)]
+            piston: Body,
+            #[joint(crank.at(0.04 * x) -> rod, about = z)]
+            big_end: Pin,
+            #[joint(ground -> piston, along = x)]
+            cylinder: Sleeve,
+            #[joint(rod.at(0.13 * x) -> piston, about = z $($joint)*)]
+            small_end: Pin,
+            #[output(crank)]
+            on_crank: FreeBody,
+            $($more)*
+        }
+    };
 }
 
-/// The loop is solved in closed form as well: no coordinate is left.
-#[mechanism(gravity = -9.81 * y)]
-struct ClosedForm {
-    omega: f64,
-    #[frame(ground, z(omega * t))]
-    turned: Frame,
-    #[body(mass = 1.2, com = 0.02 * x, inertia = rod(1.2, 0.04, x), frame = turned)]
-    crank: Body,
-    #[body(mass = 0.8, com = 0.065 * x, inertia = rod(0.8, 0.13, x))]
-    rod: Body,
-    #[body(mass = 0.5)]
-    piston: Body,
-    #[joint(crank.at(0.04 * x) -> rod, about = z)]
-    big_end: Pin,
-    #[joint(ground -> piston, along = x)]
-    cylinder: Sleeve,
-    #[joint(rod.at(0.13 * x) -> piston, about = z, branch = 1)]
-    small_end: Pin,
-    #[output(crank)]
-    on_crank: FreeBody,
-    #[output(dot(r(piston / ground), x))]
-    stroke: Scalar,
-    #[output(reaction_force(small_end))]
-    pin_force: Vector,
-}
+placed_by_time!(
+    /// The loop is a constraint.
+    Framed,
+    (),
+    {}
+);
+placed_by_time!(
+    /// The loop is solved in closed form as well: no coordinate is left.
+    ClosedForm,
+    (, branch = 1),
+    {
+        #[output(dot(r(piston / ground), x))]
+        stroke: Scalar,
+        #[output(reaction_force(small_end))]
+        pin_force: Vector,
+    }
+);
 
 /// Angle of the rod, its rate and acceleration; place, rate and acceleration of the piston; torque on the
 /// crank and the force of the crank's bearing on it, at a constant speed of the crank.
