@@ -46,7 +46,7 @@ fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
             let (at, opening) = misaligned(text).map_or((at, opening), |at| (at, '{'));
             (at, format!("this is never closed: `{}` is missing", partner(opening)), Vec::new())
         }
-        _ => (at, "this is no token of Rust, or a text that is never closed".to_string(), Vec::new()),
+        _ => (at, "this is not a Rust token, or a string that is never closed".to_string(), Vec::new()),
     }
 }
 

@@ -134,8 +134,10 @@ impl<'a> Reader<'a> {
             joints.extend(self.read_joint((*child, outer, *class), &body, cx));
         }
         if mocap && (open.parent.text != GROUND || !joints.is_empty()) {
-            let message = format!("mocap body {} does not stand still in the world", quote(&body.text));
-            cx.error(&body.place, message, |d| d.help("it stands in `<worldbody>` and has no joint"));
+            let message = format!("mocap body {} is not fixed to the world", quote(&body.text));
+            cx.error(&body.place, message, |d| {
+                d.help("a mocap body is a child of `<worldbody>` and has no joint")
+            });
         }
         self.refuse_alignment(&inside, cx);
         if self.options.base == Base::Free && open.parent.text == GROUND && joints.is_empty() {

@@ -147,7 +147,7 @@ impl<'a> Reader<'a> {
             if let Some(joint) = &joint
                 && !known.insert(joint.text.clone())
             {
-                let message = format!("joint {} stands in one tendon twice", quote(&joint.text));
+                let message = format!("joint {} occurs twice in one tendon", quote(&joint.text));
                 cx.error(&joint.place, message, |d| d.help("add its two coefficients"));
             }
             let weight = number(child, "coef", cx).map(|weight| weight.value);

@@ -27,7 +27,7 @@ fn without(mut constraint: Constraint, frozen: &BTreeMap<&str, f64>, cx: &mut Cx
     let (Some(value), Some(other)) = (number(&constraint.value), other) else { return Some(constraint) };
     if (value - other).abs() > ROUNDING * (1.0 + value.abs() + other.abs()) {
         let message = format!(
-            "the coupling {} contradicts others: the joints that it binds stand still, and it is off by {}",
+            "the coupling {} contradicts others: the joints that it couples cannot move, and it is violated by {}",
             quote(&constraint.name.text),
             value - other
         );

@@ -406,7 +406,7 @@ fn couplings_of_joints_that_stand_still() {
     };
     check_model(
         &model("<joint name='g' joint1='k' polycoef='3'/>"),
-        "r.xml:3:117: the coupling `g` contradicts others: the joints that it binds stand still, and it is off by -2
+        "r.xml:3:117: the coupling `g` contradicts others: the joints that it couples cannot move, and it is violated by -2
          = help: remove it, or what holds these joints",
     );
     check_model(

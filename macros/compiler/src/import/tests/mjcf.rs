@@ -500,7 +500,7 @@ fn what_mujoco_refuses() {
         (motor("joint='j' site='s'"), "an actuator acts on one thing, but here are `joint` and `site`"),
         (
             fixed("><joint joint='j' coef='1'/><joint joint='j' coef='2'/>"),
-            "joint `j` stands in one tendon twice",
+            "joint `j` occurs twice in one tendon",
         ),
         (fixed(">"), "`<fixed>` without a joint"),
         (fixed("armature='-1'><joint joint='j' coef='1'/>"), "negative armature `-1`"),
@@ -510,7 +510,7 @@ fn what_mujoco_refuses() {
         ),
         (
             "<worldbody><body><joint/><body name='m' mocap='true'/></body></worldbody>".to_string(),
-            "mocap body `m` does not stand still in the world",
+            "mocap body `m` is not fixed to the world",
         ),
         (
             "<worldbody><body><freejoint align='true'/><geom size='1'/></body></worldbody>".to_string(),

@@ -155,7 +155,7 @@ fn one_parameter(
     Some(error)
 }
 
-/// Things that do not fit, at the place where they meet, and what made each of them what it is.
+/// Returns the error for quantities of different units, at the operator between them, with the origin of each unit.
 fn several(
     d: &Description,
     mismatch: &Mismatch<'_>,
@@ -171,7 +171,7 @@ fn several(
     };
     let mut diagnostic = Diagnostic::new(place.clone(), message(mismatch, &found, &expected));
     if names.is_empty() {
-        diagnostic.help("a factor is missing; a number in front has any unit that it needs");
+        diagnostic.help("multiply one of them by a factor, as in `2 * x`: a number that multiplies coordinates, rates or inputs alone takes the unit that is missing");
     }
     for (v, e) in names.iter().take(MOST_PLACES) {
         let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);
