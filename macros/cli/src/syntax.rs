@@ -5,7 +5,7 @@ use crate::input::Mistake;
 use proc_macro2::{Delimiter, LineColumn, TokenStream, TokenTree};
 use std::str::FromStr;
 
-/// The error of a text that is no Rust file. `error` is what the parser reports.
+/// Returns the error of a text that is not a Rust file; `error` is the error of the parser.
 pub fn located(text: &str, error: &syn::Error) -> Mistake {
     let (at, message, notes) = match TokenStream::from_str(text) {
         Ok(tokens) if error.to_string().starts_with("expected `,`") => {
@@ -18,15 +18,15 @@ pub fn located(text: &str, error: &syn::Error) -> Mistake {
     Mistake { at: Some((at.line, at.column + 1)), message, notes, ..Mistake::default() }
 }
 
-/// The error of a text whose brackets do not match, or that has something else than tokens at the place where
-/// reading it stopped.
+/// Returns the position, message and notes for a text that cannot be split into tokens beyond `at`: its brackets
+/// do not match, or it has characters that begin no token.
 fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
     let (before, found) = text.split_at(index(text, at));
     let found = found.chars().next();
     match found {
         Some(closing @ (')' | ']' | '}')) => match TokenStream::from_str(before) {
             Ok(_) => (at, format!("unexpected closing delimiter: `{closing}` closes nothing"), Vec::new()),
-            // Of the text before it the innermost bracket is open.
+            // The innermost bracket that is open before it does not match.
             Err(lexed) => {
                 let open = lexed.span().start();
                 let bracket = text[index(text, open)..].chars().next().unwrap_or('(');
@@ -91,7 +91,7 @@ fn misaligned(text: &str) -> Option<LineColumn> {
     found
 }
 
-/// The end of the token before a place, and the token there.
+/// Returns the end of the last token before a position, and the text `, found …` for the token at it.
 fn around(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) {
     let (mut before, mut after, mut todo): (Option<LineColumn>, _, _) =
         (None, String::new(), vec![tokens.clone()]);
@@ -116,7 +116,7 @@ fn around(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) 
     (before, after)
 }
 
-/// The closing bracket of an opening one.
+/// Returns the closing bracket of an opening one.
 fn partner(opening: char) -> char {
     match opening {
         '(' => ')',
@@ -125,7 +125,7 @@ fn partner(opening: char) -> char {
     }
 }
 
-/// The index of a place in a text, whose columns count characters.
+/// Returns the byte index of a position, whose columns count characters.
 fn index(text: &str, at: LineColumn) -> usize {
     let text = text.strip_prefix('\u{feff}').map_or((text, 0), |rest| (rest, '\u{feff}'.len_utf8()));
     let (text, skipped) = text;
@@ -139,8 +139,8 @@ fn index(text: &str, at: LineColumn) -> usize {
 mod tests {
     use super::located;
 
-    /// Places as rustc 1.95 prints them, but for brackets that are open at the end of a file: there it points
-    /// at the end, and labels the bracket.
+    /// Positions of rustc 1.95, except for brackets that are open at the end of a file: rustc points at the end of
+    /// the file and labels the bracket.
     #[test]
     fn errors_are_located_as_rustc_locates_them() {
         for (text, at, message) in [
