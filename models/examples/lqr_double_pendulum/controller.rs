@@ -1,7 +1,7 @@
 //! A cart with two poles, one on the other, and what keeps them upright. Nothing here needs the standard
 //! library: the static library in `../controller_for_c` is made of this file, too.
 
-use linkwork::optimal::{Policy, Quadratic, Value};
+use linkwork::optimal::{Policy, Quadratic};
 use linkwork::prelude::*;
 
 /// A cart on a rail with a pole pinned to it, and another pole pinned to the end of the first; both are
@@ -31,8 +31,6 @@ pub struct Cart {
 pub type State = SVector<f64, { Cart::NV }>;
 /// How the push follows from the state.
 pub type Regulator = Policy<f64, { Cart::NV }, { Cart::NU }>;
-/// The costs that are to come.
-pub type CostsToGo = Value<f64, { Cart::NV }>;
 
 /// What a period costs: displacements, angles, rates and pushes.
 pub fn costs() -> Quadratic<f64, { Cart::NV }, { Cart::NU }> {

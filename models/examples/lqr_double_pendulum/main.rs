@@ -9,8 +9,9 @@ mod controller;
 #[path = "../regulator/mod.rs"]
 mod regulator;
 
-use controller::{Cart, CostsToGo, Regulator, State, control, costs};
+use controller::{Cart, Regulator, State, control, costs};
 use linkwork::discrete;
+use linkwork::optimal::Value;
 use linkwork::prelude::*;
 use regulator::regulator;
 
@@ -44,7 +45,7 @@ fn run(regulator: &Regulator, lower: f64, upper: f64, seconds: f64) -> Result<Ru
 }
 
 /// Prints what becomes of three starts, and holds it against what the regulator promises.
-fn three_starts(regulator: &Regulator, to_go: &CostsToGo) -> Result<(), Error> {
+fn three_starts(regulator: &Regulator, to_go: &Value<f64, { Cart::NV }>) -> Result<(), Error> {
     println!("lower, rad   upper, rad   strongest push, N   costs   promised   left after 6 s");
     for (lower, upper) in [(0.01, 0.0), (0.1, 0.1), (0.2, -0.05)] {
         let Run { q, v, strongest, costs } = run(regulator, lower, upper, 6.0)?;
