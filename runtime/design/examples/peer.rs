@@ -1,6 +1,6 @@
-//! Results for systems that come by standard input, to be compared with python-control
-//! (`benches/peers/run control`): a line `n m p`, then the entries of A, B, C, D by rows. Prints a line a
-//! result, then the seconds that each took.
+//! Results for systems read from standard input, for comparison with python-control
+//! (`benches/peers/run control`). Each system is a line `n m p`, then the entries of A, B, C, D by rows.
+//! Prints one line per result, then the time in seconds of each kind of result.
 
 use linkwork_design::matrices::{Cost, discrete_riccati, lyapunov, riccati};
 use linkwork_design::{Error, Hold, StateSpace};
@@ -20,7 +20,7 @@ fn pairs(all: &[Complex<f64>]) -> Vec<f64> {
     all.iter().flat_map(|x| [x.re, x.im]).collect()
 }
 
-/// A result by its name.
+/// Computes the result with this name.
 fn result(name: &str, s: &StateSpace) -> Numbers {
     let (n, m) = s.b().shape();
     let cost = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));

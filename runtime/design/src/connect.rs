@@ -4,7 +4,7 @@ use crate::matrices::solve;
 use crate::{Error, Port, Signal, StateSpace};
 use nalgebra::DMatrix;
 
-/// `[one 0; 0 other]`.
+/// Returns the block-diagonal matrix `[one 0; 0 other]`.
 fn diagonal(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
     let mut m = DMatrix::zeros(one.nrows() + other.nrows(), one.ncols() + other.ncols());
     m.view_mut((0, 0), one.shape()).copy_from(one);
@@ -17,7 +17,8 @@ fn chained(one: &[Signal], other: &[Signal]) -> Vec<Signal> {
 }
 
 impl StateSpace {
-    /// The common period; a system without states and period fits all.
+    /// Returns the common period of two systems. A system without states and without a period is compatible
+    /// with every period.
     fn common_period(&self, other: &Self) -> Result<Option<f64>, Error> {
         let constant = |s: &Self| s.order() == 0 && s.period.is_none();
         let alike = match (self.period, other.period) {
@@ -31,7 +32,8 @@ impl StateSpace {
         Ok(self.period.or(other.period))
     }
 
-    /// Both side by side: inputs and outputs of this one, then those of the other.
+    /// Combines two systems without connecting them: inputs and outputs of this system precede those of the
+    /// other.
     ///
     /// # Errors
     ///
@@ -49,11 +51,11 @@ impl StateSpace {
         })
     }
 
-    /// This one, then `next`: the outputs of this one are the inputs of the other, in order.
+    /// Connects `next` behind this system: the outputs of this system are the inputs of `next`, in order.
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of them, [`Error::Time`] for different periods.
+    /// [`Error::Count`] for different numbers of outputs and inputs, [`Error::Time`] for different periods.
     pub fn series(&self, next: &Self) -> Result<Self, Error> {
         let (found, expected) = (self.outputs.len(), next.inputs.len());
         if found != expected {
@@ -80,11 +82,11 @@ impl StateSpace {
         })
     }
 
-    /// Both with the same inputs; their outputs are added.
+    /// Connects two systems in parallel: both have the same inputs, and their outputs are added.
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for other numbers of inputs or outputs, [`Error::Time`] for different periods.
+    /// [`Error::Count`] for different numbers of inputs or outputs, [`Error::Time`] for different periods.
     pub fn parallel(&self, other: &Self) -> Result<Self, Error> {
         let counts = [("inputs", &self.inputs, &other.inputs), ("outputs", &self.outputs, &other.outputs)];
         for (what, one, two) in counts {
@@ -106,11 +108,12 @@ impl StateSpace {
         })
     }
 
-    /// Negative feedback through `back`: `u = r − back(y)`. Inputs and outputs stay those of this system.
+    /// Closes a negative feedback loop through `back`: `u = r − back(y)`. Inputs and outputs remain those of
+    /// this system.
     ///
     /// # Errors
     ///
-    /// [`Error::AlgebraicLoop`] where `I + D₁ D₂` is singular, [`Error::Count`], [`Error::Time`].
+    /// [`Error::AlgebraicLoop`] if `I + D₁ D₂` is singular, [`Error::Count`], [`Error::Time`].
     pub fn feedback(&self, back: &Self) -> Result<Self, Error> {
         for (what, one, two) in [
             ("inputs of the feedback", &self.outputs, &back.inputs),
@@ -156,32 +159,32 @@ impl StateSpace {
         })
     }
 
-    /// Feedback by a constant: `u = r − gain y`.
+    /// Closes a feedback loop with a constant gain: `u = r − gain y`.
     ///
     /// # Errors
     ///
-    /// [`Error::Shape`] of a gain that does not fit, [`Error::AlgebraicLoop`].
+    /// [`Error::Shape`] for a gain of another shape, [`Error::AlgebraicLoop`].
     pub fn feedback_gain(&self, gain: &DMatrix<f64>) -> Result<Self, Error> {
         crate::matrices::check("the gain", gain, self.inputs.len(), self.outputs.len())?;
         self.feedback(&Self::gain(gain.clone())?)
     }
 
-    /// Feedback of all states: `u = r − K x`, so `A − B K`.
+    /// Applies state feedback `u = r − K x`; the state matrix becomes `A − B K`.
     ///
     /// # Errors
     ///
-    /// [`Error::Shape`] of a gain that does not fit.
+    /// [`Error::Shape`] for a gain of another shape.
     pub fn state_feedback(&self, gain: &DMatrix<f64>) -> Result<Self, Error> {
         crate::matrices::check("the gain", gain, self.inputs.len(), self.order())?;
         let (a, c) = (&self.a - &self.b * gain, &self.c - &self.d * gain);
         Ok(Self { a, c, ..self.clone() })
     }
 
-    /// Some inputs and outputs of this system, by names or places.
+    /// Selects inputs and outputs of this system, by name or index.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are.
+    /// [`Error::Unknown`] with the list of existing names.
     pub fn select<'a, I: Into<Port<'a>>, O: Into<Port<'a>>>(
         &self,
         outputs: impl IntoIterator<Item = O>,
@@ -199,11 +202,11 @@ impl StateSpace {
         })
     }
 
-    /// The system from one input to one output.
+    /// Returns the system from one input to one output.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are.
+    /// [`Error::Unknown`] with the list of existing names.
     pub fn channel<'a>(
         &self,
         output: impl Into<Port<'a>>,
@@ -212,7 +215,7 @@ impl StateSpace {
         self.select([output.into()], [input.into()])
     }
 
-    /// Every state as an output, in place of the outputs.
+    /// Replaces the outputs by the states.
     pub fn with_states_as_outputs(&self) -> Self {
         let n = self.order();
         Self {
@@ -223,7 +226,7 @@ impl StateSpace {
         }
     }
 
-    /// Refuses systems with several inputs or outputs.
+    /// Reports an error for a system with more than one input or output.
     pub(crate) fn check_single(&self) -> Result<(), Error> {
         for (what, signals) in [("input", &self.inputs), ("output", &self.outputs)] {
             if signals.len() != 1 {

@@ -1,18 +1,19 @@
-//! Frequencies at which a response has a given gain or is real, by eigenvalues of matrix pencils.
+//! Frequencies at which a response has a given gain or is real, computed as eigenvalues of matrix pencils.
 
 use crate::matrices::{C, balance_system, eigenvalues, solve};
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
-/// A pencil `M − s E` that is singular at the frequencies looked for; `s` is `z` of a discrete system.
+/// Matrix pencil `M − s E` that is singular at the frequencies sought; `s` is `z` for a discrete system.
 struct Pencil {
     m: DMatrix<f64>,
     e: DMatrix<f64>,
 }
 
 impl Pencil {
-    /// Finite eigenvalues, as `σ + 1 / μ` with the eigenvalues `μ` of `(M − σ E)⁻¹ E`. Infinite ones may come
-    /// out as large ones. A pencil that is singular for all `s` has none.
+    /// Returns finite eigenvalues as `σ + 1 / μ`, where `μ` are the eigenvalues of `(M − σ E)⁻¹ E`. Infinite
+    /// eigenvalues may be returned as large ones. For a pencil that is singular for all `s`, the list is
+    /// empty.
     fn eigenvalues(&self, shift: f64) -> Vec<C> {
         let inverse = solve("the pencil", &(&self.m - &self.e * shift), &self.e);
         let found = inverse.and_then(|inverse| eigenvalues(&inverse)).unwrap_or_default();
@@ -22,17 +23,17 @@ impl Pencil {
 }
 
 impl StateSpace {
-    /// The frequency of a complex number in the plane of poles and zeros, rad/s: `|Im s|`, or `|arg z| / h`.
+    /// Returns the frequency of a point in the plane of poles and zeros, rad/s: `|Im s|`, or `|arg z| / h`.
     pub(crate) fn frequency_of(&self, root: C) -> f64 {
         self.period.map_or(root.im.abs(), |h| root.arg().abs() / h)
     }
 
-    /// Upper end of the frequency axis, rad/s: infinity, or Nyquist's frequency.
+    /// Returns the upper end of the frequency axis, rad/s: infinity, or the Nyquist frequency.
     pub(crate) fn highest_frequency(&self) -> f64 {
         self.period.map_or(f64::INFINITY, |h| std::f64::consts::PI / h)
     }
 
-    /// Frequencies of poles and zeros: of their oscillation and of their magnitude, rad/s.
+    /// Returns the damped and the natural frequencies of all poles and zeros, rad/s.
     pub(crate) fn root_frequencies(&self) -> Result<Vec<f64>, Error> {
         let mut all = Vec::new();
         for root in self.poles()?.into_iter().chain(self.zeros().unwrap_or_default()) {
@@ -43,8 +44,8 @@ impl StateSpace {
         Ok(all)
     }
 
-    /// Frequencies that include all at which a singular value of the response is `level`, from low to high.
-    /// Further ones may be among them.
+    /// Returns candidates that include all frequencies at which a singular value of the response equals
+    /// `level`, in ascending order.
     pub(crate) fn level_frequencies(&self, level: f64) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let ((n, m), p) = (b.shape(), c.nrows());
@@ -73,8 +74,8 @@ impl StateSpace {
         self.pencil_frequencies(&Pencil { m: left, e: right })
     }
 
-    /// Frequencies that include all at which the response of a single channel is real, from low to high:
-    /// zeros of `G(s) − G(−s)`, or of `G(z) − G(1 / z)`. Further ones may be among them.
+    /// Returns candidates that include all frequencies at which the response of a single channel is real, in
+    /// ascending order. They are zeros of `G(s) − G(−s)`, or of `G(z) − G(1 / z)`.
     pub(crate) fn real_frequencies(&self) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let n = a.nrows();
@@ -97,8 +98,8 @@ impl StateSpace {
         self.pencil_frequencies(&Pencil { m: left, e: right })
     }
 
-    /// Frequencies of a pencil's eigenvalues from several shifts: each is accurate for eigenvalues of about
-    /// its magnitude.
+    /// Returns the frequencies of a pencil's eigenvalues, computed with several shifts. Each shift is
+    /// accurate for eigenvalues of about its own magnitude.
     fn pencil_frequencies(&self, pencil: &Pencil) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let mut scales = self.root_frequencies()?;

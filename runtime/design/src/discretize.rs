@@ -1,20 +1,21 @@
-//! Discretisation, and back.
+//! Discretisation of continuous systems, and its inverse.
 
 use crate::matrices::{C, exponential, logarithm, solve};
 use crate::{Error, StateSpace, ZerosPolesGain};
 use nalgebra::DMatrix;
 
-/// How a continuous system becomes a discrete one.
+/// Method of discretisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Hold {
-    /// Inputs are constant from one instant to the next: exact for a digital controller.
+    /// Zero-order hold: inputs are constant between sampling instants. Exact for a digital controller.
     Zero,
-    /// Inputs are straight from one instant to the next (the triangle hold): exact for measured inputs.
+    /// First-order (triangle) hold: inputs are piecewise linear between sampling instants. Exact for measured
+    /// inputs that vary linearly.
     First,
-    /// The trapezoidal rule, `s = 2 (z − 1) / (h (z + 1))`, after Tustin.
+    /// Trapezoidal rule of Tustin, `s = 2 (z − 1) / (h (z + 1))`.
     Tustin,
-    /// Tustin's, exact at this frequency, rad/s.
+    /// Tustin's rule prewarped to be exact at this frequency, rad/s.
     Prewarped(f64),
 }
 
@@ -22,7 +23,7 @@ fn check_period(period: f64) -> Result<(), Error> {
     if period > 0.0 && period.is_finite() { Ok(()) } else { Err(Error::Period { period }) }
 }
 
-/// `a` of `s = a (z − 1) / (z + 1)`.
+/// Returns the factor `a` of `s = a (z − 1) / (z + 1)`.
 fn bilinear(hold: Hold, h: f64) -> Result<f64, Error> {
     match hold {
         Hold::Prewarped(w) if !(w > 0.0 && w * h < std::f64::consts::PI) => {
@@ -38,13 +39,13 @@ impl StateSpace {
         if self.period.is_some() { Err(Error::Time { periods: [self.period, None] }) } else { Ok(()) }
     }
 
-    /// The discrete system that gives the outputs at the instants `0, h, 2 h, …` (Franklin, Powell and
-    /// Workman, *Digital Control of Dynamic Systems*, ch. 4 and 6).
+    /// Returns the discrete system with the outputs at the sampling instants `0, h, 2 h, …` (Franklin, Powell
+    /// and Workman, *Digital Control of Dynamic Systems*, ch. 4 and 6).
     ///
     /// ```
     /// use linkwork_design::{Hold, TransferFunction};
     ///
-    /// // A lag of one second sampled ten times a second.
+    /// // A lag of one second, sampled at 10 Hz.
     /// let lag = TransferFunction::new([1.0], [1.0, 1.0])?.state_space()?;
     /// assert!((lag.discretize(0.1, Hold::Zero)?.poles()?[0].re - (-0.1_f64).exp()).abs() < 1e-15);
     /// # Ok::<(), linkwork_design::Error>(())
@@ -52,8 +53,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Period`] unless it is positive and finite, [`Error::Time`] of a system that is discrete
-    /// already, [`Error::Singular`] where Tustin's rule meets a pole at `2 / h`.
+    /// [`Error::Period`] unless the period is positive and finite, [`Error::Time`] for a discrete system,
+    /// [`Error::Singular`] if Tustin's rule is applied to a pole at `2 / h`.
     pub fn discretize(&self, period: f64, hold: Hold) -> Result<Self, Error> {
         self.expect_continuous()?;
         check_period(period)?;
@@ -93,12 +94,12 @@ impl StateSpace {
         Self { a, b, c, d, ..self.clone() }.with_period(period)
     }
 
-    /// The continuous system whose discretisation this one is.
+    /// Returns the continuous system whose discretisation is this system.
     ///
     /// # Errors
     ///
-    /// [`Error::Time`] of a continuous system; [`Error::Range`] with a pole that is zero or negative, which
-    /// no held system has; [`Error::Singular`] where Tustin's rule meets a pole at −1.
+    /// [`Error::Time`] for a continuous system; [`Error::Range`] for a zero or negative real pole, which no
+    /// discretisation with a hold has; [`Error::Singular`] if Tustin's rule is applied to a pole at −1.
     pub fn undiscretize(&self, hold: Hold) -> Result<Self, Error> {
         let Some(period) = self.period else { return Err(Error::Time { periods: [None, Some(0.0)] }) };
         let (n, m) = self.b.shape();
@@ -144,15 +145,16 @@ impl StateSpace {
 }
 
 impl ZerosPolesGain {
-    /// Discretises by matching poles and zeros: they become `e^{s h}`, zeros at infinity become −1 except for
-    /// one, which stays there, and the gain at low frequencies is kept. With poles or zeros at rest it is
-    /// that of their limit: `1 / s` becomes `h / (z − 1)`, and `1 / s²` becomes `h² (z + 1) / (2 (z − 1)²)`.
+    /// Discretises by matching poles and zeros, which become `e^{s h}`. Zeros at infinity become −1 except
+    /// for one, which remains at infinity, and the gain at low frequencies is preserved. For poles or zeros
+    /// at `s = 0`, the gain is the limit: `1 / s` becomes `h / (z − 1)`, and `1 / s²` becomes
+    /// `h² (z + 1) / (2 (z − 1)²)`.
     ///
     /// # Errors
     ///
-    /// [`Error::Period`], [`Error::Improper`], [`Error::Time`] of a discrete one, [`Error::Singular`] where a
-    /// pole or a zero that is not at rest oscillates with a multiple of the sampling frequency, and looks
-    /// like one at rest.
+    /// [`Error::Period`], [`Error::Improper`], [`Error::Time`] for a discrete system, [`Error::Singular`] for
+    /// a nonzero pole or zero whose frequency is a multiple of the sampling frequency, since its image is
+    /// `z = 1`.
     pub fn matched(&self, period: f64) -> Result<Self, Error> {
         check_period(period)?;
         if self.period.is_some() {
@@ -166,8 +168,8 @@ impl ZerosPolesGain {
         let mut zeros = map(&self.zeros);
         let excess = (denominator - numerator).saturating_sub(1);
         zeros.extend(std::iter::repeat_n(C::new(-1.0, 0.0), excess));
-        // A factor `s − r` has the value `−r` at rest, its image at `z = 1` has `1 − e^{r h}`: their ratio,
-        // in the limit `h`.
+        // A factor `s − r` has the value `−r` at `s = 0`; its image at `z = 1` has the value
+        // `1 − e^{r h}`. Their ratio tends to `h` for small `r`.
         let ratio = |root: &C| match root.norm() {
             0.0 => C::new(period, 0.0),
             _ => exponential_less_one(root * period) / root,
@@ -185,7 +187,7 @@ impl ZerosPolesGain {
     }
 }
 
-/// `e^x − 1` without cancellation near zero.
+/// Computes `e^x − 1` without cancellation near zero.
 fn exponential_less_one(x: C) -> C {
     let half = (0.5 * x.im).sin();
     C::new(x.re.exp_m1() * x.im.cos() - 2.0 * half * half, x.re.exp() * x.im.sin())

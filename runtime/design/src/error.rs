@@ -1,9 +1,9 @@
-//! Why a result does not exist.
+//! Errors of the analyses of linear systems and steady states.
 
 use nalgebra::Complex;
 use std::fmt;
 
-/// A number of things.
+/// Count with a noun, in the singular for one.
 struct Counted(usize, &'static str);
 
 impl fmt::Display for Counted {
@@ -15,163 +15,163 @@ impl fmt::Display for Counted {
     }
 }
 
-/// Why a result does not exist. Every variant names what is to blame.
+/// Reason why a result does not exist. Every variant names the cause.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A matrix has another shape than the others ask for.
+    /// A matrix whose shape does not fit the other matrices.
     Shape {
         /// The matrix.
         matrix: &'static str,
-        /// Rows and columns that fit.
+        /// Expected rows and columns.
         expected: (usize, usize),
-        /// Rows and columns that it has.
+        /// Actual rows and columns.
         found: (usize, usize),
     },
     /// A matrix, polynomial or list has an entry that is infinite or NaN.
     NotFinite {
-        /// What has it.
+        /// Name of the matrix, polynomial or list.
         what: &'static str,
     },
-    /// A signal of this name does not exist.
+    /// A signal name that does not exist.
     Unknown {
-        /// State, input or output.
+        /// Kind of the signal: state, input or output.
         kind: &'static str,
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// The names that there are.
+        /// Existing names.
         known: Vec<String>,
     },
-    /// A signal of this name is asked for twice.
+    /// A signal name that is requested twice.
     Repeated {
-        /// State, input or output.
+        /// Kind of the signal: state, input or output.
         kind: &'static str,
-        /// Its name.
+        /// Repeated name.
         name: String,
     },
-    /// A number of signals or values that does not fit.
+    /// A number of signals or values that differs from the expected number.
     Count {
-        /// What is counted.
+        /// Name of the counted objects.
         what: &'static str,
-        /// How many fit.
+        /// Expected number.
         expected: usize,
-        /// How many there are.
+        /// Actual number.
         found: usize,
     },
     /// A sampling period that is not positive and finite, s.
     Period {
-        /// What was given.
+        /// Rejected value, s.
         period: f64,
     },
-    /// Systems of different periods, or a discrete one where a continuous one is expected, or the reverse.
+    /// Systems of different periods, or a discrete system where a continuous one is expected, or the reverse.
     Time {
-        /// Periods that differ, s; none of a continuous system, zero for any period.
+        /// The two periods, s; `None` for a continuous system, zero for an arbitrary period.
         periods: [Option<f64>; 2],
     },
-    /// More zeros than poles: no state space, no response.
+    /// More zeros than poles: neither a state-space system nor a response exists.
     Improper {
         /// Degree of the numerator.
         numerator: usize,
         /// Degree of the denominator.
         denominator: usize,
     },
-    /// The result exists for stable systems alone.
+    /// An unstable system, for a result that exists only for stable systems.
     Unstable {
-        /// A pole that is not stable.
+        /// Pole that is not stable.
         pole: Complex<f64>,
     },
-    /// No input moves an unstable mode: no regulator exists.
+    /// An unstable mode that no input controls: no regulator exists.
     Unstabilizable {
-        /// The eigenvalue of the mode.
+        /// Eigenvalue of the mode.
         mode: Complex<f64>,
     },
-    /// No output (or cost) shows a mode that must be seen: no estimator, or no best regulator, exists.
+    /// A mode that must be observable and appears in no output (or cost): no estimator, or no optimal
+    /// regulator, exists.
     Undetectable {
-        /// The eigenvalue of the mode.
+        /// Eigenvalue of the mode.
         mode: Complex<f64>,
     },
     /// A complex pole without its conjugate, or a pole that is not finite.
     Unpaired {
-        /// The pole.
+        /// The rejected pole.
         pole: Complex<f64>,
     },
-    /// A matrix cannot be inverted where it must be.
+    /// A singular matrix or equation.
     Singular {
-        /// The matrix or equation.
+        /// Name of the matrix or equation.
         what: &'static str,
     },
     /// A matrix that must be symmetric and positive (semi)definite is not.
     Indefinite {
-        /// The matrix.
+        /// Name of the matrix.
         matrix: &'static str,
     },
     /// The connection has an algebraic loop without a solution: `I + D₁ D₂` is singular.
     AlgebraicLoop,
-    /// An iteration did not settle.
+    /// An iteration that did not converge.
     NotConverged {
-        /// The iteration.
+        /// Name of the iteration.
         what: &'static str,
     },
-    /// A result that is infinite.
+    /// An infinite result.
     Infinite {
-        /// The result.
+        /// Name of the result.
         what: &'static str,
     },
-    /// A value lies outside what has a meaning.
+    /// A value outside its meaningful range.
     Range {
-        /// The value.
+        /// Name of the value.
         what: &'static str,
-        /// What was given.
+        /// Rejected value.
         value: f64,
     },
-    /// The state of a mechanism does not fulfil its constraints, or they lose rank there.
+    /// The state of a mechanism violates its constraints, or the constraints lose rank there.
     Constraint(linkwork::ConstraintError),
-    /// No steady state near the guess fulfils all conditions.
+    /// No state near the guess satisfies all conditions of a steady state.
     NoSteadyState {
-        /// The condition that is violated most: an acceleration (with two primes), a constraint (its rate
-        /// with a prime), an output.
+        /// Condition that is violated most: an acceleration (with two primes), a constraint (its velocity
+        /// with one prime) or an output.
         condition: String,
-        /// What is left of it, in its own unit.
+        /// Residual of that condition, in its own unit.
         residual: f64,
-        /// How many conditions there are.
+        /// Number of conditions.
         conditions: usize,
-        /// How many unknowns there are.
+        /// Number of unknowns.
         unknowns: usize,
-        /// The configuration, then the other unknowns, where the conditions are violated least.
+        /// State of minimum violation: the configuration, then the other unknowns.
         place: Vec<(String, f64)>,
     },
-    /// The conditions of a steady state leave unknowns open: there are too many, or the equations are
-    /// singular there.
+    /// Conditions of a steady state that do not determine all unknowns: there are too many unknowns, or the
+    /// equations are singular at the solution.
     Undetermined {
-        /// The unknowns that can change while all conditions hold.
+        /// Unknowns that can change while all conditions remain satisfied.
         unknowns: Vec<String>,
-        /// The configuration, then the other unknowns.
+        /// State of the solution: the configuration, then the other unknowns.
         place: Vec<(String, f64)>,
     },
-    /// A linear motion was asked for about a state that is not steady.
+    /// Linearisation about a state that is not steady.
     NotSteady {
-        /// What should be zero, an acceleration with two primes, a rate with one; or the condition of a trim
-        /// that does not hold.
+        /// Quantity that should be zero: an acceleration (two primes), a rate (one prime), or the violated
+        /// condition of a trim.
         what: String,
-        /// Its rate, m/s², rad/s² or rad/s; what is left of the condition.
+        /// Value of that quantity, m/s², rad/s² or rad/s, or the residual of the condition.
         rate: f64,
     },
-    /// Motions have no second-order form: forces depend on a coordinate without an independent speed of its
-    /// own.
+    /// A motion without a second-order form: forces depend on a coordinate that has no independent velocity.
     NoSecondOrderForm {
-        /// The coordinate.
+        /// Name of the coordinate.
         coordinate: String,
     },
-    /// Stability by energy is not to be had.
+    /// An equilibrium whose stability cannot be decided by energy.
     NoPotential {
-        /// Why.
+        /// Reason.
         why: &'static str,
     },
-    /// A picture could not be drawn.
+    /// A failure to draw a picture, with the message of the drawing library.
     Picture(String),
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, since `main` prints a returned error with `Debug`.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
@@ -250,7 +250,7 @@ impl From<linkwork::ConstraintError> for Error {
     }
 }
 
-/// Names with values.
+/// List of names with values.
 struct Listed<'a>(&'a [(String, f64)]);
 
 impl fmt::Display for Listed<'_> {
@@ -263,14 +263,14 @@ impl fmt::Display for Listed<'_> {
     }
 }
 
-/// The known name that is spelt most alike, if at most a third of it differs.
+/// Returns the known name of minimum edit distance, if at most a third of the characters differ.
 fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a String> {
     let distance = |other: &String| edits(name, other);
     let best = known.iter().min_by_key(|other| distance(other))?;
     (distance(best) <= name.chars().count().div_ceil(3)).then_some(best)
 }
 
-/// Levenshtein's distance.
+/// Returns the Levenshtein distance.
 fn edits(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
     let mut row: Vec<usize> = (0..=other.len()).collect();

@@ -1,15 +1,16 @@
-//! Aircraft: their motion about steady flight in the usual states, flight modes by name, and derivatives.
+//! Aircraft: linearised motion about steady flight in the usual states, named flight modes, and stability and
+//! control derivatives.
 //!
 //! A mechanism counts as an aircraft if its first six velocities are those of a `Free` joint between the
-//! ground, with axes north, east and down, and the airframe, with axes forward, right and down, and if no
-//! force depends on place over ground or heading.
+//! ground (axes north, east and down) and the airframe (axes forward, right and down), and if no force
+//! depends on the horizontal position or the heading.
 //!
 //! ```
 //! use linkwork::prelude::*;
 //! use linkwork_design::flight::{self, Derivatives, FlightModes};
 //! use linkwork_design::steady::equilibrium;
 //!
-//! /// A flying wing without drag, with the thrust that its lift leans back.
+//! /// A flying wing without drag; its thrust balances the component of the lift along the inclined axis.
 //! #[mechanism(gravity = 9.81 * z, derivatives)]
 //! struct Wing {
 //!     elevon: Input,
@@ -39,7 +40,7 @@
 //!     thrust: Force,
 //! }
 //!
-//! // Level at 40 m/s: pitch, climb, elevon and thrust are unknown.
+//! // Level flight at 40 m/s: pitch angle, sink rate, elevon and thrust are unknown.
 //! let level = equilibrium(&Wing {})
 //!     .moving([40.0, 0.0, 1.0, 0.0, 0.0, 0.0].into())
 //!     .coordinates(["flight.wy"])
@@ -49,7 +50,7 @@
 //! let system = flight::linear_system(&Wing {}, &found.q, &found.v, &found.u)?;
 //! let modes = FlightModes::of(&system)?;
 //! assert!(modes.short_period.unwrap().frequency() > 10.0 * modes.phugoid.unwrap().frequency());
-//! // The moment's slope over that of the force, −0.5 over −5, in m.
+//! // Slope of the moment divided by the slope of the force, −0.5 / −5, in m.
 //! let margin = Derivatives::of(&Wing {}, &found.q, &found.v, &found.u)?.static_margin(1.0)?;
 //! assert!((margin - 0.1).abs() < 1e-3);
 //! # Ok::<(), linkwork_design::Error>(())

@@ -1,10 +1,10 @@
-//! Frequency response: Bode's and Nyquist's data.
+//! Frequency response: data of Bode and Nyquist diagrams.
 
 use crate::matrices::{C, CMatrix, balance_system, complex};
 use crate::{Error, StateSpace};
 use nalgebra::{DMatrix, Hessenberg};
 
-/// A system in Hessenberg form: each frequency takes `n²` operations (Laub, *Efficient multivariable
+/// System in Hessenberg form, in which each frequency takes `n²` operations (Laub, *Efficient multivariable
 /// frequency response computations*, 1981).
 #[derive(Clone, Debug)]
 pub struct FrequencyMap {
@@ -16,11 +16,11 @@ pub struct FrequencyMap {
 }
 
 impl FrequencyMap {
-    /// `C (s I − A)⁻¹ B + D` at a complex frequency; `s` is `z` of a discrete system.
+    /// Returns `C (s I − A)⁻¹ B + D` at a complex frequency; `s` is `z` for a discrete system.
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] at a pole, [`Error::Range`] where `s` is not finite.
+    /// [`Error::Singular`] at a pole, [`Error::Range`] if `s` is not finite.
     pub fn at(&self, s: C) -> Result<CMatrix, Error> {
         if let Some(value) = [s.re, s.im].into_iter().find(|part| !part.is_finite()) {
             return Err(Error::Range { what: "a frequency", value });
@@ -30,8 +30,8 @@ impl FrequencyMap {
         Ok(complex(&self.c) * x + complex(&self.d))
     }
 
-    /// `s I − A` as a product of row operations and a triangular matrix: Gauss' elimination of a Hessenberg
-    /// matrix.
+    /// Factorises `s I − A` into row operations and a triangular matrix, by Gaussian elimination of a
+    /// Hessenberg matrix.
     fn factors(&self, s: C) -> Result<Factors, Error> {
         let n = self.h.nrows();
         let mut u = CMatrix::from_fn(n, n, |i, j| {
@@ -58,7 +58,8 @@ impl FrequencyMap {
         }
     }
 
-    /// A single channel at a complex frequency, with its slope and a bound of its rounding error.
+    /// Evaluates a single channel at a complex frequency, with its derivative and a bound of its rounding
+    /// error.
     ///
     /// # Errors
     ///
@@ -69,7 +70,7 @@ impl FrequencyMap {
         factors.solve(&mut x);
         factors.solve_left(&mut y);
         let value = (complex(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
-        // Entries are known to rounding: how much an error of each changes the value.
+        // The entries of the matrices have rounding errors; this sums the effect of each on the value.
         let (size_x, size_y) = (x.norm(), y.norm());
         let through = size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x;
         let rounding = 4.0 * f64::EPSILON * (self.h.nrows() + 1) as f64;
@@ -77,7 +78,7 @@ impl FrequencyMap {
         Ok(Sample { value, slope: -(y * x)[(0, 0)], error })
     }
 
-    /// The response at a real frequency, rad/s: at `s = iω`, or `z = e^{iωh}`.
+    /// Returns the response at a real frequency, rad/s: at `s = iω`, or `z = e^{iωh}`.
     ///
     /// # Errors
     ///
@@ -90,11 +91,11 @@ impl FrequencyMap {
     }
 }
 
-/// The factors of a Hessenberg matrix.
+/// Triangular factorisation of a Hessenberg matrix.
 struct Factors {
     u: CMatrix,
-    /// Whether rows `k` and `k + 1` are swapped, and the multiple of row `k` that is then subtracted from the
-    /// next.
+    /// For each `k`: whether rows `k` and `k + 1` are swapped, and the multiple of row `k` that is then
+    /// subtracted from row `k + 1`.
     steps: Vec<(bool, C)>,
 }
 
@@ -119,7 +120,7 @@ impl Factors {
         }
     }
 
-    /// Solves `y M = r` for a row in place.
+    /// Solves `y M = r` for a row vector in place.
     fn solve_left(&self, y: &mut CMatrix) {
         for j in 0..self.u.ncols() {
             let sum: C = (0..j).map(|k| y[k] * self.u[(k, j)]).sum();
@@ -135,17 +136,17 @@ impl Factors {
     }
 }
 
-/// A response at one complex frequency.
+/// Response at one complex frequency.
 #[derive(Clone, Copy)]
 pub(crate) struct Sample {
     pub value: C,
-    /// Derivative of the value by the complex frequency.
+    /// Derivative of the value with respect to the complex frequency.
     pub slope: C,
-    /// Bound of what rounding of the matrices changes.
+    /// Bound of the change of the value by rounding of the matrices.
     pub error: f64,
 }
 
-/// The point on the border of stability.
+/// Returns the point of the stability boundary for a frequency in rad/s: `iω`, or `e^{iωh}`.
 pub(crate) fn boundary(period: Option<f64>, frequency: f64) -> C {
     match period {
         Some(h) => C::new(0.0, frequency * h).exp(),
@@ -153,12 +154,12 @@ pub(crate) fn boundary(period: Option<f64>, frequency: f64) -> C {
     }
 }
 
-/// The response of one channel over frequencies.
+/// Response of one channel over frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
-    /// rad/s.
+    /// Frequencies, rad/s.
     pub frequencies: Vec<f64>,
-    /// The response at each.
+    /// Response at each frequency.
     pub values: Vec<C>,
     /// Name and unit of the input.
     pub input: crate::Signal,
@@ -167,17 +168,17 @@ pub struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// Magnitudes.
+    /// Returns the magnitudes.
     pub fn magnitudes(&self) -> Vec<f64> {
         self.values.iter().map(|x| x.norm()).collect()
     }
 
-    /// Magnitudes in decibels, `20 log₁₀ |G|`.
+    /// Returns the magnitudes in decibels, `20 log₁₀ |G|`.
     pub fn decibels(&self) -> Vec<f64> {
         self.values.iter().map(|x| 20.0 * x.norm().log10()).collect()
     }
 
-    /// Phases in degrees, continuous from one frequency to the next; the first lies within ±180.
+    /// Returns the phases in degrees, unwrapped from one frequency to the next; the first is within ±180.
     pub fn degrees(&self) -> Vec<f64> {
         let mut turns = 0.0;
         let mut last: Option<f64> = None;
@@ -192,14 +193,14 @@ impl FrequencyResponse {
         self.values.iter().map(next).collect()
     }
 
-    /// The largest magnitude and its frequency, rad/s, among those that were computed.
+    /// Returns the largest of the computed magnitudes and its frequency, rad/s.
     pub fn peak(&self) -> Option<(f64, f64)> {
         let all = self.values.iter().zip(&self.frequencies).map(|(x, w)| (x.norm(), *w));
         all.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
 
-/// `count` frequencies from `low` to `high`, rad/s, as far apart on a logarithmic scale.
+/// Returns `count` logarithmically spaced frequencies from `low` to `high`, rad/s.
 ///
 /// # Errors
 ///
@@ -215,11 +216,11 @@ pub fn logarithmic(low: f64, high: f64, count: usize) -> Result<Vec<f64>, Error>
 }
 
 impl StateSpace {
-    /// The system prepared for many frequencies.
+    /// Transforms the system to Hessenberg form for evaluation at many frequencies.
     ///
     /// # Errors
     ///
-    /// None but for what matrices of a later version refuse.
+    /// Currently none; reserved for matrices that later versions may reject.
     pub fn frequency_map(&self) -> Result<FrequencyMap, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let (d, period) = (self.d.clone(), self.period);
@@ -230,7 +231,7 @@ impl StateSpace {
         Ok(FrequencyMap { b: q.transpose() * b, c: c * q, h, d, period })
     }
 
-    /// `C (s I − A)⁻¹ B + D` at a complex frequency.
+    /// Returns `C (s I − A)⁻¹ B + D` at a complex frequency.
     ///
     /// # Errors
     ///
@@ -239,7 +240,7 @@ impl StateSpace {
         self.frequency_map()?.at(s)
     }
 
-    /// The response of one channel at these frequencies, rad/s.
+    /// Computes the response of one channel at these frequencies, rad/s.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;
@@ -252,7 +253,7 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`], [`Error::Singular`] at a pole on the border of stability, [`Error::Range`] for a
+    /// [`Error::Unknown`], [`Error::Singular`] at a pole on the stability boundary, [`Error::Range`] for a
     /// frequency that is not finite.
     pub fn frequency_response<'a>(
         &self,
@@ -268,9 +269,9 @@ impl StateSpace {
         Ok(FrequencyResponse { frequencies: frequencies.to_vec(), values, input, output })
     }
 
-    /// Frequencies that show what the system does: from a decade below its slowest pole or zero to a decade
-    /// above the fastest, closer together where poles and zeros are near, rad/s. Up to Nyquist's frequency of
-    /// a discrete system.
+    /// Returns frequencies, rad/s, that resolve the response: from a decade below the slowest pole or zero to
+    /// a decade above the fastest, and denser near oscillatory poles and zeros. For a discrete system they
+    /// end at the Nyquist frequency.
     ///
     /// # Errors
     ///
@@ -289,7 +290,7 @@ impl StateSpace {
         let nyquist = self.period.map_or(f64::INFINITY, |h| std::f64::consts::PI / h);
         let mut all = logarithmic(low.min(0.01 * nyquist), high.min(nyquist), count.max(2))?;
         for s in points.iter().filter(|s| s.im != 0.0) {
-            // A resonance is as wide as its real part.
+            // The width of a resonance is its real part.
             let width = s.re.abs().max(1e-9 * s.im.abs());
             for k in -24..=24 {
                 let x = f64::from(k) / 6.0;

@@ -1,21 +1,21 @@
-//! Linear systems of mechanisms, and the equilibria and steady motions that they are taken about.
+//! Linear systems of mechanisms, and the equilibria and steady motions about which they are linearised.
 //!
-//! A [`StateSpace`] has the matrices A, B, C, D with the names and units of its states, inputs and outputs;
-//! it comes from a mechanism ([`mechanism`]) or from matrices. It has [modes](StateSpace::modes),
-//! [zeros](StateSpace::zeros), [transfer functions](StateSpace::transfer_function),
-//! [responses](StateSpace::step_response) over time and [frequency](StateSpace::frequency_response),
-//! [margins](StateSpace::margins), [regulators](StateSpace::lqr) and [estimators](StateSpace::kalman).
-//! [`picture`] draws them. [`steady`] finds equilibria and trims motions, by names; [`flight`] has the modes
-//! of aircraft by name, and their derivatives.
+//! A [`StateSpace`] has the matrices A, B, C, D and the names and units of its states, inputs and outputs. It
+//! is computed from a mechanism ([`mechanism`]) or constructed from matrices. Its analyses are
+//! [modes](StateSpace::modes), [zeros](StateSpace::zeros), [transfer
+//! functions](StateSpace::transfer_function), [responses](StateSpace::step_response) over time and
+//! [frequency](StateSpace::frequency_response), [margins](StateSpace::margins), [regulators](StateSpace::lqr)
+//! and [estimators](StateSpace::kalman). [`picture`] draws the results. [`steady`] finds equilibria and trims
+//! motions by names. [`flight`] classifies the modes of aircraft and computes their derivatives.
 //!
-//! The [guide] goes through all of it with one aircraft.
+//! The [guide] shows all of these for one aircraft.
 
 pub use discretize::Hold;
 pub use error::Error;
 pub use frequency::{FrequencyMap, FrequencyResponse, logarithmic};
 pub use margins::{GainMargin, Margins, PhaseMargin, StabilityMargin};
 pub use modes::Mode;
-/// The linear algebra library, in the version that this crate takes.
+/// Linear algebra library, in the version that this crate depends on.
 pub use nalgebra;
 pub use norms::PeakGain;
 pub use polynomial::Polynomial;

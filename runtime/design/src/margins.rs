@@ -1,95 +1,97 @@
-//! Margins of a loop.
+//! Stability margins of a feedback loop.
 
 use crate::frequency::{FrequencyMap, Sample, boundary};
 use crate::matrices::C;
 use crate::norms::Extreme;
 use crate::{Error, PeakGain, StateSpace, TransferFunction};
 
-/// A frequency at which a loop's response is real and negative, with the factor that brings the loop to the
-/// border of stability.
+/// Frequency at which a loop's response is real and negative, with the gain factor that brings the loop to
+/// the stability boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainMargin {
-    /// The factor; below one it is a reduction.
+    /// Gain factor; values below one are reductions.
     pub factor: f64,
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency: f64,
 }
 
 impl GainMargin {
-    /// In decibels.
+    /// Returns the factor in decibels.
     pub fn decibels(&self) -> f64 {
         20.0 * self.factor.log10()
     }
 }
 
-/// A frequency at which a loop's magnitude is one, with the phase lag that brings the loop to the border of
-/// stability.
+/// Frequency at which a loop's magnitude is one, with the phase lag that brings the loop to the stability
+/// boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseMargin {
-    /// Degrees, within ±180; negative ones are leads.
+    /// Phase lag in degrees, within ±180; negative values are phase leads.
     pub degrees: f64,
-    /// rad/s.
+    /// Frequency, rad/s.
     pub frequency: f64,
 }
 
 impl PhaseMargin {
-    /// The delay that uses up the margin, s; to a negative margin 360° are added.
+    /// Returns the delay that brings the loop to the stability boundary, s. For a negative margin, 360° are
+    /// added first.
     pub fn delay(&self) -> f64 {
         self.degrees.rem_euclid(360.0).to_radians() / self.frequency
     }
 }
 
-/// The least distance of a loop's response from −1, its modulus or stability margin.
+/// Minimum distance of a loop's response from −1, called the modulus or stability margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityMargin {
-    /// The distance: one over the peak of the sensitivity.
+    /// Distance: the reciprocal of the peak of the sensitivity.
     pub distance: f64,
-    /// rad/s; infinite if high frequencies approach the distance.
+    /// Frequency, rad/s; infinite if the distance is the limit for high frequencies.
     pub frequency: f64,
 }
 
-/// All crossings of a loop under negative feedback.
+/// All margins of a loop under negative feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
-    /// One for every frequency where the phase crosses 180°, from low to high; at rest and at Nyquist's
-    /// frequency, too, where the response is real and negative. A response that is real at all frequencies,
-    /// as that of `1 / s²`, crosses nowhere.
+    /// Margins at all frequencies where the phase crosses 180°, in ascending order. The frequency zero and
+    /// the Nyquist frequency are included if the response is real and negative there. A response that is real
+    /// at all frequencies, such as that of `1 / s²`, has no crossings.
     pub gain: Vec<GainMargin>,
-    /// One for every frequency where the magnitude crosses one, from low to high. A magnitude that is one at
-    /// all frequencies, as that of an all-pass, or only touches one crosses nowhere.
+    /// Margins at all frequencies where the magnitude crosses one, in ascending order. A magnitude that is
+    /// one at all frequencies, as for an all-pass, or that is tangent to one has no crossings.
     pub phase: Vec<PhaseMargin>,
-    /// The least distance from −1.
+    /// Minimum distance from −1.
     pub stability: StabilityMargin,
 }
 
 impl Margins {
-    /// The gain margin nearest to one.
+    /// Returns the gain margin nearest to one.
     pub fn nearest_gain(&self) -> Option<GainMargin> {
         self.gain.iter().copied().min_by(|a, b| a.factor.ln().abs().total_cmp(&b.factor.ln().abs()))
     }
 
-    /// The least factor above one that leads to the border of stability.
+    /// Returns the smallest factor above one that leads to the stability boundary.
     pub fn gain_increase(&self) -> Option<GainMargin> {
         self.gain.iter().copied().filter(|m| m.factor > 1.0).min_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 
-    /// The largest factor below one that leads to the border of stability.
+    /// Returns the largest factor below one that leads to the stability boundary.
     pub fn gain_reduction(&self) -> Option<GainMargin> {
         self.gain.iter().copied().filter(|m| m.factor < 1.0).max_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 
-    /// The phase margin nearest to zero.
+    /// Returns the phase margin nearest to zero.
     pub fn nearest_phase(&self) -> Option<PhaseMargin> {
         self.phase.iter().copied().min_by(|a, b| a.degrees.abs().total_cmp(&b.degrees.abs()))
     }
 
-    /// The least delay that leads to the border of stability, s.
+    /// Returns the smallest delay that leads to the stability boundary, s.
     pub fn delay(&self) -> Option<f64> {
         self.phase.iter().map(PhaseMargin::delay).min_by(f64::total_cmp)
     }
 }
 
-/// A sign change of `f` between `low` and `high`: bisection, with the secant where it helps (Dekker, 1969).
+/// Finds a sign change of `f` between `low` and `high` by bisection, accelerated by secant steps (Dekker,
+/// 1969).
 pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut at_low, mut at_high) = (f(low), f(high));
     for k in 0..200 {
@@ -113,17 +115,17 @@ pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) 
     if at_low.abs() < at_high.abs() { low } else { high }
 }
 
-/// Part of a response that rounding may change; beyond it the value is not certain.
+/// Maximum relative rounding error of a response value that counts as reliable.
 const CERTAIN: f64 = 0.05;
 
-/// A loop's response.
+/// Response of an open loop.
 struct Loop {
     map: FrequencyMap,
     period: Option<f64>,
 }
 
 impl Loop {
-    /// The response and its slope by the frequency; `None` at a pole.
+    /// Returns the response and its derivative with respect to frequency; `None` at a pole.
     fn at(&self, frequency: f64) -> Option<Sample> {
         let s = boundary(self.period, frequency);
         let turn = self.period.map_or(C::new(0.0, 1.0), |h| C::new(0.0, h) * s);
@@ -151,8 +153,8 @@ impl Loop {
 }
 
 impl StateSpace {
-    /// The margins of this system as the open loop of a negative feedback: all crossings, and the least
-    /// distance from −1.
+    /// Computes the margins of this system as the open loop of a negative feedback: all crossings, and the
+    /// minimum distance from −1.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;
@@ -167,7 +169,7 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] unless it has one input and one output, [`Error::NotConverged`].
+    /// [`Error::Count`] unless the system has one input and one output, [`Error::NotConverged`].
     pub fn margins(&self) -> Result<Margins, Error> {
         self.check_single()?;
         let open = Loop { map: self.frequency_map()?, period: self.period };
@@ -175,7 +177,8 @@ impl StateSpace {
             self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.at(w)?))).unzip();
         let crosses = |frequency: f64| {
             let Sample { value, error, .. } = open.at(frequency)?;
-            // At a pole or a zero on the border the sign changes, too, and the value is rounding.
+            // The sign also changes at a pole or zero on the stability boundary, where the value is
+            // rounding error.
             let is_certain = error <= CERTAIN * value.norm();
             let is_negative = value.re < 0.0 && value.im.abs() <= 1e-6 * value.norm();
             (is_certain && is_negative).then_some(GainMargin { factor: -1.0 / value.re, frequency })
@@ -192,7 +195,8 @@ impl StateSpace {
         Ok(Margins { gain, phase: phase.collect(), stability: self.stability_margin(&open)? })
     }
 
-    /// Frequencies between all at which the response is real or its magnitude one, from low to high.
+    /// Returns frequencies, in ascending order, that separate all frequencies at which the response is real
+    /// or has magnitude one.
     fn margin_grid(&self) -> Result<Vec<f64>, Error> {
         let mut points = self.root_frequencies()?;
         points.extend(self.level_frequencies(1.0)?);
@@ -213,13 +217,13 @@ impl StateSpace {
         Ok(between.collect())
     }
 
-    /// The least distance of the response from −1, the least gain of `1 + G`.
+    /// Computes the minimum distance of the response from −1, which is the minimum gain of `1 + G`.
     fn stability_margin(&self, open: &Loop) -> Result<StabilityMargin, Error> {
         let mut shifted = self.clone();
         shifted.d[(0, 0)] += 1.0;
         let PeakGain { gain, frequency } = shifted.extreme_gain(Extreme::Least)?;
-        // Around its minimum the distance fixes the frequency to half of the digits; where its slope changes
-        // sign is sharper.
+        // Near its minimum, the distance determines the frequency to half of the digits only. The sign
+        // change of its derivative is more accurate.
         let distance = |w: f64| open.at(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
         let slope = |w: f64| open.at(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
         let reach = [1e-8, 1e-7, 1e-6, 1e-5].map(|part| part * frequency);
@@ -236,7 +240,7 @@ impl StateSpace {
 }
 
 impl TransferFunction {
-    /// The margins as the open loop of a negative feedback.
+    /// Computes the margins of this transfer function as the open loop of a negative feedback.
     ///
     /// # Errors
     ///

@@ -1,6 +1,6 @@
-//! Matrix equations and functions on dense matrices of any size: eigenvalues, exponential and logarithm,
-//! Sylvester's, Lyapunov's and Riccati's equations. Everything rests on orthogonal transformations:
-//! Hessenberg and Schur forms, QR decompositions with pivoting.
+//! Matrix equations and functions for dense matrices of any size: eigenvalues, exponential and logarithm,
+//! Sylvester, Lyapunov and Riccati equations. All of them use orthogonal transformations: Hessenberg and
+//! Schur forms, and QR decompositions with pivoting.
 
 use crate::Error;
 use nalgebra::{Complex, DMatrix};
@@ -25,12 +25,12 @@ pub(crate) use riccati::is_fixed;
 pub use riccati::{Cost, Riccati, discrete_riccati, riccati};
 pub(crate) use schur::Schur;
 
-/// A complex number.
+/// Complex number in double precision.
 pub(crate) type C = Complex<f64>;
-/// A complex matrix of any size.
+/// Dynamically sized complex matrix.
 pub(crate) type CMatrix = DMatrix<C>;
 
-/// Refuses a matrix of another shape, or with entries that are not finite.
+/// Reports an error for a matrix of another shape, or with entries that are not finite.
 pub(crate) fn check(
     matrix: &'static str,
     m: &DMatrix<f64>,
@@ -43,28 +43,28 @@ pub(crate) fn check(
     if m.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Error::NotFinite { what: matrix }) }
 }
 
-/// Refuses a matrix that is not square or not finite.
+/// Reports an error for a matrix that is not square or not finite, otherwise returns the number of its rows.
 pub(crate) fn check_square(matrix: &'static str, m: &DMatrix<f64>) -> Result<usize, Error> {
     check(matrix, m, m.nrows(), m.nrows())?;
     Ok(m.nrows())
 }
 
-/// Complex entries for real ones.
+/// Converts a real matrix to a complex one.
 pub(crate) fn complex(m: &DMatrix<f64>) -> CMatrix {
     m.map(|x| C::new(x, 0.0))
 }
 
-/// The largest sum of magnitudes of a column.
+/// Returns the one-norm: the maximum sum of magnitudes of a column.
 pub(crate) fn norm_one(m: &DMatrix<f64>) -> f64 {
     m.column_iter().map(|c| c.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max)
 }
 
-/// Half the sum with the transpose.
+/// Returns the symmetric part.
 pub(crate) fn symmetric(m: &DMatrix<f64>) -> DMatrix<f64> {
     (m + m.transpose()) * 0.5
 }
 
-/// `X` of `M X = R`.
+/// Solves `M X = R` for `X`.
 pub(crate) fn solve(
     what: &'static str,
     m: &DMatrix<f64>,

@@ -1,4 +1,4 @@
-//! From mechanisms: their motion to first order as a [`StateSpace`].
+//! Linearisation of mechanisms: their motion to first order as a [`StateSpace`].
 //!
 //! ```
 //! use linkwork::prelude::*;
@@ -20,10 +20,10 @@
 //! # Ok::<(), linkwork_design::Error>(())
 //! ```
 //!
-//! A mechanism that is driven in time is one at an instant, and its system is frozen there: pass
-//! `&at(&mechanism, t)`. Trees and mechanisms without constraints come by [`linear_system`]; those with
-//! constraints by [`constrained_system`] from what their `linearize` gives, in independent coordinates.
-//! Outputs come by [`measured_system`], and under constraints about a steady state by
+//! A mechanism with prescribed motions is linearised at one instant: pass `&at(&mechanism, t)`. Mechanisms
+//! without constraints are linearised by [`linear_system`]. For mechanisms with constraints,
+//! [`constrained_system`] converts the result of their `linearize` method, in independent coordinates.
+//! [`measured_system`] adds outputs; about a steady state of a constrained mechanism, use
 //! [`Trim::measured_system`](crate::steady::Trim::measured_system).
 
 use crate::{Error, SecondOrderForm, Signal, StateSpace};
@@ -31,12 +31,12 @@ use linkwork::constraint::Linearization;
 use linkwork::{Derivatives, LinearMotion, Mechanism, OutputDerivatives, OutputJacobians, Rheonomic};
 use nalgebra::{DMatrix, SMatrix, SVector};
 
-/// A matrix of any size from one whose size is known.
+/// Converts a statically sized matrix to a dynamically sized one.
 fn dynamic<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
     DMatrix::from_fn(R, C, |i, j| m[(i, j)])
 }
 
-/// `[[a, b], [c, d]]` of blocks.
+/// Returns the block matrix `[[a, b], [c, d]]`.
 fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
     let [[a, b], [c, d]] = rows;
     let mut m = DMatrix::zeros(a.nrows() + c.nrows(), a.ncols() + b.ncols());
@@ -47,14 +47,14 @@ fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
     m
 }
 
-/// Names with their units; what nothing determines and plain numbers go without.
+/// Returns signals with names and units. The unit is empty for dimensionless and undetermined quantities.
 pub(crate) fn named(names: &[&'static str], units: &[&'static str]) -> Vec<Signal> {
     let said = |unit: &'static str| if matches!(unit, "any" | "1") { "" } else { unit };
     let unit = |k: usize| units.get(k).copied().map_or("", said);
     names.iter().enumerate().map(|(k, name)| Signal::new(*name, unit(k))).collect()
 }
 
-/// What is displaced at this speed.
+/// Returns the displacement signal of a velocity signal, with the unit integrated over time.
 fn displaced(speed: Signal) -> Signal {
     let unit = match speed.unit.strip_suffix("/s") {
         Some(unit) => unit.to_owned(),
@@ -64,7 +64,7 @@ fn displaced(speed: Signal) -> Signal {
     Signal { unit, ..speed }
 }
 
-/// The displacements that go with some of a mechanism's velocities.
+/// Returns the displacement signals of some of a mechanism's velocities.
 pub(crate) fn displacements<M, const NQ: usize, const NV: usize, const NU: usize>(
     which: impl IntoIterator<Item = usize>,
 ) -> Vec<Signal>
@@ -75,8 +75,8 @@ where
     which.into_iter().filter_map(|k| speeds.get(k).cloned().map(displaced)).collect()
 }
 
-/// Displacements by the names of the velocities, then changes of velocity with a prime, then states of first
-/// order, of those entries of the velocity.
+/// Returns the names and units of the states: displacements with the names of the velocities, then changes of
+/// velocity with a prime, then states of first order with their own names.
 pub(crate) fn state_names<M, const NQ: usize, const NV: usize, const NU: usize>(
     coordinates: impl IntoIterator<Item = usize>,
     speeds: impl IntoIterator<Item = usize>,
@@ -93,7 +93,8 @@ where
     displacements::<M, NQ, NV, NU>(coordinates).into_iter().chain(changes).collect()
 }
 
-/// Accelerations by the names of displacements with two primes, rates of states of first order with one.
+/// Returns the names of the accelerations: those of the displacements with two primes, or with one prime for
+/// rates of states of first order.
 pub(crate) fn acceleration_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<String>
 where
     M: Rheonomic<NQ, NV, NU>,
@@ -102,7 +103,7 @@ where
     M::VELOCITIES.iter().enumerate().map(|(k, name)| format!("{name}{}", primes(k))).collect()
 }
 
-/// The inputs of a mechanism.
+/// Returns the names and units of the inputs of a mechanism.
 pub(crate) fn input_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<Signal>
 where
     M: Rheonomic<NQ, NV, NU>,
@@ -110,24 +111,27 @@ where
     named(&M::INPUTS, &M::INPUT_UNITS)
 }
 
-/// Which of the displacements and velocities are states: states of first order have no displacement.
+/// Returns the indices of states among all displacements and velocities. States of first order have no
+/// displacement.
 fn kept(nv: usize, first_order: usize) -> Vec<usize> {
     (0..nv.saturating_sub(first_order)).chain(nv..2 * nv).collect()
 }
 
-/// The motion of a mechanism without constraints about a state under the inputs `u`, as `ẋ = A x + B δu`. The
-/// states are the displacements (in body axes for ball and free joints), named like the velocities, then the
-/// changes of velocity, named with a prime; they are the outputs, too, and have the units that the compiler
-/// infers. States of first order come last, by their own names: of a mechanism with such states pass
-/// `&at(&m.extended(), t)`. Under constraints displacements are not independent: beside the exponents of the
-/// motion there are two of zero for each constraint on configurations, which
-/// [`Trim::linear_system`](crate::steady::Trim::linear_system) has not.
+/// Linearises the motion of a mechanism without constraints about a state under the inputs `u`, as
+/// `ẋ = A x + B δu`. The first states are the displacements (in body axes for ball and free joints), with the
+/// names of the velocities. The changes of velocity follow, named with a prime, then states of first order
+/// with their own names. The outputs are the states; units are those that the compiler infers. For a
+/// mechanism with states of first order, pass `&at(&m.extended(), t)`.
+///
+/// In a mechanism with constraints, displacements are not independent. The system then has two additional
+/// zero eigenvalues for each holonomic constraint; the system of
+/// [`Trim::linear_system`](crate::steady::Trim::linear_system) does not have them.
 ///
 /// ```
 /// use linkwork::prelude::*;
 /// use linkwork_design::mechanism::linear_system;
 ///
-/// /// A cart whose motor follows the command late.
+/// /// A cart whose motor follows the command with a lag.
 /// #[mechanism(derivatives)]
 /// struct Cart {
 ///     lag: f64,
@@ -151,7 +155,7 @@ fn kept(nv: usize, first_order: usize) -> Vec<usize> {
 ///
 /// # Errors
 ///
-/// [`Error::NotFinite`] where the mass matrix is singular.
+/// [`Error::NotFinite`] if the mass matrix is singular.
 pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -182,8 +186,8 @@ fn of_motion<const NV: usize, const NU: usize>(
     StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, NU))
 }
 
-/// The motion with the mechanism's own outputs as `y = C x + D δu`, at the time `t` for functions that the
-/// outputs depend on.
+/// Linearises the motion with the declared outputs of the mechanism, as `y = C x + D δu`. The outputs are
+/// evaluated at the time `t`.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -205,7 +209,7 @@ fn of_motion<const NV: usize, const NU: usize>(
 /// }
 ///
 /// let system = measured_system(&Cart {}, 0.0, &[0.0].into(), &[0.0].into(), &[0.0].into())?;
-/// // (s²) / (2 s² + 8): what is pushed is felt at once.
+/// // (s²) / (2 s² + 8): the force acts directly on the accelerometer.
 /// assert!((system.d()[(0, 0)] - 0.5).abs() < 1e-15);
 /// assert_eq!(system.transfer_function("accelerometer", "push")?.to_string(), "0.5 s² / (s² + 4)");
 /// # Ok::<(), linkwork_design::Error>(())
@@ -213,7 +217,7 @@ fn of_motion<const NV: usize, const NU: usize>(
 ///
 /// # Errors
 ///
-/// [`Error::NotFinite`] where the mass matrix is singular.
+/// [`Error::NotFinite`] if the mass matrix is singular.
 pub fn measured_system<M, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>(
     m: &M,
     t: f64,
@@ -245,9 +249,8 @@ fn output_matrices<const NY: usize, const NV: usize, const NU: usize>(
     (c, dynamic(&seen.by_u))
 }
 
-/// The motion of a mechanism with constraints, from what its `linearize` gives: in independent coordinates
-/// and speeds, which are the outputs, too. The mechanism's type gives the names; the value itself is not
-/// looked at.
+/// Converts the result of `linearize` of a mechanism with constraints to a system in independent coordinates
+/// and velocities. The outputs are the states. Only the type of the mechanism is used, for the names.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -296,8 +299,8 @@ where
     Ok(system.with_states(states)?.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
 }
 
-/// What multiplies the accelerations: the mass matrix, or, where forces depend on accelerations, what inverse
-/// dynamics makes of each of them.
+/// Returns the effective mass matrix, which multiplies the accelerations: the mass matrix, or the derivative
+/// of inverse dynamics with respect to accelerations if forces depend on accelerations.
 pub(crate) fn effective_mass<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: f64,
@@ -320,15 +323,16 @@ where
     mass
 }
 
-/// The second-order form of the motion about a state: `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
+/// Returns the second-order form of the motion about a state: `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
 ///
-/// `M` is what multiplies the accelerations: the mass matrix, less what forces that depend on accelerations
-/// take from it. Then it need not be symmetric. Under constraints, about a steady state:
-/// [`Trim::second_order_form`](crate::steady::Trim::second_order_form).
+/// `M` is the effective mass matrix: the mass matrix minus the derivative of the forces with respect to the
+/// accelerations. With acceleration-dependent forces it need not be symmetric. For a mechanism with
+/// constraints about a steady state, use [`Trim::second_order_form`](crate::steady::Trim::second_order_form).
 ///
 /// # Errors
 ///
-/// [`Error::NotFinite`]; [`Error::Count`] of a mechanism with states of first order, which have no such form.
+/// [`Error::NotFinite`]; [`Error::Count`] for a mechanism with states of first order, which have no
+/// second-order form.
 pub fn second_order_form<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -347,7 +351,7 @@ where
     let mass = effective_mass(m, 0.0, q, v);
     let (by_q, by_v) = (dynamic(&motion.by_q), dynamic(&motion.by_v));
     let turning = dynamic(&motion.turning);
-    // δv = δq̇ − T δq, so that δv̇ = δq̈ − T δq̇ about a steady motion.
+    // δv = δq̇ − T δq; hence δv̇ = δq̈ − T δq̇ about a steady motion.
     let velocity = -(&mass * (&by_v + &turning));
     let position = -(&mass * (&by_q - &by_v * &turning));
     let input = &mass * dynamic(&motion.by_u);

@@ -1,4 +1,5 @@
-//! Sums of decaying modes over time: their crossings and extremes by bounds over intervals, without samples.
+//! Sums of decaying modes over time. Their crossings and extremes are found by bounds over intervals, without
+//! sampling.
 
 use crate::Error;
 use crate::margins::root_between;
@@ -7,28 +8,30 @@ use nalgebra::DMatrix;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Largest entry of the transformation that separates two groups of modes; beyond it they form one group.
+/// Maximum entry of the transformation that separates two groups of modes; groups that exceed it are merged.
 const MAX_COUPLING: f64 = 1e4;
-/// Limit for the terms of the series of a group of modes.
+/// Maximum number of terms in the series of a group of modes.
 const MAX_TERMS: usize = 300;
-/// Limit for the intervals of one search.
+/// Maximum number of intervals of one search.
 const MAX_INTERVALS: usize = 2_000_000;
-/// Modes of sampled systems with a smaller eigenvalue are below rounding after `FIRST_SAMPLES`.
+/// Magnitude of eigenvalues below which modes of sampled systems are below rounding error after
+/// `FIRST_SAMPLES`.
 const FAST: f64 = 0.3;
-/// Samples of a sampled system that are computed one by one.
+/// Number of samples of a sampled system that are computed individually.
 pub(crate) const FIRST_SAMPLES: usize = 64;
 
 const FAILED: Error = Error::NotConverged { what: "the separation of the modes" };
 
-/// A mode, or a group of modes whose eigenvalues nearly coincide: `e^{λ t} P(t)`.
+/// Mode, or group of modes whose eigenvalues nearly coincide: `e^{λ t} P(t)`.
 struct Term {
     exponent: C,
-    /// Lowest power first.
+    /// Coefficients of `P`, lowest power first.
     coefficients: Vec<C>,
 }
 
 impl Term {
-    /// The term of `c e^{T t} x`, or of `c Tᵗ x`, with a triangular matrix whose eigenvalues nearly coincide.
+    /// Returns the term of `c e^{T t} x`, or of `c Tᵗ x` if `sampled`, for a triangular matrix whose
+    /// eigenvalues nearly coincide. Fast modes of sampled systems are `None`.
     fn group(c: &CMatrix, t: &CMatrix, x: &CMatrix, sampled: bool) -> Result<Option<Self>, Error> {
         let k = t.nrows();
         let center = t.diagonal().sum() / k as f64;
@@ -58,18 +61,18 @@ impl Term {
         Err(FAILED)
     }
 
-    /// The polynomial at an instant.
+    /// Evaluates the polynomial at an instant.
     fn polynomial(&self, t: f64) -> C {
         self.coefficients.iter().rev().fold(C::new(0.0, 0.0), |sum, c| sum * t + c)
     }
 
-    /// Bound of the magnitude from `low` to `high`.
+    /// Returns an upper bound of the magnitude from `low` to `high`.
     fn bound(&self, low: f64, high: f64) -> f64 {
         let polynomial = self.coefficients.iter().rev().fold(0.0, |sum, c| sum * high + c.norm());
         if polynomial == 0.0 { 0.0 } else { (self.exponent.re * low).exp() * polynomial }
     }
 
-    /// Bound of the magnitude at all instants.
+    /// Returns an upper bound of the magnitude at all instants.
     fn largest(&self) -> f64 {
         let power = |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_peak(k, self.exponent)).exp();
         self.coefficients.iter().enumerate().map(power).sum()
@@ -83,13 +86,13 @@ impl Term {
     }
 }
 
-/// The logarithm of the largest value of `tᵏ |e^{λ t}|`, at `t = k / −Re λ`.
+/// Returns the logarithm of the maximum of `tᵏ |e^{λ t}|`, which is at `t = k / −Re λ`.
 fn logarithm_of_peak(k: usize, exponent: C) -> f64 {
     let k = k as f64;
     if k == 0.0 { 0.0 } else { k * (k / -exponent.re).ln() - k }
 }
 
-/// `ln(I + M)` of a small triangular matrix by its series.
+/// Computes `ln(I + M)` for a small triangular matrix by its power series.
 fn logarithm_beside_one(m: &CMatrix) -> Result<CMatrix, Error> {
     let mut sum = m.clone();
     let mut power = m.clone();
@@ -103,7 +106,8 @@ fn logarithm_beside_one(m: &CMatrix) -> Result<CMatrix, Error> {
     Err(FAILED)
 }
 
-/// `X` of `T₁ X − X T₂ = −T₁₂` with the leading `k` rows and columns of a triangular matrix as `T₁`.
+/// Solves `T₁ X − X T₂ = −T₁₂` for `X`, where `T₁` has the leading `k` rows and columns of a triangular
+/// matrix.
 fn coupling(t: &CMatrix, k: usize) -> CMatrix {
     let m = t.nrows();
     let mut x = CMatrix::zeros(k, m - k);
@@ -117,30 +121,30 @@ fn coupling(t: &CMatrix, k: usize) -> CMatrix {
     x
 }
 
-/// `c e^{A t} x` of a stable matrix as a real sum of modes; or `c Aᵏ x`, where time counts samples.
+/// Real sum of modes: `c e^{A t} x` for a stable matrix, or `c Aᵏ x`, where time counts samples.
 pub(crate) struct ModalSum {
     /// Each term with its first three derivatives.
     terms: Vec<[Term; 4]>,
-    /// Whether only whole numbers are instants.
+    /// Whether time counts samples, so that only integer instants exist.
     sampled: bool,
-    /// Smaller differences are rounding.
+    /// Rounding error of the sum; smaller differences are not significant.
     pub noise: f64,
-    /// From here on the sum is below `noise`.
+    /// Instant after which the magnitude of the sum is below `noise`.
     end: f64,
 }
 
-/// An interval of time with bounds of the sum.
+/// Time interval with bounds of the sum.
 struct Interval {
     from: f64,
     to: f64,
     low: f64,
     high: f64,
     middle: f64,
-    /// The sum or its slope is monotone: no more than one turn is inside.
+    /// Whether the sum or its derivative is monotone, so that at most one local extremum is inside.
     simple: bool,
 }
 
-/// An interval by the bound that a search for an extreme begins with.
+/// Interval with the bound by which the search for an extremum ranks it.
 struct Ranked(f64, Interval);
 
 impl PartialEq for Ranked {
@@ -165,7 +169,7 @@ impl Ord for Ranked {
 
 impl ModalSum {
     /// Separates the modes (Bavely and Stewart, *An algorithm for computing reducing subspaces by block
-    /// diagonalization*, 1979). Fast modes of a sampled system are left out.
+    /// diagonalization*, 1979). Fast modes of a sampled system are omitted.
     ///
     /// # Errors
     ///
@@ -204,7 +208,7 @@ impl ModalSum {
 
     fn of_terms(terms: Vec<Term>, sampled: bool) -> Self {
         let noise = 64.0 * f64::EPSILON * terms.iter().map(Term::largest).sum::<f64>().max(1.0);
-        // Beyond the last peak of its powers a term decays.
+        // A term decays beyond the last maximum of its powers.
         let decays = |term: &Term| term.coefficients.len() as f64 / -term.exponent.re;
         let mut end = terms.iter().map(decays).fold(0.0, f64::max);
         while terms.iter().map(|term| term.bound(end, end)).sum::<f64>() > noise {
@@ -224,13 +228,13 @@ impl ModalSum {
         }
     }
 
-    /// The derivative of this order at an instant.
+    /// Returns the derivative of this order at an instant.
     fn derivative(&self, order: usize, t: f64) -> f64 {
         let real = |all: &[Term; 4]| ((all[0].exponent * t).exp() * all[order].polynomial(t)).re;
         self.terms.iter().map(real).sum()
     }
 
-    /// The sum at an instant.
+    /// Returns the sum at an instant.
     pub fn at(&self, t: f64) -> f64 {
         self.derivative(0, t)
     }
@@ -249,7 +253,8 @@ impl ModalSum {
             total_curvature += largest_second;
             bend += second;
             change += all[3].bound(from, to);
-            // About the value in the middle, or, of a term that oscillates many times, about zero.
+            // The term is bounded by its expansion about the midpoint, or by its magnitude if it
+            // oscillates many times.
             if first.abs() * half + 0.5 * largest_second * half * half < largest {
                 near += value;
                 slope += first;
@@ -263,7 +268,7 @@ impl ModalSum {
         Interval { from, to, low: near - radius, high: near + radius, middle, simple }
     }
 
-    /// Whether an interval is not divided any more.
+    /// Returns whether an interval is not divided further.
     fn is_last(&self, interval: &Interval) -> bool {
         let length = interval.to - interval.from;
         interval.simple
@@ -277,7 +282,7 @@ impl ModalSum {
         [self.interval(interval.from, middle), self.interval(middle, interval.to)]
     }
 
-    /// Divides an interval that is not divided any more where the sum turns: on each piece it is monotone.
+    /// Divides a final interval at a local extremum of the sum, so that the sum is monotone on each piece.
     fn pieces(&self, interval: &Interval) -> Vec<(f64, f64)> {
         let (from, to) = (interval.from, interval.to);
         let slope = |t: f64| self.derivative(1, t);
@@ -309,7 +314,7 @@ impl ModalSum {
         if rises { high } else { low }
     }
 
-    /// The first instant from `from` on at which the sum reaches a negative level from below.
+    /// Returns the first instant, not before `from`, at which the sum reaches a negative level from below.
     ///
     /// # Errors
     ///
@@ -339,7 +344,8 @@ impl ModalSum {
         Ok(self.end.max(from))
     }
 
-    /// The last instant from `from` on at which the magnitude is larger than a band; `None` if it is not.
+    /// Returns the last instant, not before `from`, at which the magnitude exceeds `band`; `None` if it never
+    /// does.
     ///
     /// # Errors
     ///
@@ -368,7 +374,8 @@ impl ModalSum {
         Ok((self.at(from).abs() > band).then_some(from))
     }
 
-    /// The largest value of the sum, or of its negative, from `from` on, and its instant.
+    /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the sum from
+    /// `from` on.
     ///
     /// # Errors
     ///

@@ -1,86 +1,90 @@
-//! Modes: how a system moves by itself.
+//! Modes of linear systems.
 
 use crate::matrices::{C, CMatrix, Schur, balanced, complex};
 use crate::{Error, Signal, StateSpace};
 use std::f64::consts::{LN_2, TAU};
 use std::fmt;
 
-/// Beyond this, eigenvectors of an eigenvalue are as good as parallel: `1 / |wᴴ v|`.
+/// Condition `1 / |wᴴ v|` above which eigenvectors count as parallel.
 const DEFECTIVE: f64 = 1e7;
 
-/// A mode: a real pole, or a pair of complex ones.
+/// Mode of a system: a real pole, or a conjugate pair of poles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// The eigenvalue, that with the positive imaginary part of a pair: 1/s, or of one period.
+    /// Eigenvalue of `A`, with positive imaginary part for a pair: 1/s, or dimensionless for a discrete
+    /// system.
     pub pole: C,
-    /// The eigenvalue in continuous time, 1/s; that of a discrete system is `ln(z) / h`.
+    /// Eigenvalue in continuous time, 1/s; `ln(z) / h` for a discrete system.
     pub exponent: C,
-    /// What each state has of the mode, of unit length, the largest entry real. Only directions of one unit
-    /// compare.
+    /// Mode shape: the component of each state in the eigenvector, normalised to unit length with a real
+    /// largest entry. Only components with the same unit are comparable.
     pub shape: Vec<C>,
-    /// What each state takes part, without units: the magnitudes of `wₖ vₖ` of the left and right
-    /// eigenvectors, in sum one (Pérez-Arriaga, Verghese and Schweppe, *Selective modal analysis*, 1982).
+    /// Participation factor of each state, dimensionless: the magnitudes of `wₖ vₖ` of the left and right
+    /// eigenvectors, normalised to a sum of one (Pérez-Arriaga, Verghese and Schweppe, *Selective modal
+    /// analysis*, 1982).
     pub participation: Vec<f64>,
-    /// How much the eigenvalue changes with the matrix, `1 / |wᴴ v|` of unit vectors in balanced units: one
-    /// of a symmetric matrix, infinite of a defective one.
+    /// Condition number of the eigenvalue, `1 / |wᴴ v|` of the unit left and right eigenvectors in balanced
+    /// units: one for a symmetric matrix, infinite for a defective one.
     pub condition: f64,
     states: Vec<Signal>,
 }
 
 impl Mode {
-    /// Natural frequency `|s|`, rad/s.
+    /// Returns the natural frequency `|s|`, rad/s.
     pub fn frequency(&self) -> f64 {
         self.exponent.norm()
     }
 
-    /// Frequency of the oscillation, `Im s`, rad/s; zero of a real pole.
+    /// Returns the frequency of the oscillation, `Im s`, rad/s; zero for a real pole.
     pub fn damped_frequency(&self) -> f64 {
         self.exponent.im
     }
 
-    /// Damping ratio `−Re s / |s|`: one of a real stable pole, negative where the mode grows; one at rest.
+    /// Returns the damping ratio `−Re s / |s|`: one for a stable real pole, negative for a growing mode, one
+    /// for a zero pole.
     pub fn damping_ratio(&self) -> f64 {
         let size = self.exponent.norm();
         if size == 0.0 { 1.0 } else { -self.exponent.re / size }
     }
 
-    /// Period of the oscillation, s; `None` of a real pole.
+    /// Returns the period of the oscillation, s; `None` for a real pole.
     pub fn period(&self) -> Option<f64> {
         (self.exponent.im != 0.0).then(|| TAU / self.exponent.im)
     }
 
-    /// Time constant `1 / |Re s|`, s; infinite on the border of stability.
+    /// Returns the time constant `1 / |Re s|`, s; infinite on the stability boundary.
     pub fn time_constant(&self) -> f64 {
         1.0 / self.exponent.re.abs()
     }
 
-    /// In which time the mode halves, s; `None` unless it decays.
+    /// Returns the time in which the mode halves, s; `None` unless the mode decays.
     pub fn time_to_half(&self) -> Option<f64> {
         (self.exponent.re < 0.0).then(|| -LN_2 / self.exponent.re)
     }
 
-    /// In which time the mode doubles, s; `None` unless it grows.
+    /// Returns the time in which the mode doubles, s; `None` unless the mode grows.
     pub fn time_to_double(&self) -> Option<f64> {
         (self.exponent.re > 0.0).then(|| LN_2 / self.exponent.re)
     }
 
-    /// Cycles until the mode has halved; `None` of a real pole or one that does not decay.
+    /// Returns the number of cycles in which the mode halves; `None` for a real pole and for a mode that does
+    /// not decay.
     pub fn cycles_to_half(&self) -> Option<f64> {
         Some(self.time_to_half()? / self.period()?)
     }
 
-    /// Whether the pole is stable.
+    /// Returns whether the pole is stable.
     pub fn is_stable(&self) -> bool {
         self.exponent.re < 0.0
     }
 
-    /// Whether eigenvectors are missing: the motion has terms `t eˢᵗ`, and shape and participation are those
-    /// of one of several eigenvectors that coincide.
+    /// Returns whether the eigenvalue is defective: the motion has terms `t eˢᵗ`. Shape and participation are
+    /// then those of one of several coinciding eigenvectors.
     pub fn is_defective(&self) -> bool {
         self.condition > DEFECTIVE
     }
 
-    /// States by how much they take part, most first.
+    /// Returns the states with their participation factors, in descending order.
     pub fn participants(&self) -> Vec<(&str, f64)> {
         let names = self.states.iter().map(|s| s.name.as_str());
         let mut all: Vec<_> = names.zip(self.participation.iter().copied()).collect();
@@ -88,24 +92,24 @@ impl Mode {
         all
     }
 
-    /// The place of a state; zero if there is none of this name.
+    /// Returns the index of a state; zero for an unknown name.
     pub(crate) fn place_of(&self, state: &str) -> usize {
         self.states.iter().position(|s| s.name == state).unwrap_or(0)
     }
 
-    /// The unit of a state, if one was said.
+    /// Returns the unit of a state, if it has one.
     pub(crate) fn unit_of(&self, state: &str) -> Option<&str> {
         let found = self.states.iter().find(|s| s.name == state)?;
         Some(found.unit.as_str()).filter(|unit| !unit.is_empty())
     }
 
-    /// How much a state takes part, between zero and one; `None` if there is none of this name.
+    /// Returns the participation factor of a state, between zero and one; `None` for an unknown name.
     pub fn participation_of(&self, state: &str) -> Option<f64> {
         let k = self.states.iter().position(|s| s.name == state)?;
         self.participation.get(k).copied()
     }
 
-    /// What a state has of the mode; `None` if there is none of this name.
+    /// Returns the component of the mode shape for a state; `None` for an unknown name.
     pub fn shape_of(&self, state: &str) -> Option<C> {
         let k = self.states.iter().position(|s| s.name == state)?;
         self.shape.get(k).copied()
@@ -140,7 +144,7 @@ impl fmt::Display for Mode {
 }
 
 impl StateSpace {
-    /// The modes, slowest natural frequency first; conjugate pairs are one mode.
+    /// Computes the modes, in ascending order of natural frequency. A conjugate pair is one mode.
     ///
     /// ```
     /// use linkwork_design::StateSpace;
@@ -150,14 +154,14 @@ impl StateSpace {
     ///     .with_states(["position", "velocity"])?;
     /// let modes = system.modes()?;
     /// assert!((modes[0].frequency() - 2.0).abs() < 1e-14 && (modes[0].damping_ratio() - 0.1).abs() < 1e-14);
-    /// // Half of an oscillation is position, half is velocity.
+    /// // Position and velocity participate equally in the oscillation.
     /// assert!((modes[0].participation_of("position").unwrap() - 0.5).abs() < 1e-14);
     /// # Ok::<(), linkwork_design::Error>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// [`Error::NotConverged`] if the QR algorithm does not settle.
+    /// [`Error::NotConverged`] if the QR algorithm does not converge.
     pub fn modes(&self) -> Result<Vec<Mode>, Error> {
         let (a, d) = balanced(&self.a);
         let schur = Schur::new(&complex(&a))?;
@@ -182,7 +186,7 @@ impl StateSpace {
 
     fn mode(&self, pole: C, right: &CMatrix, left: &CMatrix, d: &[f64]) -> Mode {
         let product: C = left.iter().zip(right.iter()).map(|(w, v)| w.conj() * v).sum();
-        // The scales cancel in each product.
+        // The balancing scales cancel in each product.
         let mut participation: Vec<f64> =
             left.iter().zip(right.iter()).map(|(w, v)| (w.conj() * v).norm()).collect();
         let sum: f64 = participation.iter().sum();

@@ -1,25 +1,26 @@
-//! Norms of systems.
+//! H₂ and H∞ norms of systems.
 
 use crate::frequency::{FrequencyMap, boundary};
 use crate::matrices::complex;
 use crate::{Error, StateSpace};
 
-/// The largest gain over all frequencies.
+/// Maximum gain over all frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakGain {
-    /// The largest singular value of the response.
+    /// Largest singular value of the response.
     pub gain: f64,
-    /// Frequency of the peak, rad/s; infinite if the gain approaches it at high frequencies.
+    /// Frequency of the peak, rad/s; infinite if the gain is the limit for high frequencies.
     pub frequency: f64,
 }
 
 impl StateSpace {
-    /// The H₂ norm of a stable system: the root mean square of the outputs under white noise of unit
-    /// intensity; by Parseval's theorem the norm of the impulse response.
+    /// Computes the H₂ norm of a stable system: the root mean square of the outputs under white noise of unit
+    /// intensity. By Parseval's theorem it is the norm of the impulse response.
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole; [`Error::Infinite`] of a continuous system with a direct way.
+    /// [`Error::Unstable`] with an unstable pole; [`Error::Infinite`] for a continuous system with nonzero
+    /// `D`.
     pub fn h2_norm(&self) -> Result<f64, Error> {
         let w = self.controllability_gramian()?;
         let direct = self.d.norm_squared();
@@ -30,28 +31,29 @@ impl StateSpace {
         Ok((square.max(0.0) + if self.period.is_some() { direct } else { 0.0 }).sqrt())
     }
 
-    /// The H∞ norm of a stable system and where it is taken: by the frequencies at which a singular value has
-    /// a given level, eigenvalues on the border of stability of a pencil (Bruinsma and Steinbuch, *A fast
-    /// algorithm to compute the H∞-norm of a transfer function matrix*, 1990).
+    /// Computes the H∞ norm of a stable system and the frequency of the peak. The algorithm iterates on the
+    /// frequencies at which a singular value has a given level; they are eigenvalues, on the stability
+    /// boundary, of a pencil (Bruinsma and Steinbuch, *A fast algorithm to compute the H∞-norm of a transfer
+    /// function matrix*, 1990).
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole; [`Error::NotConverged`].
+    /// [`Error::Unstable`] with an unstable pole; [`Error::NotConverged`].
     pub fn peak_gain(&self) -> Result<PeakGain, Error> {
         self.check_stable()?;
         self.extreme_gain(Extreme::Largest)
     }
 
-    /// The largest or the least of the largest singular values over all real frequencies, of a system that is
-    /// stable or not.
+    /// Computes the maximum or minimum, over all real frequencies, of the largest singular value of a system,
+    /// which may be unstable.
     pub(crate) fn extreme_gain(&self, extreme: Extreme) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
         let gain = |w: f64| {
             let response = if w.is_finite() { map.response(w) } else { Ok(complex(&self.d)) };
             match response {
                 Ok(m) if m.is_empty() => 0.0,
-                // At a pole that a zero cancels the value is rounding, and must not be taken for the least
-                // one.
+                // At a pole that a zero cancels, the value is rounding error and must not count as the
+                // minimum.
                 Ok(_) if w.is_finite() && extreme == Extreme::Least && !self.is_certain(&map, w) => {
                     f64::INFINITY
                 }
@@ -65,7 +67,7 @@ impl StateSpace {
             let before = best.gain;
             for w in frequencies {
                 let gain = gain(w);
-                // Smaller differences are rounding.
+                // Smaller differences are rounding errors.
                 if extreme.is_beyond(gain, extreme.beyond(best.gain, 1e-14)) {
                     best = PeakGain { gain, frequency: w };
                 }
@@ -73,7 +75,8 @@ impl StateSpace {
             (before, best)
         };
         let (_, mut found) = improve(&mut self.root_frequencies()?.into_iter().chain([0.0]));
-        // Levels near the gain of high frequencies are crossed at very high ones, too: coarse steps first.
+        // Levels near the gain of high frequencies are also crossed at very high frequencies; hence coarse
+        // steps first.
         for step in [1e-3, 1e-6, 1e-9, 1e-12] {
             for _ in 0..60 {
                 let level = extreme.beyond(found.gain, step);
@@ -85,7 +88,7 @@ impl StateSpace {
                     let (low, high) = (pair[0], pair[1]);
                     [(low * high).sqrt(), 0.5 * (low + high)]
                 });
-                // The first interval begins at rest, the last one does not end.
+                // The first interval begins at zero frequency, the last one is unbounded.
                 let ends = [crossings.first().map(|w| 0.1 * w), crossings.last().map(|w| 10.0 * w)];
                 let ends = ends.into_iter().flatten().filter(|w| *w < top);
                 let (before, now) = improve(&mut between.chain(ends).chain(crossings.iter().copied()));
@@ -98,13 +101,13 @@ impl StateSpace {
         Ok(found)
     }
 
-    /// Whether rounding changes the response of a single channel by less than a thousandth.
+    /// Returns whether rounding changes the response of a single channel by less than a thousandth.
     fn is_certain(&self, map: &FrequencyMap, frequency: f64) -> bool {
         map.sample(boundary(self.period, frequency)).is_ok_and(|sample| sample.error < 1e-3)
     }
 }
 
-/// Extreme of the gain that is searched; the least one for single channels only.
+/// Extremum of the gain to search for; minima are supported for single channels only.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Extreme {
     Largest,
@@ -119,7 +122,7 @@ impl Extreme {
         }
     }
 
-    /// A level farther than a gain, by a part of it.
+    /// Returns a level beyond a gain by a fraction of it: above for a maximum, below for a minimum.
     fn beyond(self, gain: f64, part: f64) -> f64 {
         match self {
             Self::Largest => gain * (1.0 + part),

@@ -1,5 +1,5 @@
-//! Pictures as SVG, one call each: Bode's and Nyquist's, root loci, poles and zeros, motions over time,
-//! modes. Drawn by plotters, labelled with names and units.
+//! Pictures as SVG: Bode and Nyquist diagrams, root loci, poles and zeros, time histories and modes. Drawn
+//! with the plotters crate, and labelled with names and units.
 //!
 //! ```
 //! use linkwork_design::{TransferFunction, picture};
@@ -29,12 +29,12 @@ fn title(response: &FrequencyResponse) -> String {
     format!("from {} to {}", response.input.name, response.output.name)
 }
 
-/// Bode's diagram: magnitude in decibels and continuous phase in degrees over the frequency on a logarithmic
-/// scale.
+/// Draws a Bode diagram: magnitude in decibels and continuous phase in degrees over the frequency on a
+/// logarithmic axis.
 ///
 /// # Errors
 ///
-/// [`Error::Picture`] for values that are not finite, or none.
+/// [`Error::Picture`] for an empty response or values that are not finite.
 pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
     let over = |values: Vec<f64>| -> Vec<(f64, f64)> {
         let points = response.frequencies.iter().copied().zip(values);
@@ -52,12 +52,13 @@ pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
     panel::draw(&[above, panel(String::new(), "phase, deg", response.degrees())], (720, 560))
 }
 
-/// Nyquist's diagram: the response in the complex plane, with its mirror image for negative frequencies, and
-/// −1. Beyond ten times the distance of what is near, curves leave the picture.
+/// Draws a Nyquist diagram: the response in the complex plane, its mirror image for negative frequencies, and
+/// the point −1. Both axes are limited to ±10 times the median magnitude (at least ±10); curves are clipped
+/// there.
 ///
 /// # Errors
 ///
-/// [`Error::Picture`] for values that are not finite, or none.
+/// [`Error::Picture`] for an empty response or values that are not finite.
 pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     let mut sizes: Vec<f64> = response.values.iter().map(|x| x.norm()).filter(|x| x.is_finite()).collect();
     if sizes.is_empty() {
@@ -85,9 +86,9 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     panel::draw(&[panel], (640, 640))
 }
 
-/// Points on a smooth curve through others, so close together that no corners are seen: splines of Catmull
-/// and Rom by the square roots of chords, which bend evenly where points are unevenly spread (Barry and
-/// Goldman, *SIGGRAPH*, 1988).
+/// Interpolates values by a smooth curve with eight segments per interval. The curve is a centripetal
+/// Catmull–Rom spline, whose knots are spaced by the square roots of the chords; its curvature is even for
+/// unevenly spaced points (Barry and Goldman, *SIGGRAPH*, 1988).
 fn smooth(values: &[C]) -> Vec<C> {
     const PARTS: u32 = 8;
     let mut all = Vec::with_capacity(values.len() * PARTS as usize);
@@ -109,7 +110,7 @@ fn smooth(values: &[C]) -> Vec<C> {
             let mut row = points;
             for level in 1..4 {
                 for i in 0..4 - level {
-                    // The middle level lies between the inner knots.
+                    // The middle level interpolates between the inner knots.
                     let (low, high) = if level == 2 {
                         (i, i + 2)
                     } else if level == 1 {
@@ -128,7 +129,7 @@ fn smooth(values: &[C]) -> Vec<C> {
     all
 }
 
-/// The border of stability: the imaginary axis or the unit circle.
+/// Returns the points of the stability boundary: the imaginary axis or the unit circle.
 fn border(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
     match period {
         Some(_) => (0..=180).map(|k| (TAU * f64::from(k) / 180.0).sin_cos()).collect(),
@@ -157,7 +158,7 @@ fn plane(heading: &str, period: Option<f64>) -> Panel {
     }
 }
 
-/// Poles (crosses) and zeros (circles) with the border of stability.
+/// Draws poles (crosses) and zeros (circles) with the stability boundary.
 ///
 /// # Errors
 ///
@@ -174,11 +175,11 @@ pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
     panel::draw(&[panel], (640, 640))
 }
 
-/// A root locus: branches from poles (crosses) to zeros (circles), with the border of stability.
+/// Draws a root locus: branches from poles (crosses) to zeros (circles), with the stability boundary.
 ///
 /// # Errors
 ///
-/// [`Error::Picture`] for values that are not finite, or none.
+/// [`Error::Picture`] for an empty locus or values that are not finite.
 pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
     let all = [locus.poles.clone(), locus.zeros.clone()].concat();
     let far = 2.0 * reach(&all);
@@ -196,14 +197,14 @@ pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
     panel::draw(&[panel], (640, 640))
 }
 
-/// A unit, and the output signals that have it with their places among the outputs.
+/// Unit, with the output signals of that unit and their indices.
 type OfUnit<'a> = (&'a str, Vec<(&'a crate::Signal, usize)>);
 
-/// Outputs over time, a panel for each unit.
+/// Draws outputs over time, in one panel per unit.
 ///
 /// # Errors
 ///
-/// [`Error::Picture`] for values that are not finite, or none.
+/// [`Error::Picture`] for an empty response or values that are not finite.
 pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
     let mut panels: Vec<OfUnit<'_>> = Vec::new();
     for (k, signal) in response.output_signals.iter().enumerate() {
@@ -213,7 +214,7 @@ pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
         }
     }
     let panel = |(place, (unit, signals)): (usize, &OfUnit<'_>)| {
-        // One curve has its name on the axis.
+        // A single curve is named at the axis.
         let (y, alone) = match signals.as_slice() {
             [(signal, _)] => (signal.to_string(), true),
             _ if unit.is_empty() => ("value".to_owned(), false),

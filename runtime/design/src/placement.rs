@@ -1,10 +1,11 @@
-//! Poles put where they should be.
+//! Pole placement.
 
 use crate::matrices::{eigenvalues, is_fixed, solve, sylvester};
 use crate::{Error, StateSpace};
 use nalgebra::{Complex, DMatrix};
 
-/// A real matrix with these eigenvalues and one eigenvector for each that differs; pairs are blocks of two.
+/// Returns a real matrix with these eigenvalues and one eigenvector per distinct eigenvalue. Conjugate pairs
+/// are blocks of two rows.
 fn canonical(poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
     let n = poles.len();
     let mut upper: Vec<_> = poles.iter().filter(|pole| pole.im >= 0.0).copied().collect();
@@ -35,7 +36,7 @@ fn canonical(poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
     Ok(all)
 }
 
-/// Numbers without order, the same in every run.
+/// Returns deterministic pseudorandom numbers between −1 and 1.
 fn scattered(rows: usize, columns: usize, attempt: usize) -> DMatrix<f64> {
     let mut state = 0x9e37_79b9_u32.wrapping_mul(2 * u32::try_from(attempt).unwrap_or(0) + 1);
     DMatrix::from_fn(rows, columns, |_, _| {
@@ -46,8 +47,8 @@ fn scattered(rows: usize, columns: usize, attempt: usize) -> DMatrix<f64> {
     })
 }
 
-/// How far the furthest of the wanted poles is from one of those found, as a part of what rounding excuses
-/// where poles repeat.
+/// Returns the largest distance between a required pole and its nearest computed pole, as a fraction of the
+/// tolerance. The tolerance grows with the multiplicity of the pole.
 fn miss(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
     let size = wanted.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
     let mut worst: f64 = 0.0;
@@ -64,19 +65,19 @@ fn miss(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
     worst
 }
 
-/// Tries, of which the best counts: with several inputs many gains give the same poles.
+/// Number of attempts with several inputs, since many gains then give the same poles; the best one counts.
 const ATTEMPTS: usize = 16;
 
 impl StateSpace {
-    /// The gain of the regulator `u = −K x` with which the poles, eigenvalues of `A − B K`, are these; with
-    /// several inputs the one with the best conditioned eigenvectors of some. Of the dual system its
-    /// transpose is the gain of an observer.
+    /// Computes the gain of the regulator `u = −K x` for which `A − B K` has these eigenvalues. With several
+    /// inputs, the gain is the one with the best conditioned eigenvectors among several candidates. For the
+    /// dual system, the transpose of the result is the gain of an observer.
     ///
     /// ```
     /// use linkwork_design::StateSpace;
     /// use nalgebra::{Complex, dmatrix};
     ///
-    /// // A mass that is pushed: s² + k₂ s + k₁ with the poles −1 ± 2i.
+    /// // A mass under a force: s² + k₂ s + k₁ with the poles −1 ± 2i.
     /// let mass = StateSpace::new(dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], dmatrix![0.0])?;
     /// let gain = mass.place(&[Complex::new(-1.0, 2.0), Complex::new(-1.0, -2.0)])?;
     /// assert!((gain - dmatrix![5.0, 2.0]).norm() < 1e-12);
@@ -88,9 +89,9 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of poles than of states, [`Error::Unpaired`] for a complex pole
-    /// without its conjugate, [`Error::Unstabilizable`] names a mode that no input moves, [`Error::Singular`]
-    /// where rounding leaves the poles elsewhere.
+    /// [`Error::Count`] if the number of poles differs from the number of states, [`Error::Unpaired`] for a
+    /// complex pole without its conjugate, [`Error::Unstabilizable`] with a mode that no input controls,
+    /// [`Error::Singular`] if rounding errors displace the poles.
     pub fn place(&self, poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
         let (n, m) = self.b.shape();
         if poles.len() != n {
@@ -107,7 +108,7 @@ impl StateSpace {
         let size = self.a.norm().max(wanted.norm()) / self.b.norm().max(f64::MIN_POSITIVE);
         let mut best: Option<(f64, DMatrix<f64>)> = None;
         for attempt in 0..ATTEMPTS {
-            // First elsewhere, that none of the poles be there already.
+            // A first random gain displaces the poles, so that no required pole is already present.
             let away = scattered(m, n, attempt) * (if attempt == 0 { 0.0 } else { size });
             let moved = &self.a - &self.b * &away;
             let Ok(x) = sylvester(&moved, &-&wanted, &(&self.b * scattered(m, n, ATTEMPTS + attempt))) else {

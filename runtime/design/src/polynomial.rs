@@ -6,30 +6,29 @@ use nalgebra::DMatrix;
 use std::fmt::{self, Write};
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A polynomial with real coefficients, the highest power first, as one writes it: `[1, 2, 3]` is
-/// `s² + 2 s + 3`.
+/// Polynomial with real coefficients, highest power first: `[1, 2, 3]` is `s² + 2 s + 3`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial {
-    /// Highest power first; the first is not zero, but of the polynomial zero, which has none.
+    /// Coefficients, highest power first. The first is nonzero; the zero polynomial has none.
     coefficients: Vec<f64>,
 }
 
 impl Polynomial {
-    /// By its coefficients, the highest power first; zeros in front are left out.
+    /// Creates a polynomial from its coefficients, highest power first; leading zeros are removed.
     pub fn new(coefficients: impl IntoIterator<Item = f64>) -> Self {
         let all: Vec<f64> = coefficients.into_iter().collect();
         Self { coefficients: all.into_iter().skip_while(|c| *c == 0.0).collect() }
     }
 
-    /// A number.
+    /// Creates a constant polynomial.
     pub fn constant(value: f64) -> Self {
         Self::new([value])
     }
 
-    /// The polynomial with leading coefficient one that has these roots, in conjugate pairs.
+    /// Creates the monic polynomial with these roots, which contain complex roots in conjugate pairs.
     pub fn from_roots(roots: &[C]) -> Self {
         let mut sorted = roots.to_vec();
-        // From small to large loses least.
+        // The order from small to large magnitudes minimises rounding errors.
         sorted.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
         let mut product = vec![C::new(1.0, 0.0)];
         for root in sorted {
@@ -42,56 +41,57 @@ impl Polynomial {
         Self::new(product.into_iter().map(|c| c.re))
     }
 
-    /// The coefficients, the highest power first.
+    /// Returns the coefficients, highest power first.
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients
     }
 
-    /// The highest power; zero for numbers.
+    /// Returns the highest power; zero for constants.
     pub fn degree(&self) -> usize {
         self.coefficients.len().saturating_sub(1)
     }
 
-    /// Whether it is the polynomial zero.
+    /// Returns whether this is the zero polynomial.
     pub fn is_zero(&self) -> bool {
         self.coefficients.is_empty()
     }
 
-    /// The coefficient of the highest power; zero of the polynomial zero.
+    /// Returns the coefficient of the highest power; zero for the zero polynomial.
     pub fn leading(&self) -> f64 {
         self.coefficients.first().copied().unwrap_or(0.0)
     }
 
-    /// The coefficient of `s` to the power `k`.
+    /// Returns the coefficient of `s` to the power `k`.
     pub fn coefficient(&self, k: usize) -> f64 {
         let at = self.coefficients.len().checked_sub(k + 1);
         at.and_then(|at| self.coefficients.get(at)).copied().unwrap_or(0.0)
     }
 
-    /// Its value, by Horner's rule.
+    /// Returns the value at `s`, by Horner's rule.
     pub fn at(&self, s: C) -> C {
         self.coefficients.iter().fold(C::new(0.0, 0.0), |sum, c| sum * s + c)
     }
 
-    /// Bound of the rounding error of a value at a number of this magnitude, which may be a rounded root.
+    /// Returns a bound of the rounding error of the value at a point of this magnitude, which may be a
+    /// rounded root.
     pub(crate) fn rounding_at(&self, magnitude: f64) -> f64 {
         let sum = self.coefficients.iter().fold(0.0, |sum, c| sum * magnitude + c.abs());
         64.0 * f64::EPSILON * self.coefficients.len() as f64 * sum
     }
 
-    /// Times a number.
+    /// Multiplies the polynomial by a number.
     pub fn scaled(&self, factor: f64) -> Self {
         Self::new(self.coefficients.iter().map(|c| c * factor))
     }
 
-    /// The derivative.
+    /// Returns the derivative.
     pub fn derivative(&self) -> Self {
         let n = self.degree();
         let terms = self.coefficients.iter().take(n).enumerate();
         Self::new(terms.map(|(k, c)| c * (n - k) as f64))
     }
 
-    /// The roots: eigenvalues of the companion matrix, which is balanced first.
+    /// Computes the roots as eigenvalues of the balanced companion matrix.
     ///
     /// # Errors
     ///
@@ -112,7 +112,7 @@ impl Polynomial {
         Ok(roots)
     }
 
-    /// As one writes it, in a variable.
+    /// Formats the polynomial in this variable, such as `s² + 2 s + 3`.
     pub fn written_in(&self, variable: &str) -> String {
         if self.is_zero() {
             return "0".into();
@@ -145,7 +145,7 @@ impl Polynomial {
     }
 }
 
-/// With six digits that matter, and no more than needed.
+/// Formats a number with at most six significant digits.
 pub(crate) fn number(x: f64) -> String {
     let size = x.abs();
     if size != 0.0 && !(1e-4..1e7).contains(&size) {
@@ -206,7 +206,7 @@ impl Mul for &Polynomial {
     }
 }
 
-/// A line of roots as factors: `(s + 1) (s² + s + 2)`.
+/// Formats roots as a product of factors: `(s + 1) (s² + s + 2)`.
 pub(crate) fn factors(roots: &[C], variable: &str) -> String {
     let mut out = String::new();
     for root in roots.iter().filter(|r| r.im >= 0.0) {

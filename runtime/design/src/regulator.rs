@@ -1,42 +1,40 @@
-//! Regulators and estimators.
+//! Linear–quadratic regulators and Kalman filters.
 
 use crate::matrices::{Cost, Riccati, discrete_riccati, riccati};
 use crate::{Error, Hold, StateSpace};
 use nalgebra::DMatrix;
 
-/// The noise of a system: covariances (intensities of a continuous one) of what disturbs the states, and of
-/// the measurements.
+/// Covariances of process and measurement noise; intensities for a continuous system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noise {
-    /// Of the states, `G W Gᵀ`.
+    /// Covariance of the process noise on the states, `G W Gᵀ`.
     pub states: DMatrix<f64>,
-    /// Of the outputs.
+    /// Covariance of the measurement noise on the outputs.
     pub outputs: DMatrix<f64>,
 }
 
-/// The gain of a stationary Kalman filter.
+/// Stationary Kalman filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kalman {
-    /// `L` of `x̂˙ = A x̂ + B u + L (y − C x̂ − D u)`; of a discrete filter, of its prediction `x̂⁺`.
+    /// Gain `L` of `x̂˙ = A x̂ + B u + L (y − C x̂ − D u)`, or of the prediction `x̂⁺` of a discrete filter.
     pub gain: DMatrix<f64>,
-    /// Of a discrete filter `L = A K` with this gain `K` of its correction; of a continuous one the same as
-    /// `gain`.
+    /// Correction gain `K` of a discrete filter, with `L = A K`; equal to `gain` for a continuous filter.
     pub correction: DMatrix<f64>,
-    /// The covariance of the estimate's error (of a discrete filter before its correction).
+    /// Covariance of the estimation error (for a discrete filter before the correction).
     pub covariance: DMatrix<f64>,
-    /// The eigenvalues of `A − L C`.
+    /// Eigenvalues of `A − L C`.
     pub poles: Vec<nalgebra::Complex<f64>>,
 }
 
 impl StateSpace {
-    /// The linear–quadratic regulator `u = −K x` of all states: least `∫ xᵀQx + 2xᵀNu + uᵀRu dt`, or a sum of
-    /// a discrete system.
+    /// Computes the linear–quadratic regulator `u = −K x`, which minimises `∫ xᵀQx + 2xᵀNu + uᵀRu dt`, or the
+    /// corresponding sum for a discrete system.
     ///
     /// ```
     /// use linkwork_design::{StateSpace, matrices::Cost};
     /// use nalgebra::{DMatrix, dmatrix};
     ///
-    /// // A mass that is pushed: K = (1, √3) for weights of one.
+    /// // A mass under a force: K = (1, √3) for unit weights.
     /// let mass = StateSpace::new(dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], dmatrix![0.0])?;
     /// let best = mass.lqr(&Cost::diagonal(&[1.0, 1.0], &[1.0]))?;
     /// assert!((best.gain[(0, 1)] - 3.0_f64.sqrt()).abs() < 1e-14);
@@ -45,7 +43,7 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// Those of [`riccati`].
+    /// As for [`riccati`].
     pub fn lqr(&self, cost: &Cost) -> Result<Riccati, Error> {
         match self.period {
             Some(_) => discrete_riccati(&self.a, &self.b, cost),
@@ -53,12 +51,13 @@ impl StateSpace {
         }
     }
 
-    /// The regulator for inputs that are held over `period` seconds, with the cost of the continuous motion
-    /// in between (Van Loan, *Computing integrals involving the matrix exponential*, 1978).
+    /// Computes the regulator for inputs with a zero-order hold of `period` seconds. The cost is that of the
+    /// continuous motion, including the motion between sampling instants (Van Loan, *Computing integrals
+    /// involving the matrix exponential*, 1978).
     ///
     /// # Errors
     ///
-    /// Those of [`riccati`], [`Error::Period`], [`Error::Time`] of a discrete system.
+    /// As for [`riccati`], [`Error::Period`], [`Error::Time`] for a discrete system.
     pub fn lqr_held(&self, cost: &Cost, period: f64) -> Result<Riccati, Error> {
         let held = self.discretize(period, Hold::Zero)?;
         let (n, m) = self.b.shape();
@@ -66,7 +65,7 @@ impl StateSpace {
         crate::matrices::check("Q", &cost.q, n, n)?;
         crate::matrices::check("R", &cost.r, m, m)?;
         crate::matrices::check("N", &cost.n, n, m)?;
-        // exp([−Fᵀ W; 0 F] h) = [·, F₃⁻ᵀ ∫; 0 F₃] with F of state and input.
+        // exp([−Fᵀ W; 0 F] h) = [·, F₃⁻ᵀ ∫; 0 F₃], where F is the matrix of state and input.
         let mut f = DMatrix::zeros(k, k);
         f.view_mut((0, 0), (n, n)).copy_from(&self.a);
         f.view_mut((0, n), (n, m)).copy_from(&self.b);
@@ -90,12 +89,12 @@ impl StateSpace {
         held.lqr(&cost)
     }
 
-    /// The stationary Kalman filter.
+    /// Computes the stationary Kalman filter.
     ///
     /// # Errors
     ///
-    /// Those of [`riccati`], of the dual system: [`Error::Undetectable`] names a mode that no output shows,
-    /// [`Error::Shape`] the noise that does not fit.
+    /// As for [`riccati`] of the dual system: [`Error::Undetectable`] with a mode that no output shows,
+    /// [`Error::Shape`] with the name of a noise covariance of another shape.
     pub fn kalman(&self, noise: &Noise) -> Result<Kalman, Error> {
         let (n, p) = (self.order(), self.outputs.len());
         crate::matrices::check("the states' noise", &noise.states, n, n)?;
@@ -121,12 +120,12 @@ impl StateSpace {
         Ok(Kalman { gain, correction, covariance: dual.x, poles: dual.poles })
     }
 
-    /// The controller of a regulator and an estimator: from measurements `y` to inputs, `u = −K x̂`, for
-    /// [negative feedback](Self::feedback) with its sign turned: from `y` to `K x̂`.
+    /// Returns the controller of a regulator and an estimator, with the inverted sign that [negative
+    /// feedback](Self::feedback) requires: it maps the measurements `y` to `K x̂`, so that `u = −K x̂`.
     ///
     /// # Errors
     ///
-    /// [`Error::Shape`] of gains that do not fit.
+    /// [`Error::Shape`] for gains of another shape.
     pub fn compensator(&self, gain: &DMatrix<f64>, estimator: &DMatrix<f64>) -> Result<Self, Error> {
         let (n, m, p) = (self.order(), self.inputs.len(), self.outputs.len());
         crate::matrices::check("the regulator's gain", gain, m, n)?;

@@ -1,16 +1,16 @@
-//! Motion over time: steps, impulses, initial states, given inputs.
+//! Time responses to steps, impulses, initial states and arbitrary inputs.
 
 use crate::{Error, Hold, Port, Signal, StateSpace};
 use nalgebra::{DMatrix, DVector};
 
-/// A motion at equally spaced instants.
+/// Motion at equally spaced instants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     /// Instants, s.
     pub times: Vec<f64>,
-    /// A row an output, a column an instant.
+    /// Outputs: one row per output, one column per instant.
     pub outputs: DMatrix<f64>,
-    /// A row a state, a column an instant.
+    /// States: one row per state, one column per instant.
     pub states: DMatrix<f64>,
     /// Names and units of the outputs.
     pub output_signals: Vec<Signal>,
@@ -19,11 +19,11 @@ pub struct Response {
 }
 
 impl Response {
-    /// One output over time.
+    /// Returns one output over time.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are.
+    /// [`Error::Unknown`] with the list of existing names.
     pub fn output<'a>(&self, output: impl Into<Port<'a>>) -> Result<Vec<f64>, Error> {
         let port = output.into();
         let found = match port {
@@ -40,8 +40,8 @@ impl Response {
 }
 
 impl StateSpace {
-    /// Instants that show a response: until the slowest pole has settled or some periods of what does not
-    /// decay are over, s. A discrete system has its own.
+    /// Returns instants, s, that resolve a response: until the slowest mode has decayed, or for several
+    /// periods of undamped modes. For a discrete system they are the sampling instants.
     ///
     /// # Errors
     ///
@@ -70,11 +70,12 @@ impl StateSpace {
         Ok((0..points).map(|k| step * k as f64).collect())
     }
 
-    /// `count` instants from zero to `end`, s; of a discrete system those of its period up to `end`.
+    /// Returns `count` instants from zero to `end`, s; for a discrete system the sampling instants up to
+    /// `end`.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] unless the end is positive and finite.
+    /// [`Error::Range`] unless `end` is positive and finite.
     pub fn times(&self, end: f64, count: usize) -> Result<Vec<f64>, Error> {
         if !(end > 0.0 && end.is_finite()) {
             return Err(Error::Range { what: "an end", value: end });
@@ -86,7 +87,8 @@ impl StateSpace {
         Ok((0..count).map(|k| step * k as f64).collect())
     }
 
-    /// The outputs while one input is one from the instant zero on, from rest; exact at each instant.
+    /// Computes the response to a unit step of one input at time zero, from zero initial states. Exact at
+    /// each instant.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;
@@ -99,19 +101,20 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`], [`Error::Range`] for instants that are not equally spaced from zero on.
+    /// [`Error::Unknown`], [`Error::Range`] for instants that are not equally spaced from zero.
     pub fn step_response<'a>(&self, input: impl Into<Port<'a>>, times: &[f64]) -> Result<Response, Error> {
         let column = self.input_index(input)?;
         let inputs = DMatrix::from_fn(self.inputs.len(), times.len(), |i, _| f64::from(i == column));
         self.motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
     }
 
-    /// The outputs after an impulse of one of an input (of a discrete system one divided by the period), from
-    /// rest. What passes directly to outputs is left out of a continuous response, where it is infinite.
+    /// Computes the response to a unit impulse of one input from zero initial states; for a discrete system,
+    /// the impulse is the reciprocal of the period for one period. The infinite contribution of `D` to a
+    /// continuous response is omitted.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`], [`Error::Range`] for instants that are not equally spaced from zero on.
+    /// [`Error::Unknown`], [`Error::Range`] for instants that are not equally spaced from zero.
     pub fn impulse_response<'a>(&self, input: impl Into<Port<'a>>, times: &[f64]) -> Result<Response, Error> {
         let column = self.input_index(input)?;
         let mut inputs = DMatrix::zeros(self.inputs.len(), times.len());
@@ -126,24 +129,25 @@ impl StateSpace {
         }
     }
 
-    /// The outputs from an initial state without inputs.
+    /// Computes the response to an initial state without inputs.
     ///
     /// # Errors
     ///
     /// [`Error::Count`] for another number of states, [`Error::Range`] for instants that are not equally
-    /// spaced from zero on.
+    /// spaced from zero.
     pub fn initial_response(&self, state: &[f64], times: &[f64]) -> Result<Response, Error> {
         let inputs = DMatrix::zeros(self.inputs.len(), times.len());
         self.motion(times, &inputs, &DVector::from_column_slice(state), Hold::Zero)
     }
 
-    /// The outputs under given inputs (a row an input, a column an instant) from an initial state: exact for
-    /// inputs that are constant ([`Hold::Zero`]) or straight ([`Hold::First`]) from one instant to the next.
+    /// Computes the response to inputs (one row per input, one column per instant) from an initial state.
+    /// Exact for inputs that are constant ([`Hold::Zero`]) or linear ([`Hold::First`]) between instants.
     ///
     /// # Errors
     ///
-    /// [`Error::Shape`] of the inputs, [`Error::Count`] of the states, [`Error::Range`] for instants that are
-    /// not equally spaced from zero on (of a discrete system by its period).
+    /// [`Error::Shape`] for the inputs, [`Error::Count`] for the states, [`Error::Range`] for instants that
+    /// are not equally spaced from zero, [`Error::Period`] if their spacing is not the period of a discrete
+    /// system.
     pub fn forced_response(
         &self,
         inputs: &DMatrix<f64>,
@@ -181,7 +185,7 @@ impl StateSpace {
                     ..self.clone()
                 };
                 let held = held.discretize(step, Hold::First)?;
-                // The states of the triangle hold are x − D u; its B is that of both ends.
+                // The states of the triangle hold are x − D u; its B combines the inputs at both ends.
                 let before = &held.b - &held.a * &held.d;
                 (held.a, before, Some(held.d))
             }
@@ -212,7 +216,7 @@ impl StateSpace {
     }
 }
 
-/// The distance of instants, which begin at zero.
+/// Returns the spacing of the instants, which must begin at zero.
 fn check_times(times: &[f64], period: Option<f64>) -> Result<f64, Error> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else {
         return Ok(period.unwrap_or(1.0));

@@ -1,29 +1,29 @@
-//! Root loci: closed-loop poles over a gain.
+//! Root loci: closed-loop poles as functions of a gain.
 
 use crate::matrices::C;
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
-/// The poles of a negative feedback with the gains `k`: branch by branch.
+/// Closed-loop poles under negative feedback with the gains `k`, ordered by branch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RootLocus {
-    /// The gains, from low to high.
+    /// Gains, in ascending order.
     pub gains: Vec<f64>,
-    /// One branch a pole: its place at every gain.
+    /// Branches, one per pole: its position at every gain.
     pub branches: Vec<Vec<C>>,
-    /// The poles of the open loop, where branches begin.
+    /// Poles of the open loop, at which branches begin.
     pub poles: Vec<C>,
-    /// The zeros of the open loop, where branches end.
+    /// Zeros of the open loop, at which branches end.
     pub zeros: Vec<C>,
-    /// The period of a discrete system, s.
+    /// Period of a discrete system, s.
     pub period: Option<f64>,
 }
 
-/// Poles in an order in which each is near its place before.
+/// Orders poles so that each is near the previous pole of its branch.
 fn follow(before: &[C], mut now: Vec<C>) -> Vec<C> {
     let mut order = vec![C::new(0.0, 0.0); before.len()];
     let mut free: Vec<usize> = (0..before.len()).collect();
-    // The nearest pair of all goes first, so that no branch takes the end of another.
+    // The nearest pair is matched first, so that no branch continues into another.
     while !free.is_empty() && !now.is_empty() {
         let pairs = free
             .iter()
@@ -36,11 +36,11 @@ fn follow(before: &[C], mut now: Vec<C>) -> Vec<C> {
 }
 
 impl StateSpace {
-    /// The poles under `u = r − k y` for these gains.
+    /// Computes the poles under `u = r − k y` for these gains.
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] unless there is one input and one output, [`Error::AlgebraicLoop`] at a gain of
+    /// [`Error::Count`] unless the system has one input and one output, [`Error::AlgebraicLoop`] at a gain of
     /// `−1 / D`.
     pub fn root_locus(&self, gains: &[f64]) -> Result<RootLocus, Error> {
         self.check_single()?;
@@ -55,13 +55,13 @@ impl StateSpace {
         Ok(RootLocus { gains: gains.to_vec(), branches, poles, zeros, period: self.period })
     }
 
-    /// Gains that show the locus: zero, then on a logarithmic scale from where poles begin to move to where
-    /// they are near zeros or far away, and refined where a pole moves by more than a fortieth of the
-    /// picture.
+    /// Returns gains that resolve the locus. They are zero, then logarithmically spaced from where poles
+    /// begin to move to where they are near zeros or far away. Intervals in which a pole moves by more than a
+    /// fortieth of the largest pole or zero are refined.
     ///
     /// # Errors
     ///
-    /// Those of [`root_locus`](Self::root_locus).
+    /// As for [`root_locus`](Self::root_locus).
     pub fn locus_gains(&self) -> Result<Vec<f64>, Error> {
         self.check_single()?;
         let poles = self.poles()?;
@@ -84,7 +84,7 @@ impl StateSpace {
             }
             high *= 2.5;
         }
-        // Where all branches end in zeros nothing goes far.
+        // If all branches end in zeros, no pole moves far.
         high = high.min(1e6 * low.max(1e-9)).max(10.0 * low);
         let mut gains = vec![0.0];
         gains.extend(crate::logarithmic(low, high, 80)?);

@@ -1,45 +1,45 @@
-//! Routh's table, with its special cases.
+//! Routh's table, with its singular cases.
 
 use crate::matrices::C;
 use crate::{Error, Polynomial};
 
-/// What happened in a row of the table.
+/// Kind of a row of Routh's table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Special {
-    /// Nothing.
+    /// Row without a singularity.
     Regular,
-    /// The row began with zeros but was not zero: the row, shifted to its first entry and with the sign of
-    /// the shift, was added (Benidir and Picinbono, *Extended table for eliminating the singularities in
-    /// Routh's array*, 1990), which needs no ε.
+    /// The row began with zeros but was not zero. The row, shifted to its first nonzero entry and multiplied
+    /// by the sign of the shift, was added, which avoids the ε method (Benidir and Picinbono, *Extended table
+    /// for eliminating the singularities in Routh's array*, 1990).
     LeadingZero,
-    /// The row was zero: roots lie symmetric to the origin. The derivative of the polynomial of the row
-    /// before takes its place.
+    /// The row was zero, since roots are symmetric about the origin. It was replaced by the derivative of the
+    /// polynomial of the previous row.
     ZeroRow,
 }
 
 /// Routh's table of a polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Routh {
-    /// The rows, as they are used.
+    /// Rows of the table, after the replacement of singular rows.
     pub rows: Vec<Vec<f64>>,
-    /// What happened in each row.
+    /// Kind of each row.
     pub special: Vec<Special>,
-    /// Roots with positive real part: sign changes in the first column.
+    /// Number of roots with positive real part, which is the number of sign changes in the first column.
     pub right: usize,
-    /// Roots on the imaginary axis.
+    /// Number of roots on the imaginary axis.
     pub imaginary: usize,
 }
 
-/// Beside the terms that it comes from an entry below this is zero.
+/// Relative threshold: entries below this, relative to the terms of their difference, count as zero.
 const ZERO: f64 = 1e-12;
 
 impl Polynomial {
-    /// Routh's table.
+    /// Computes Routh's table.
     ///
     /// ```
     /// use linkwork_design::Polynomial;
     ///
-    /// // s³ + 2 s² + 3 s + 4 + K with K = 2: two roots on the axis, at ±i√3.
+    /// // s³ + 2 s² + 3 s + 4 + K with K = 2: two roots on the imaginary axis, at ±i√3.
     /// let table = Polynomial::new([1.0, 2.0, 3.0, 6.0]).routh()?;
     /// assert_eq!((table.right, table.imaginary), (0, 2));
     /// assert!(!table.is_stable());
@@ -48,7 +48,7 @@ impl Polynomial {
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] for the polynomial zero, [`Error::NotFinite`].
+    /// [`Error::Range`] for the zero polynomial, [`Error::NotFinite`].
     pub fn routh(&self) -> Result<Routh, Error> {
         if self.is_zero() {
             return Err(Error::Range { what: "a table of the polynomial", value: 0.0 });
@@ -102,7 +102,8 @@ impl Polynomial {
             first.windows(2).filter(|w| w[0] * w[1] < 0.0).count()
         };
         let right = changes(0);
-        // Of the factor with symmetric roots as many are left as right; the others are on the axis.
+        // The factor with symmetric roots has as many roots in the left as in the right half-plane; the
+        // others are on the axis.
         let imaginary = symmetric_from.map_or(0, |k| (n + 1 - k) - 2 * changes(k - 1));
         Ok(Routh { rows, special, right, imaginary })
     }
@@ -116,24 +117,24 @@ fn cross(two: &[f64], one: &[f64], length: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 impl Routh {
-    /// Whether all roots have negative real parts.
+    /// Returns whether all roots have negative real parts.
     pub fn is_stable(&self) -> bool {
         self.right == 0 && self.imaginary == 0
     }
 }
 
-/// An open interval of gains.
+/// Open interval of gains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainRange {
-    /// Its lower end; may be minus infinity.
+    /// Lower end; may be minus infinity.
     pub low: f64,
-    /// Its upper end; may be infinity.
+    /// Upper end; may be infinity.
     pub high: f64,
 }
 
 impl Polynomial {
-    /// The gains `k` for which this polynomial plus `k` times another has roots with negative real parts
-    /// alone, as intervals.
+    /// Computes the gains `k` for which all roots of `self + k · other` have negative real parts, as
+    /// intervals.
     ///
     /// ```
     /// use linkwork_design::Polynomial;
@@ -169,7 +170,7 @@ impl Polynomial {
             if !is_stable(inside)? {
                 continue;
             }
-            // A candidate that is not critical after all does not end a range.
+            // A candidate that is not critical does not end a range.
             match ranges.last_mut() {
                 Some(last) if last.high == low && is_stable(low)? => last.high = high,
                 _ => ranges.push(GainRange { low, high }),
@@ -178,8 +179,8 @@ impl Polynomial {
         Ok(ranges)
     }
 
-    /// Gains that include all at which a root is on the imaginary axis or at infinity. The others are
-    /// harmless.
+    /// Returns candidates that include all gains at which a root is on the imaginary axis or at infinity.
+    /// Additional candidates do no harm.
     fn critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
         let mirrored = |p: &Self| {
             let n = p.degree();
@@ -193,7 +194,7 @@ impl Polynomial {
         let mut found = Vec::new();
         for w in points {
             let s = C::new(0.0, w);
-            // Where q vanishes the gain is infinite.
+            // At a zero of q the gain is infinite.
             if other.at(s).norm() > other.rounding_at(w) {
                 found.push((-self.at(s) / other.at(s)).re);
             }

@@ -4,21 +4,22 @@ use crate::matrices::{check, check_square, solve};
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
 
-/// `M q̈ + (D + G) q̇ + (K + N) q = B u`: the parts that Kelvin, Tait and Chetaev tell apart. `D` and `K` are
-/// symmetric, `G` and `N` skew (Merkin, *Introduction to the Theory of Stability*, 1997, ch. 6).
+/// Second-order form `M q̈ + (D + G) q̇ + (K + N) q = B u`, with the decomposition of Kelvin, Tait and
+/// Chetaev. `D` and `K` are symmetric, `G` and `N` skew-symmetric (Merkin, *Introduction to the Theory of
+/// Stability*, 1997, ch. 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondOrderForm {
-    /// `M`: kg between translations, kg·m² between rotations.
+    /// Mass matrix `M`: kg between translations, kg·m² between rotations.
     pub mass: DMatrix<f64>,
-    /// `D`, which takes energy away where it is positive.
+    /// Damping matrix `D`, which dissipates energy if it is positive definite.
     pub damping: DMatrix<f64>,
-    /// `G`, which does no work.
+    /// Gyroscopic matrix `G`, which does no work.
     pub gyroscopic: DMatrix<f64>,
-    /// `K`, which has a potential.
+    /// Stiffness matrix `K`, which derives from a potential.
     pub stiffness: DMatrix<f64>,
-    /// `N`, which has none: follower forces, internal damping of rotors.
+    /// Circulatory matrix `N`, which has no potential: follower forces, internal damping of rotors.
     pub circulatory: DMatrix<f64>,
-    /// `B`.
+    /// Input matrix `B`.
     pub input: DMatrix<f64>,
     coordinates: Vec<Signal>,
     inputs: Vec<Signal>,
@@ -29,11 +30,11 @@ fn parts(m: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
 }
 
 impl SecondOrderForm {
-    /// Of the matrices by `q̈`, `q̇`, `q` and the inputs.
+    /// Creates the form from the matrices that multiply `q̈`, `q̇`, `q` and the inputs.
     ///
     /// # Errors
     ///
-    /// [`Error::Shape`] and [`Error::NotFinite`] name the matrix.
+    /// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix.
     pub fn new(
         mass: DMatrix<f64>,
         velocity: DMatrix<f64>,
@@ -50,11 +51,11 @@ impl SecondOrderForm {
         Ok(Self { mass, damping, gyroscopic, stiffness, circulatory, input, coordinates, inputs })
     }
 
-    /// Names (and units) of coordinates and inputs.
+    /// Sets the names and, optionally, units of coordinates and inputs.
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of them.
+    /// [`Error::Count`] for another number of names.
     pub fn with_names(mut self, coordinates: Vec<Signal>, inputs: Vec<Signal>) -> Result<Self, Error> {
         for (what, names, expected) in
             [("coordinates", &coordinates, self.mass.nrows()), ("inputs", &inputs, self.input.ncols())]
@@ -67,7 +68,7 @@ impl SecondOrderForm {
         Ok(self)
     }
 
-    /// As a first-order system with the states `(q, q̇)`, which are the outputs, too.
+    /// Returns the form as a first-order system with the states `(q, q̇)`, which are also the outputs.
     ///
     /// ```
     /// use linkwork_design::SecondOrderForm;
@@ -80,14 +81,14 @@ impl SecondOrderForm {
     ///     let position = &one + turn * (inner * spin);
     ///     SecondOrderForm::new(one.clone(), &one * (inner + outer), position, DMatrix::zeros(2, 0))?.state_space()
     /// };
-    /// // It loses stability where spin / ω = 1 + outer / inner.
+    /// // The rotor loses stability at spin / ω = 1 + outer / inner.
     /// assert!(rotor(1.99)?.is_stable()? && !rotor(2.01)?.is_stable()?);
     /// # Ok::<(), linkwork_design::Error>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] where `M` is.
+    /// [`Error::Singular`] if `M` is singular.
     pub fn state_space(&self) -> Result<StateSpace, Error> {
         let (n, m) = self.input.shape();
         let mut right = DMatrix::zeros(n, 2 * n + m);

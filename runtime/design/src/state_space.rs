@@ -1,21 +1,21 @@
-//! Linear systems by their matrices.
+//! Linear systems in state-space form.
 
 use crate::Error;
 use crate::matrices::{C, check, check_square, eigenvalues};
 use nalgebra::DMatrix;
 use std::fmt;
 
-/// A state, input or output: its name and unit.
+/// Name and unit of a state, input or output.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Signal {
-    /// What it is called.
+    /// Name.
     pub name: String,
-    /// Its unit; empty where none was said.
+    /// Unit; empty if unspecified.
     pub unit: String,
 }
 
 impl Signal {
-    /// A name with a unit.
+    /// Creates a signal with a name and a unit.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { name: name.into(), unit: unit.into() }
     }
@@ -46,12 +46,12 @@ impl fmt::Display for Signal {
     }
 }
 
-/// Which input or output is meant: by its place or by its name.
+/// Reference to an input or output, by index or by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Port<'a> {
-    /// Counted from zero.
+    /// Index, counted from zero.
     At(usize),
-    /// By name.
+    /// Name.
     Named(&'a str),
 }
 
@@ -67,8 +67,8 @@ impl<'a> From<&'a str> for Port<'a> {
     }
 }
 
-/// A linear system `ẋ = A x + B u`, `y = C x + D u`, or `x⁺ = A x + B u` from one period to the next, with
-/// the names and units of its states, inputs and outputs.
+/// Linear system `ẋ = A x + B u`, `y = C x + D u`, or `x⁺ = A x + B u` from one sampling instant to the next,
+/// with the names and units of its states, inputs and outputs.
 ///
 /// ```
 /// use linkwork_design::StateSpace;
@@ -100,11 +100,11 @@ fn numbered(letter: char, n: usize) -> Vec<Signal> {
 }
 
 impl StateSpace {
-    /// A continuous system of four matrices. Its signals are called x1, u1, y1 and so on.
+    /// Creates a continuous system from four matrices. Its signals are named x1, u1, y1 and so on.
     ///
     /// # Errors
     ///
-    /// [`Error::Shape`] and [`Error::NotFinite`] name the matrix.
+    /// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, Error> {
         let n = check_square("A", &a)?;
         check("B", &b, n, b.ncols())?;
@@ -115,7 +115,7 @@ impl StateSpace {
         Ok(Self { a, b, c, d, states, inputs, outputs, period: None })
     }
 
-    /// A system without states: `y = D u`.
+    /// Creates a system without states: `y = D u`.
     ///
     /// # Errors
     ///
@@ -125,11 +125,11 @@ impl StateSpace {
         Self::new(DMatrix::zeros(0, 0), DMatrix::zeros(0, m), DMatrix::zeros(p, 0), d)
     }
 
-    /// Discrete, with a period in s: `A` leads from one instant to the next.
+    /// Makes the system discrete with a period in s: `A` maps the state at one sampling instant to the next.
     ///
     /// # Errors
     ///
-    /// [`Error::Period`] unless it is positive and finite.
+    /// [`Error::Period`] unless the period is positive and finite.
     pub fn with_period(mut self, period: f64) -> Result<Self, Error> {
         if !(period > 0.0 && period.is_finite()) {
             return Err(Error::Period { period });
@@ -138,31 +138,31 @@ impl StateSpace {
         Ok(self)
     }
 
-    /// Names (and units) of the states.
+    /// Sets the names and, optionally, units of the states.
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of them.
+    /// [`Error::Count`] if the number of names differs from the number of states.
     pub fn with_states<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
         self.states = named("states", self.a.nrows(), names)?;
         Ok(self)
     }
 
-    /// Names (and units) of the inputs.
+    /// Sets the names and, optionally, units of the inputs.
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of them.
+    /// [`Error::Count`] if the number of names differs from the number of inputs.
     pub fn with_inputs<S: Into<Signal>>(mut self, names: impl IntoIterator<Item = S>) -> Result<Self, Error> {
         self.inputs = named("inputs", self.b.ncols(), names)?;
         Ok(self)
     }
 
-    /// Names (and units) of the outputs.
+    /// Sets the names and, optionally, units of the outputs.
     ///
     /// # Errors
     ///
-    /// [`Error::Count`] for another number of them.
+    /// [`Error::Count`] if the number of names differs from the number of outputs.
     pub fn with_outputs<S: Into<Signal>>(
         mut self,
         names: impl IntoIterator<Item = S>,
@@ -171,87 +171,89 @@ impl StateSpace {
         Ok(self)
     }
 
-    /// `A`.
+    /// Returns the state matrix `A`.
     pub fn a(&self) -> &DMatrix<f64> {
         &self.a
     }
 
-    /// `B`.
+    /// Returns the input matrix `B`.
     pub fn b(&self) -> &DMatrix<f64> {
         &self.b
     }
 
-    /// `C`.
+    /// Returns the output matrix `C`.
     pub fn c(&self) -> &DMatrix<f64> {
         &self.c
     }
 
-    /// `D`.
+    /// Returns the feedthrough matrix `D`.
     pub fn d(&self) -> &DMatrix<f64> {
         &self.d
     }
 
-    /// The states in order.
+    /// Returns the names and units of the states, in order.
     pub fn states(&self) -> &[Signal] {
         &self.states
     }
 
-    /// The inputs in order.
+    /// Returns the names and units of the inputs, in order.
     pub fn inputs(&self) -> &[Signal] {
         &self.inputs
     }
 
-    /// The outputs in order.
+    /// Returns the names and units of the outputs, in order.
     pub fn outputs(&self) -> &[Signal] {
         &self.outputs
     }
 
-    /// The period of a discrete system, s; `None` of a continuous one.
+    /// Returns the period of a discrete system, s; `None` for a continuous system.
     pub fn period(&self) -> Option<f64> {
         self.period
     }
 
-    /// How many states there are.
+    /// Returns the number of states.
     pub fn order(&self) -> usize {
         self.a.nrows()
     }
 
-    /// The eigenvalues of `A`, sorted by real part, in conjugate pairs.
+    /// Returns the eigenvalues of `A`, sorted by real part, in conjugate pairs.
     ///
     /// # Errors
     ///
-    /// [`Error::NotConverged`] if the QR algorithm does not settle.
+    /// [`Error::NotConverged`] if the QR algorithm does not converge.
     pub fn poles(&self) -> Result<Vec<C>, Error> {
         eigenvalues(&self.a)
     }
 
-    /// Whether every pole is left of the imaginary axis, or inside the unit circle of a discrete system.
+    /// Returns whether all poles are in the open left half-plane, or inside the unit circle for a discrete
+    /// system.
     ///
     /// # Errors
     ///
-    /// Those of [`poles`](Self::poles).
+    /// As for [`poles`](Self::poles).
     pub fn is_stable(&self) -> Result<bool, Error> {
         Ok(self.unstable_pole()?.is_none())
     }
 
-    /// The pole farthest from stability, if one is not stable.
+    /// Returns the pole with the largest real part (largest magnitude for a discrete system), if it is not
+    /// stable.
     pub(crate) fn unstable_pole(&self) -> Result<Option<C>, Error> {
         let excess = |p: &C| if self.period.is_some() { p.norm() - 1.0 } else { p.re };
         let worst = self.poles()?.into_iter().max_by(|a, b| excess(a).total_cmp(&excess(b)));
         Ok(worst.filter(|p| excess(p) >= 0.0))
     }
 
-    /// Refuses a system that is not stable.
+    /// Reports an unstable pole of the system as an error.
     pub(crate) fn check_stable(&self) -> Result<(), Error> {
         self.unstable_pole()?.map_or(Ok(()), |pole| Err(Error::Unstable { pole }))
     }
 
-    /// These states alone, by name and in this order, while all others stay at zero; they are the outputs,
-    /// too. What aircraft do in their plane of symmetry, for instance.
+    /// Returns the subsystem of the named states, in this order, with all other states fixed at zero. The
+    /// outputs are the states. An example is the longitudinal motion of an aircraft.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are; [`Error::Repeated`] where a state is named twice.
+    /// [`Error::Unknown`] with the list of existing names; [`Error::Repeated`] if a state is listed twice.
     pub fn of_states(&self, names: &[&str]) -> Result<Self, Error> {
         let kept = names.iter().map(|name| place("state", &self.states, Port::Named(name)));
         let kept = kept.collect::<Result<Vec<usize>, Error>>()?;
@@ -268,11 +270,12 @@ impl StateSpace {
         Ok(part.with_states(states)?.with_inputs(self.inputs.clone())?.with_states_as_outputs())
     }
 
-    /// What constant inputs lead to: `D − C A⁻¹ B`, or `D + C (I − A)⁻¹ B`.
+    /// Returns the static gain: the ratio of constant outputs to constant inputs, `D − C A⁻¹ B`, or
+    /// `D + C (I − A)⁻¹ B` for a discrete system.
     ///
     /// # Errors
     ///
-    /// [`Error::Singular`] with a pole at rest.
+    /// [`Error::Singular`] for a pole at `s = 0`, or at `z = 1` for a discrete system.
     pub fn gain_at_rest(&self) -> Result<DMatrix<f64>, Error> {
         let n = self.order();
         let left = match self.period {
@@ -287,20 +290,20 @@ impl StateSpace {
         Ok(&self.d + &self.c * x)
     }
 
-    /// The place of an input.
+    /// Returns the index of an input.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are.
+    /// [`Error::Unknown`] with the list of existing names.
     pub fn input_index<'a>(&self, input: impl Into<Port<'a>>) -> Result<usize, Error> {
         place("input", &self.inputs, input.into())
     }
 
-    /// The place of an output.
+    /// Returns the index of an output.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are.
+    /// [`Error::Unknown`] with the list of existing names.
     pub fn output_index<'a>(&self, output: impl Into<Port<'a>>) -> Result<usize, Error> {
         place("output", &self.outputs, output.into())
     }
@@ -331,7 +334,7 @@ fn place(kind: &'static str, signals: &[Signal], port: Port<'_>) -> Result<usize
 }
 
 impl fmt::Display for StateSpace {
-    /// The matrices with the names of their rows.
+    /// Writes the equations, the names of all signals and the matrices.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let list = |signals: &[Signal]| signals.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(", ");
         match self.period {

@@ -1,8 +1,8 @@
 //! Equilibria and steady motions of mechanisms.
 //!
-//! A [`Trim`] lists what is unknown (coordinates, speeds, inputs, parameters) and what is to hold there
-//! (accelerations, constraints, outputs), by name. [`equilibrium`] and [`constrained_equilibrium`] begin with
-//! a mechanism at rest: all coordinates are unknown, and nothing accelerates.
+//! A [`Trim`] lists the unknowns (coordinates, velocities, inputs, parameters) and the conditions
+//! (accelerations, constraints, outputs) by name. [`equilibrium`] and [`constrained_equilibrium`] start with
+//! a mechanism at rest: all coordinates are unknown, and all accelerations are zero.
 //!
 //! ```
 //! use linkwork::prelude::*;
@@ -22,17 +22,17 @@
 //! let lamp = Lamp {};
 //! let rest = equilibrium(&lamp);
 //! let found = rest.find()?;
-//! // The moment of the weight is that of the spring, and the arm would swing about there.
+//! // The torque of the weight balances that of the spring; the arm oscillates about this equilibrium.
 //! assert!((6.0 * found.q[0] + 0.5 * 9.81 * 0.4 * found.q[0].cos()).abs() < 1e-12);
 //! assert_eq!(rest.stiffness(&found)?.verdict(), Verdict::Stable);
 //! assert!(rest.linear_system(&found)?.modes()?[0].damped_frequency() > 0.0);
 //! # Ok::<(), linkwork_design::Error>(())
 //! ```
 //!
-//! Names are those of `VELOCITIES`, also for coordinates, which move along `q ⊕ δq`: in body axes for ball
-//! and free joints. The equations are solved by Levenberg–Marquardt steps on the tangent space (Moré, *The
-//! Levenberg–Marquardt algorithm: implementation and theory*, 1978) with generated derivatives, in a bounded
-//! number of iterations.
+//! Coordinates have the names of `VELOCITIES`, since they are changed along the tangent space, `q ⊕ δq`: for
+//! ball and free joints in body axes. The equations are solved by Levenberg–Marquardt steps on the tangent
+//! space (Moré, *The Levenberg–Marquardt algorithm: implementation and theory*, 1978) with generated
+//! derivatives, in a bounded number of iterations.
 
 use crate::Error;
 use linkwork::{Constrained, OutputDerivatives, Rheonomic, RheonomicDerivatives};
@@ -46,33 +46,35 @@ mod stiffness;
 
 pub use stiffness::{Stiffness, Verdict};
 
-/// The mechanism that has given parameters.
+/// Function that builds the mechanism from the values of its unknown parameters.
 type Family<'m, M> = dyn Fn(&[f64]) -> M + 'm;
 
-/// A mechanism, or one for each set of parameters.
+/// Mechanism of a trim: either fixed, or built for each set of parameters.
 enum Source<'m, M> {
     Given(&'m M),
     Family(Box<Family<'m, M>>),
 }
 
-/// Constraints of a mechanism at a time, a configuration and a velocity.
+/// Function that evaluates the constraints of a mechanism at a time, a configuration and a velocity.
 type ConstraintsOf<M, const NQ: usize, const NV: usize> =
     fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>) -> Bounds;
 
-/// Multipliers of the constraints under forces.
+/// Function that computes the named constraint multipliers at a time, a configuration, a velocity and
+/// generalized forces.
 type MultipliersOf<M, const NQ: usize, const NV: usize> =
     fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NV>) -> Vec<(&'static str, f64)>;
 
-/// Outputs of a mechanism at a time, of configuration, velocity, acceleration and inputs.
+/// Function that evaluates the outputs of a mechanism and their derivatives at a time, a configuration, a
+/// velocity, an acceleration and inputs.
 type OutputsOf<M, const NQ: usize, const NV: usize, const NU: usize> =
     fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> Measured;
 
-/// What is unknown of a state, and what is to hold there.
+/// Unknowns and conditions of a steady state.
 ///
-/// Before anything is said, all coordinates are unknown, speeds and inputs are given (as zero), and no
-/// velocity changes. States of first order, of a mechanism with them among its velocities
-/// ([`Extended`](linkwork::Extended)), are unknown unless they are [fixed](Trim::fix), and come to rest.
-/// Constraints always hold.
+/// By default, all coordinates are unknown, velocities and inputs are fixed at zero, and all accelerations
+/// are zero. States of first order, which are among the velocities of an [`Extended`](linkwork::Extended)
+/// mechanism, are unknown unless they are [fixed](Trim::fix), and their rates are zero. Constraints are
+/// always conditions.
 pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     source: Source<'m, M>,
     t: f64,
@@ -85,7 +87,7 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     held: Vec<String>,
     speeds: Vec<String>,
     inputs: Vec<String>,
-    /// Accelerations that are given, or left open.
+    /// Accelerations with their required values; `None` for accelerations without a condition.
     accelerations: Vec<(String, Option<f64>)>,
     conditions: Vec<(String, f64)>,
     constraints: Option<(ConstraintsOf<M, NQ, NV>, MultipliersOf<M, NQ, NV>)>,
@@ -94,7 +96,7 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     iterations: usize,
 }
 
-/// A state in which all conditions hold.
+/// State that satisfies all conditions of a [`Trim`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
@@ -104,25 +106,26 @@ pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
     pub v: SVector<f64, NV>,
     /// Inputs.
     pub u: SVector<f64, NU>,
-    /// `v̇`, m/s² and rad/s²: rounding but for entries that were given or left open.
+    /// Acceleration `v̇`, m/s² and rad/s². Zero up to rounding, except for entries whose value was specified
+    /// or that were left without a condition.
     pub acceleration: SVector<f64, NV>,
-    /// The parameters, in the order in which they were given.
+    /// Values of the parameters, in the order in which they were declared.
     pub parameters: Vec<f64>,
-    /// What holds coordinates: name, and generalized force, N or N·m.
+    /// Forces that lock the [held](Trim::hold) coordinates: name, and generalized force, N or N·m.
     pub holding: Vec<(String, f64)>,
-    /// Multipliers of the constraints: name, and force or torque (N, N·m) along what the constraint's rate
-    /// counts. Where constraints are redundant, those of least norm.
+    /// Multipliers of the constraints: name, and force or torque (N, N·m) along the constraint's velocity.
+    /// For redundant constraints, the multipliers of minimum norm.
     pub multipliers: Vec<(&'static str, f64)>,
-    /// How many iterations were made.
+    /// Number of iterations.
     pub iterations: usize,
-    /// What is left of the conditions, each divided by what it changes with unknowns: rad, m.
+    /// Largest residual of the conditions, each divided by its sensitivity to the unknowns: rad, m.
     pub residual: f64,
 }
 
-/// Equilibria of a mechanism without constraints: at rest, and nothing accelerates.
+/// Returns the trim of an equilibrium of a mechanism without constraints: at rest, with zero acceleration.
 ///
-/// What is driven in time is looked at in an instant ([`Trim::at_time`]): of a pendulum on a hoop that turns
-/// steadily these are the relative equilibria.
+/// A mechanism with prescribed motions is evaluated at one instant ([`Trim::at_time`]). For a pendulum on a
+/// hoop that rotates at constant speed, the results are the relative equilibria.
 pub fn equilibrium<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M) -> Trim<'_, M, NQ, NV, NU>
 where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
@@ -131,7 +134,7 @@ where
     Trim::new(m)
 }
 
-/// Equilibria of a mechanism with constraints, rolling contacts among them.
+/// Returns the trim of an equilibrium of a mechanism with constraints, which include rolling contacts.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -151,7 +154,7 @@ where
 /// }
 ///
 /// let found = constrained_equilibrium(&Bead {}).with_inputs([4.905].into()).find()?;
-/// // The wire is perpendicular to the sum of wind and weight, and holds it.
+/// // The wire is perpendicular to the sum of wind force and weight, and its reaction balances them.
 /// assert!((found.q[0] - 0.25).abs() < 1e-12 && (found.q[1] - 0.0625).abs() < 1e-12);
 /// assert_eq!(found.multipliers[0].0, "wire");
 /// assert!((found.multipliers[0].1.abs() - 9.81).abs() < 1e-12);
@@ -207,45 +210,46 @@ where
         }
     }
 
-    /// Begins at this configuration; coordinates that are not unknown keep it. The neutral one without this.
-    /// Constraints need not hold there.
+    /// Sets the configuration from which the iteration starts. Coordinates that are not unknown retain its
+    /// values. The default is the neutral configuration. The constraints need not be satisfied by it.
     pub fn from(mut self, q: SVector<f64, NQ>) -> Self {
         self.q = q;
         self
     }
 
-    /// The velocity, m/s and rad/s; where speeds are unknown, the guess. Zero without this.
+    /// Sets the velocity, m/s and rad/s; for unknown velocities it is the initial guess. The default is zero.
     pub fn moving(mut self, v: SVector<f64, NV>) -> Self {
         self.v = v;
         self
     }
 
-    /// The inputs; where they are unknown, the guess. Zero without this.
+    /// Sets the inputs; for unknown inputs they are the initial guess. The default is zero.
     pub fn with_inputs(mut self, u: SVector<f64, NU>) -> Self {
         self.u = u;
         self
     }
 
-    /// The instant, s, of a mechanism that is driven in time.
+    /// Sets the time, s, at which a mechanism with prescribed motions is evaluated. The default is zero.
     pub fn at_time(mut self, t: f64) -> Self {
         self.t = t;
         self
     }
 
-    /// Only these coordinates are unknown; the others keep what they are.
+    /// Makes these coordinates the only unknown ones; the others retain their initial values.
     pub fn coordinates<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.coordinates = Some(owned(names));
         self
     }
 
-    /// These coordinates keep what they are, while the forces along them have to balance all the same: places
-    /// on a level road, the heading of an aircraft.
+    /// Fixes these coordinates at their initial values, while the forces along them must still balance.
+    /// Examples are positions on a level road and the heading of an aircraft.
     pub fn fix<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.fixed.extend(owned(names));
         self
     }
 
-    /// These coordinates are held fast, by forces that are found ([`SteadyState::holding`]).
+    /// Locks these coordinates at their initial values by generalized forces, which are computed
+    /// ([`SteadyState::holding`]).
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -263,7 +267,7 @@ where
     ///     elbow: Pin,
     /// }
     ///
-    /// // The upper arm is held level; the lower one hangs down.
+    /// // The upper arm is locked horizontally; the lower arm hangs down.
     /// let found = equilibrium(&Arm {}).from([0.0, -1.0].into()).hold(["shoulder"]).find()?;
     /// assert!((found.q[1] + std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     /// assert!((found.holding[0].1 - (2.0 * 0.5 + 1.0 * 1.0) * 9.81).abs() < 1e-12);
@@ -274,31 +278,32 @@ where
         self
     }
 
-    /// These speeds are unknown.
+    /// Declares these velocities as unknown.
     pub fn speeds<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.speeds.extend(owned(names));
         self
     }
 
-    /// These inputs are unknown.
+    /// Declares these inputs as unknown.
     pub fn inputs<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.inputs.extend(owned(names));
         self
     }
 
-    /// These velocities may change as they will: those of the place of a wheel that runs in a circle.
+    /// Removes the condition on these accelerations, for example on those of the position of a wheel that
+    /// runs in a circle.
     pub fn accelerating<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.accelerations.extend(owned(names).into_iter().map(|name| (name, None)));
         self
     }
 
-    /// The velocity of this name changes at a given rate, m/s² or rad/s², instead of none.
+    /// Requires this value of the acceleration with this velocity name, m/s² or rad/s², instead of zero.
     pub fn acceleration(mut self, name: impl Into<String>, value: f64) -> Self {
         self.accelerations.push((name.into(), Some(value)));
         self
     }
 
-    /// A condition: the output of this name has this value. Components of vectors are `name.x` and so on.
+    /// Requires this value of the output with this name. Components of vectors are named `name.x` and so on.
     pub fn output<const NY: usize>(mut self, name: impl Into<String>, value: f64) -> Self
     where
         M: OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
@@ -308,8 +313,9 @@ where
         self
     }
 
-    /// Parameters that are unknown, by names with guesses, and the mechanism that has them. Derivatives by
-    /// them are central differences; all others are generated.
+    /// Declares unknown parameters by names and initial guesses, with a function that builds the mechanism
+    /// from their values. The derivatives with respect to parameters are central differences; all others are
+    /// generated.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -326,7 +332,7 @@ where
     ///     spring: Spring,
     /// }
     ///
-    /// // What lies on the pan when it has gone down by 2 cm?
+    /// // Which load deflects the pan by 2 cm?
     /// let scale = Scale { load: 1.0 };
     /// let found = equilibrium(&scale)
     ///     .from([-0.02].into())
@@ -346,36 +352,38 @@ where
         self
     }
 
-    /// What the conditions leave open stays near what it was, instead of being an error.
+    /// Accepts conditions that do not determine all unknowns: the undetermined unknowns stay near their
+    /// initial guess. The default is an error.
     pub fn nearest(mut self) -> Self {
         self.nearest = true;
         self
     }
 
-    /// The most iterations, 200 without this.
+    /// Sets the maximum number of iterations. The default is 200.
     pub fn most_iterations(mut self, iterations: usize) -> Self {
         self.iterations = iterations;
         self
     }
 
-    /// A state in which all conditions hold, near the guess.
+    /// Computes a state near the guess that satisfies all conditions.
     ///
     /// # Errors
     ///
-    /// [`Error::NoSteadyState`] where there is none: with the condition that is violated most, and the place
-    /// at which the violation is least. [`Error::Undetermined`] where conditions leave unknowns open.
-    /// [`Error::Unknown`] for a name that is none. [`Error::NotFinite`] where accelerations at the guess are
-    /// not, [`Error::Constraint`] where friction jams there.
+    /// [`Error::NoSteadyState`] if the iteration finds none, with the condition that is violated most and the
+    /// state of minimum violation. [`Error::Undetermined`] if the conditions do not determine all unknowns.
+    /// [`Error::Unknown`] for an unknown name. [`Error::NotFinite`] if accelerations at the guess are not
+    /// finite, [`Error::Constraint`] if friction jams at the guess.
     pub fn find(&self) -> Result<SteadyState<NQ, NV, NU>, Error> {
         solve::find(self)
     }
 
-    /// The different states that are reached from several guesses of the configuration, in that order;
-    /// guesses from which none is reached are passed over. Coordinates of joints that turn count their turns.
+    /// Computes the distinct states that are reached from several guesses of the configuration, in the order
+    /// of the guesses. Guesses that lead to no state are skipped. Angles of revolute joints are not reduced
+    /// modulo a revolution.
     ///
     /// # Errors
     ///
-    /// The error of the last guess, if all of them have one; [`Error::Count`] for no guess.
+    /// The error of the last guess that failed, if all fail; [`Error::Count`] for an empty list of guesses.
     pub fn find_all(
         &mut self,
         guesses: impl IntoIterator<Item = SVector<f64, NQ>>,
@@ -395,7 +403,7 @@ where
         if all.is_empty() { Err(error) } else { Ok(all) }
     }
 
-    /// Whether states are farther apart than a solution is known.
+    /// Returns whether two states differ by more than the accuracy of a solution.
     fn differ(&self, one: &SteadyState<NQ, NV, NU>, other: &SteadyState<NQ, NV, NU>) -> bool {
         const APART: f64 = 1e-6;
         let far =

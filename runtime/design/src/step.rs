@@ -23,7 +23,7 @@ pub struct StepFigures {
     pub peak: f64,
     /// Time of the largest magnitude, s; infinite if the response only approaches it.
     pub peak_time: f64,
-    /// Least value after the rise.
+    /// Minimum value after the rise.
     pub least_after_rise: f64,
     /// Largest value after the rise.
     pub largest_after_rise: f64,
@@ -44,21 +44,21 @@ impl Default for StepLimits {
     }
 }
 
-/// The distance of a step response from its final value, relative to it, over time; of a discrete system over
-/// samples.
+/// Deviation of a step response from its final value, relative to the final value, as a function of time or
+/// of the sample index.
 struct Distance {
-    /// The first samples of a discrete system.
+    /// First samples of a discrete system.
     first: Vec<f64>,
     modes: ModalSum,
 }
 
 impl Distance {
-    /// The first instant at which the modes alone describe the distance.
+    /// Returns the first instant at which the modes alone describe the deviation.
     fn start(&self) -> f64 {
         self.first.len() as f64
     }
 
-    /// The first instant at which the distance reaches a negative level from below.
+    /// Returns the first instant at which the deviation reaches a negative level from below.
     fn first_above(&self, level: f64) -> Result<f64, Error> {
         match self.first.iter().position(|e| *e >= level) {
             Some(k) => Ok(k as f64),
@@ -66,14 +66,14 @@ impl Distance {
         }
     }
 
-    /// The last instant at which the distance is larger than a band.
+    /// Returns the last instant at which the magnitude of the deviation exceeds a band.
     fn last_outside(&self, band: f64) -> Result<Option<f64>, Error> {
         let early = self.first.iter().rposition(|e| e.abs() > band).map(|k| k as f64);
         Ok(self.modes.last_outside(band, self.start())?.or(early))
     }
 
-    /// The largest distance from an instant on for a `sign` of one, or the least for −1. If the distance only
-    /// approaches zero it is zero at an infinite time.
+    /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the deviation
+    /// from an instant on. If the deviation only approaches zero, it is zero at infinite time.
     fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
@@ -106,8 +106,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole, [`Error::Count`] unless there is one input and one output,
-    /// [`Error::Range`] for a final value of zero.
+    /// [`Error::Unstable`] with an unstable pole, [`Error::Count`] unless the system has one input and one
+    /// output, [`Error::Range`] for a final value of zero.
     pub fn step_figures(&self) -> Result<StepFigures, Error> {
         self.step_figures_within(StepLimits::default())
     }
@@ -116,7 +116,8 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// Those of [`step_figures`](Self::step_figures), and [`Error::Range`] for limits without a meaning.
+    /// As for [`step_figures`](Self::step_figures), and [`Error::Range`] for limits outside their meaningful
+    /// range.
     pub fn step_figures_within(&self, limits: StepLimits) -> Result<StepFigures, Error> {
         self.check_single()?;
         self.check_stable()?;
@@ -163,10 +164,10 @@ impl StateSpace {
         })
     }
 
-    /// The distance of the step response from its final value.
+    /// Computes the deviation of the step response from its final value.
     fn distance(&self, final_value: f64) -> Result<Distance, Error> {
         let n = self.order();
-        // x − x∞ is −x∞ at first.
+        // The initial value of x − x∞ is −x∞.
         let (left, what) = match self.period {
             Some(_) => (DMatrix::identity(n, n) - &self.a, "I − A"),
             None => (-&self.a, "A"),
@@ -190,7 +191,7 @@ impl TransferFunction {
     ///
     /// # Errors
     ///
-    /// Those of [`StateSpace::step_figures`], and [`Error::Improper`].
+    /// As for [`StateSpace::step_figures`], and [`Error::Improper`].
     pub fn step_figures(&self) -> Result<StepFigures, Error> {
         self.state_space()?.step_figures()
     }

@@ -6,33 +6,33 @@ use crate::matrices::{
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
 
-/// What stands for rounding beside the norm of the matrices: those of computed systems are off by more than
-/// one digit.
+/// Default tolerance relative to the norm of the matrices. Matrices of computed systems have errors of
+/// several digits.
 const ROUNDING: f64 = 1e-12;
 
-/// The controllable part of a system on top: `[A₁₁ A₁₂; 0 A₂₂]`, `[B₁; 0]`.
+/// Staircase form of a system, with the controllable part first: `[A₁₁ A₁₂; 0 A₂₂]`, `[B₁; 0]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Staircase {
-    /// The system in the new states.
+    /// System in the transformed states.
     pub system: StateSpace,
-    /// Orthogonal `T` (times the diagonal scales if it was balanced): `x = T z`.
+    /// Transformation `x = T z`: orthogonal, or orthogonal times diagonal scales if the system was balanced.
     pub transformation: DMatrix<f64>,
-    /// The dimension of the part on top.
+    /// Dimension of the controllable part.
     pub rank: usize,
-    /// The ranks of the steps: the controllability indices are their conjugate partition.
+    /// Ranks of the steps. The controllability indices are the conjugate partition of these ranks.
     pub steps: Vec<usize>,
 }
 
-/// The dimensions of Kalman's decomposition.
+/// Dimensions of the subspaces of Kalman's decomposition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KalmanRanks {
-    /// Controllable and observable: the order of a minimal realisation.
+    /// Dimension of the controllable and observable part, which is the order of a minimal realisation.
     pub both: usize,
-    /// Controllable, not observable.
+    /// Dimension of the controllable, unobservable part.
     pub controllable_only: usize,
-    /// Observable, not controllable.
+    /// Dimension of the uncontrollable, observable part.
     pub observable_only: usize,
-    /// Neither.
+    /// Dimension of the uncontrollable, unobservable part.
     pub neither: usize,
 }
 
@@ -42,7 +42,7 @@ impl StateSpace {
         (Self { a, b, c, ..self.clone() }, d)
     }
 
-    /// The system with inputs and outputs exchanged and matrices transposed.
+    /// Returns the dual system: inputs and outputs exchanged, and matrices transposed.
     pub fn dual(&self) -> Self {
         Self {
             a: self.a.transpose(),
@@ -56,13 +56,13 @@ impl StateSpace {
         }
     }
 
-    /// The staircase form by orthogonal transformations (Rosenbrock; Varga, *Numerically stable algorithm for
-    /// standard controllability form determination*, 1981). `tolerance` is what counts as zero beside the
-    /// norm of the matrices; zero stands for rounding.
+    /// Computes the staircase form by orthogonal transformations (Rosenbrock; Varga, *Numerically stable
+    /// algorithm for standard controllability form determination*, 1981). Values below `tolerance` times the
+    /// norm of the matrices count as zero; a tolerance of zero selects a default for rounding errors.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] for a tolerance that is negative or no number.
+    /// [`Error::Range`] for a tolerance that is NaN or not between 0 and 1.
     pub fn controllable_staircase(&self, tolerance: f64) -> Result<Staircase, Error> {
         if !(0.0..1.0).contains(&tolerance) {
             return Err(Error::Range { what: "a tolerance", value: tolerance });
@@ -98,26 +98,26 @@ impl StateSpace {
         Ok(Staircase { system, transformation, rank: top, steps })
     }
 
-    /// Whether inputs can lead from every state to every other.
+    /// Returns whether inputs can steer the system from every state to every other.
     ///
     /// # Errors
     ///
-    /// Those of [`controllable_staircase`](Self::controllable_staircase).
+    /// As for [`controllable_staircase`](Self::controllable_staircase).
     pub fn is_controllable(&self) -> Result<bool, Error> {
         Ok(self.controllable_staircase(0.0)?.rank == self.order())
     }
 
-    /// Whether the outputs tell every state.
+    /// Returns whether the outputs determine the state.
     ///
     /// # Errors
     ///
-    /// Those of [`controllable_staircase`](Self::controllable_staircase).
+    /// As for [`controllable_staircase`](Self::controllable_staircase).
     pub fn is_observable(&self) -> Result<bool, Error> {
         self.dual().is_controllable()
     }
 
-    /// `[B, A B, A² B, …]`: for textbooks; ranks of large systems come from
-    /// [the staircase](Self::controllable_staircase).
+    /// Returns the controllability matrix `[B, A B, A² B, …]`. It serves teaching; for ranks of large systems
+    /// use [the staircase form](Self::controllable_staircase).
     pub fn controllability_matrix(&self) -> DMatrix<f64> {
         let (n, m) = self.b.shape();
         let mut all = DMatrix::zeros(n, n * m);
@@ -129,16 +129,17 @@ impl StateSpace {
         all
     }
 
-    /// `[C; C A; C A²; …]`.
+    /// Returns the observability matrix `[C; C A; C A²; …]`.
     pub fn observability_matrix(&self) -> DMatrix<f64> {
         self.dual().controllability_matrix().transpose()
     }
 
-    /// The controllability Gramian of a stable system: `A W + W Aᵀ + B Bᵀ = 0`, or `A W Aᵀ − W + B Bᵀ = 0`.
+    /// Computes the controllability Gramian of a stable system: `A W + W Aᵀ + B Bᵀ = 0`, or
+    /// `A W Aᵀ − W + B Bᵀ = 0` in discrete time.
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole.
+    /// [`Error::Unstable`] with an unstable pole.
     pub fn controllability_gramian(&self) -> Result<DMatrix<f64>, Error> {
         self.check_stable()?;
         let (scaled, d) = self.scaled();
@@ -150,27 +151,29 @@ impl StateSpace {
         Ok(DMatrix::from_fn(self.order(), self.order(), |i, j| w[(i, j)] * d[i] * d[j]))
     }
 
-    /// The observability Gramian of a stable system: `Aᵀ W + W A + Cᵀ C = 0`, or `Aᵀ W A − W + Cᵀ C = 0`.
+    /// Computes the observability Gramian of a stable system: `Aᵀ W + W A + Cᵀ C = 0`, or
+    /// `Aᵀ W A − W + Cᵀ C = 0` in discrete time.
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole.
+    /// [`Error::Unstable`] with an unstable pole.
     pub fn observability_gramian(&self) -> Result<DMatrix<f64>, Error> {
         self.dual().controllability_gramian()
     }
 
-    /// Hankel singular values, largest first: how much of each state of a balanced realisation passes from
-    /// inputs to outputs.
+    /// Computes the Hankel singular values in descending order. They measure how strongly each state of a
+    /// balanced realisation couples inputs and outputs.
     ///
     /// # Errors
     ///
-    /// [`Error::Unstable`] names a pole.
+    /// [`Error::Unstable`] with an unstable pole.
     pub fn hankel_values(&self) -> Result<Vec<f64>, Error> {
         let (w, o) = (self.controllability_gramian()?, self.observability_gramian()?);
         if w.is_empty() {
             return Ok(Vec::new());
         }
-        // Square roots by symmetric eigenvectors: of W = L Lᵀ the values are those of Lᵀ O L.
+        // Square root by symmetric eigenvectors: with W = L Lᵀ, the squares of the values are eigenvalues
+        // of Lᵀ O L.
         let eigen = w.symmetric_eigen();
         let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|x| x.max(0.0).sqrt()));
         let l = eigen.eigenvectors * root;
@@ -181,8 +184,9 @@ impl StateSpace {
         Ok(values)
     }
 
-    /// For every pole, the smallest singular value of `[A − λ I, B]` in balanced units beside the norm of
-    /// `A`: how near it is to one that no input moves (Popov, Belevitch and Hautus).
+    /// Computes for every pole `λ` the smallest singular value of `[A − λ I, B]`, in balanced units and
+    /// relative to the norm of `A`. A small value means that the mode is nearly uncontrollable (test of
+    /// Popov, Belevitch and Hautus).
     ///
     /// # Errors
     ///
@@ -204,7 +208,8 @@ impl StateSpace {
         Ok(self.poles()?.into_iter().map(distance).collect())
     }
 
-    /// For every pole, how near it is to one that no output shows.
+    /// Computes for every pole its distance from unobservability, the dual of
+    /// [`mode_controllability`](Self::mode_controllability).
     ///
     /// # Errors
     ///
@@ -213,12 +218,12 @@ impl StateSpace {
         self.dual().mode_controllability()
     }
 
-    /// The controllable and observable part: a minimal realisation, in new states. `tolerance` as for
-    /// [the staircase](Self::controllable_staircase).
+    /// Returns a minimal realisation: the controllable and observable part, in new states. `tolerance` is
+    /// that of [the staircase form](Self::controllable_staircase).
     ///
     /// # Errors
     ///
-    /// Those of [`controllable_staircase`](Self::controllable_staircase).
+    /// As for [`controllable_staircase`](Self::controllable_staircase).
     pub fn minimal(&self, tolerance: f64) -> Result<Self, Error> {
         let top = self.controllable_staircase(tolerance)?;
         let controllable = if top.rank == self.order() { self.clone() } else { top.system.leading(top.rank) };
@@ -239,12 +244,12 @@ impl StateSpace {
         }
     }
 
-    /// The dimensions of Kalman's decomposition; `tolerance` as for
-    /// [the staircase](Self::controllable_staircase).
+    /// Computes the dimensions of Kalman's decomposition. `tolerance` is that of [the staircase
+    /// form](Self::controllable_staircase).
     ///
     /// # Errors
     ///
-    /// Those of [`controllable_staircase`](Self::controllable_staircase).
+    /// As for [`controllable_staircase`](Self::controllable_staircase).
     pub fn kalman_ranks(&self, tolerance: f64) -> Result<KalmanRanks, Error> {
         let top = self.controllable_staircase(tolerance)?;
         let observable = self.dual().controllable_staircase(tolerance)?.rank;
@@ -256,7 +261,7 @@ impl StateSpace {
     }
 }
 
-/// Zeros below the stairs, where there is rounding.
+/// Sets entries below the stairs, which are rounding errors, to zero.
 fn clear(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, steps: &[usize], top: usize) {
     let n = a.nrows();
     let (mut row, mut column) = (0, 0);

@@ -1,4 +1,4 @@
-//! Transfer functions of one input and one output.
+//! Transfer functions of systems with one input and one output.
 
 use crate::matrices::C;
 use crate::polynomial::{factors, number};
@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use std::fmt;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A quotient of polynomials in `s`, or in `z` of a discrete system.
+/// Ratio of polynomials in `s`, or in `z` for a discrete system.
 ///
 /// ```
 /// use linkwork_design::TransferFunction;
@@ -25,23 +25,23 @@ pub struct TransferFunction {
     period: Option<f64>,
 }
 
-/// A transfer function by its zeros, poles and gain: `k ∏(s − zᵢ) / ∏(s − pᵢ)`.
+/// Transfer function given by its zeros, poles and gain: `k ∏(s − zᵢ) / ∏(s − pᵢ)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ZerosPolesGain {
     /// Zeros, in conjugate pairs.
     pub zeros: Vec<C>,
     /// Poles, in conjugate pairs.
     pub poles: Vec<C>,
-    /// The factor `k` in front: the quotient of leading coefficients.
+    /// Factor `k`: the ratio of the leading coefficients.
     pub gain: f64,
-    /// The period of a discrete system, s.
+    /// Period of a discrete system, s.
     pub period: Option<f64>,
 }
 
 impl TransferFunction {
-    /// By the coefficients of numerator and denominator, the highest power first. The leading coefficient of
-    /// the denominator becomes one. Improper ones are allowed here (a differentiator), and refused where a
-    /// result does not exist.
+    /// Creates a transfer function from the coefficients of numerator and denominator, highest power first.
+    /// The leading coefficient of the denominator is normalised to one. Improper transfer functions, such as
+    /// a differentiator, are accepted here; operations whose result would not exist reject them.
     ///
     /// # Errors
     ///
@@ -53,7 +53,7 @@ impl TransferFunction {
         Self::quotient(&Polynomial::new(numerator), &Polynomial::new(denominator))
     }
 
-    /// Of two polynomials.
+    /// Creates a transfer function from two polynomials.
     ///
     /// # Errors
     ///
@@ -73,22 +73,22 @@ impl TransferFunction {
         Ok(Self { numerator: numerator.scaled(scale), denominator, period: None })
     }
 
-    /// A number.
+    /// Creates a constant transfer function.
     pub fn constant(value: f64) -> Self {
         Self { numerator: Polynomial::constant(value), denominator: Polynomial::constant(1.0), period: None }
     }
 
-    /// The variable `s` itself: a differentiator, for writing others, `&k / &s`.
+    /// Creates the transfer function `s`, a differentiator, from which others are composed: `&k / &s`.
     pub fn s() -> Self {
         let numerator = Polynomial::new([1.0, 0.0]);
         Self { numerator, denominator: Polynomial::constant(1.0), period: None }
     }
 
-    /// Discrete, with a period in s: a quotient of polynomials in `z`.
+    /// Makes the transfer function discrete with a period in s: a ratio of polynomials in `z`.
     ///
     /// # Errors
     ///
-    /// [`Error::Period`] unless it is positive and finite.
+    /// [`Error::Period`] unless the period is positive and finite.
     pub fn with_period(mut self, period: f64) -> Result<Self, Error> {
         if !(period > 0.0 && period.is_finite()) {
             return Err(Error::Period { period });
@@ -97,70 +97,69 @@ impl TransferFunction {
         Ok(self)
     }
 
-    /// The numerator.
+    /// Returns the numerator.
     pub fn numerator(&self) -> &Polynomial {
         &self.numerator
     }
 
-    /// The denominator, whose leading coefficient is one.
+    /// Returns the denominator, whose leading coefficient is one.
     pub fn denominator(&self) -> &Polynomial {
         &self.denominator
     }
 
-    /// The period of a discrete system, s.
+    /// Returns the period of a discrete system, s.
     pub fn period(&self) -> Option<f64> {
         self.period
     }
 
-    /// Whether the numerator has no higher degree than the denominator.
+    /// Returns whether the degree of the numerator is at most that of the denominator.
     pub fn is_proper(&self) -> bool {
         self.numerator.degree() <= self.denominator.degree()
     }
 
-    /// The roots of the denominator.
+    /// Returns the roots of the denominator.
     ///
     /// # Errors
     ///
-    /// Those of [`Polynomial::roots`].
+    /// As for [`Polynomial::roots`].
     pub fn poles(&self) -> Result<Vec<C>, Error> {
         self.denominator.roots()
     }
 
-    /// The roots of the numerator.
+    /// Returns the roots of the numerator.
     ///
     /// # Errors
     ///
-    /// Those of [`Polynomial::roots`].
+    /// As for [`Polynomial::roots`].
     pub fn zeros(&self) -> Result<Vec<C>, Error> {
         self.numerator.roots()
     }
 
-    /// Its value at a complex frequency.
+    /// Returns the value at a complex frequency.
     pub fn at(&self, s: C) -> C {
         self.numerator.at(s) / self.denominator.at(s)
     }
 
-    /// The gain at rest: at `s = 0`, or `z = 1`. Infinite with a pole there.
+    /// Returns the static gain, at `s = 0` or `z = 1`. Infinite for a pole there.
     pub fn gain_at_rest(&self) -> f64 {
         self.at(C::new(if self.period.is_some() { 1.0 } else { 0.0 }, 0.0)).re
     }
 
-    /// By zeros, poles and gain.
+    /// Returns the zeros, poles and gain.
     ///
     /// # Errors
     ///
-    /// Those of [`Polynomial::roots`].
+    /// As for [`Polynomial::roots`].
     pub fn factored(&self) -> Result<ZerosPolesGain, Error> {
         let (zeros, poles) = (self.zeros()?, self.poles()?);
         Ok(ZerosPolesGain { zeros, poles, gain: self.numerator.leading(), period: self.period })
     }
 
-    /// Common factors left out: zeros and poles that are nearer to each other than `tolerance` times their
-    /// magnitude.
+    /// Removes common factors: pairs of a zero and a pole whose distance is below `tolerance · (1 + |zero|)`.
     ///
     /// # Errors
     ///
-    /// Those of [`Polynomial::roots`].
+    /// As for [`Polynomial::roots`].
     pub fn cancelled(&self, tolerance: f64) -> Result<Self, Error> {
         let mut all = self.factored()?;
         let mut kept = Vec::new();
@@ -175,8 +174,8 @@ impl TransferFunction {
         Ok(Self { numerator, denominator: Polynomial::from_roots(&all.poles), period: self.period })
     }
 
-    /// A minimal realisation, if numerator and denominator have no common factor: the controller form,
-    /// balanced.
+    /// Returns a state-space realisation in controller form, balanced. It is minimal if numerator and
+    /// denominator have no common factor.
     ///
     /// # Errors
     ///
@@ -201,11 +200,11 @@ impl TransferFunction {
         self.period.map_or(Ok(system.clone()), |h| system.with_period(h))
     }
 
-    /// Negative feedback through `back`.
+    /// Closes a negative feedback loop through `back`.
     ///
     /// # Errors
     ///
-    /// [`Error::AlgebraicLoop`] where `1 + G H` is zero, [`Error::Time`].
+    /// [`Error::AlgebraicLoop`] if `1 + G H` is zero, [`Error::Time`].
     pub fn feedback(&self, back: &Self) -> Result<Self, Error> {
         let period = self.common_period(back)?;
         let numerator = &self.numerator * &back.denominator;
@@ -226,7 +225,7 @@ impl TransferFunction {
         }
     }
 
-    /// The sum.
+    /// Returns the sum.
     ///
     /// # Errors
     ///
@@ -237,7 +236,7 @@ impl TransferFunction {
         Ok(Self { period, ..Self::quotient(&(&one + &two), &(&self.denominator * &other.denominator))? })
     }
 
-    /// The product: one after the other.
+    /// Returns the product, which is the series connection.
     ///
     /// # Errors
     ///
@@ -248,11 +247,11 @@ impl TransferFunction {
         Ok(Self { period, ..Self::quotient(&numerator, &(&self.denominator * &other.denominator))? })
     }
 
-    /// The quotient.
+    /// Returns the quotient.
     ///
     /// # Errors
     ///
-    /// [`Error::Time`] for different periods, [`Error::Singular`] if the other is zero.
+    /// [`Error::Time`] for different periods, [`Error::Singular`] if the divisor is zero.
     pub fn over(&self, other: &Self) -> Result<Self, Error> {
         let period = self.common_period(other)?;
         let numerator = &self.numerator * &other.denominator;
@@ -307,7 +306,7 @@ impl fmt::Display for TransferFunction {
 }
 
 impl ZerosPolesGain {
-    /// As a quotient of polynomials.
+    /// Returns the transfer function as a ratio of polynomials.
     pub fn transfer_function(&self) -> TransferFunction {
         TransferFunction {
             numerator: Polynomial::from_roots(&self.zeros).scaled(self.gain),
@@ -316,7 +315,7 @@ impl ZerosPolesGain {
         }
     }
 
-    /// Its value at a complex frequency.
+    /// Returns the value at a complex frequency.
     pub fn at(&self, s: C) -> C {
         let mut value = C::new(self.gain, 0.0);
         let count = self.zeros.len().max(self.poles.len());
@@ -329,7 +328,7 @@ impl ZerosPolesGain {
 }
 
 impl fmt::Display for ZerosPolesGain {
-    /// By factors, second-order ones for pairs: `2 (s + 1) / (s² + s + 2)`.
+    /// Writes the factors, with second-order factors for conjugate pairs: `2 (s + 1) / (s² + s + 2)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let variable = if self.period.is_some() { "z" } else { "s" };
         let (above, below) = (factors(&self.zeros, variable), factors(&self.poles, variable));
@@ -348,12 +347,11 @@ impl fmt::Display for ZerosPolesGain {
 }
 
 impl StateSpace {
-    /// One channel by zeros, poles and gain. Modes that the input does not move or the output does not show
-    /// are left out.
+    /// Returns the zeros, poles and gain of one channel. Uncontrollable and unobservable modes are removed.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are; [`Error::NotConverged`].
+    /// [`Error::Unknown`] with the list of existing names; [`Error::NotConverged`].
     pub fn factored<'a>(
         &self,
         output: impl Into<crate::Port<'a>>,
@@ -363,8 +361,8 @@ impl StateSpace {
         let (zeros, poles) = (channel.zeros()?, channel.poles()?);
         let direct = channel.d[(0, 0)];
         let response = channel.frequency_map()?;
-        // Where neither zeros nor poles are near: beyond the geometric mean of their magnitudes, on the real
-        // axis to the right.
+        // The gain is evaluated at a point that is far from all zeros and poles: on the real axis, right
+        // of all of them by the geometric mean of their magnitudes.
         let sizes: Vec<f64> = zeros.iter().chain(&poles).map(|x| x.norm()).filter(|x| *x > 0.0).collect();
         let typical = (sizes.iter().map(|x| x.ln()).sum::<f64>() / sizes.len().max(1) as f64).exp();
         let right = zeros.iter().chain(&poles).map(|x| x.re).fold(0.0, f64::max);
@@ -378,11 +376,11 @@ impl StateSpace {
         Ok(ZerosPolesGain { zeros, poles, gain, period: self.period })
     }
 
-    /// One channel as a quotient of polynomials, by its zeros, poles and gain.
+    /// Returns one channel as a ratio of polynomials, computed from its zeros, poles and gain.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are; [`Error::NotConverged`].
+    /// [`Error::Unknown`] with the list of existing names; [`Error::NotConverged`].
     pub fn transfer_function<'a>(
         &self,
         output: impl Into<crate::Port<'a>>,

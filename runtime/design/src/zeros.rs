@@ -1,23 +1,23 @@
-//! Invariant zeros.
+//! Invariant zeros of systems.
 
 use crate::matrices::{C, Compression, balance_system, eigenvalues, solve};
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
-/// A system on its way to one with invertible `D`.
+/// System during the reduction to one with invertible `D`.
 struct Pencil {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
     c: DMatrix<f64>,
     d: DMatrix<f64>,
-    /// What counts as rounding.
+    /// Threshold below which entries count as rounding errors.
     least: f64,
 }
 
 impl Pencil {
     fn of(system: &StateSpace) -> Self {
         let (a, b, c, _) = balance_system(&system.a, &system.b, &system.c);
-        // Inputs and outputs in units in which they matter as much as the states.
+        // Inputs and outputs are scaled to the same norm as the states.
         let size = a.norm().max(f64::MIN_POSITIVE);
         let mut m = Self { a, b, c, d: system.d.clone(), least: 0.0 };
         for j in 0..m.b.ncols() {
@@ -48,7 +48,7 @@ impl Pencil {
         }
     }
 
-    /// Outputs without a direct way from the inputs hold states fixed, which leave; until `D` has full row
+    /// Eliminates the states that zero outputs determine through rows of zero in `D`, until `D` has full row
     /// rank.
     fn reduce(mut self) -> Self {
         loop {
@@ -63,7 +63,7 @@ impl Pencil {
             let fixed = self.c.rows(sigma, p - sigma).transpose();
             let of_c = Compression::rows(&fixed, self.least);
             let mu = of_c.rank;
-            // The states that are held are the first; the others stay.
+            // The determined states come first; the others remain.
             let v = of_c.q;
             let a = v.transpose() * &self.a * &v;
             let b = v.transpose() * &self.b;
@@ -86,10 +86,10 @@ impl Pencil {
 }
 
 impl StateSpace {
-    /// The invariant zeros: where the system matrix `[A − s I, B; C, D]` loses rank beside its usual one, by
-    /// the reduction of Emami-Naeini and Van Dooren (*Computation of zeros of linear multivariable systems*,
-    /// Automatica 18, 1982). Those of a controllable and observable system are its transmission zeros; modes
-    /// that no input moves or no output shows are among them, too.
+    /// Computes the invariant zeros: the values of `s` at which the system matrix `[A − s I, B; C, D]` has
+    /// less than its normal rank. The method is the reduction of Emami-Naeini and Van Dooren (*Computation of
+    /// zeros of linear multivariable systems*, Automatica 18, 1982). For a controllable and observable system
+    /// they are the transmission zeros; otherwise they also include uncontrollable and unobservable modes.
     ///
     /// ```
     /// use linkwork_design::StateSpace;
@@ -103,14 +103,14 @@ impl StateSpace {
     ///
     /// # Errors
     ///
-    /// [`Error::NotConverged`] if the eigenvalues of the reduced system do not settle.
+    /// [`Error::NotConverged`] if the eigenvalues of the reduced system do not converge.
     pub fn zeros(&self) -> Result<Vec<C>, Error> {
         let reduced = Pencil::of(self).reduce().transpose().reduce().transpose();
         let (n, m) = (reduced.a.nrows(), reduced.d.ncols());
         if n == 0 {
             return Ok(Vec::new());
         }
-        // A `D` that is far from singular is eliminated at once, which rounds least.
+        // A well-conditioned `D` is eliminated directly, which has the smallest rounding errors.
         if m > 0 {
             let values = reduced.d.clone().svd_unordered(false, false).singular_values;
             if values.min() > 0.01 * values.max() {
@@ -118,8 +118,8 @@ impl StateSpace {
                 return eigenvalues(&(&reduced.a - &reduced.b * held));
             }
         }
-        // Now D has full column rank, and is square: with `[D C] = [R 0] Qᵀ` the inputs that keep the outputs
-        // zero leave a pencil of the states alone.
+        // Here D is square with full column rank. With `[D C] = [R 0] Qᵀ`, the inputs that keep the
+        // outputs zero leave a pencil of the states alone.
         let mut both = DMatrix::zeros(reduced.d.nrows(), m + n);
         both.columns_mut(0, m).copy_from(&reduced.d);
         both.columns_mut(m, n).copy_from(&reduced.c);

@@ -1,4 +1,4 @@
-//! Linear systems and steady motions under forces that depend on accelerations, against automatic
+//! Linear systems and steady motions under acceleration-dependent forces, compared with automatic
 //! differentiation.
 
 use linkwork::nalgebra::{DMatrix, SVector};
@@ -8,10 +8,10 @@ use linkwork_design::mechanism::{linear_system, second_order_form};
 use linkwork_design::steady::equilibrium;
 use num_dual::Dual64;
 
-/// Between generated derivatives and those of dual numbers, beside the largest entry.
+/// Tolerance between generated and dual-number derivatives, relative to the largest entry.
 const ROUNDING: f64 = 1e-10;
 
-/// The matrix of derivatives along `K` directions at zero, by dual numbers: exact up to rounding.
+/// Returns the derivatives at zero along `K` directions by dual numbers, which are exact up to rounding.
 fn slopes<const N: usize, const K: usize>(
     f: impl Fn(SVector<Dual64, K>) -> SVector<Dual64, N>,
 ) -> DMatrix<f64> {
@@ -33,8 +33,7 @@ fn agree(what: &str, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
     assert!(error <= ROUNDING * size, "{what} is {error:e} off: found {found}expected {expected}");
 }
 
-/// An aircraft whose lift and pitching moment follow a table and the rate of the angle of attack, with an
-/// engine that lags.
+/// Aircraft with lift from a table, forces that depend on the rate of the angle of attack, and an engine lag.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 struct Unsteady<T: Real> {
     mass: T,
@@ -116,7 +115,7 @@ fn linear_systems_are_those_of_automatic_differentiation() {
     }
 }
 
-/// A pendulum on a cart: each feels the other's acceleration, as far as angle and rate say.
+/// Pendulum on a cart; the forces on each depend on the other's acceleration, with factors of angle and rate.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 #[derive(Clone, Copy)]
 struct Coupled<T: Real> {
@@ -154,7 +153,7 @@ fn second_order_forms_are_those_of_inverse_dynamics() {
         let forces = coupled::<f64>().generalized_forces(&q, &v, &u);
         let a = raised(&coupled::<f64>().forward_dynamics(&q, &v, &forces));
         let (q, v, u) = (raised(&q), raised(&v), raised(&u));
-        // What is missing to balance: τ(q, v, a) − f(q, u).
+        // Residual of the equations of motion: τ(q, v, a) − f(q, u).
         let missing =
             |q: &_, v: &_, a: &_, u: &_| dual.inverse_dynamics(q, v, a) - dual.generalized_forces(q, v, u);
         agree("M", &form.mass, &slopes(|by| missing(&q, &v, &(a + by), &u)));
@@ -170,7 +169,7 @@ fn second_order_forms_are_those_of_inverse_dynamics() {
     }
 }
 
-/// Two carts, the one pushed by a part of what the other accelerates.
+/// Two carts; the force on each is proportional to the other's acceleration.
 #[mechanism(derivatives)]
 struct Carts {
     forth: f64,
@@ -197,12 +196,12 @@ struct Carts {
 #[test]
 fn steady_motions_count_what_accelerations_cost() {
     let carts = Carts { forth: 0.8, back: -0.1 };
-    // The second cart is held: the first one swings with its own effective mass, 2 + 0.5 kg.
+    // The second cart is locked: the first one oscillates with its own effective mass, 2 + 0.5 kg.
     let held = equilibrium(&carts).hold(["right"]);
     let found = held.find().unwrap();
     let modes = held.linear_system(&found).unwrap().modes().unwrap();
     assert!((modes[0].frequency() - (50.0_f64 / 2.5).sqrt()).abs() < 1e-12, "{}", modes[0]);
-    // Both free: det(K − ω² M) = 0 of the matrix that is not symmetric.
+    // Both carts move: det(K − ω² M) = 0 with the unsymmetric effective mass matrix.
     let free = equilibrium(&carts);
     let found = free.find().unwrap();
     let modes = free.linear_system(&found).unwrap().modes().unwrap();
@@ -211,21 +210,21 @@ fn steady_motions_count_what_accelerations_cost() {
         let squared: f64 = (-b + sign * (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
         assert!((mode.frequency() - squared.sqrt()).abs() < 1e-12, "{mode}");
     }
-    // The first cart is to accelerate by 2 m/s² from rest, while the second one does not.
+    // Required: the first cart accelerates by 2 m/s² from rest, the second one does not.
     let found = equilibrium(&carts)
         .from([0.0, 0.0025].into())
         .fix(["left", "right"])
         .acceleration("left", 2.0)
         .inputs(["push"])
         .find();
-    // The second spring has to give what the first cart's acceleration takes: 80 · 0.0025 = 0.1 · 2.
+    // The second spring balances the force from the first cart's acceleration: 80 · 0.0025 = 0.1 · 2.
     let found = found.unwrap();
     assert!((found.u[0] - 5.0).abs() < 1e-12, "{found:?}");
     assert!(found.acceleration[1].abs() < 1e-12);
 }
 
-/// Positive stiffness does not make stable what pushes back by accelerations: `M = [[m, s], [−s, m]]`,
-/// `K = 1` has the roots `s² = −1 / (m ± i s)`.
+/// Checks that positive stiffness is no proof of stability with an unsymmetric effective mass matrix:
+/// `M = [[m, s], [−s, m]]`, `K = 1` has the roots `s² = −1 / (m ± i s)`.
 #[test]
 fn energy_decides_on_symmetric_inertia_only() {
     let carts = Carts { forth: 0.8, back: -0.8 };

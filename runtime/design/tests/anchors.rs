@@ -1,4 +1,4 @@
-//! Published and exact figures.
+//! Comparison with published values and exact solutions.
 
 use linkwork_design::matrices::{Cost, discrete_riccati, eigenvalues, riccati};
 use linkwork_design::{Polynomial, Special, StateSpace, TransferFunction};
@@ -23,7 +23,8 @@ fn contains(all: &[C], re: f64, im: f64, tolerance: f64) {
     );
 }
 
-/// The jet transport of "Yaw Damper Design for a 747" (Control System Toolbox): Mach 0.8, 40 000 ft, lateral.
+/// Jet transport of "Yaw Damper Design for a 747" (Control System Toolbox): Mach 0.8, 40 000 ft, lateral
+/// motion.
 fn transport() -> StateSpace {
     let a = dmatrix![
         -0.0558, -0.9968, 0.0802, 0.0415;
@@ -137,14 +138,14 @@ fn margins_and_routh() {
 #[test]
 fn step_responses() {
     let figures = TransferFunction::new([-1.0, 1.0], [1.0, 1.0, 1.0]).unwrap().step_figures().unwrap();
-    // Published figures are those of samples; python-control's tests allow 2 %.
+    // The published values are computed from samples; python-control's tests allow 2 %.
     close(figures.rise_time, 1.242, 2e-2);
     close(figures.settling_time, 9.110, 2e-2);
     close(figures.overshoot, 20.840, 2e-2);
     close(figures.undershoot, 28.0, 2e-2);
     close(figures.peak, 1.208, 2e-2);
     close(figures.peak_time, 4.282, 2e-2);
-    // Exactly 1 − e^{−t/2} (cos ωt + √3 sin ωt) with ω = √3/2, whose slope is zero at ωt = π/6 and 7π/6.
+    // Exact: 1 − e^{−t/2} (cos ωt + √3 sin ωt) with ω = √3/2; its derivative is zero at ωt = π/6 and 7π/6.
     let omega = 0.75_f64.sqrt();
     let y = |t: f64| 1.0 - (-t / 2.0).exp() * ((omega * t).cos() + 3.0_f64.sqrt() * (omega * t).sin());
     let turn = std::f64::consts::PI / 6.0;
@@ -160,7 +161,8 @@ fn step_responses() {
     close(figures.peak, 1.0, 1e-12);
 }
 
-/// Etkin and Reid, *Dynamics of Flight* (1996): the cruising Boeing 747, ft and s, as printed.
+/// Compares with the cruising Boeing 747 of Etkin and Reid, *Dynamics of Flight* (1996), in ft and s as
+/// printed.
 #[test]
 #[expect(clippy::approx_constant, reason = "an entry of a published matrix")]
 fn boeing_747() {
@@ -204,8 +206,8 @@ fn boeing_747() {
     contains(&poles, -0.007277201746158317, 0.0, 1e-10);
 }
 
-/// The benchmark bicycle (Meijaard, Papadopoulos, Ruina and Schwab, 2007): published matrices and
-/// eigenvalues.
+/// Compares with the published matrices and eigenvalues of the benchmark bicycle (Meijaard, Papadopoulos,
+/// Ruina and Schwab, 2007).
 #[test]
 fn whipple_bicycle() {
     use linkwork_design::SecondOrderForm;
@@ -230,7 +232,7 @@ fn whipple_bicycle() {
         let poles = at(v).poles().unwrap();
         expected.iter().for_each(|(re, im)| contains(&poles, *re, *im, 1e-11));
     }
-    // It balances itself between the weave speed and the capsize speed.
+    // The bicycle is self-stable between the weave speed and the capsize speed.
     for (v, stable) in
         [(4.29238253634, false), (4.29238253635, true), (6.024262015, true), (6.024262016, false)]
     {
@@ -238,8 +240,8 @@ fn whipple_bicycle() {
     }
 }
 
-/// Benner, Laub and Mehrmann, *A collection of benchmark examples for the numerical solution of algebraic
-/// Riccati equations* (1995): those of continuous time with exact solutions, from examples 1, 2, 7 and 12.
+/// Compares with exact solutions of Benner, Laub and Mehrmann, *A collection of benchmark examples for the
+/// numerical solution of algebraic Riccati equations* (1995), continuous time, examples 1, 2, 7 and 12.
 #[test]
 fn riccati_benchmarks() {
     let same = |found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64| {
@@ -268,7 +270,7 @@ fn riccati_benchmarks() {
         close(found[(0, 1)], across, 1e-6);
         close(found[(1, 1)], 0.25 * (1.0 - epsilon * epsilon * across * across), 1e-6);
     }
-    // Eigenvalues and costs of very different sizes.
+    // Eigenvalues and costs of very different magnitudes.
     let turn = DMatrix::identity(3, 3) - DMatrix::from_element(3, 3, 2.0 / 3.0);
     for e in [1e-2_f64, 1.0, 1e2, 1e4] {
         let diagonal = |d: [f64; 3]| &turn * DMatrix::from_diagonal(&d.to_vec().into()) * &turn;
@@ -284,8 +286,8 @@ fn riccati_benchmarks() {
     }
 }
 
-/// Benner, Laub and Mehrmann's collection of discrete time, with exact solutions; the weight of inputs may
-/// vanish there.
+/// Compares with exact solutions of Benner, Laub and Mehrmann's collection for discrete time, in which the
+/// weight of the inputs may vanish.
 #[test]
 fn discrete_riccati_benchmarks() {
     let (a, b) = (dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0]);
@@ -298,8 +300,8 @@ fn discrete_riccati_benchmarks() {
     assert!((x - DMatrix::identity(2, 2)).norm() < 1e-12);
 }
 
-/// `K / (s + 1)ⁿ` crosses the axis at `tan(π/n)`, where its gain is `cosⁿ(π/n)`; `K / (s (s + 1) (s + 5))` at
-/// `√5`, with `K / 30`.
+/// Checks the gain margin of `K / (s + 1)ⁿ`, which crosses the real axis at `tan(π/n)` with gain `cosⁿ(π/n)`,
+/// and of `K / (s (s + 1) (s + 5))`, which crosses it at `√5` with gain `K / 30`.
 #[test]
 fn repeated_poles_have_their_margins() {
     for n in [3_usize, 4, 5, 8] {
@@ -324,8 +326,8 @@ fn repeated_poles_have_their_margins() {
     }
 }
 
-/// Ogata, *Modern Control Engineering* (2010), § 5-6: a row that begins with zero, one of zeros, and its
-/// roots on the border.
+/// Compares with Ogata, *Modern Control Engineering* (2010), § 5-6: a row that begins with zero, a row of
+/// zeros, and roots on the stability boundary.
 #[test]
 fn routh_of_ogata() {
     let right = |c: &[f64]| Polynomial::new(c.to_vec()).routh().unwrap().right;

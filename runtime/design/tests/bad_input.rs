@@ -1,5 +1,4 @@
-//! What does not exist is an error that names what is to blame: each of these mistakes with the words that
-//! come of it.
+//! Errors for results that do not exist: each invalid input, with the error message that names the cause.
 
 use linkwork::prelude::{FirstOrder, mechanism};
 use linkwork_design::flight::FlightModes;
@@ -22,7 +21,7 @@ fn system(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>) -> StateSpace {
     StateSpace::new(a, b, c, d).unwrap()
 }
 
-/// Grows at 2/s, and the input reaches both states.
+/// Returns a system that grows at 2/s and whose input acts on both states.
 fn unstable() -> StateSpace {
     system(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 1.0], dmatrix![1.0, 1.0])
 }
@@ -142,7 +141,7 @@ fn what_needs_stability_names_the_pole() {
     says("a band of -0.02 has no meaning", stable().step_figures_within(limits));
 }
 
-/// The equation is linear in `Q`, symmetric or not.
+/// Checks the Lyapunov solvers for unsymmetric `Q`.
 #[test]
 fn lyapunov_takes_any_right_side() {
     let (a, q) = (dmatrix![-1.0, 2.0; -3.0, -2.0], dmatrix![1.0, 5.0; -2.0, 0.5]);
@@ -153,7 +152,8 @@ fn lyapunov_takes_any_right_side() {
     assert!((&a * &x * a.transpose() - &x + &q).amax() < 1e-14);
 }
 
-/// An unstable loop has margins all the same; one that is real at all frequencies crosses the axis nowhere.
+/// Checks margins of an unstable loop, and of loops whose response is real at all frequencies and therefore
+/// has no crossings of the real axis.
 #[test]
 fn margins_that_do_not_exist_are_none() {
     let margins = double_integrator().margins().unwrap();
@@ -168,7 +168,7 @@ fn margins_that_do_not_exist_are_none() {
     }
     let margins = gain(-0.5).margins().unwrap();
     assert!(margins.gain.iter().all(|m| (m.factor - 2.0).abs() < 1e-12 && m.frequency == 0.0), "{margins:?}");
-    // 1 / (s − 1) with a gain of 3: the least gain that holds it is a third.
+    // 3 / (s − 1): the minimum stabilising gain factor is a third.
     let held = system(dmatrix![1.0], dmatrix![3.0], dmatrix![1.0]).margins().unwrap();
     assert!((held.gain_reduction().unwrap().factor - 1.0 / 3.0).abs() < 1e-12);
 }
@@ -228,7 +228,8 @@ fn improper_and_impossible_transfer_functions() {
     says("the polynomial has an entry that is not finite", Polynomial::new([1.0, f64::NAN]).roots());
 }
 
-/// `1 / (s + 1)³`: its step response is `1 − (1 + t + t²/2) e^{−t}`, and its mode is said to be defective.
+/// Checks `1 / (s + 1)³`: its step response is `1 − (1 + t + t²/2) e^{−t}`, and its mode is reported as
+/// defective.
 #[test]
 fn repeated_poles_have_their_results() {
     let triple = TransferFunction::new([1.0], [1.0, 3.0, 3.0, 1.0]).unwrap().state_space().unwrap();
@@ -254,11 +255,11 @@ fn wrong_names_have_a_nearest() {
     says("no input `elevator`; there are u1", named.step_response("elevator", &[0.0]));
     says("no input `3`; there are u1", named.step_response(3, &[0.0]));
     says("expected 2 states, found 3", named.clone().with_states([("a", ""), ("b", ""), ("c", "")]));
-    // Nothing of an aircraft: no mode has a name.
+    // Without the states of an aircraft, no mode has a name.
     assert!(FlightModes::of(&named).unwrap().named().is_empty());
 }
 
-/// Neither states, nor inputs, nor outputs: results that are empty, zero or a sentence, never a panic.
+/// Checks systems without states, inputs or outputs: results are empty, zero or an error, never a panic.
 #[test]
 fn systems_without_states_inputs_or_outputs() {
     let still = gain(2.0);
@@ -304,7 +305,8 @@ struct Pendulum {
     angle: Scalar,
 }
 
-/// About a state that a trim has not found, and one that another trim has found.
+/// Checks the errors of linearisations about a state that is no solution of a trim, and about the solution of
+/// another trim.
 #[test]
 fn linear_motions_off_a_steady_state_say_by_how_much() {
     let whole = Pendulum { lag: 0.2, torque: 0.0 };
@@ -327,7 +329,7 @@ fn linear_motions_off_a_steady_state_say_by_how_much() {
     says("not steady: `angle` is off by -2.000e-1", tilted.linear_system(&hanging));
 }
 
-/// What a steady state is asked for: names that there are not, names twice, too few unknowns and too many.
+/// Checks the errors of wrongly posed trims: unknown names, repeated names, too few and too many unknowns.
 #[test]
 fn problems_that_are_posed_wrongly_are_named() {
     let whole = Pendulum { lag: 0.2, torque: 0.0 };
@@ -357,7 +359,7 @@ fn problems_that_are_posed_wrongly_are_named() {
         "the conditions leave hinge, torque', command open at hinge 0.000000, torque' 0.000000, command 0.000000: fix or hold one of them, add a condition, or take the nearest",
         rest().inputs(["command"]).find(),
     );
-    // Too few, and as many without a solution: `hinge''` and `torque'` at most.
+    // Too few unknowns, and as many unknowns as conditions without a solution.
     for (trim, start) in [
         (
             rest().output("angle", 0.2),

@@ -1,4 +1,4 @@
-//! Peaks, crossings, step figures and stable gains of random systems against closed forms.
+//! Peaks, crossings, step responses and stable gains of random systems, compared with closed forms.
 
 use linkwork_design::nalgebra::{Complex, DMatrix};
 use linkwork_design::{Error, GainRange, Hold, Polynomial, StateSpace, StepFigures, TransferFunction};
@@ -9,7 +9,7 @@ type C = Complex<f64>;
 struct Random(u64);
 
 impl Random {
-    /// A number between zero and one.
+    /// Returns a number between zero and one.
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
@@ -19,7 +19,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// A number whose logarithm is uniform.
+    /// Returns a number whose logarithm is uniformly distributed.
     fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
@@ -41,8 +41,8 @@ fn close(what: &str, found: f64, expected: f64, relative: f64) {
     );
 }
 
-/// The largest of `|(s² + e s + f) / (s² + b s + c)|` over frequencies: in `x = ω²` its square is a quotient
-/// of quadratics, which is stationary at the roots of a further quadratic.
+/// Returns the maximum of `|(s² + e s + f) / (s² + b s + c)|` over frequencies. In `x = ω²` the square of the
+/// magnitude is a ratio of quadratics, which is stationary at the roots of another quadratic.
 fn biproper_peak(e: f64, f: f64, b: f64, c: f64) -> f64 {
     let (n, d) = ([1.0, e * e - 2.0 * f, f * f], [1.0, b * b - 2.0 * c, c * c]);
     let square = |x: f64| ((f - x).powi(2) + e * e * x) / ((c - x).powi(2) + b * b * x);
@@ -73,8 +73,8 @@ fn peak_gains_of_biproper_systems() {
     }
 }
 
-/// The largest singular value of the direct term is one, that of the response is larger: SLICOT's AB13DD with
-/// a tolerance of 1e-13 (slycot 0.7.1) finds 1.414487935024265 at 4.638148816470194 rad/s.
+/// Compares with SLICOT's AB13DD with a tolerance of 1e-13 (slycot 0.7.1), which returns 1.414487935024265 at
+/// 4.638148816470194 rad/s. The largest singular value of `D` is one, that of the response is larger.
 #[test]
 fn peak_gain_of_two_channels() {
     let system = StateSpace::new(
@@ -88,7 +88,8 @@ fn peak_gain_of_two_channels() {
     close("frequency", peak.frequency, 4.638148816470194, 1e-6);
 }
 
-/// The magnitude of an all-pass is one everywhere, and crosses one nowhere; `s / (s + a)` only approaches it.
+/// Checks that loops whose magnitude does not cross one have no phase margins: all-passes, whose magnitude is
+/// one, and `s / (s + a)`, whose magnitude only approaches one.
 #[test]
 fn magnitudes_that_do_not_cross_one() {
     let mut random = Random(2);
@@ -98,7 +99,7 @@ fn magnitudes_that_do_not_cross_one() {
         close("gain", all_pass.peak_gain().unwrap().gain, 1.0, 1e-12);
         let margins = all_pass.margins().unwrap();
         assert!(margins.phase.is_empty(), "{margins:?}");
-        // It passes −1 where the lags are 90° each on average.
+        // The all-pass reaches −1 where the average lag of both factors is 90°.
         let [gain] = margins.gain[..] else { panic!("{margins:?}") };
         close("factor", gain.factor, 1.0, 1e-9);
         close("frequency", gain.frequency, (a * b).sqrt(), 1e-9);
@@ -109,15 +110,15 @@ fn magnitudes_that_do_not_cross_one() {
                 assert!(margins.gain.is_empty() && margins.phase.is_empty(), "{a}: {margins:?}");
             }
         }
-        // A pole at rest that a zero cancels: (s + a) / (s − a) begins at −1.
+        // A pole at zero that a zero cancels: (s + a) / (s − a) begins at −1.
         let cancelled = state_space(&[1.0, a, 0.0], &[1.0, -a, 0.0]).margins().unwrap();
         assert!(cancelled.stability.distance < 1e-6, "{cancelled:?}");
     }
 }
 
-/// `k / (s (s + a) (s + b))` is real and negative at `ω = √(a b)`, where its magnitude is `k / (a b (a +
-/// b))`; Tustin's rule moves the frequency only. Neither has a margin at rest, where there is a pole, or at
-/// Nyquist's frequency, where there is a zero.
+/// Checks `k / (s (s + a) (s + b))`, which is real and negative at `ω = √(a b)` with magnitude
+/// `k / (a b (a + b))`. Tustin's rule changes the frequency only. Neither loop has a margin at zero
+/// frequency, where there is a pole, or at the Nyquist frequency, where there is a zero.
 #[test]
 fn gain_margins_of_loops_with_an_integrator() {
     let mut random = Random(3);
@@ -138,8 +139,9 @@ fn gain_margins_of_loops_with_an_integrator() {
     }
 }
 
-/// An integrator with a hold is `h / (z − 1)`: real at Nyquist's frequency alone, with magnitude `h / 2`; of
-/// magnitude one at `sin(ω h / 2) = h / 2`. A double integrator by Tustin's rule is real everywhere.
+/// Checks an integrator with a zero-order hold, `h / (z − 1)`: it is real at the Nyquist frequency only, with
+/// magnitude `h / 2`, and has magnitude one at `sin(ω h / 2) = h / 2`. A double integrator discretised by
+/// Tustin's rule is real at all frequencies.
 #[test]
 fn margins_of_held_integrators() {
     let mut random = Random(4);
@@ -159,7 +161,7 @@ fn margins_of_held_integrators() {
         let [phase] = margins.phase[..] else { panic!("{h}: {margins:?}") };
         close("frequency", phase.frequency, 2.0 / h * (0.5 * h).atan(), 1e-9);
     }
-    // A lead for a lagging motor, held for 0.1 s: recomputed with 50 digits (mpmath).
+    // Lead compensator for a motor with a lag, with a hold of 0.1 s: recomputed with 50 digits (mpmath).
     let held = state_space(&[2.0, 1.0], &[1.0, 3.0, 2.0, 0.0]).discretize(0.1, Hold::Zero).unwrap();
     let margins = held.margins().unwrap();
     let [low, high] = margins.gain[..] else { panic!("{margins:?}") };
@@ -169,8 +171,8 @@ fn margins_of_held_integrators() {
     assert_eq!(margins.gain_reduction(), None);
 }
 
-/// In the limit of low frequencies `((z − 1) / h)^k` times the matched system is `s^k` times the continuous
-/// one.
+/// Checks that `((z − 1) / h)^k` times the matched system tends to `s^k` times the continuous system for low
+/// frequencies.
 #[test]
 fn matched_systems_keep_low_frequencies() {
     let coefficients = |g: &TransferFunction, h: f64| {
@@ -189,24 +191,25 @@ fn matched_systems_keep_low_frequencies() {
         let (numerator, _) = coefficients(&transfer(&[1.0], &[1.0, a, 0.0]), h);
         let expected = -0.5 * h * (-a * h).exp_m1() / a;
         numerator.iter().for_each(|found| close("1 / (s (s + a))", *found, expected, 1e-9));
-        // a / (s + a) and s / (s + a), whose gains do not depend on how near to rest the pole is.
+        // a / (s + a) and s / (s + a), whose gains stay accurate for poles near zero.
         let (numerator, _) = coefficients(&transfer(&[a], &[1.0, a]), h);
         close("a / (s + a)", numerator[0], -(-a * h).exp_m1(), 1e-12);
         let (numerator, _) = coefficients(&transfer(&[1.0, 0.0], &[1.0, a]), h);
         close("s / (s + a)", numerator[0], -(-a * h).exp_m1() / (a * h), 1e-12);
     }
-    // An oscillation by the sampling frequency looks like one at rest.
+    // An oscillation at the sampling frequency is indistinguishable from a pole at zero.
     let aliased = transfer(&[1.0], &[1.0, 0.0, 4.0 * PI * PI]).factored().unwrap();
     assert_eq!(aliased.matched(1.0), Err(Error::Singular { what: "the gain of the matched system at rest" }));
 }
 
-/// The distance of `ω² / (s² + 2 ζ ω s + ω²)` from its final value, with time in units of `1 / ω`.
+/// Returns the deviation of the step response of `ω² / (s² + 2 ζ ω s + ω²)` from its final value, with time
+/// in units of `1 / ω`.
 fn oscillation(zeta: f64, t: f64) -> f64 {
     let damped = (1.0 - zeta * zeta).sqrt();
     -(-zeta * t).exp() * ((damped * t).cos() + zeta / damped * (damped * t).sin())
 }
 
-/// The first rise through a level, by bisection before the first peak.
+/// Returns the first time at which the response reaches a level, by bisection before the first peak.
 fn first_rise(zeta: f64, level: f64) -> f64 {
     let (mut low, mut high) = (0.0, PI / (1.0 - zeta * zeta).sqrt());
     for _ in 0..100 {
@@ -231,7 +234,8 @@ fn step_figures_of_second_order() {
         close("peak", figures.peak, final_value.abs() * (1.0 + part), 1e-10);
         close("peak time", figures.peak_time * omega, PI / damped, 1e-7);
         close("rise time", figures.rise_time * omega, first_rise(zeta, 0.9) - first_rise(zeta, 0.1), 1e-8);
-        // The last extreme outside of the band is at half a period k; it comes back before the next.
+        // The last extremum outside the band is at half period k; the response enters the band before the
+        // next one.
         let last = (50.0_f64.ln() * damped / (zeta * PI)).floor();
         let settled = figures.settling_time * omega;
         let half = PI / damped;
@@ -246,8 +250,9 @@ fn step_figures_of_second_order() {
     }
 }
 
-/// A fast oscillation on a slow rise: `½ / (s + 1) + ½ ω² / (s² + 0.1 ω s + ω²)` with `ω` = 1000 has 90 % of
-/// its final value within its first half period. The instants are those of 50 digits (mpmath).
+/// Checks a fast oscillation on a slow rise: `½ / (s + 1) + ½ ω² / (s² + 0.1 ω s + ω²)` with `ω` = 1000
+/// reaches 90 % of its final value within the first half period. The expected times were computed with 50
+/// digits (mpmath).
 #[test]
 fn step_figures_of_two_time_scales() {
     let slow = transfer(&[0.5], &[1.0, 1.0]);
@@ -258,7 +263,7 @@ fn step_figures_of_two_time_scales() {
     assert_eq!((figures.overshoot, figures.peak_time), (0.0, f64::INFINITY));
 }
 
-/// `1 − (1 + t + … + t⁷ / 7!) e^{−t}` of `1 / (s + 1)⁸`, whose poles coincide.
+/// Checks `1 / (s + 1)⁸`, whose poles coincide: the step response is `1 − (1 + t + … + t⁷ / 7!) e^{−t}`.
 #[test]
 fn step_figures_of_repeated_poles() {
     let denominator = Polynomial::from_roots(&[C::new(-1.0, 0.0); 8]);
@@ -284,7 +289,7 @@ fn step_figures_of_repeated_poles() {
     assert_eq!((figures.overshoot, figures.undershoot, figures.peak_time), (0.0, 0.0, f64::INFINITY));
 }
 
-/// Samples of a held oscillation are those of the continuous one.
+/// Checks that the samples of an oscillator with a zero-order hold are those of the continuous oscillator.
 #[test]
 fn step_figures_of_sampled_systems() {
     let mut random = Random(7);
@@ -305,7 +310,7 @@ fn step_figures_of_sampled_systems() {
             assert!((at - largest).abs() < 1e-9, "{zeta} {h}: {at} at {peak_time}, {largest}");
         }
     }
-    // The oscillation of an undamped zero at rest has no final value.
+    // A system with a zero at s = 0 has the final value zero, to which no step characteristics can refer.
     let at_rest = state_space(&[1.0, 0.0], &[1.0, 3.0, 2.0]);
     let error = Err(Error::Range { what: "a final value", value: 0.0 });
     assert_eq!(at_rest.step_figures(), error);
@@ -316,13 +321,13 @@ fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
     Polynomial::new(one.to_vec()).stable_gains(&Polynomial::new(other.to_vec())).unwrap()
 }
 
-/// Hurwitz' criterion: `s³ + (3 + k) s² + 3 s + 1 + k` is stable for `k > −1`, and `s³ + k (s² + 2 s + 1)`
-/// for `2 k² > k`. A polynomial plus a multiple of itself is stable for all gains that do not cancel it, if
-/// it is stable itself.
+/// Compares with the Hurwitz criterion: `s³ + (3 + k) s² + 3 s + 1 + k` is stable for `k > −1`, and
+/// `s³ + k (s² + 2 s + 1)` for `2 k² > k`. The sum of a stable polynomial and a multiple of itself is stable
+/// for all gains except the one that cancels it.
 #[test]
 fn stable_gains_by_hurwitz() {
     let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
-    /// Denominator and numerator of a loop, and the ranges of its stable gains.
+    /// Denominator and numerator of a loop, and the expected ranges of stable gains.
     type Case<'a> = (&'a [f64], &'a [f64], &'a [(f64, f64)]);
     let cases: [Case<'_>; 8] = [
         (&[1.0, 3.0, 3.0, 1.0], &[1.0, 0.0, 1.0], &[(-1.0, most)]),
@@ -333,9 +338,9 @@ fn stable_gains_by_hurwitz() {
         (&[1.0, 1.0], &[1.0, 1.0, 0.0], &[(0.0, most)]),
         // Zeros at ±i: s + 1 + k (s² + 1).
         (&[1.0, 1.0], &[1.0, 0.0, 1.0], &[(0.0, most)]),
-        // A common factor on the axis is stable for no gain.
+        // With a common factor on the imaginary axis, no gain is stable.
         (&[1.0, 1.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[]),
-        // Small numbers: 1e-9 s² + 1e-9 s + k.
+        // Small coefficients: 1e-9 s² + 1e-9 s + k.
         (&[1e-9, 1e-9, 0.0], &[1.0], &[(0.0, most)]),
     ];
     for (one, other, expected) in cases {
@@ -351,7 +356,7 @@ fn stable_gains_by_hurwitz() {
     }
 }
 
-/// A gain is within a range if and only if the roots are on the left.
+/// Checks that a gain is within a range if and only if all roots are in the left half-plane.
 #[test]
 fn stable_gains_by_roots() {
     let mut random = Random(8);

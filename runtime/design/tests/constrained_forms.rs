@@ -1,5 +1,5 @@
-//! Second-order forms under constraints: mass, damping, gyroscopic, stiffness and circulatory matrices in
-//! independent coordinates, against closed forms.
+//! Second-order forms of mechanisms with constraints: mass, damping, gyroscopic, stiffness and circulatory
+//! matrices in independent coordinates, compared with closed forms.
 
 use linkwork::prelude::*;
 use linkwork_design::steady::constrained_equilibrium;
@@ -19,7 +19,7 @@ fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
     );
 }
 
-/// A particle on a rod, in wind.
+/// Particle on a massless rod, in wind.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Blown {
     mass: f64,
@@ -37,8 +37,9 @@ struct Blown {
     wind: Force,
 }
 
-/// With the angle `θ` from below: `m L² θ̈ + c L² cos² θ θ̇ + L √((m g)² + F²) θ = 0` about
-/// `tan θ = F / (m g)`. By `x = L sin θ` the matrices are these over `(L cos θ)²`.
+/// Compares with the closed form in the angle `θ` from the downward vertical:
+/// `m L² θ̈ + c L² cos² θ θ̇ + L √((m g)² + F²) θ = 0` about `tan θ = F / (m g)`. With `x = L sin θ`, the
+/// coefficients of the form in `x` are these divided by `(L cos θ)²`.
 #[test]
 fn a_particle_on_a_rod_in_wind() {
     let (mass, length, oil, wind) = (2.0, 0.7, 1.3, 8.0);
@@ -54,12 +55,12 @@ fn a_particle_on_a_rod_in_wind() {
     close(form.input[0], 1.0, 1e-12);
     let system = form.state_space().unwrap();
     assert_eq!(system.states()[0].to_string(), "place.x, m");
-    // As the linear system of the same equilibrium has them.
+    // The linear system of the same equilibrium has the same matrices.
     let direct = problem.linear_system(&problem.find().unwrap()).unwrap();
     assert!((system.a() - direct.a()).amax() < 1e-11 && (system.b() - direct.b()).amax() < 1e-12);
 }
 
-/// A crank with a piston between springs.
+/// Slider-crank mechanism with springs.
 #[mechanism(derivatives)]
 struct SliderCrank {
     r: f64,
@@ -91,8 +92,9 @@ struct SliderCrank {
     dashpot: Dashpot,
 }
 
-/// With `x(θ) = r cos θ + √(l² − r² sin² θ)` and the rod, whose centre of mass is on the crank, at `φ(θ)`:
-/// `M = J + m₁ r² + I φ'² + m x'²`, `D = c x'²`, `K = k_θ + k (x'² + x x'')`.
+/// Compares with the closed form in the crank angle. With the piston position
+/// `x(θ) = r cos θ + √(l² − r² sin² θ)` and the angle `φ(θ)` of the rod, whose centre of mass is at the crank
+/// pin: `M = J + m₁ r² + I φ'² + m x'²`, `D = c x'²`, `K = k_θ + k (x'² + x x'')`.
 #[test]
 fn a_slider_crank_on_springs() {
     let (r, l) = (0.1, 0.25);
@@ -107,7 +109,7 @@ fn a_slider_crank_on_springs() {
     let first = -r * s - r * r * s * c / root;
     let second = -r * c - r * r * (c * c - s * s) / root - (r * r * s * c).powi(2) / root.powi(3);
     assert!((20.0 * found.q[0] + 700.0 * x * first).abs() < 1e-9 && s.abs() > 0.1, "{found:?}");
-    // Of the crank's angle, whichever coordinate the form is in.
+    // Derivative of the form's coordinate with respect to the crank angle.
     let per = match form.state_space().unwrap().states()[0].name.as_str() {
         "main" => 1.0,
         "guide" => first,
@@ -121,7 +123,7 @@ fn a_slider_crank_on_springs() {
     close(form.stiffness[0] * per * per, 20.0 + 700.0 * (first * first + x * second), 1e-10);
 }
 
-/// A particle in a bowl that turns, with damping in the air, which does not turn.
+/// Particle in a rotating bowl, with drag from air at rest.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Bowl {
     mass: f64,
@@ -142,7 +144,8 @@ struct Bowl {
     drag: Force,
 }
 
-/// `M = m`, `D = c`, `G = 2 m Ω [[0, −1], [1, 0]]`, `K = m (g / a − Ω²)`, `N = c Ω [[0, −1], [1, 0]]`.
+/// Compares with the closed form `M = m`, `D = c`, `G = 2 m Ω [[0, −1], [1, 0]]`, `K = m (g / a − Ω²)`,
+/// `N = c Ω [[0, −1], [1, 0]]`.
 #[test]
 fn a_ball_in_a_turning_bowl() {
     let (mass, radius, spin, air) = (0.4, 0.3, 5.0, 0.7);
@@ -157,7 +160,7 @@ fn a_ball_in_a_turning_bowl() {
     same(&form.circulatory, &(&turn * (air * spin)), 1e-12);
 }
 
-/// A knife edge on ice: a force along it depends on where it is across, and it has no speed that way.
+/// Knife edge on ice. The force depends on the lateral position, and the edge prevents lateral velocity.
 #[mechanism(derivatives)]
 struct Skate {
     pull: f64,

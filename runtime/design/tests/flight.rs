@@ -1,4 +1,5 @@
-//! Flight, lags, rotors and satellites from mechanisms to modes, against closed forms.
+//! Linear systems of aircraft, lags, rotors and satellites, computed from mechanisms and compared with closed
+//! forms.
 
 use linkwork::constraint::stabilized;
 use linkwork::prelude::*;
@@ -22,7 +23,7 @@ fn contains(system: &StateSpace, re: f64, im: f64) {
     );
 }
 
-/// A craft whose lift stands upright on its velocity, `k V²`, without drag (Lanchester 1908).
+/// Aircraft with lift `k V²` perpendicular to its velocity and without drag (Lanchester 1908).
 #[mechanism(gravity = -g * y, derivatives)]
 struct Lanchester {
     g: f64,
@@ -51,7 +52,7 @@ fn phugoid_of_lanchester() {
     assert!(phugoid.pole.re.abs() < 1e-12);
 }
 
-/// A boat whose propeller follows the throttle late.
+/// Boat whose thrust follows the throttle with a lag.
 #[mechanism(derivatives)]
 struct Boat {
     mass: f64,
@@ -72,7 +73,7 @@ struct Boat {
 fn trim_finds_states_of_first_order() {
     let boat = Boat { mass: 800.0, drag: 20.0, lag: 2.0, thrust: 0.0 };
     let whole = boat.extended();
-    // At 5 m/s the drag is 500 N, which thrust and throttle have to be.
+    // At 5 m/s the drag is 500 N; thrust and throttle must equal it.
     let trim = equilibrium(&whole).moving([5.0, 0.0].into()).fix(["way"]).inputs(["throttle"]);
     let found = trim.find().unwrap();
     close(found.v[1], 500.0, 1e-12);
@@ -82,7 +83,7 @@ fn trim_finds_states_of_first_order() {
     assert_eq!(names, ["way", "way'", "thrust"]);
     let mut poles: Vec<f64> = system.poles().unwrap().iter().map(|pole| pole.re).collect();
     poles.sort_by(f64::total_cmp);
-    // The lag, 2 k v / m of the drag, and the place, on which nothing depends.
+    // Poles: the lag, 2 k v / m of the drag, and zero for the position, on which nothing depends.
     close(poles[0], -0.5, 1e-12);
     close(poles[1], -0.25, 1e-12);
     assert!(poles[2].abs() < 1e-12);
@@ -90,7 +91,7 @@ fn trim_finds_states_of_first_order() {
     assert!((whole.a() - system.a()).norm() < 1e-12 && (whole.b() - system.b()).norm() < 1e-12);
 }
 
-/// A disk on an elastic shaft that turns, with damping outside and within the shaft, which turns along.
+/// Disk on a rotating elastic shaft, with external damping and internal damping in the shaft.
 #[mechanism(derivatives)]
 struct DampedRotor {
     mass: f64,
@@ -112,8 +113,8 @@ struct DampedRotor {
     friction: Force,
 }
 
-/// With `z = x + i y`: `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` (Genta, *Dynamics of Rotating Systems*,
-/// 2005, § 2.6); it whirls by itself above the rate `ω (1 + cₑ / cᵢ)`.
+/// Compares with `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` for `z = x + i y` (Genta, *Dynamics of Rotating
+/// Systems*, 2005, § 2.6). The rotor is unstable above the rate `ω (1 + cₑ / cᵢ)`.
 #[test]
 fn rotor_with_internal_damping() {
     let rotor = |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
@@ -131,7 +132,7 @@ fn rotor_with_internal_damping() {
     assert!(!at(threshold * (1.0 + 1e-6)).is_stable().unwrap());
 }
 
-/// A balanced rotor in gimbals.
+/// Balanced rotor in massless gimbals.
 #[mechanism(derivatives)]
 struct Rotor {
     axial: f64,
@@ -150,7 +151,7 @@ struct Rotor {
     spin: Pin,
 }
 
-/// It nutates at `C n / A` (Magnus, *Kreisel*, 1971).
+/// Checks the nutation frequency `C n / A` (Magnus, *Kreisel*, 1971).
 #[test]
 fn gyroscope_nutates() {
     let (rotor, n) = (Rotor { axial: 0.03, across: 0.02 }, 70.0);
@@ -161,7 +162,7 @@ fn gyroscope_nutates() {
     assert_eq!(other.iter().filter(|pole| pole.norm() < 1e-6).count(), 4);
 }
 
-/// A satellite on a circular orbit: x up, y forward, z across the orbit.
+/// Satellite on a circular orbit, with x radially outward, y forward and z normal to the orbit.
 #[mechanism(derivatives)]
 struct Satellite {
     mu: f64,
@@ -182,7 +183,7 @@ struct Satellite {
     gravity: Gravity,
 }
 
-/// Pitch by `Ω √(3 (I_roll − I_yaw) / I_pitch)`, roll and yaw by the roots of
+/// Compares with the pitch frequency `Ω √(3 (I_roll − I_yaw) / I_pitch)` and, for roll and yaw, the roots of
 /// `s⁴ + (1 + 3 k₁ + k₁ k₃) Ω² s² + 4 k₁ k₃ Ω⁴` with `k₁ = (I_pitch − I_yaw) / I_roll` and
 /// `k₃ = (I_pitch − I_roll) / I_yaw` (Hughes, *Spacecraft Attitude Dynamics*, 1986, § 9.2).
 #[test]
@@ -204,7 +205,7 @@ fn gravity_holds_a_satellite() {
     }
 }
 
-/// A sled with an engine that lags, and what it feels.
+/// Sled whose thrust follows the throttle with a lag, with an accelerometer and a gauge as outputs.
 #[mechanism(derivatives)]
 struct Sled {
     mass: f64,
@@ -224,7 +225,7 @@ struct Sled {
     gauge: Scalar,
 }
 
-/// `felt = 1 / (m (τ s + 1))`, `gauge = 1 / (τ s + 1) + ½`.
+/// Compares with `felt = 1 / (m (τ s + 1))` and `gauge = 1 / (τ s + 1) + ½`.
 #[test]
 fn outputs_see_states_of_first_order() {
     let (mass, lag) = (2.0, 0.25);
@@ -241,7 +242,7 @@ fn outputs_see_states_of_first_order() {
     }
 }
 
-/// A carriage on a parabola whose motor is late, in a wind that changes.
+/// Carriage on a parabola, with a force as input.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Carriage {
     mass: f64,
@@ -257,7 +258,8 @@ struct Carriage {
     speed: Scalar,
 }
 
-/// In all displacements the constraint adds two exponents of zero to those of the motion.
+/// Checks that a linearisation in all displacements has two zero eigenvalues for a holonomic constraint, in
+/// addition to those of the motion.
 #[test]
 fn displacements_under_constraints_are_not_independent() {
     let zero = SVector::zeros();
@@ -267,7 +269,7 @@ fn displacements_under_constraints_are_not_independent() {
     assert!(poles.len() == 4 && poles.iter().filter(|pole| pole.norm() < 1e-7).count() == 2, "{poles:?}");
 }
 
-/// A rod as a constraint that decays at `α`: beside the pendulum's own exponents there is `−α` twice.
+/// Checks that a constraint stabilised with the rate `α` adds the eigenvalue `−α` twice.
 #[test]
 fn decaying_constraints_have_their_exponents() {
     let (carriage, rate) = (Carriage { mass: 2.0 }, 7.0);
@@ -282,7 +284,7 @@ fn decaying_constraints_have_their_exponents() {
     assert_eq!(system.poles().unwrap().len(), 4);
     let near = |pole: &Complex<f64>| (pole + rate).norm() < 1e-6 * rate;
     assert_eq!(system.poles().unwrap().iter().filter(|pole| near(pole)).count(), 2);
-    // What decays is not moved by the push.
+    // The push does not excite the decaying constraint.
     let (s, answer) = (Complex::new(0.3, 2.0), characteristic.at(Complex::new(0.3, 2.0)).unwrap());
     let expected = (s * s + 2.0 * 9.81).inv() / 2.0;
     assert!((answer[0] - expected).norm() < 1e-12, "{answer} {expected}");
@@ -292,8 +294,8 @@ fn written(signals: &[Signal]) -> Vec<String> {
     signals.iter().map(ToString::to_string).collect()
 }
 
-/// Names and units of a tree with a state of first order, of a mechanism that is driven in time, and under
-/// constraints.
+/// Checks names and units of signals for a tree with a state of first order, for a mechanism with prescribed
+/// motion, and with constraints.
 #[test]
 fn signals_have_names_and_units() {
     let sled = Sled { mass: 2.0, lag: 0.5, thrust: 0.0 };

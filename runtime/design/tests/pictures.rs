@@ -1,5 +1,5 @@
-//! Pictures are SVG that is well formed and says names and units; `PICTURES=folder` keeps them to be looked
-//! at.
+//! Pictures are well-formed SVG with names and units. With `PICTURES=folder` they are written there for
+//! inspection.
 
 use linkwork_design::{StateSpace, TransferFunction, picture};
 use nalgebra::{DMatrix, dmatrix};
@@ -56,12 +56,12 @@ fn every_picture() {
         picture::named_modes(&[("spiral", &all[0]), ("roll", &all[1]), ("Dutch roll", &all[2])]).unwrap();
     assert!(named.contains("Dutch roll: -0.03294") && named.contains("bank: takes part"));
     assert!(picture::named_modes(&[]).is_err());
-    // An integrator leaves Nyquist's picture, and its curves end at the border.
+    // The curves of an integrator leave the Nyquist diagram, and are clipped at its border.
     let integrator = TransferFunction::new([2.0], [1.0, 3.0, 2.0, 0.0]).unwrap().state_space().unwrap();
     let response =
         integrator.frequency_response(0, 0, &integrator.natural_frequencies(300).unwrap()).unwrap();
     keep("nyquist_integrator", &picture::nyquist(&response).unwrap());
-    // Powers of ten, zeros among what is drawn, and marks.
+    // Logarithmic axis, with a zero among the values, and a marked instant.
     let falls = (0..500).map(|k| (0.1 * f64::from(k), (-f64::from(k) / 20.0).exp())).chain([(50.0, 0.0)]);
     let chart = picture::Chart::over_time("Decay", "error, m").logarithmic().curve("falls", falls);
     let svg = chart.instant(20.0, "caught").svg().unwrap();

@@ -1,5 +1,5 @@
-//! What must hold for every system: residuals, roots, round trips, on random systems, stiff and defective
-//! ones among them.
+//! Properties that hold for every system, checked on random systems including stiff and defective ones:
+//! residuals, roots and round trips.
 
 use linkwork_design::matrices::{
     Cost, discrete_lyapunov, discrete_riccati, discrete_sylvester, eigenvalues, exponential, logarithm,
@@ -22,7 +22,7 @@ impl Random {
         DMatrix::from_fn(rows, columns, |_, _| self.next())
     }
 
-    /// States in units that differ by up to `10^spread`.
+    /// Returns a random system whose states are scaled by factors of up to `10^spread`.
     fn system(&mut self, n: usize, m: usize, p: usize, spread: f64) -> StateSpace {
         let scales: Vec<f64> = (0..n).map(|_| 10f64.powf(spread * self.next())).collect();
         let a = DMatrix::from_fn(n, n, |i, j| self.next() * scales[i] / scales[j]);
@@ -84,7 +84,8 @@ fn regulators_are_optimal() {
         let x = &best.x;
         let residual = a.transpose() * x + x * a + &cost.q - (x * b + &cost.n) * &best.gain;
         small("continuous", &residual, (a.transpose() * x).norm() + cost.q.norm(), 1e-11);
-        // Hamiltonian matrices have eigenvalues symmetric to the axis; the stable half are the regulator's.
+        // Eigenvalues of Hamiltonian matrices are symmetric about the imaginary axis; the stable half are
+        // the regulator's.
         assert!(best.poles.iter().all(|p| p.re < 0.0));
         let best = discrete_riccati(a, b, &cost).unwrap();
         let x = &best.x;
@@ -123,7 +124,7 @@ fn regulators_that_do_not_exist() {
 
 #[test]
 fn eigenvalues_of_hard_matrices() {
-    // Known spectra by similarity; Frank's matrix and a companion matrix of wide range.
+    // Known spectra by similarity transformations, and a companion matrix of wide range.
     let mut random = Random(3);
     for n in 2..20 {
         let diagonal: Vec<f64> = (0..n).map(|k| (k as f64) - 3.5).collect();
@@ -138,7 +139,7 @@ fn eigenvalues_of_hard_matrices() {
     for (found, expected) in roots.iter().zip([-1e4, -1.0, -1e-4]) {
         assert!((found.re / expected - 1.0).abs() < 1e-12);
     }
-    // A cyclic permutation: QR without exceptional shifts stands still.
+    // A cyclic permutation, on which QR without exceptional shifts makes no progress.
     let cycle = DMatrix::from_fn(6, 6, |i, j| f64::from((j + 1) % 6 == i));
     assert!(eigenvalues(&cycle).unwrap().iter().all(|x| (x.norm() - 1.0).abs() < 1e-14));
     let chain = StateSpace::new(
@@ -163,7 +164,8 @@ fn zeros_lose_rank() {
         let zeros = system.zeros().unwrap();
         let expected = if k % 2 == 0 { n.saturating_sub(m) } else { n };
         assert_eq!(zeros.len(), expected, "order {n}, {m} inputs");
-        // Balanced, so that the test itself is not off.
+        // The system matrix is evaluated through the balanced response, so that the test itself is
+        // accurate.
         for zero in zeros {
             let full = system.at(zero).unwrap();
             let far = system.at(zero + C::new(1.0 + zero.norm(), 0.3)).unwrap();
@@ -208,7 +210,7 @@ fn energies_agree() {
             StateSpace::new(system.a().clone(), system.b().clone(), system.c().clone(), dmatrix![0.0])
                 .unwrap();
         let norm = system.h2_norm().unwrap();
-        // Parseval: by the impulse response, Simpson's rule.
+        // Parseval's theorem: the integral of the squared impulse response, by Simpson's rule.
         let times = system.times(200.0, 80_001).unwrap();
         let y = system.impulse_response(0, &times).unwrap().outputs;
         let weight = |k: usize| if k == 0 || k + 1 == times.len() { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
@@ -235,7 +237,7 @@ fn routh_counts_roots() {
     let mut specials = [0; 2];
     for k in 0..3000 {
         let n = 1 + k % 7;
-        // Small whole numbers meet every special case.
+        // Small integer coefficients produce every singular case.
         let mut c: Vec<f64> = (0..=n).map(|_| (3.0 * random.next()).round()).collect();
         c[0] = if c[0] == 0.0 { 1.0 } else { c[0] };
         let mut polynomial = Polynomial::new(c);
@@ -261,7 +263,7 @@ fn realisations_are_minimal() {
     for k in 0..40 {
         let n = 1 + k % 6;
         let seen = random.stable(n, 1, 1, 0.0);
-        // Beside it what no input moves, and what no output shows.
+        // In parallel with it, an uncontrollable and an unobservable system.
         let hidden = random.stable(2, 1, 1, 0.0);
         let still =
             StateSpace::new(hidden.a() * 1.1, DMatrix::zeros(2, 1), hidden.c().clone(), dmatrix![0.0])
@@ -290,7 +292,7 @@ fn realisations_are_minimal() {
 
 #[test]
 fn straight_inputs_are_exact() {
-    // ẋ = −x + t from rest: x = t − 1 + e^{−t}.
+    // ẋ = −x + t from zero: x = t − 1 + e^{−t}.
     let lag = TransferFunction::new([1.0], [1.0, 1.0]).unwrap().state_space().unwrap();
     let times = lag.times(3.0, 7).unwrap();
     let ramp = DMatrix::from_fn(1, 7, |_, k| times[k]);
@@ -317,8 +319,8 @@ fn connections() {
     assert_eq!(direct.feedback_gain(&dmatrix![-1.0]), Err(Error::AlgebraicLoop));
 }
 
-/// `det(s I − A + B K) = Π (s − pᵢ)` away from all poles, with repeated ones and with those that are there
-/// already.
+/// Checks `det(s I − A + B K) = Π (s − pᵢ)` at points away from all poles, including repeated poles and poles
+/// of the open loop.
 #[test]
 fn poles_are_put_where_they_should_be() {
     let mut random = Random(31);
@@ -349,8 +351,8 @@ fn poles_are_put_where_they_should_be() {
     assert!(matches!(fixed.place(&[one]), Err(Error::Count { expected: 2, found: 1, .. })));
 }
 
-/// Every crossing that a fine grid sees is found, and is one; at the least distance from −1 the sensitivity
-/// is largest.
+/// Checks that every crossing on a fine grid is found and satisfies its equation, and that the stability
+/// margin is the minimum distance from −1.
 #[test]
 fn margins_miss_no_crossing() {
     let mut random = Random(7);

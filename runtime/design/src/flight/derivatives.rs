@@ -1,4 +1,4 @@
-//! Dimensional and non-dimensional derivatives of an aircraft's forces.
+//! Dimensional and dimensionless derivatives of the forces on an aircraft.
 
 use super::states::check_free;
 use crate::Error;
@@ -6,12 +6,12 @@ use crate::mechanism::effective_mass;
 use linkwork::{Derivatives as Generated, Mechanism};
 use nalgebra::{DMatrix, DVector, SVector};
 
-/// Forces along and moments about the axes forward, right and down.
+/// Forces along, and moments about, the forward, right and down axes.
 const FORCES: [&str; 6] = ["X", "Y", "Z", "L", "M", "N"];
-/// Velocities and turning in the same axes.
+/// Linear and angular velocities along the same axes.
 const VELOCITIES: [&str; 6] = ["u", "v", "w", "p", "q", "r"];
 
-/// What makes derivatives dimensionless.
+/// Reference quantities that make derivatives dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// Density of the air, kg/m³.
@@ -24,24 +24,25 @@ pub struct Reference {
     pub span: f64,
 }
 
-/// Derivatives of all forces on an aircraft but gravity and its own inertia: aerodynamic forces and thrust,
-/// about the origin of the airframe, in its axes.
+/// Derivatives of all forces on an aircraft except gravity and its own inertia: aerodynamic forces and
+/// thrust. Moments are about the origin of the airframe; components are in its axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivatives {
-    /// By `u`, `v`, `w`, `p`, `q`, `r`: N·s/m, N·s, N·m·s; rows are `X`, `Y`, `Z`, `L`, `M`, `N`.
+    /// Derivatives with respect to `u`, `v`, `w`, `p`, `q`, `r`: N·s/m, N·s, N·m·s. Rows are `X`, `Y`, `Z`,
+    /// `L`, `M`, `N`.
     pub by_velocity: DMatrix<f64>,
-    /// By their rates, as `Z` by `ẇ`: kg, kg·m, kg·m².
+    /// Derivatives with respect to the rates of these velocities, such as `Z` by `ẇ`: kg, kg·m, kg·m².
     pub by_acceleration: DMatrix<f64>,
-    /// By the inputs.
+    /// Derivatives with respect to the inputs.
     pub by_input: DMatrix<f64>,
-    /// The forces and moments themselves, N and N·m.
+    /// Forces and moments, N and N·m.
     pub forces: DVector<f64>,
-    /// Velocity and turning, m/s and rad/s.
+    /// Linear and angular velocity, m/s and rad/s.
     pub velocity: DVector<f64>,
     inputs: Vec<&'static str>,
 }
 
-/// `w × (M v)` of wrenches, with `w` as a twist: linear part first.
+/// Returns the wrench `w × (M v)` for a twist `w`, with the linear part first.
 fn bias(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
     let momentum = mass * v;
     let part = |x: &DVector<f64>, from: usize| x.fixed_rows::<3>(from).into_owned();
@@ -54,8 +55,8 @@ fn bias(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64>
 }
 
 impl Derivatives {
-    /// Of a mechanism whose first six velocities are those of a free joint, in a state. The spin of rotors
-    /// counts among the forces.
+    /// Computes the derivatives at a state of a mechanism whose first six velocities are those of a free
+    /// joint. Gyroscopic moments of rotors are included in the forces.
     ///
     /// ```text
     /// f = M v̇ + v × M v − weight,   ∂f/∂v, ∂f/∂v̇, ∂f/∂u
@@ -63,7 +64,7 @@ impl Derivatives {
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] where the first joint is not free, [`Error::NotFinite`] without a finite answer.
+    /// [`Error::Unknown`] if the first joint is not free, [`Error::NotFinite`] if a derivative is not finite.
     pub fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
         m: &M,
         q: &SVector<f64, NQ>,
@@ -99,8 +100,8 @@ impl Derivatives {
         Ok(Self { by_velocity, by_acceleration, by_input, forces, velocity, inputs: M::INPUTS.to_vec() })
     }
 
-    /// In stability axes: turned about the axis to the right, so that the first axis is along the velocity in
-    /// the plane of symmetry.
+    /// Transforms the derivatives to stability axes: rotated about the right axis so that the forward axis is
+    /// along the velocity projected onto the plane of symmetry.
     pub fn in_stability_axes(&self) -> Self {
         let (s, c) = self.velocity[2].atan2(self.velocity[0]).sin_cos();
         let mut turn = DMatrix::identity(6, 6);
@@ -118,12 +119,12 @@ impl Derivatives {
         }
     }
 
-    /// A derivative by the names of the force and of what changes: `of_force("M", "q")`, `("Z", "w'")`,
-    /// `("M", "elevator")`.
+    /// Returns a derivative by the names of the force and of the variable: `of_force("M", "q")`,
+    /// `("Z", "w'")`, `("M", "elevator")`.
     ///
     /// # Errors
     ///
-    /// [`Error::Unknown`] lists the names that there are.
+    /// [`Error::Unknown`] with the list of existing names.
     pub fn of_force(&self, force: &str, by: &str) -> Result<f64, Error> {
         let row = place("force", &FORCES, force)?;
         if let Some(velocity) = by.strip_suffix('\'') {
@@ -136,14 +137,14 @@ impl Derivatives {
         Ok(self.by_input[(row, place("velocity or input", &names, by)?.saturating_sub(6))])
     }
 
-    /// The same without dimension, as Etkin and Reid have it (*Dynamics of Flight*, 1996, table 4.1): forces
-    /// by `½ ρ V² S`, moments by that and chord or span; `u` by the speed, at a coefficient that changes, `v`
-    /// and `w` as the angles `β` and `α`, turning by `2 V / b` and, in pitch, `2 V / c`, rates of `v` and `w`
-    /// likewise.
+    /// Returns a derivative made dimensionless as by Etkin and Reid (*Dynamics of Flight*, 1996, table 4.1).
+    /// Forces are divided by `½ ρ V² S`, and moments by that and chord or span. `u` is divided by the
+    /// airspeed, at a coefficient that changes; `v` and `w` become the angles `β` and `α`. Angular velocities
+    /// are divided by `2 V / b` (in pitch `2 V / c`), and rates of `v` and `w` accordingly.
     ///
     /// # Errors
     ///
-    /// Those of [`of_force`](Self::of_force); [`Error::Range`] at rest.
+    /// As for [`of_force`](Self::of_force); [`Error::Range`] at rest.
     pub fn coefficient(&self, force: &str, by: &str, reference: &Reference) -> Result<f64, Error> {
         let derivative = self.of_force(force, by)?;
         let Reference { density, area, chord, span } = *reference;
@@ -171,13 +172,14 @@ impl Derivatives {
         Ok((derivative - own) / (load * arm * unit))
     }
 
-    /// How far the neutral point lies behind the airframe's origin, its centre of mass, in chords: the slope
-    /// of the pitching moment with the downward velocity over that of the force along the downward axis.
-    /// Positive where the aircraft is stable.
+    /// Returns the static margin: the distance, in chords, of the neutral point behind the airframe's origin,
+    /// which is its centre of mass. Computed as the derivative of the pitching moment with respect to the
+    /// downward velocity, divided by that of the force along the downward axis. Positive for a stable
+    /// aircraft.
     ///
     /// # Errors
     ///
-    /// [`Error::Range`] for a chord that is not positive, [`Error::Singular`] where no force follows the
+    /// [`Error::Range`] for a chord that is not positive, [`Error::Singular`] if no force depends on the
     /// downward velocity.
     pub fn static_margin(&self, chord: f64) -> Result<f64, Error> {
         if !(chord > 0.0 && chord.is_finite()) {
@@ -191,7 +193,8 @@ impl Derivatives {
     }
 }
 
-/// The generalized forces of the potential on the free joint. Differences of a uniform field are exact.
+/// Returns the generalized forces of the potential on the free joint, by central differences, which are exact
+/// for a uniform field.
 fn weight<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M, q: &SVector<f64, NQ>) -> DVector<f64>
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,

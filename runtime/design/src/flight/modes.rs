@@ -1,25 +1,25 @@
-//! Flight modes by name.
+//! Classification of the modes of an aircraft by name.
 
 use super::{LATERAL, LONGITUDINAL};
 use crate::{Error, Mode, StateSpace};
 
-/// The modes of an aircraft by their names (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6). One that does
-/// not exist is `None`: of an aircraft that is unstable in pitch the short period is two real modes, which
-/// are among the others.
+/// Modes of an aircraft by their names (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6). A mode that does
+/// not exist is `None`. For an aircraft that is unstable in pitch, the short period splits into two real
+/// modes, which are in `others`.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FlightModes {
-    /// The oscillation of angle of attack and pitch rate.
+    /// Oscillation of angle of attack and pitch rate.
     pub short_period: Option<Mode>,
-    /// The slow exchange of speed and height.
+    /// Slow oscillation that exchanges airspeed and height.
     pub phugoid: Option<Mode>,
-    /// The oscillation of sideslip, yaw and roll.
+    /// Oscillation of sideslip, yaw and roll.
     pub dutch_roll: Option<Mode>,
-    /// The fast real mode of the roll rate.
+    /// Fast real mode of the roll rate.
     pub roll: Option<Mode>,
-    /// The slow real mode of bank and heading.
+    /// Slow real mode of bank angle and heading.
     pub spiral: Option<Mode>,
-    /// All others: of engines and actuators, of the air's density over height.
+    /// Remaining modes, such as those of engines, of actuators and of the change of air density with height.
     pub others: Vec<Mode>,
 }
 
@@ -27,7 +27,7 @@ fn share(mode: &Mode, states: &[&str]) -> f64 {
     states.iter().filter_map(|state| mode.participation_of(state)).sum()
 }
 
-/// Takes out the mode for which `key` is largest, among those that fit.
+/// Removes and returns the mode of maximum `key` among the modes for which `fits` is true.
 fn take(modes: &mut Vec<Mode>, fits: impl Fn(&Mode) -> bool, key: impl Fn(&Mode) -> f64) -> Option<Mode> {
     let candidates = modes.iter().enumerate().filter(|(_, mode)| fits(mode));
     let (k, _) = candidates.max_by(|(_, a), (_, b)| key(a).total_cmp(&key(b)))?;
@@ -35,8 +35,9 @@ fn take(modes: &mut Vec<Mode>, fits: impl Fn(&Mode) -> bool, key: impl Fn(&Mode)
 }
 
 impl FlightModes {
-    /// Of a system with the states `u`, `w`, `q`, `theta` or `v`, `p`, `r`, `phi` or all of them, as
-    /// [`linear_system`](super::linear_system) gives: modes are told apart by which states take part.
+    /// Classifies the modes of a system with the states `u`, `w`, `q`, `theta` or `v`, `p`, `r`, `phi` or all
+    /// of them, as [`linear_system`](super::linear_system) returns. The classification uses the participation
+    /// of the states in each mode.
     ///
     /// # Errors
     ///
@@ -73,7 +74,7 @@ impl FlightModes {
         })
     }
 
-    /// Those that there are, with their names.
+    /// Returns the existing modes with their names.
     pub fn named(&self) -> Vec<(&'static str, &Mode)> {
         let all = [
             ("short period", &self.short_period),

@@ -1,17 +1,17 @@
-//! From displacements in body axes to the states that one writes of aircraft.
+//! Transformation from displacements in body axes to the usual states of an aircraft.
 
 use crate::{Error, Signal, StateSpace, mechanism};
 use linkwork::{Derivatives, Mechanism};
 use nalgebra::{DMatrix, Matrix3, Quaternion, SVector, UnitQuaternion};
 
-/// The states of motion in the plane of symmetry: forward and downward velocity, pitch rate, pitch angle,
-/// height.
+/// States of longitudinal motion: forward and downward velocity, pitch rate, pitch angle, height.
 pub const LONGITUDINAL: [&str; 5] = ["u", "w", "q", "theta", "h"];
 
-/// The states of motion out of it: sideways velocity, roll and yaw rate, bank.
+/// States of lateral motion: sideways velocity, roll and yaw rate, bank angle.
 pub const LATERAL: [&str; 4] = ["v", "p", "r", "phi"];
 
-/// Names and units, in the order of the free joint's velocities; place and heading are left out.
+/// Names and units of the states, in the order of the free joint's velocities and displacements. Horizontal
+/// position and heading are omitted.
 const STATES: [(&str, &str); 9] = [
     ("u", "m/s"),
     ("v", "m/s"),
@@ -24,16 +24,17 @@ const STATES: [(&str, &str); 9] = [
     ("h", "m"),
 ];
 
-/// Accelerations below this are none, m/s² and rad/s².
+/// Accelerations and angular rates below this count as zero, m/s², rad/s² and rad/s.
 const STEADY: f64 = 1e-6;
 
-/// Beside the largest entry: what depends on place or heading by rounding.
+/// Dependence on horizontal position or heading, relative to the largest entry of `A`, below which it is
+/// rounding error.
 const ROUNDING: f64 = 1e-9;
 
-/// The suffixes of a free joint's velocities.
+/// Suffixes of a free joint's velocities.
 const FREE: [&str; 6] = [".vx", ".vy", ".vz", ".wx", ".wy", ".wz"];
 
-/// Refuses a mechanism that does not begin with a free joint.
+/// Reports an error for a mechanism that does not begin with a free joint.
 pub(super) fn check_free(velocities: &[&'static str]) -> Result<(), Error> {
     for (k, suffix) in FREE.iter().enumerate() {
         let name = velocities.get(k).copied().unwrap_or("nothing");
@@ -49,7 +50,8 @@ pub(super) fn check_free(velocities: &[&'static str]) -> Result<(), Error> {
     Ok(())
 }
 
-/// The axes of the airframe in the ground, and what body rates do to bank, pitch and heading.
+/// Attitude of the airframe: its axes in the ground frame, and the matrix from body rates to rates of bank,
+/// pitch angle and heading.
 struct Attitude {
     axes: Matrix3<f64>,
     rates: Matrix3<f64>,
@@ -70,18 +72,18 @@ impl Attitude {
     }
 }
 
-/// The motion of an aircraft about steady flight, as `ẋ = A x + B δu`: of the velocity `u`, `v`, `w` and
-/// turning `p`, `q`, `r` in axes forward, right and down, of bank `phi`, pitch angle `theta` and height `h`
-/// (upward), then of what else there is. Of a mechanism with states of first order pass
-/// `&at(&m.extended(), t)`. The states are the outputs, too.
+/// Linearises the motion of an aircraft about steady flight as `ẋ = A x + B δu`. The states are the velocity
+/// `u`, `v`, `w` and angular velocity `p`, `q`, `r` in forward, right and down axes, the bank angle `phi`,
+/// the pitch angle `theta`, the height `h` (positive upward), then all other states of the mechanism. The
+/// outputs are the states. For a mechanism with states of first order, pass `&at(&m.extended(), t)`.
 ///
-/// In a climb, where the air changes with height, it is the motion of an instant.
+/// In a climb through air whose properties depend on height, the result is valid at one instant.
 ///
 /// # Errors
 ///
-/// [`Error::NotSteady`] says what accelerates or turns up most, and by how much; [`Error::Unknown`] where the
-/// first joint is not free; [`Error::Singular`] of a nose straight up or down; [`Error::Range`] where forces
-/// depend on place or heading.
+/// [`Error::NotSteady`] with the largest acceleration or rate of bank or pitch angle; [`Error::Unknown`] if
+/// the first joint is not free; [`Error::Singular`] if the nose points straight up or down; [`Error::Range`]
+/// if forces depend on horizontal position or heading.
 pub fn linear_system<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -116,11 +118,11 @@ fn in_flight(system: &StateSpace, attitude: &Attitude, displacements: usize) -> 
     from.view_mut((0, 0), (3, 3)).copy_from(&attitude.axes.transpose());
     to.view_mut((3, 3), (3, 3)).copy_from(&attitude.rates);
     from.view_mut((3, 3), (3, 3)).copy_from(&back);
-    // Height counts upward.
+    // Height is positive upward, the position downward.
     to.row_mut(2).neg_mut();
     from.column_mut(2).neg_mut();
     let (a, b) = (&to * system.a() * from, &to * system.b());
-    // Velocities, bank, pitch, height, then other displacements and velocities.
+    // Velocities, bank angle, pitch angle, height, then other displacements and velocities.
     let own = displacements..displacements + 6;
     let rest = (6..displacements).chain(displacements + 6..n);
     let kept: Vec<usize> = own.chain([3, 4, 2]).chain(rest.clone()).collect();

@@ -1,12 +1,12 @@
-//! Diagonal scaling by powers of two, which rounds nothing.
+//! Balancing by diagonal scaling with powers of two, which has no rounding errors.
 
 use nalgebra::DMatrix;
 
-/// Rounds of scaling; three are usual.
+/// Maximum number of sweeps; three are usual.
 const MAX_SWEEPS: usize = 40;
 
-/// `D⁻¹ A D` with rows and columns of alike norm, and the diagonal of `D` (Parlett and Reinsch, *Balancing a
-/// matrix for calculation of eigenvalues and eigenvectors*, 1969).
+/// Returns `D⁻¹ A D`, whose rows and columns have similar norms, and the diagonal of `D` (Parlett and
+/// Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*, 1969).
 pub(crate) fn balanced(a: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     let n = a.nrows();
     let empty = (DMatrix::zeros(n, 0), DMatrix::zeros(0, n));
@@ -14,8 +14,8 @@ pub(crate) fn balanced(a: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     (a, d)
 }
 
-/// `D⁻¹ A D`, `D⁻¹ B`, `C D` and the diagonal of `D`: states in units in which what moves them and what they
-/// move is alike.
+/// Returns `D⁻¹ A D`, `D⁻¹ B`, `C D` and the diagonal of `D`. The scales balance the row of each state, which
+/// drives it, with its column, through which it acts.
 pub(crate) fn balance_system(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,

@@ -1,19 +1,19 @@
-//! Eigenvalues of real matrices, in pairs that are exactly conjugate.
+//! Eigenvalues of real matrices, in exactly conjugate pairs.
 
 use super::{C, balanced, check_square};
 use crate::Error;
 use nalgebra::DMatrix;
 
-/// Steps for one eigenvalue or pair; three are usual.
+/// Maximum number of steps for one eigenvalue or pair; three are usual.
 const MAX_ITERATIONS: usize = 120;
 
-/// The eigenvalues of a square matrix: after balancing, by Francis' double QR steps on its Hessenberg form
-/// (Golub and Van Loan, *Matrix Computations*, § 7.5). Complex ones come in pairs that are exactly conjugate;
-/// sorted by real part, then by imaginary part.
+/// Computes the eigenvalues of a square matrix, after balancing, by Francis' double QR steps on its
+/// Hessenberg form (Golub and Van Loan, *Matrix Computations*, § 7.5). Complex eigenvalues are in exactly
+/// conjugate pairs. The eigenvalues are sorted by real part, then by imaginary part.
 ///
 /// # Errors
 ///
-/// [`Error::Shape`], [`Error::NotFinite`], and [`Error::NotConverged`] if the steps do not settle.
+/// [`Error::Shape`], [`Error::NotFinite`], and [`Error::NotConverged`] if the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
     let n = check_square("A", a)?;
     let mut h = hessenberg(balanced(a).0);
@@ -36,7 +36,7 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
                 return Err(Error::NotConverged { what: "the QR algorithm" });
             }
             if steps.is_multiple_of(10) {
-                // Wilkinson's exceptional shift: the matrix itself moves.
+                // Wilkinson's exceptional shift, which is applied to the matrix itself.
                 let by = h[(high, high)];
                 moved += by;
                 (0..left).for_each(|i| h[(i, i)] -= by);
@@ -53,7 +53,7 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
     Ok(found)
 }
 
-/// Where the active block begins that ends at `high`.
+/// Returns the first row of the active block that ends at row `high`.
 fn split(h: &DMatrix<f64>, high: usize, size: f64) -> usize {
     for k in (1..=high).rev() {
         let mut near = h[(k - 1, k - 1)].abs() + h[(k, k)].abs();
@@ -67,7 +67,7 @@ fn split(h: &DMatrix<f64>, high: usize, size: f64) -> usize {
     0
 }
 
-/// The eigenvalues of a block of two rows.
+/// Returns the eigenvalues of the block of two rows at `k`.
 fn pair(h: &DMatrix<f64>, k: usize) -> [C; 2] {
     let (a, b, c, d) = (h[(k, k)], h[(k, k + 1)], h[(k + 1, k)], h[(k + 1, k + 1)]);
     let half = 0.5 * (a - d);
@@ -81,7 +81,7 @@ fn pair(h: &DMatrix<f64>, k: usize) -> [C; 2] {
     [C::new(one, 0.0), C::new(other, 0.0)]
 }
 
-/// A double step with the sum and the product of two shifts.
+/// Performs a double step with the sum and the product of two shifts.
 fn step(h: &mut DMatrix<f64>, low: usize, high: usize, [sum, product]: [f64; 2]) {
     let first = h[(low, low)];
     let mut v = [

@@ -1,14 +1,14 @@
-//! The matrix exponential.
+//! Matrix exponential.
 
 use super::{check_square, norm_one, solve};
 use crate::Error;
 use nalgebra::DMatrix;
 
-/// Norm below which the approximation of degree 13 is exact to rounding.
+/// One-norm below which the Padé approximation of degree 13 is exact to rounding.
 const LARGEST: f64 = 5.371920351148152;
 
-/// `e^A` by scaling, Padé's approximation of degree 13, and squaring (Higham, *The scaling and squaring
-/// method for the matrix exponential revisited*, 2005).
+/// Computes `e^A` by scaling, the Padé approximation of degree 13, and squaring (Higham, *The scaling and
+/// squaring method for the matrix exponential revisited*, 2005).
 ///
 /// ```
 /// use linkwork_design::matrices::exponential;
@@ -22,7 +22,7 @@ const LARGEST: f64 = 5.371920351148152;
 /// # Errors
 ///
 /// [`Error::Shape`] and [`Error::NotFinite`] for a matrix that is not square or not finite,
-/// [`Error::NotFinite`] also for a result beyond all numbers.
+/// [`Error::NotFinite`] also for a result that overflows.
 pub fn exponential(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     const B: [f64; 14] = [
         64764752532480000.0,

@@ -1,12 +1,12 @@
-//! The matrix logarithm.
+//! Matrix logarithm.
 
 use super::{C, CMatrix, Schur, check_square, complex};
 use crate::Error;
 use nalgebra::DMatrix;
 
-/// Square roots taken at most; each halves the distance from the identity.
+/// Maximum number of square roots; each halves the distance from the identity.
 const MAX_ROOTS: usize = 100;
-/// Nodes and weights of Gauss and Legendre's rule with eight points on [0, 1].
+/// Nodes and weights of the Gauss–Legendre rule with eight points on [0, 1].
 const RULE: [(f64, f64); 8] = [
     (0.019855071751231884, 0.05061426814518813),
     (0.10166676129318664, 0.11119051722668724),
@@ -18,13 +18,13 @@ const RULE: [(f64, f64); 8] = [
     (0.9801449282487681, 0.05061426814518813),
 ];
 
-/// The principal logarithm: `X` with `e^X = A` and imaginary parts of eigenvalues within `±π`. Square roots
-/// of the Schur form, then Padé's approximation as partial fractions (Higham, *Functions of Matrices*, 2008,
-/// ch. 11).
+/// Computes the principal logarithm: `X` with `e^X = A` whose eigenvalues have imaginary parts within `±π`.
+/// Square roots of the Schur form are followed by a Padé approximation as partial fractions (Higham,
+/// *Functions of Matrices*, 2008, ch. 11).
 ///
 /// # Errors
 ///
-/// [`Error::Range`] names an eigenvalue that is zero or negative, for which there is none that is real.
+/// [`Error::Range`] with a zero or negative eigenvalue, for which no real logarithm exists.
 pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
     if n == 0 {
@@ -58,7 +58,7 @@ pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     Ok(log.map(|x| x.re))
 }
 
-/// Of an upper triangular matrix (Björck and Hammarling, 1983).
+/// Returns the square root of an upper triangular matrix (Björck and Hammarling, 1983).
 fn square_root(t: &CMatrix) -> CMatrix {
     let n = t.nrows();
     let mut r = CMatrix::zeros(n, n);

@@ -1,5 +1,5 @@
-//! Sylvester's and Lyapunov's equations by Schur forms (Bartels and Stewart, *Solution of the matrix equation
-//! AX + XB = C*, 1972), with a step of refinement.
+//! Sylvester and Lyapunov equations by Schur forms (Bartels and Stewart, *Solution of the matrix equation AX
+//! + XB = C*, 1972), with one step of iterative refinement.
 
 use super::{C, CMatrix, Schur, check, check_square, complex, symmetric};
 use crate::Error;
@@ -7,14 +7,14 @@ use nalgebra::{DMatrix, DVector};
 
 type CVector = DVector<C>;
 
-/// `A X + X B` or `A X B − X`, of triangular factors.
+/// Left-hand side of the equation: `A X + X B` or `A X B − X`.
 #[derive(Clone, Copy)]
 enum Kind {
     Continuous,
     Discrete,
 }
 
-/// Schur forms of both sides, kept for refinement.
+/// Schur forms of both coefficient matrices, reused for refinement.
 struct Sides {
     left: Schur,
     right: Schur,
@@ -26,7 +26,7 @@ impl Sides {
         Ok(Self { left: Schur::new(&complex(a))?, right: Schur::new(&complex(b))?, kind })
     }
 
-    /// `X` of `A X + X B = F`, or `A X B − X = F`.
+    /// Solves `A X + X B = F`, or `A X B − X = F`, for `X`.
     fn solve(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let (t, s) = (&self.left.t, &self.right.t);
         let f = self.left.q.adjoint() * complex(f) * &self.right.q;
@@ -47,7 +47,7 @@ impl Sides {
     }
 }
 
-/// `x` of `(factor T + plus I) x = right`.
+/// Solves `(factor T + plus I) x = right` for `x`.
 fn back(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, Error> {
     for i in (0..right.nrows()).rev() {
         let sum: C = (i + 1..right.nrows()).map(|j| factor * t[(i, j)] * right[j]).sum();
@@ -60,7 +60,7 @@ fn back(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, 
     Ok(right)
 }
 
-/// `X` of `A X + X B = C`.
+/// Solves `A X + X B = C` for `X`.
 ///
 /// ```
 /// use linkwork_design::matrices::sylvester;
@@ -74,8 +74,8 @@ fn back(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, 
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where an eigenvalue of `A`
-/// is minus one of `B`.
+/// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix; [`Error::Singular`] if an
+/// eigenvalue of `A` is the negative of an eigenvalue of `B`.
 pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let (n, m) = (check_square("A", a)?, check_square("B", b)?);
     check("C", c, n, m)?;
@@ -85,12 +85,12 @@ pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result
     Ok(&x + sides.solve(&residual)?)
 }
 
-/// `X` of `A X B − X + C = 0`.
+/// Solves `A X B − X + C = 0` for `X`.
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of an
-/// eigenvalue of `A` with one of `B` is one.
+/// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix; [`Error::Singular`] if the product
+/// of an eigenvalue of `A` and an eigenvalue of `B` is one.
 pub fn discrete_sylvester(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
@@ -104,31 +104,32 @@ pub fn discrete_sylvester(
     Ok(&x + sides.solve(&residual)?)
 }
 
-/// `X` of `A X + X Aᵀ + Q = 0`, symmetric where `Q` is: the covariance of a stable system under white noise.
+/// Solves `A X + X Aᵀ + Q = 0` for `X`, the covariance of a stable system under white noise. `X` is symmetric
+/// if `Q` is symmetric.
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where two eigenvalues of
-/// `A` cancel.
+/// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix; [`Error::Singular`] if two
+/// eigenvalues of `A` add up to zero.
 pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
     check("Q", q, n, n)?;
     Ok(like(q, sylvester(a, &a.transpose(), &-q)?))
 }
 
-/// `X` of `A X Aᵀ − X + Q = 0`, symmetric where `Q` is.
+/// Solves `A X Aᵀ − X + Q = 0` for `X`, which is symmetric if `Q` is symmetric.
 ///
 /// # Errors
 ///
-/// [`Error::Shape`] and [`Error::NotFinite`] name the matrix; [`Error::Singular`] where the product of two
-/// eigenvalues of `A` is one.
+/// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix; [`Error::Singular`] if the product
+/// of two eigenvalues of `A` is one.
 pub fn discrete_lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
     check("Q", q, n, n)?;
     Ok(like(q, discrete_sylvester(a, &a.transpose(), q)?))
 }
 
-/// A solution without its rounding off symmetry, where the equation is symmetric.
+/// Removes the asymmetric rounding error of a solution if `Q` is symmetric.
 fn like(q: &DMatrix<f64>, x: DMatrix<f64>) -> DMatrix<f64> {
     if *q == q.transpose() { symmetric(&x) } else { x }
 }

@@ -1,20 +1,21 @@
-//! Ranks by QR decompositions with column pivoting.
+//! Numerical ranks of matrices.
 
 use super::check;
 use crate::Error;
 use nalgebra::DMatrix;
 
-/// `Qᵀ M` with `rank` rows that matter above rows of rounding.
+/// Orthogonal transformation of a matrix such that `Qᵀ M` has `rank` significant rows on top; the others are
+/// rounding errors.
 pub(crate) struct Compression {
-    /// Orthogonal, square.
+    /// Orthogonal square matrix `Q`.
     pub q: DMatrix<f64>,
-    /// How many rows of `Qᵀ M` are not zero.
+    /// Number of significant rows of `Qᵀ M`.
     pub rank: usize,
 }
 
 impl Compression {
-    /// Rows by Householder's reflections; the largest remaining column goes first. Columns below `least`
-    /// count as zero.
+    /// Compresses the rows of a matrix by Householder reflections with column pivoting. Columns whose norm is
+    /// at most `least` count as zero.
     pub fn rows(m: &DMatrix<f64>, least: f64) -> Self {
         let (rows, columns) = m.shape();
         let (mut r, mut q) = (m.clone(), DMatrix::identity(rows, rows));
@@ -45,13 +46,13 @@ impl Compression {
     }
 }
 
-/// The number of singular values of `m` above `tolerance` times the largest. A tolerance of zero stands for
-/// rounding.
+/// Returns the number of singular values of `m` above `tolerance` times the largest. A tolerance of zero
+/// selects the rounding error.
 ///
 /// # Errors
 ///
 /// [`Error::NotFinite`] for entries that are infinite or NaN, [`Error::NotConverged`] if the singular values
-/// do not settle.
+/// do not converge.
 pub fn rank(m: &DMatrix<f64>, tolerance: f64) -> Result<usize, Error> {
     check("the matrix", m, m.nrows(), m.ncols())?;
     if m.is_empty() {
@@ -62,7 +63,7 @@ pub fn rank(m: &DMatrix<f64>, tolerance: f64) -> Result<usize, Error> {
     Ok(values.iter().filter(|value| **value > least).count())
 }
 
-/// The smallest singular value of a complex matrix with at least as many columns as rows.
+/// Returns the smallest singular value of a complex matrix with at least as many columns as rows.
 pub(crate) fn smallest_singular(m: &super::CMatrix) -> f64 {
     if m.is_empty() {
         return f64::INFINITY;

@@ -1,5 +1,5 @@
-//! Riccati's equations: the continuous one by an ordered Schur form, the discrete one by doubling, both
-//! refined by Newton's method.
+//! Riccati equations: the continuous one by an ordered Schur form, the discrete one by an invariant subspace
+//! or by doubling, both refined by Newton's method.
 
 use super::{
     C, CMatrix, Schur, balance_system, balanced, check, check_square, complex, discrete_lyapunov,
@@ -8,36 +8,36 @@ use super::{
 use crate::Error;
 use nalgebra::DMatrix;
 
-/// Steps of doubling; ten are usual.
+/// Maximum number of doubling steps; ten are usual.
 const MAX_ITERATIONS: usize = 60;
 
-/// The weights of a quadratic cost `∫ xᵀQx + 2xᵀNu + uᵀRu dt` (or a sum): `Q` positive semidefinite, `R`
-/// positive definite.
+/// Weights of a quadratic cost `∫ xᵀQx + 2xᵀNu + uᵀRu dt` (or the corresponding sum): `Q` positive
+/// semidefinite, `R` positive definite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// Of states.
+    /// Weight `Q` of the states.
     pub q: DMatrix<f64>,
-    /// Of inputs.
+    /// Weight `R` of the inputs.
     pub r: DMatrix<f64>,
-    /// Of products of states with inputs.
+    /// Weight `N` of products of states and inputs.
     pub n: DMatrix<f64>,
 }
 
 impl Cost {
-    /// Without products of states with inputs.
+    /// Creates a cost without products of states and inputs.
     pub fn new(q: DMatrix<f64>, r: DMatrix<f64>) -> Self {
         let n = DMatrix::zeros(q.nrows(), r.nrows());
         Self { q, r, n }
     }
 
-    /// Weights on the diagonals: Bryson's rule takes one over the square of the largest deviation that is
-    /// borne.
+    /// Creates a cost with diagonal weights. Bryson's rule chooses the reciprocal of the square of the
+    /// maximum acceptable deviation.
     pub fn diagonal(states: &[f64], inputs: &[f64]) -> Self {
         let diagonal = |x: &[f64]| DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(x));
         Self::new(diagonal(states), diagonal(inputs))
     }
 
-    /// With weights of products of states with inputs.
+    /// Sets the weight of products of states and inputs.
     pub fn with_products(mut self, n: DMatrix<f64>) -> Self {
         self.n = n;
         self
@@ -66,7 +66,7 @@ impl Cost {
         Ok(n)
     }
 
-    /// `A − B R⁻¹ Nᵀ`, `B R⁻¹ Bᵀ`, `Q − N R⁻¹ Nᵀ`: the problem without products.
+    /// Returns `A − B R⁻¹ Nᵀ`, `B R⁻¹ Bᵀ` and `Q − N R⁻¹ Nᵀ`, the equivalent problem without products.
     fn without_products(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<[DMatrix<f64>; 3], Error> {
         let both = solve("R", &self.r, &self.n.transpose())?;
         let g = b * solve("R", &self.r, &b.transpose())?;
@@ -74,20 +74,21 @@ impl Cost {
     }
 }
 
-/// The solution of Riccati's equation that stabilises.
+/// Stabilising solution of a Riccati equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Riccati {
-    /// `X`: `x₀ᵀ X x₀` is the least cost from `x₀`.
+    /// Solution `X`; `x₀ᵀ X x₀` is the minimum cost from the initial state `x₀`.
     pub x: DMatrix<f64>,
-    /// `K` of the best inputs `u = −K x`.
+    /// Gain `K` of the optimal inputs `u = −K x`.
     pub gain: DMatrix<f64>,
-    /// The eigenvalues of `A − B K`.
+    /// Eigenvalues of `A − B K`.
     pub poles: Vec<C>,
 }
 
-/// The continuous equation `Aᵀ X + X A − (X B + N) R⁻¹ (Bᵀ X + Nᵀ) + Q = 0`: the stable invariant subspace of
-/// the Hamiltonian matrix by an ordered Schur form (Laub, *A Schur method for solving algebraic Riccati
-/// equations*, 1979), scaled, then Kleinman's iteration.
+/// Solves the continuous Riccati equation `Aᵀ X + X A − (X B + N) R⁻¹ (Bᵀ X + Nᵀ) + Q = 0`. The solution is
+/// computed from the stable invariant subspace of the balanced Hamiltonian matrix, by an ordered Schur form
+/// (Laub, *A Schur method for solving algebraic Riccati equations*, 1979), and refined by Kleinman's
+/// iteration.
 ///
 /// ```
 /// use linkwork_design::matrices::{Cost, riccati};
@@ -101,8 +102,8 @@ pub struct Riccati {
 ///
 /// # Errors
 ///
-/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`]
-/// and [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
+/// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
+/// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
     let n = cost.check(a, b)?;
     check_modes(a, b, cost, |mode| mode.re >= 0.0, |mode| mode.re.abs())?;
@@ -135,8 +136,8 @@ pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccat
     Ok(Riccati { x, gain, poles })
 }
 
-/// Powers of two that balance a Hamiltonian matrix and keep it one: the second half of them is one over the
-/// first.
+/// Returns powers of two that balance a Hamiltonian matrix and preserve its structure: the second half are
+/// the reciprocals of the first half.
 fn symplectic(h: &DMatrix<f64>) -> Vec<f64> {
     let n = h.nrows() / 2;
     let sizes = h.map(f64::abs);
@@ -145,7 +146,7 @@ fn symplectic(h: &DMatrix<f64>) -> Vec<f64> {
     (0..n).map(half).chain((0..n).map(|i| 1.0 / half(i))).collect()
 }
 
-/// Newton's steps for as long as they make the residual smaller.
+/// Performs at most four Newton steps, as long as they reduce the residual.
 fn refine(
     mut x: DMatrix<f64>,
     residual: impl Fn(&DMatrix<f64>) -> DMatrix<f64>,
@@ -156,7 +157,7 @@ fn refine(
         if size == 0.0 {
             break;
         }
-        // A step may fail where the equation is nearly singular: what there is stays.
+        // A step may fail if the equation is nearly singular; the solution so far is returned then.
         let Ok(next) = newton(&x) else { break };
         let next = symmetric(&next);
         let smaller = residual(&next).norm();
@@ -168,8 +169,8 @@ fn refine(
     Ok(x)
 }
 
-/// Refuses problems whose solution does not exist, and names the mode: unstable ones must be moved by inputs,
-/// and those on the border of stability must be seen by the cost.
+/// Reports the mode for which no solution exists: unstable modes must be controllable, and modes on the
+/// stability boundary must contribute to the cost.
 fn check_modes(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
@@ -192,8 +193,8 @@ fn check_modes(
     Ok(())
 }
 
-/// Whether `[A − λ I, B]` loses rank beside rounding (Popov, Belevitch and Hautus), each side in its own
-/// scale.
+/// Returns whether `[A − λ I, B]` loses rank numerically (test of Popov, Belevitch and Hautus), with `A` and
+/// `B` scaled separately.
 pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
     let n = a.nrows();
     let (a, b, _, _) = balance_system(a, b, &DMatrix::zeros(0, n));
@@ -209,15 +210,16 @@ pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
     smallest_singular(&m) <= 1e-12 * n as f64
 }
 
-/// The discrete equation `Aᵀ X A − X − (Aᵀ X B + N) (R + Bᵀ X B)⁻¹ (Bᵀ X A + Nᵀ) + Q = 0` by doubling that
-/// keeps the structure (Chu, Fan, Lin and Wang, *Structure-preserving algorithms for periodic discrete-time
-/// algebraic Riccati equations*, 2004), which needs no inverse of `A`; then Newton's method. `R` may be
-/// singular where `R + Bᵀ X B` is not.
+/// Solves the discrete Riccati equation `Aᵀ X A − X − (Aᵀ X B + N) (R + Bᵀ X B)⁻¹ (Bᵀ X A + Nᵀ) + Q = 0`. Two
+/// candidates are computed and refined by Newton's method, and the one with the smaller residual is returned.
+/// One is from the symplectic matrix. The other is from structure-preserving doubling, which needs no inverse
+/// of `A` (Chu, Fan, Lin and Wang, *Structure-preserving algorithms for periodic discrete-time algebraic
+/// Riccati equations*, 2004). `R` may be singular if `R + Bᵀ X B` is not.
 ///
 /// # Errors
 ///
-/// [`Error::Unstabilizable`] and [`Error::Undetectable`] name the mode that is to blame; [`Error::Singular`]
-/// and [`Error::Indefinite`] the weight; [`Error::Shape`] and [`Error::NotFinite`] the matrix.
+/// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
+/// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
     match cost.check(a, b) {
         Err(Error::Singular { .. }) if cost.r.clone().symmetric_eigenvalues().iter().all(|x| *x >= 0.0) => {
@@ -227,7 +229,7 @@ pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Resu
     };
     check_modes(a, b, cost, |mode| mode.norm() >= 1.0, |mode| (mode.norm() - 1.0).abs())?;
     let [f, g, q] = cost.without_products(a, b)?;
-    // Symplectic matrices lose digits where A is near to singular, doubling where it is far from stable.
+    // The symplectic matrix loses digits if A is nearly singular, doubling if A is far from stable.
     let ways = [symplectic_subspace(&f, &g, &q), doubling(&f, &g, &q)];
     let mut best = Err(Error::NotConverged { what: "the discrete Riccati equation" });
     let mut least = f64::INFINITY;
@@ -240,7 +242,8 @@ pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Resu
     best
 }
 
-/// Where inputs cost nothing: Newton's method from the solution for inputs that cost little.
+/// Solves a problem with singular `R` by Newton's method, starting from the solution for slightly increased
+/// `R`.
 fn with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
     let little = 1e-6 * (cost.r.norm() + cost.q.norm() * b.norm_squared());
     if little == 0.0 {
@@ -252,7 +255,7 @@ fn with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<R
     Ok(refined(a, b, cost, found.x)?.0)
 }
 
-/// The limit of the doubled equation.
+/// Computes the limit of the doubling iteration.
 fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = f.nrows();
     let (mut a_k, mut g_k, mut h_k) = (f.clone(), g.clone(), q.clone());
@@ -275,7 +278,8 @@ fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMat
     Err(Error::NotConverged { what: "the discrete Riccati equation" })
 }
 
-/// By the invariant subspace of the symplectic matrix inside the unit circle (Laub, 1979).
+/// Computes the solution from the invariant subspace of the symplectic matrix inside the unit circle (Laub,
+/// 1979).
 fn symplectic_subspace(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = f.nrows();
     let inverse = solve("A", &f.transpose(), &DMatrix::identity(n, n))?;
@@ -294,7 +298,7 @@ fn symplectic_subspace(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> 
     subspace_solution(&schur, &d)
 }
 
-/// `X` of `X U₁ = U₂` for the leading subspace, in the units before scaling.
+/// Solves `X U₁ = U₂` for the leading subspace, in the units before scaling.
 fn subspace_solution(schur: &Schur, d: &[f64]) -> Result<DMatrix<f64>, Error> {
     let n = d.len() / 2;
     let (upper, lower) = (schur.q.view((0, 0), (n, n)), schur.q.view((n, 0), (n, n)));
@@ -304,7 +308,8 @@ fn subspace_solution(schur: &Schur, d: &[f64]) -> Result<DMatrix<f64>, Error> {
     Ok(symmetric(&x))
 }
 
-/// Refined by Newton's method, with the gain and what is left beside the terms; refused unless it stabilises.
+/// Refines a solution by Newton's method. Returns it with its gain and relative residual, or an error if it
+/// does not stabilise.
 fn refined(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,

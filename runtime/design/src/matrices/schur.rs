@@ -1,19 +1,19 @@
-//! The complex Schur form, and its order.
+//! Complex Schur form, and its reordering.
 
 use super::{C, CMatrix};
 use crate::Error;
 
-/// Steps for one eigenvalue; three are usual.
+/// Maximum number of steps for one eigenvalue; three are usual.
 const MAX_ITERATIONS: usize = 120;
 
-/// `A = Q T Qᴴ` with `Q` unitary and `T` upper triangular: the eigenvalues of `A` are on its diagonal (Golub
-/// and Van Loan, *Matrix Computations*, ch. 7).
+/// Schur form `A = Q T Qᴴ` with `Q` unitary and `T` upper triangular, which has the eigenvalues of `A` on its
+/// diagonal (Golub and Van Loan, *Matrix Computations*, ch. 7).
 pub(crate) struct Schur {
     pub q: CMatrix,
     pub t: CMatrix,
 }
 
-/// A rotation `[c s; −s̄ c]` that turns `(x, y)` to `(r, 0)`.
+/// Givens rotation `[c s; −s̄ c]` that maps `(x, y)` to `(r, 0)`.
 #[derive(Clone, Copy)]
 struct Rotation {
     c: f64,
@@ -50,7 +50,7 @@ impl Rotation {
     }
 }
 
-/// Upper Hessenberg form by Householder's reflections.
+/// Computes the upper Hessenberg form by Householder reflections.
 fn hessenberg(a: &CMatrix) -> (CMatrix, CMatrix) {
     let n = a.nrows();
     let (mut h, mut q) = (a.clone(), CMatrix::identity(n, n));
@@ -82,7 +82,7 @@ fn hessenberg(a: &CMatrix) -> (CMatrix, CMatrix) {
 }
 
 impl Schur {
-    /// The form of a matrix with finite entries, by QR steps with single shifts.
+    /// Computes the form of a matrix with finite entries, by QR steps with single shifts.
     pub fn new(a: &CMatrix) -> Result<Self, Error> {
         let n = a.nrows();
         let (mut t, mut q) = hessenberg(a);
@@ -110,8 +110,8 @@ impl Schur {
         Ok(Self { q, t })
     }
 
-    /// Brings the eigenvalues that are selected to the top, by swaps of neighbours (Bai and Demmel, *On
-    /// swapping diagonal blocks in real Schur form*, 1993, for single entries); gives their number.
+    /// Moves the selected eigenvalues to the top by swaps of neighbours, and returns their number (Bai and
+    /// Demmel, *On swapping diagonal blocks in real Schur form*, 1993, for single entries).
     pub fn reorder(&mut self, selected: impl Fn(C) -> bool) -> usize {
         let n = self.t.nrows();
         let mut top = 0;
@@ -141,8 +141,8 @@ impl Schur {
         self.t[(k + 1, k)] = C::new(0.0, 0.0);
     }
 
-    /// The right eigenvector of the eigenvalue in column `k`, of unit length. Of a defective matrix several
-    /// come out alike.
+    /// Returns the unit right eigenvector of the eigenvalue in column `k`. Several eigenvectors of a
+    /// defective matrix coincide.
     pub fn right(&self, k: usize) -> CMatrix {
         let n = self.t.nrows();
         let lambda = self.t[(k, k)];
@@ -158,7 +158,7 @@ impl Schur {
         v.unscale(norm)
     }
 
-    /// The left eigenvector `wᴴ A = λ wᴴ` of the eigenvalue in column `k`, of unit length.
+    /// Returns the unit left eigenvector `wᴴ A = λ wᴴ` of the eigenvalue in column `k`.
     pub fn left(&self, k: usize) -> CMatrix {
         let n = self.t.nrows();
         let lambda = self.t[(k, k)];
@@ -179,7 +179,8 @@ fn pivot(x: C, least: f64) -> C {
     if x.norm() < least { C::new(least, 0.0) } else { x }
 }
 
-/// Where the active block begins that ends at `high`; entries that are rounding become zero.
+/// Returns the first row of the active block that ends at row `high`. The subdiagonal entry above that block
+/// is set to zero.
 fn split(t: &mut CMatrix, high: usize, size: f64) -> usize {
     for k in (1..=high).rev() {
         let mut near = t[(k - 1, k - 1)].norm() + t[(k, k)].norm();
@@ -194,7 +195,7 @@ fn split(t: &mut CMatrix, high: usize, size: f64) -> usize {
     0
 }
 
-/// Wilkinson's shift, and now and then another one.
+/// Returns Wilkinson's shift, or an exceptional shift in every tenth step.
 fn shift(t: &CMatrix, high: usize, steps: usize) -> C {
     let d = t[(high, high)];
     if steps.is_multiple_of(10) {

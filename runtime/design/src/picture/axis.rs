@@ -1,9 +1,9 @@
-//! Axes: ranges, ticks at round numbers, and how they are written.
+//! Axes of pictures: ranges, ticks at round numbers and their labels.
 
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use std::ops::Range;
 
-/// An axis of numbers, or of their decimal logarithms, from low to high.
+/// Range of an axis, whose coordinates are numbers or their decimal logarithms.
 #[derive(Clone)]
 pub struct Axis {
     pub low: f64,
@@ -12,7 +12,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// What values span, and a part of it more on both sides; `None` without finite values.
+    /// Returns the axis that spans the finite values, extended at both ends by the fraction `margin` of its
+    /// length; `None` without finite values.
     pub fn of(values: impl Iterator<Item = f64>, margin: f64, logarithmic: bool) -> Option<Self> {
         let (low, high) = values
             .filter(|v| v.is_finite())
@@ -23,20 +24,20 @@ impl Axis {
         let width = if high - low > 1e-9 * (low.abs().max(high.abs()) + 1e-300) {
             high - low
         } else {
-            // A constant stands in the middle.
+            // A constant value is centred.
             let width = if logarithmic || low == 0.0 { 1.0 } else { low.abs() };
             return Some(Self { low: low - 0.5 * width, high: high + 0.5 * width, logarithmic });
         };
         Some(Self { low: low - margin * width, high: high + margin * width, logarithmic })
     }
 
-    /// Wider, about its middle.
+    /// Returns an axis of this length with the same centre.
     pub fn widened(&self, width: f64) -> Self {
         let more = 0.5 * (width - (self.high - self.low));
         Self { low: self.low - more, high: self.high + more, ..*self }
     }
 
-    /// Places of ticks, not more than so many by far.
+    /// Returns the positions of the ticks, at most about `most`.
     pub fn ticks(&self, most: usize) -> Vec<f64> {
         let width = self.high - self.low;
         let rough = width / most.max(2) as f64;
@@ -54,7 +55,7 @@ impl Axis {
         multiples(self.low, self.high, step.unwrap_or(rough))
     }
 
-    /// How a tick is written beside the others.
+    /// Returns the label of a tick, with the number of decimals that the distance of the ticks requires.
     pub fn label(&self, x: f64, most: usize) -> String {
         if self.logarithmic {
             let nearest = x.round();
@@ -80,7 +81,7 @@ fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
     (0..=count).map(|k| (first + k as f64) * step).collect()
 }
 
-/// As many decimals as the step asks for.
+/// Formats a number with as many decimals as the step requires.
 fn plain(x: f64, step: f64) -> String {
     let decimals = (-(step * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize;
     format!("{x:.decimals$}").replace('-', "−")
@@ -103,7 +104,7 @@ fn superscript(k: i64) -> String {
     k.to_string().chars().map(raise).collect()
 }
 
-/// An axis with so many ticks at most, as plotters wants it.
+/// Axis with a maximum number of ticks, for plotters.
 pub struct Ticked {
     pub axis: Axis,
     pub most: usize,

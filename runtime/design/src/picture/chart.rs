@@ -1,9 +1,9 @@
-//! Curves of one's own.
+//! Charts of arbitrary curves.
 
 use super::panel::{self, Curve, Panel};
 use crate::Error;
 
-/// A picture of curves: what was simulated, measured or computed, over time or over anything else.
+/// Chart of curves, such as simulated, measured or computed values over time or over another quantity.
 ///
 /// ```
 /// use linkwork_design::picture::Chart;
@@ -25,65 +25,65 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// No curves yet, with the labels of both axes: a name and a unit each.
+    /// Creates a chart without curves. The labels of the axes contain name and unit.
     pub fn new(title: impl Into<String>, x: impl Into<String>, y: impl Into<String>) -> Self {
         let panel = Panel { title: title.into(), x: x.into(), y: y.into(), ..Panel::default() };
         Self { panel, size: (720, 360) }
     }
 
-    /// Over time in seconds.
+    /// Creates a chart over time in seconds.
     pub fn over_time(title: impl Into<String>, y: impl Into<String>) -> Self {
         Self::new(title, "time, s", y)
     }
 
-    /// With powers of ten upward: magnitudes are drawn, and zeros are left out.
+    /// Makes the vertical axis logarithmic. Absolute values are drawn, and zeros are omitted.
     #[must_use]
     pub fn logarithmic(mut self) -> Self {
         self.panel.decades = true;
         self
     }
 
-    /// With powers of ten along: of first coordinates, which are to be positive.
+    /// Makes the horizontal axis logarithmic. Points whose first coordinate is not positive are omitted.
     #[must_use]
     pub fn logarithmic_along(mut self) -> Self {
         self.panel.logarithmic = true;
         self
     }
 
-    /// One scale along and upward, as a path in a plane wants it.
+    /// Gives both axes the same scale, as needed for a path in a plane.
     #[must_use]
     pub fn equal(mut self) -> Self {
         self.panel.equal = true;
         self
     }
 
-    /// Of another size than 720 by 360 pixels.
+    /// Sets the size in pixels, which is 720 by 360 by default and at least 200 by 160.
     #[must_use]
     pub fn sized(mut self, width: u32, height: u32) -> Self {
         self.size = (width.max(200), height.max(160));
         self
     }
 
-    /// One more curve through these points, with its name above; without a name where the axis says what it
-    /// is. Points that are not finite interrupt it.
+    /// Adds a curve through these points. The name is shown above the chart; an empty name omits it. Points
+    /// that are not finite interrupt the curve.
     #[must_use]
     pub fn curve(mut self, name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         self.panel.curves.push(Curve { name: name.into(), points: points.into_iter().collect() });
         self
     }
 
-    /// A line across, with a word.
+    /// Adds a vertical dashed line with a label.
     #[must_use]
     pub fn instant(mut self, at: f64, word: impl Into<String>) -> Self {
         self.panel.instants.push((at, word.into()));
         self
     }
 
-    /// The picture.
+    /// Returns the chart as SVG.
     ///
     /// # Errors
     ///
-    /// [`Error::Picture`] where nothing is finite.
+    /// [`Error::Picture`] if no point is finite.
     pub fn svg(self) -> Result<String, Error> {
         let Self { mut panel, size } = self;
         let logarithm = |x: f64| if x > 0.0 { x.log10() } else { f64::NAN };

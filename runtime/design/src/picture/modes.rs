@@ -1,4 +1,4 @@
-//! Modes as phasors that turn.
+//! Pictures of modes as rotating phasors.
 
 use crate::{Error, Mode};
 use std::fmt::Write;
@@ -6,30 +6,31 @@ use std::fmt::Write;
 const COLOURS: [&str; 6] = ["#005aa0", "#d55e00", "#008c64", "#aa3c82", "#c89600", "#5a5a5a"];
 const ROW: f64 = 170.0;
 const RADIUS: f64 = 62.0;
-/// A turn on the screen takes this long where the motion's own is not between a half and twenty seconds, s.
+/// Duration of one revolution on the screen, s, if the period of the mode is not between 0.5 s and 20 s.
 const TURN: f64 = 4.0;
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Modes, a row each: the parts of the states as phasors (of the largest, whatever their units), which turn
-/// and shrink or grow as the mode does where the viewer animates SVG, and the states that take part most.
+/// Draws modes, one per row. A row has the components of the mode shape as phasors, relative to the largest
+/// component regardless of their units, and lists the states of the largest participation. Viewers that
+/// animate SVG rotate the phasors of an oscillation, and shrink or grow the components of a real mode.
 ///
 /// # Errors
 ///
-/// [`Error::Picture`] if there are none.
+/// [`Error::Picture`] for an empty list.
 pub fn modes(modes: &[Mode]) -> Result<String, Error> {
     let all: Vec<(&str, &Mode)> = modes.iter().map(|mode| ("", mode)).collect();
     named_modes(&all)
 }
 
-/// [`modes`] with a name before each, as [`FlightModes::named`](crate::flight::FlightModes::named) gives
-/// them.
+/// Draws [`modes`] with a name before each, as returned by
+/// [`FlightModes::named`](crate::flight::FlightModes::named).
 ///
 /// # Errors
 ///
-/// [`Error::Picture`] if there are none.
+/// [`Error::Picture`] for an empty list.
 pub fn named_modes(modes: &[(&str, &Mode)]) -> Result<String, Error> {
     if modes.is_empty() {
         return Err(Error::Picture("there are no modes".into()));
@@ -85,13 +86,14 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
     }
 }
 
-/// Three digits that count.
+/// Formats a number with three significant digits.
 fn significant(x: f64) -> String {
     let decimals = if x > 0.0 { (2.0 - x.log10().floor()).clamp(0.0, 9.0) as usize } else { 0 };
     format!("{x:.decimals$}")
 }
 
-/// A turn, or a decay, in the mode's own time where that can be watched.
+/// Writes the animation of a mode: a revolution per period if it is between 0.5 s and 20 s, or an exponential
+/// decay or growth of fixed duration for a real mode.
 fn write_motion(out: &mut String, mode: &Mode) {
     match mode.period() {
         Some(period) => {

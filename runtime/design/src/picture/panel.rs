@@ -1,4 +1,4 @@
-//! Panels with axes, curves and marks, by plotters.
+//! Panels with axes, curves and marks, drawn by plotters.
 
 use super::axis::{Axis, Ticked};
 use crate::Error;
@@ -6,7 +6,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Colours that are told apart by those who see few.
+/// Colours that colour-blind readers can distinguish.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 90, 160),
     RGBColor(213, 94, 0),
@@ -17,12 +17,12 @@ const COLOURS: [RGBColor; 6] = [
 ];
 const GREY: RGBColor = RGBColor(140, 140, 140);
 const FONT: &str = "sans-serif";
-/// Plotters draws at whole units; so many are a pixel.
+/// Number of drawing units per pixel. Plotters rounds coordinates to whole units.
 const UNITS: u32 = 10;
-/// Of a heading and of the row of names, pixels.
+/// Height of the title and of the row of names, pixels.
 const HEADING: u32 = 26;
 const NAMES: u32 = 22;
-/// Points drawn of a curve at the most: more would be closer together than a pixel.
+/// Maximum number of points drawn per curve: more would be closer together than a pixel.
 const MAX_POINTS: usize = 3000;
 
 fn units(pixels: u32) -> u32 {
@@ -39,7 +39,7 @@ pub enum Mark {
     Circle,
 }
 
-/// A curve; without a name it is not among the names above.
+/// Curve of a panel; a curve without a name is not listed above the panel.
 pub struct Curve {
     pub name: String,
     pub points: Vec<(f64, f64)>,
@@ -50,21 +50,21 @@ pub struct Panel {
     pub title: String,
     pub x: String,
     pub y: String,
-    /// The first coordinates are decimal logarithms.
+    /// Whether the first coordinates are decimal logarithms.
     pub logarithmic: bool,
-    /// The second coordinates are decimal logarithms.
+    /// Whether the second coordinates are decimal logarithms.
     pub decades: bool,
-    /// Both axes have one scale.
+    /// Whether both axes have the same scale.
     pub equal: bool,
-    /// What the axes are to show, if not all; curves that leave it end at the border.
+    /// Limits of the axes, if they do not show all points; curves are clipped there.
     pub window: Option<[(f64, f64); 2]>,
     pub curves: Vec<Curve>,
     /// Thin grey lines.
     pub lines: Vec<Vec<(f64, f64)>>,
     pub marks: Vec<(Mark, f64, f64)>,
-    /// What marks mean.
+    /// Meaning of each kind of mark.
     pub mark_names: Vec<(Mark, &'static str)>,
-    /// First coordinates with a line and a word.
+    /// Vertical lines: first coordinate and label.
     pub instants: Vec<(f64, String)>,
 }
 
@@ -75,7 +75,8 @@ impl Panel {
         curves.chain(lines).chain(self.marks.iter().map(|(_, x, y)| (*x, *y)))
     }
 
-    /// Both axes; with one scale the smaller one is widened to `width / height` of the other.
+    /// Returns both axes for an area of this size. With equal scales, the shorter axis is extended to the
+    /// aspect ratio of the area.
     fn axes(&self, (width, height): (u32, u32)) -> Option<(Axis, Axis)> {
         let within = |k: usize| {
             let window = self.window.map(|window| window[k]);
@@ -175,7 +176,7 @@ impl Panel {
         Ok(())
     }
 
-    /// Names of curves and marks in a row.
+    /// Draws the names of curves and marks in a row.
     fn draw_names<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Error> {
         let (mut x, y) = (as_i32(units(84)), as_i32(units(NAMES / 2 + 2)));
         let style = text(14).pos(Pos::new(HPos::Left, VPos::Center));
@@ -210,7 +211,8 @@ fn as_i32(n: u32) -> i32 {
     i32::try_from(n).unwrap_or(i32::MAX)
 }
 
-/// The lowest and the highest of each bunch of points, so that thinning hides no peak.
+/// Reduces the number of points: the lowest and the highest point of each group remain, so that peaks are
+/// preserved.
 fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= MAX_POINTS {
         return points.to_vec();
@@ -226,7 +228,7 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     out
 }
 
-/// The parts of a curve that are in the picture, up to its border; points that are not finite interrupt it.
+/// Clips a curve to the axes and returns its visible pieces. Points that are not finite interrupt it.
 fn clipped(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut open = false;
@@ -244,7 +246,7 @@ fn clipped(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>> {
     runs
 }
 
-/// The part of a line within the axes (Liang and Barsky).
+/// Returns the part of a line segment that lies within the axes (Liang and Barsky).
 fn part_within(a: (f64, f64), b: (f64, f64), x: &Axis, y: &Axis) -> Option<((f64, f64), (f64, f64))> {
     if ![a.0, a.1, b.0, b.1].iter().all(|v| v.is_finite()) {
         return None;
@@ -271,7 +273,7 @@ fn failed(error: impl std::fmt::Display) -> Error {
     Error::Picture(error.to_string())
 }
 
-/// Panels below each other, in pixels.
+/// Draws panels below each other; the size is in pixels.
 pub fn draw(panels: &[Panel], (width, height): (u32, u32)) -> Result<String, Error> {
     let mut svg = String::new();
     {

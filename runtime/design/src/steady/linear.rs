@@ -1,4 +1,4 @@
-//! The motion about a steady state, in independent coordinates and speeds.
+//! Linearisation about a steady state, in independent coordinates and velocities.
 
 use super::problem::{Place, Problem, dynamic};
 use super::solve::check_steady;
@@ -8,37 +8,40 @@ use crate::{Error, SecondOrderForm, StateSpace};
 use linkwork::{OutputDerivatives, Rheonomic, RheonomicDerivatives};
 use nalgebra::{DMatrix, SVector};
 
-/// Entries of a matrix of constraints below this part of the largest are rounding.
+/// Relative threshold for entries of a constraint matrix: smaller entries are rounding errors.
 const ROUNDING: f64 = 1e-9;
 
-/// The linear motion before it becomes a system.
+/// Linearised motion, before it becomes a state-space system.
 pub struct Linear {
-    /// Independent coordinates, and how all displacements follow from them.
+    /// Indices of the independent coordinates. `shape` maps their displacements to the displacements of all
+    /// coordinates.
     pub coordinates: Vec<usize>,
     pub shape: DMatrix<f64>,
     speeds: Vec<usize>,
     a: DMatrix<f64>,
     b: DMatrix<f64>,
-    /// Changes of the accelerations by displacements.
+    /// Derivative of the accelerations with respect to displacements.
     pub by_q: DMatrix<f64>,
     pub mass: DMatrix<f64>,
     motion: Seen,
-    /// Whether velocities alone are constrained.
+    /// Whether all constraints are holonomic.
     pub is_holonomic: bool,
 }
 
-/// What outputs see of the motion: how displacements, velocities and accelerations of all coordinates follow
-/// from independent coordinates, speeds and inputs.
+/// Maps from independent coordinates, independent velocities and inputs to the displacements, velocities and
+/// accelerations of all coordinates. Outputs are linearised with them.
 struct Seen {
-    /// All velocities by independent coordinates, then by speeds.
+    /// All velocities as functions of the independent coordinates and of the independent velocities.
     velocities: [DMatrix<f64>; 2],
-    /// All accelerations by independent coordinates, by speeds and by inputs.
+    /// All accelerations as functions of the independent coordinates, the independent velocities and the
+    /// inputs.
     accelerations: [DMatrix<f64>; 3],
     acceleration: Vec<f64>,
     parameters: Vec<f64>,
 }
 
-/// `J x = R y` solved for dependent entries of `x`: Gauss–Jordan elimination with complete pivoting.
+/// Reduced form of `J x = R y` for the dependent entries of `x`, by Gauss–Jordan elimination with complete
+/// pivoting.
 struct Dependence {
     left: DMatrix<f64>,
     right: DMatrix<f64>,
@@ -70,7 +73,7 @@ impl Dependence {
         Self { left, right, pivots }
     }
 
-    /// The independent entries, and how all entries follow from them.
+    /// Returns the indices of the independent entries, and the matrix that maps them to all entries.
     fn free(&self) -> (Vec<usize>, DMatrix<f64>) {
         let columns = self.left.ncols();
         let free: Vec<usize> = (0..columns).filter(|j| self.pivots.iter().all(|(_, c)| c != j)).collect();
@@ -82,7 +85,7 @@ impl Dependence {
         (free, shape)
     }
 
-    /// The dependent entries where the independent ones are zero, by `y`.
+    /// Returns the matrix that maps `y` to all entries while the independent entries are zero.
     fn particular(&self) -> DMatrix<f64> {
         let mut all = DMatrix::zeros(self.left.ncols(), self.right.ncols());
         self.pivots.iter().for_each(|(row, column)| all.set_row(*column, &self.right.row(*row)));
@@ -90,7 +93,7 @@ impl Dependence {
     }
 }
 
-/// Rows of the identity below a matrix.
+/// Appends unit rows, one for each held coordinate, to a matrix.
 fn with_rows(m: &DMatrix<f64>, columns: usize, held: &[usize]) -> DMatrix<f64> {
     let mut all = m.clone().resize(m.nrows() + held.len(), columns, 0.0);
     held.iter().enumerate().for_each(|(i, k)| all[(m.nrows() + i, *k)] = 1.0);
@@ -124,7 +127,7 @@ where
     let (jacobian, rates_by_q, holonomic) = bounds
         .as_ref()
         .map_or((&empty, &empty, 0), |bounds| (&bounds.jacobian, &bounds.rates_by_q, bounds.residuals.len()));
-    // States of first order have no displacement.
+    // States of first order have no displacement coordinate.
     let placeless: Vec<usize> = held.iter().copied().chain(NV.saturating_sub(M::FIRST_ORDER)..NV).collect();
     let on_configurations = with_rows(&jacobian.rows(0, holonomic).clone_owned(), NV, &placeless);
     let rows = on_configurations.nrows();
@@ -156,8 +159,8 @@ where
     Ok(Linear { coordinates, shape, speeds, a, b, by_q, mass, motion, is_holonomic })
 }
 
-/// What coordinates that are held fast leave of accelerations: `1 − P Lᵀ (L P Lᵀ)⁻¹ L`, with `P` the
-/// accelerations by forces.
+/// Returns the projector that locks the held coordinates' accelerations: `1 − P Lᵀ (L P Lᵀ)⁻¹ L`, where `P`
+/// is the derivative of the accelerations with respect to forces and `L` selects the held coordinates.
 fn locked(by_force: &DMatrix<f64>, held: &[usize]) -> DMatrix<f64> {
     let n = by_force.nrows();
     let (columns, small) = (by_force.select_columns(held), by_force.select_columns(held).select_rows(held));
@@ -166,7 +169,8 @@ fn locked(by_force: &DMatrix<f64>, held: &[usize]) -> DMatrix<f64> {
     if held.is_empty() {
         return identity;
     }
-    // Coordinates that the constraints hold anyway have no acceleration to take away.
+    // Coordinates that the constraints already fix have no acceleration to remove; hence the
+    // pseudo-inverse.
     small
         .pseudo_inverse(1e-12 * by_force.amax())
         .map_or(identity.clone(), |inverse| identity - columns * inverse * selected)
@@ -176,18 +180,18 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> Trim<'_, M, NQ, NV, N
 where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
-    /// The motion about a steady state as `ẋ = A x + B δu`, in independent coordinates and speeds, which are
-    /// the outputs, too; coordinates that are held stay. Its [modes](StateSpace::modes) decide on stability
-    /// to first order.
+    /// Linearises the motion about a steady state as `ẋ = A x + B δu`, in independent coordinates and
+    /// velocities. The outputs are the states. Held coordinates remain locked. The [modes](StateSpace::modes)
+    /// of the system decide on stability to first order.
     ///
-    /// Where velocities were left to [change](Trim::accelerating), `A` is that of an instant; its eigenvalues
-    /// count all the same if no force depends on what moves, such as the place and heading of a wheel on a
-    /// level road.
+    /// If accelerations are [unconstrained](Trim::accelerating), `A` is valid at one instant. Its eigenvalues
+    /// are meaningful nevertheless if no force depends on the quantities that change, such as the position
+    /// and heading of a wheel on a level road.
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] where the mass matrix is singular; [`Error::NotSteady`] about a state that this
-    /// trim's conditions do not hold in, with the one that is violated most and by how much.
+    /// [`Error::NotFinite`] if the mass matrix is singular; [`Error::NotSteady`] if the state violates a
+    /// condition of this trim, with the condition that is violated most and its residual.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
         let system = Self::system(&linear(self, found)?)?;
         Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
@@ -199,8 +203,9 @@ where
         system.with_states(state_names::<M, NQ, NV, NU>(coordinates.iter().copied(), speeds.iter().copied()))
     }
 
-    /// [`linear_system`](Self::linear_system) with the declared outputs of the mechanism: `y = C x + D δu`,
-    /// with what constraints, and coordinates that are held, make of positions, velocities and accelerations.
+    /// Computes [`linear_system`](Self::linear_system) with the declared outputs of the mechanism:
+    /// `y = C x + D δu`. The derivatives of the outputs include the changes of dependent positions,
+    /// velocities and accelerations that follow from constraints and held coordinates.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -222,7 +227,7 @@ where
     /// }
     /// let problem = constrained_equilibrium(&Bead {});
     /// let system = problem.measured_system(&problem.find()?)?;
-    /// // At its lowest point: ẍ = F / m − 2 g x.
+    /// // At the lowest point: ẍ = F / m − 2 g x.
     /// assert_eq!(system.outputs()[0].name, "accelerometer");
     /// assert!((system.d()[(0, 0)] - 0.5).abs() < 1e-12 && (system.c()[(0, 0)] + 2.0 * 9.81).abs() < 1e-9);
     /// # Ok::<(), linkwork_design::Error>(())
@@ -230,7 +235,7 @@ where
     ///
     /// # Errors
     ///
-    /// Those of [`linear_system`](Self::linear_system).
+    /// As for [`linear_system`](Self::linear_system).
     pub fn measured_system<const NY: usize>(
         &self,
         found: &SteadyState<NQ, NV, NU>,
@@ -259,13 +264,14 @@ where
         system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(outputs)
     }
 
-    /// The second-order form of the motion about a steady state, `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`,
-    /// in independent coordinates: `M = Γᵀ M₀ Γ`, with the mass matrix `M₀` of all coordinates and all
-    /// velocities `Γ q̇` that go with the independent ones. What constraints bear in the steady state is in
-    /// `K`.
+    /// Returns the second-order form of the motion about a steady state,
+    /// `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`, in independent coordinates: `M = Γᵀ M₀ Γ`, where `M₀` is
+    /// the mass matrix of all coordinates and `Γ` maps the independent velocities to all velocities. `K`
+    /// includes the geometric stiffness of the constraint reactions in the steady state.
     ///
-    /// Constraints on velocities alone leave coordinates without speeds of their own. They are left out of
-    /// the form, and no force may depend on them: on the place and heading of a wheel on a level road.
+    /// With nonholonomic constraints, some coordinates have no independent velocity. They are not part of the
+    /// form, and no force may depend on them. Examples are the position and heading of a wheel on a level
+    /// road.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -292,9 +298,9 @@ where
     ///
     /// # Errors
     ///
-    /// Those of [`linear_system`](Self::linear_system); [`Error::NoSecondOrderForm`] where forces depend on a
-    /// coordinate without a speed of its own; [`Error::Count`] of a mechanism with states of first order,
-    /// which have no such form.
+    /// As for [`linear_system`](Self::linear_system); [`Error::NoSecondOrderForm`] if forces depend on a
+    /// coordinate without an independent velocity; [`Error::Count`] for a mechanism with states of first
+    /// order, which have no second-order form.
     pub fn second_order_form(&self, found: &SteadyState<NQ, NV, NU>) -> Result<SecondOrderForm, Error> {
         if M::FIRST_ORDER > 0 {
             let what = "states of first order";
@@ -303,7 +309,8 @@ where
         let Linear { coordinates, speeds, a, b, mass, motion, .. } = linear(self, found)?;
         let (np, ns) = (coordinates.len(), speeds.len());
         let named = |k: usize| M::VELOCITIES.get(k).copied().unwrap_or_default().to_owned();
-        // The coordinates whose rates are independent speeds, and those that have none.
+        // For each independent velocity, the position of its coordinate among the independent ones, if
+        // any.
         let own: Vec<Option<usize>> =
             speeds.iter().map(|speed| coordinates.iter().position(|k| k == speed)).collect();
         let alone = (0..np).find(|i| {

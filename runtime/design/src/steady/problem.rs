@@ -1,4 +1,4 @@
-//! Equations of a steady state: unknowns, conditions, and their derivatives.
+//! Equations of a steady state: unknowns, conditions and their derivatives.
 
 use super::Trim;
 use crate::Error;
@@ -9,17 +9,17 @@ use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 /// Constraints and their derivatives.
 pub struct Bounds {
     pub names: &'static [&'static str],
-    /// `φ`, of the first rows.
+    /// Position residuals `φ`, which belong to the first rows.
     pub residuals: DVector<f64>,
-    /// `J v + …`, of all rows.
+    /// Velocity residuals `J v + …`, for all rows.
     pub rates: DVector<f64>,
-    /// `J`.
+    /// Constraint Jacobian `J`.
     pub jacobian: DMatrix<f64>,
-    /// Derivatives of the rates by the configuration.
+    /// Derivatives of `rates` with respect to the configuration.
     pub rates_by_q: DMatrix<f64>,
 }
 
-/// Outputs and their derivatives by configuration, velocity, acceleration and inputs.
+/// Outputs and their derivatives with respect to configuration, velocity, acceleration and inputs.
 pub struct Measured {
     pub names: Vec<&'static str>,
     pub values: DVector<f64>,
@@ -29,7 +29,7 @@ pub struct Measured {
     pub by_u: DMatrix<f64>,
 }
 
-/// A step of central differences: what rounding and curvature make of the slope is least there.
+/// Step of central differences at which the sum of rounding error and truncation error is minimal.
 const STEP: f64 = 6e-6;
 
 pub fn dynamic<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
@@ -44,8 +44,9 @@ pub fn unit<const N: usize>(k: usize, size: f64) -> SVector<f64, N> {
     SVector::from_fn(|i, _| if i == k { size } else { 0.0 })
 }
 
-/// The constraints of a mechanism. How rates change with the configuration, is not generated for them one by
-/// one: central differences, which cost Newton's method no digits.
+/// Evaluates the constraints of a mechanism. The derivatives of their velocities with respect to the
+/// configuration are not generated for each constraint. Central differences are accurate enough for Newton's
+/// method.
 pub fn bounds<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     t: f64,
@@ -91,18 +92,18 @@ where
     }
 }
 
-/// One number of a state.
+/// Scalar unknown of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
     Coordinate(usize),
     Speed(usize),
     Input(usize),
-    /// The force that holds a coordinate.
+    /// Generalized force that locks a held coordinate.
     Holding(usize),
     Parameter(usize),
 }
 
-/// A state, with the forces that hold coordinates.
+/// State of the iteration, with the generalized forces that lock held coordinates.
 #[derive(Clone, Debug)]
 pub struct Place<const NQ: usize, const NV: usize, const NU: usize> {
     pub q: SVector<f64, NQ>,
@@ -112,7 +113,8 @@ pub struct Place<const NQ: usize, const NV: usize, const NU: usize> {
     pub parameters: Vec<f64>,
 }
 
-/// Accelerations at a place, and their derivatives; those by `q` and `v` are with inputs held.
+/// Accelerations at a state, and their derivatives. The derivatives with respect to `q` and `v` are taken at
+/// constant inputs.
 pub struct Accelerated<const NV: usize, const NU: usize> {
     pub tau: SVector<f64, NV>,
     pub value: SVector<f64, NV>,
@@ -120,35 +122,35 @@ pub struct Accelerated<const NV: usize, const NU: usize> {
     pub by_v: SMatrix<f64, NV, NV>,
     pub by_force: SMatrix<f64, NV, NV>,
     pub by_u: SMatrix<f64, NV, NU>,
-    /// How large changes of accelerations are that count, beside which others are rounding: of the
-    /// accelerations that constraints take away, and of the largest change.
+    /// Scale above which a derivative of an acceleration is significant; smaller ones are rounding errors.
+    /// Computed from the accelerations that the constraints remove and from the largest derivative.
     scale: f64,
 }
 
-/// Conditions at a place.
+/// Residuals of the conditions at a state, with their derivatives.
 pub struct Equations {
-    /// What is left of them.
+    /// Residual of each condition.
     pub residuals: DVector<f64>,
-    /// How that changes with the unknowns.
+    /// Derivative of the residuals with respect to the unknowns.
     pub jacobian: DMatrix<f64>,
-    /// How much each would have to change with an unknown to be told from rounding.
+    /// Minimum derivative of each condition that is distinguishable from rounding error.
     pub floors: Vec<f64>,
 }
 
-/// The part of accelerations that constraints take away, as a change by one radian.
+/// Fraction of the accelerations removed by constraints that counts as a significant change per radian.
 const TAKEN: f64 = 1e-3;
 
-/// The part of other changes.
+/// Fraction of the largest derivative that counts as a significant derivative.
 const BESIDE: f64 = 1e-6;
 
-/// Names as indices.
+/// Trim with names resolved to indices.
 pub struct Problem<'a, 'm, M, const NQ: usize, const NV: usize, const NU: usize> {
     pub trim: &'a Trim<'m, M, NQ, NV, NU>,
     pub unknowns: Vec<Unknown>,
     pub held: Vec<usize>,
-    /// Entries of the acceleration with their values; none where they are open.
+    /// Required acceleration of each entry; `None` for entries without a condition.
     targets: Vec<Option<f64>>,
-    /// Entries of the outputs with their values.
+    /// Indices of outputs with their required values.
     outputs: Vec<(usize, f64)>,
 }
 
@@ -165,7 +167,7 @@ fn indices(kind: &'static str, names: &[String], known: &[&str]) -> Result<Vec<u
     names.iter().map(|name| index(kind, name, known)).collect()
 }
 
-/// What is asked for twice would be two unknowns or two conditions for one.
+/// Reports a repeated name, which would duplicate an unknown or a condition.
 fn check_repeated(kind: &'static str, names: &[String]) -> Result<(), Error> {
     let twice = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name));
     twice.map_or(Ok(()), |(_, name)| Err(Error::Repeated { kind, name: name.clone() }))
@@ -224,7 +226,7 @@ where
         Place { q: *q, v: *v, u: *u, holding: SVector::zeros(), parameters }
     }
 
-    /// The place that a change of the unknowns leads to.
+    /// Returns the state after a change of the unknowns.
     pub fn moved(&self, from: &Place<NQ, NV, NU>, by: &DVector<f64>) -> Place<NQ, NV, NU> {
         let (mut to, mut dq) = (from.clone(), SVector::zeros());
         for (unknown, by) in self.unknowns.iter().zip(by.iter()) {
@@ -240,7 +242,8 @@ where
         to
     }
 
-    /// What is an unknown's size where it counts as large.
+    /// Returns the magnitude that an unknown is compared with: its absolute value, but at least one for all
+    /// unknowns except parameters.
     pub fn size(&self, place: &Place<NQ, NV, NU>, unknown: Unknown) -> f64 {
         match unknown {
             Unknown::Coordinate(_) => 1.0,
@@ -261,7 +264,7 @@ where
         }
     }
 
-    /// Names of the conditions, in the order of [`equations`](Self::equations).
+    /// Returns the names of the conditions, in the order of [`equations`](Self::equations).
     pub fn conditions(&self, place: &Place<NQ, NV, NU>) -> Vec<String> {
         let all = acceleration_names::<M, NQ, NV, NU>();
         let wanted = all.into_iter().zip(&self.targets).filter(|(_, target)| target.is_some());
@@ -289,7 +292,8 @@ where
                 RheonomicDerivatives::generalized_forces_derivatives(m, t, q, v, u);
             let (by_q, by_v) = (by_q + by_force * force_by_q, by_v + by_force * force_by_v);
             let by_u = by_force * force_by_u;
-            // The accelerations without constraints; none are taken where bodies without mass need them.
+            // Accelerations without constraints. Zero if the unconstrained mass matrix is not positive
+            // definite.
             let push = vector(&(tau - Rheonomic::bias_forces(m, t, q, v)));
             let free =
                 dynamic(&Rheonomic::mass_matrix(m, t, q)).cholesky().map_or(0.0, |c| c.solve(&push).amax());
@@ -299,7 +303,7 @@ where
         })
     }
 
-    /// What is left of the conditions, and how it changes with the unknowns.
+    /// Computes the residuals of the conditions and their derivatives with respect to the unknowns.
     pub fn equations(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
         let mut equations = self.generated(place)?;
         for (j, unknown) in self.unknowns.iter().enumerate() {
@@ -315,7 +319,7 @@ where
         Ok(equations)
     }
 
-    /// Without the columns of parameters.
+    /// Computes the residuals and all derivatives except those with respect to parameters.
     fn generated(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
         let motion = self.motion(place)?;
         let mut rows: Vec<Row> = Vec::new();
@@ -378,15 +382,15 @@ where
     }
 }
 
-/// A condition.
+/// Condition: its residual, derivatives and floor.
 struct Row {
     residual: f64,
-    /// How it changes with the unknowns.
+    /// Derivatives with respect to the unknowns.
     by: Vec<f64>,
     floor: f64,
 }
 
-/// How an acceleration changes with an unknown.
+/// Returns the derivative of acceleration `i` with respect to an unknown; zero for parameters.
 fn entry<const NV: usize, const NU: usize>(motion: &Accelerated<NV, NU>, i: usize, unknown: Unknown) -> f64 {
     match unknown {
         Unknown::Coordinate(k) => motion.by_q[(i, k)],

@@ -1,4 +1,4 @@
-//! Levenberg–Marquardt steps on the tangent space.
+//! Solution of the equations of a steady state by Levenberg–Marquardt steps on the tangent space.
 
 use super::problem::{Equations, Place, Problem, Unknown};
 use super::{SteadyState, Trim};
@@ -6,30 +6,31 @@ use crate::Error;
 use linkwork::{Rheonomic, RheonomicDerivatives};
 use nalgebra::{DMatrix, DVector};
 
-/// Steps of unknowns below this, beside their size, are rounding.
+/// Relative step of the unknowns below which a step is rounding error and the iteration ends.
 const ENOUGH: f64 = 1e-14;
 
-/// What may be left of conditions, by what they change with unknowns of size one.
+/// Maximum residual of the conditions in a solution, relative to their sensitivity to the unknowns.
 const LEFT: f64 = 1e-9;
 
-/// What may be left of conditions, beside what they change with unknowns of size one, in a state that a
-/// linear motion is taken about: at a double root conditions are less sensitive than on the way to it.
+/// Maximum relative residual of a state that is accepted for linearisation. Larger than [`LEFT`], because the
+/// conditions are less sensitive at a double root than during the iteration towards it.
 const STEADY: f64 = 1e-5;
 
-/// Singular values below this, of a matrix whose rows and columns have the norm one, count as zero. At a
-/// double root the place is known to half of the digits.
+/// Singular values below this, of a matrix whose rows and columns have norm one, count as zero. At a double
+/// root, half of the digits of the solution are accurate.
 const SINGULAR: f64 = 1e-7;
 
-/// Unknowns whose changes count for less than this, beside others, have no influence but rounding.
+/// Unknowns whose scaled column norm is below this fraction of the largest have no influence beyond rounding
+/// error.
 const WITHOUT_INFLUENCE: f64 = 1e-8;
 
-/// The longest step of a coordinate, rad or m: an angle that goes farther has lost its guess.
+/// Maximum step of a coordinate, rad or m: a larger step would leave the neighbourhood of the guess.
 const LONGEST: f64 = 1.0;
 
-/// Damping that leaves no step.
+/// Damping at which steps vanish and the iteration ends.
 const DAMPED: f64 = 1e20;
 
-/// Scales of conditions and unknowns: the largest norms that rows and columns have had.
+/// Scales of conditions and unknowns: the largest norms of rows and columns during the iteration.
 struct Scales {
     rows: Vec<f64>,
     columns: Vec<f64>,
@@ -53,7 +54,7 @@ impl Scales {
         }
     }
 
-    /// What a condition is multiplied by.
+    /// Returns the factor that a condition is multiplied by.
     fn weight(&self, row: usize) -> f64 {
         if self.rows[row] > 0.0 { 1.0 / self.rows[row] } else { 1.0 }
     }
@@ -62,7 +63,7 @@ impl Scales {
         DVector::from_fn(residuals.len(), |i, _| residuals[i] * self.weight(i))
     }
 
-    /// The matrix for weighted conditions and unknowns in units of their columns.
+    /// Scales the Jacobian: rows by the weights of the conditions, columns by the scales of the unknowns.
     fn scaled(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
             jacobian[(i, j)] * self.weight(i) / self.column(j)
@@ -74,7 +75,7 @@ impl Scales {
     }
 }
 
-/// The step of least squares `|A x + r|² + μ |x|²`.
+/// Solves the damped least-squares problem `min |A x + r|² + μ |x|²`.
 fn damped(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<DVector<f64>> {
     let (rows, columns) = a.shape();
     let mut stacked = DMatrix::zeros(rows + columns, columns);
@@ -86,7 +87,7 @@ fn damped(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<DVector<f64>> {
     qr.r().solve_upper_triangular(&(qr.q().transpose() * right)).filter(|x| x.iter().all(|x| x.is_finite()))
 }
 
-/// Where the iteration has ended.
+/// State at the end of the iteration.
 struct Ended<const NQ: usize, const NV: usize, const NU: usize> {
     place: Place<NQ, NV, NU>,
     scales: Scales,
@@ -183,7 +184,7 @@ where
         let part = if longest > LONGEST { LONGEST / longest } else { 1.0 };
         change *= part;
         let next = problem.moved(&place, &change);
-        // Where friction jams or nothing finite follows, the step was too long.
+        // If friction jams or a value is not finite, the step was too long.
         let trial = problem.equations(&next).ok();
         let size = |trial: &Equations| scales.weighted(&trial.residuals).norm_squared();
         let better =
@@ -205,7 +206,7 @@ where
     Ok(Ended { place, scales, equations, iterations })
 }
 
-/// Refuses a place where conditions do not hold, with the one that is violated most.
+/// Reports a state that violates a condition, with the condition that is violated most.
 pub fn check_steady<M, const NQ: usize, const NV: usize, const NU: usize>(
     problem: &Problem<'_, '_, M, NQ, NV, NU>,
     place: &Place<NQ, NV, NU>,
@@ -229,7 +230,7 @@ where
     }
 }
 
-/// Names of the unknowns that can change together while all conditions hold.
+/// Returns the names of the unknowns that can change together while all conditions remain satisfied.
 fn open_directions<M, const NQ: usize, const NV: usize, const NU: usize>(
     problem: &Problem<'_, '_, M, NQ, NV, NU>,
     scaled: &DMatrix<f64>,
@@ -237,14 +238,14 @@ fn open_directions<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
-    /// Parts of a direction that count.
+    /// Components of a unit direction above this count as significant.
     const PART: f64 = 0.1;
     let (rows, columns) = scaled.shape();
-    // Where nothing is unknown, nothing is open.
+    // Without unknowns, no direction is undetermined.
     if columns == 0 {
         return Vec::new();
     }
-    // With as many rows as columns, so that no direction is missing.
+    // At least as many rows as columns, so that the decomposition has every direction.
     let square = scaled.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = square.svd(false, true);
     let Some(directions) = svd.v_t else { return Vec::new() };

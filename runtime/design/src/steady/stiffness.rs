@@ -1,4 +1,4 @@
-//! Stability by energy.
+//! Stability of equilibria by the energy criterion.
 
 use super::linear::{Linear, linear};
 use super::{SteadyState, Trim};
@@ -7,47 +7,47 @@ use crate::matrices::symmetric;
 use linkwork::{Rheonomic, RheonomicDerivatives};
 use nalgebra::DMatrix;
 
-/// Curvatures below this part of the largest count as zero.
+/// Curvatures below this fraction of the largest count as zero.
 const FLAT: f64 = 1e-9;
 
-/// A skew part above this part of the stiffness is not rounding.
+/// Skew-symmetric parts above this fraction of the stiffness are not rounding error.
 const SKEW: f64 = 1e-7;
 
-/// How forces change about an equilibrium: the Hessian of the potential on the constraints, in independent
+/// Stiffness about an equilibrium: the Hessian of the potential on the constraint manifold, in independent
 /// coordinates.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Stiffness {
-    /// `K`: N/m, N·m/rad, N, by two displacements.
+    /// Stiffness matrix `K`: N/m, N·m/rad or N, depending on the units of the two displacements.
     pub matrix: DMatrix<f64>,
-    /// The independent coordinates, by the names of their velocities.
+    /// Independent coordinates, by the names of their velocities.
     pub coordinates: Vec<&'static str>,
-    /// Stationary values of `xᵀ K x / xᵀ M x`, 1/s², least first: squares of natural frequencies without
-    /// damping.
+    /// Stationary values of `xᵀ K x / xᵀ M x`, 1/s², in ascending order: squares of the undamped natural
+    /// frequencies.
     pub curvatures: Vec<f64>,
-    /// The largest entry of the skew part of `K`, beside its largest entry: rounding where forces have a
-    /// potential.
+    /// Ratio of the largest entry of the skew-symmetric part of `K` to the largest entry of `K`. Rounding
+    /// error if the forces have a potential.
     pub asymmetry: f64,
 }
 
-/// What the theorem of Lagrange and Dirichlet says of an equilibrium.
+/// Stability of an equilibrium by the theorem of Lagrange and Dirichlet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// The potential has a minimum: stable, and with dissipation all the more.
+    /// The potential has a strict minimum: the equilibrium is stable, and dissipation does not change that.
     Stable,
-    /// The potential falls in some direction: unstable without gyroscopic forces, and with complete
-    /// dissipation whatever they are (Kelvin and Chetaev).
+    /// The potential decreases in some direction: unstable without gyroscopic forces, and with complete
+    /// dissipation for any gyroscopic forces (Kelvin and Chetaev).
     Unstable,
     /// The potential is flat in some direction: terms of higher order decide.
     Undecided,
-    /// The forces have no potential: [modes](Trim::linear_system) decide.
+    /// The forces have no potential: the [modes](Trim::linear_system) decide.
     NotConservative,
 }
 
 impl Stiffness {
-    /// The verdict. It holds if forces that depend on velocities take energy away or do no work (Merkin,
-    /// *Introduction to the Theory of Stability*, 1997, ch. 3 and 6).
+    /// Returns the verdict on stability. It requires that velocity-dependent forces dissipate energy or do no
+    /// work (Merkin, *Introduction to the Theory of Stability*, 1997, ch. 3 and 6).
     pub fn verdict(&self) -> Verdict {
         let most = self.curvatures.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let least = self.curvatures.first().copied().unwrap_or(f64::INFINITY);
@@ -67,16 +67,16 @@ impl<M, const NQ: usize, const NV: usize, const NU: usize> Trim<'_, M, NQ, NV, N
 where
     M: RheonomicDerivatives<NQ, NV, NU> + Rheonomic<NQ, NV, NU, Scalar = f64>,
 {
-    /// The stiffness about an equilibrium, with inputs that stay: whether it is stable by its energy. Of a
-    /// mechanism that turns steadily, driven in time, it is that of the amended potential `U − T₀`
-    /// (Meirovitch, *Methods of Analytical Dynamics*, 1970, § 6.7).
+    /// Computes the stiffness about an equilibrium at constant inputs, which decides on stability by energy.
+    /// For a mechanism that is driven to rotate at constant speed, it is the stiffness of the amended
+    /// potential `U − T₀` (Meirovitch, *Methods of Analytical Dynamics*, 1970, § 6.7).
     ///
     /// # Errors
     ///
-    /// [`Error::NoPotential`] in motion, where velocities alone are constrained (rolling), where forces by
-    /// accelerations are not those of an inertia (what multiplies the accelerations is not symmetric), and
-    /// with states of first order; [`linear_system`](Trim::linear_system) decides there.
-    /// [`Error::Indefinite`] where the mass matrix is not positive.
+    /// [`Error::NoPotential`] for a moving mechanism, with nonholonomic constraints (rolling), with
+    /// acceleration-dependent forces whose effective mass matrix is not symmetric, and with states of first
+    /// order. In these cases, [`linear_system`](Trim::linear_system) decides on stability.
+    /// [`Error::Indefinite`] if the mass matrix is not positive definite.
     pub fn stiffness(&self, found: &SteadyState<NQ, NV, NU>) -> Result<Stiffness, Error> {
         let Linear { coordinates, shape, by_q, mass, is_holonomic, .. } = linear(self, found)?;
         if found.v.amax() > 0.0 {
@@ -91,7 +91,8 @@ where
         if (&mass - mass.transpose()).amax() > SKEW * mass.amax() {
             return Err(Error::NoPotential { why: "forces by accelerations are not those of an inertia" });
         }
-        // Zᵀ M P = Zᵀ for the accelerations P by forces, so that multipliers drop out.
+        // Zᵀ M P = Zᵀ for the derivative P of the accelerations by forces, which eliminates the
+        // multipliers.
         let matrix = -(shape.transpose() * &mass * by_q * &shape);
         let own = symmetric(&(shape.transpose() * mass * &shape));
         let lower = own.cholesky().ok_or(Error::Indefinite { matrix: "M" })?.l();
@@ -104,7 +105,7 @@ where
     }
 }
 
-/// Eigenvalues of `L⁻¹ K L⁻ᵀ`, least first.
+/// Returns the eigenvalues of `L⁻¹ K L⁻ᵀ` in ascending order.
 fn curvatures(lower: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
     let singular = Error::Indefinite { matrix: "M" };
     let half = lower.solve_lower_triangular(&symmetric(matrix)).ok_or(singular.clone())?;

@@ -1,4 +1,4 @@
-//! What stands under loads, against closed forms.
+//! Static equilibria under loads, compared with closed forms.
 
 use super::close;
 use linkwork::prelude::*;
@@ -7,7 +7,7 @@ use linkwork_design::steady::{Verdict, constrained_equilibrium, equilibrium};
 use nalgebra::{DMatrix, DVector, Isometry3, Point3, UnitQuaternion, Vector3, vector};
 use std::f64::consts::PI;
 
-/// Two links with springs in their hinges under a load: Euler's column of two parts.
+/// Two links with springs in their hinges under a vertical load: a discrete model of Euler's column.
 #[mechanism(derivatives)]
 struct Column {
     load: f64,
@@ -27,7 +27,8 @@ struct Column {
     weight: Force,
 }
 
-/// Critical load of links of length `l` and springs `k`: `(3 − √5) / 2 · k / l`.
+/// Compares with the critical load `(3 − √5) / 2 · k / l` of links of length `l` and springs of stiffness
+/// `k`.
 #[test]
 fn a_column_buckles_at_eulers_load() {
     let critical = (3.0 - 5.0_f64.sqrt()) / 2.0 * 20.0 / 0.5;
@@ -41,11 +42,11 @@ fn a_column_buckles_at_eulers_load() {
         let fastest = stable.iter().map(|pole| pole.re).fold(f64::NEG_INFINITY, f64::max);
         assert_eq!(fastest > 1e-3, verdict == Verdict::Unstable, "{stable:?}");
     }
-    // At the load itself the equations are singular, and the error names both hinges.
+    // At the critical load the equations are singular, and the error lists both hinges.
     let column = Column { load: critical };
     let Err(Error::Undetermined { unknowns, .. }) = equilibrium(&column).find() else { panic!("singular") };
     assert_eq!(unknowns, ["foot", "knee"]);
-    // Beyond it the column stands bent, on either side.
+    // Above the critical load the column is bent, to either side.
     let column = Column { load: 1.2 * critical };
     let mut problem = equilibrium(&column);
     let bent = problem.find_all([vector![0.5, 0.5], vector![-0.5, -0.5], vector![0.01, -0.01]]).unwrap();
@@ -58,15 +59,15 @@ fn a_column_buckles_at_eulers_load() {
         assert_eq!(problem.stiffness(found).unwrap().verdict(), Verdict::Stable);
     }
     assert!((bent[0].q + bent[1].q).amax() < 1e-10);
-    // Which load bends the foot by a hundredth of a radian? Beside the critical one it is larger by the
-    // square of the angle.
+    // Which load bends the foot by 0.01 rad? It exceeds the critical load by a term of the order of the
+    // angle squared.
     let found = equilibrium(&column).from(vector![0.01, 0.006]).fix(["foot"]);
     let found = found.parameters([("load", 10.0)], |p| Column { load: p[0] }).find().unwrap();
     let more = found.parameters[0] / critical - 1.0;
     assert!(more > 0.0 && more < 1e-4, "{more}");
 }
 
-/// A table on three legs, with something on it.
+/// Table on three legs, with a load.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Table {
     px: f64,
@@ -91,7 +92,7 @@ fn three_legs_share_what_stands_on_a_table() {
     let problem = constrained_equilibrium(&table).fix(["pose.vx", "pose.vy", "pose.wz"]);
     let found = problem.find().unwrap();
     assert!((found.q[2] - 0.7).abs() < 1e-12);
-    // Moments: about the front edge, and about the line through the middle leg.
+    // Moments about the line through the two front legs, and about the y axis.
     let weight = 9.81 * 17.0;
     let middle = 9.81 * (12.0 * 0.4 + 5.0 * 0.3) / 0.8;
     let twist = 9.81 * 5.0 * 0.2 / 0.7;
@@ -99,7 +100,7 @@ fn three_legs_share_what_stands_on_a_table() {
     for ((name, force), expected) in found.multipliers.iter().zip(expected) {
         assert!((force.abs() - expected).abs() < 1e-10, "{name} {force} {expected}");
     }
-    // Where it stands on the floor and how it is turned is nowhere said.
+    // The horizontal position and the heading are not determined.
     let error = constrained_equilibrium(&table).find().unwrap_err();
     let Error::Undetermined { unknowns, .. } = &error else { panic!("{error}") };
     assert_eq!(unknowns[..], ["pose.vx", "pose.vy", "pose.wz"]);
@@ -109,7 +110,7 @@ fn three_legs_share_what_stands_on_a_table() {
     assert!((nearest.q[2] - 0.7).abs() < 1e-12 && nearest.q[0] > 2.0);
 }
 
-/// A platform on six legs, whose lengths forces control.
+/// Platform on six legs, whose lengths are controlled by forces.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Platform {
     #[body(mass = 30, com = 0.05 * x + 0.1 * z, inertia = diagonal(1.5, 1.5, 2.5))]
@@ -130,8 +131,8 @@ struct Platform {
     drive: [Force; 6],
 }
 
-/// Each leg turns its two weights about its foot; what its head carries along the leg, and the weight of the
-/// upper half, the drive holds.
+/// Compares with the statics of the legs: each leg transmits part of its weight to the platform perpendicular
+/// to its axis, and each drive balances the axial force at the head and the axial weight of the upper half.
 #[test]
 fn six_legs_hold_a_platform() {
     let pose = Isometry3::from_parts(
@@ -160,7 +161,8 @@ fn six_legs_hold_a_platform() {
         let arm = legs[k].2;
         axial.view_mut((0, k), (3, 1)).copy_from(&n);
         axial.view_mut((3, k), (3, 1)).copy_from(&arm.cross(&n));
-        // Across: what the platform carries of the leg's weights, by moments about the foot.
+        // Perpendicular to the leg: the share of the leg's weights that acts at the head, from moments
+        // about the foot.
         let across = |w: Vector3<f64>| w - n * n.dot(&w);
         let carried = across(weight(2.0)) * ((0.3 + length - 0.3) / length);
         let mut view = load.rows_mut(0, 3);
@@ -169,7 +171,7 @@ fn six_legs_hold_a_platform() {
         view += arm.cross(&carried);
     }
     let along = axial.lu().solve(&-load).unwrap();
-    // The guess is a little off.
+    // The guess differs slightly from the solution.
     let place = |name: &str| Platform::CONFIGURATION.iter().position(|n| *n == name).unwrap();
     for (k, (n, length, _)) in legs.iter().enumerate() {
         q[place(&format!("foot_{k}.first"))] = (-n.y).atan2(n.z) + 0.02;

@@ -1,4 +1,4 @@
-//! Equilibria and steady motions against closed forms.
+//! Equilibria and steady motions, compared with closed forms.
 
 mod loads;
 
@@ -16,7 +16,7 @@ fn close(found: f64, expected: f64, relative: f64) {
     );
 }
 
-/// A root between two places.
+/// Finds a root between two points by bisection.
 fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let side = f(low) > 0.0;
     for _ in 0..200 {
@@ -26,7 +26,7 @@ fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Six links between two nails.
+/// Chain of six links between two pins at the same height.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Chain {
     span: f64,
@@ -40,8 +40,8 @@ struct Chain {
     last: Pin,
 }
 
-/// The slopes of a chain of heavy links are `tan φₖ = (k − 5/2) w / H`, with the weight `w` of a link and
-/// such a pull `H` that the links reach from nail to nail.
+/// Compares with the slopes of a chain of heavy links, `tan φₖ = (k − 5/2) w / H`, where `w` is the weight of
+/// a link and the horizontal force `H` is chosen such that the chain spans the distance of the pins.
 #[test]
 fn a_chain_hangs_in_its_catenary() {
     let (chain, weight) = (Chain { span: 0.9 }, 0.3 * 9.81);
@@ -65,14 +65,14 @@ fn a_chain_hangs_in_its_catenary() {
     for (curvature, mode) in stiffness.curvatures.iter().zip(system.modes().unwrap()) {
         close(mode.frequency(), curvature.sqrt(), 1e-6);
     }
-    // The arch is an equilibrium, too.
+    // The arch, which is the mirrored shape, is also an equilibrium.
     let arch = problem.from([1.0, -0.3, -0.3, -0.3, -0.3, -0.3].into());
     let standing = arch.find().unwrap();
     assert!((standing.q + found.q).amax() < 1e-9, "{} {}", standing.q, found.q);
     assert_eq!(arch.stiffness(&standing).unwrap().verdict(), Verdict::Unstable);
 }
 
-/// Watt's governor: two balls on arms that hang from a turning shaft.
+/// Watt's governor: two balls on arms that hang from a rotating shaft.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Governor {
     #[body(mass = 1, inertia = diagonal(0.1, 0.1, 0.1))]
@@ -101,14 +101,14 @@ fn a_governor_opens_with_its_speed() {
     let found = problem.from(vector![0.0, -0.8, -0.8]).find().unwrap();
     close(found.q[1], -lifted, 1e-12);
     close(found.q[2], -lifted, 1e-12);
-    // The other way round: at which speed are the arms lifted by one radian?
+    // Inverse problem: at which speed are the arms raised by one radian?
     let problem = equilibrium(&Governor {}).from(vector![0.0, 1.0, 1.0]).coordinates([] as [&str; 0]);
     let problem = problem.moving(vector![5.0, 0.0, 0.0]).speeds(["turn"]);
     close(problem.find().unwrap().v[0], (9.81 / (0.4 * 1.0_f64.cos())).sqrt(), 1e-12);
     assert!(matches!(problem.stiffness(&problem.find().unwrap()), Err(Error::NoPotential { .. })));
 }
 
-/// A bead on a hoop that is kept turning.
+/// Bead on a hoop that rotates at constant speed.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Hoop {
     spin: f64,
@@ -143,7 +143,7 @@ fn a_bead_on_a_hoop_has_four_equilibria() {
     close(mode.frequency(), 6.0 * lifted.sin(), 1e-12);
 }
 
-/// A top in gimbals without mass.
+/// Top in massless gimbals.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Top {
     #[body]
@@ -162,9 +162,9 @@ struct Top {
     axial_rate: Scalar,
 }
 
-/// `A Ω² cos θ − C n Ω + m g h = 0`, slow and fast; nutations about it have `ω² = Ω² − 2 κ cos θ + κ² / Ω²`
-/// with `κ = m g h / A` (Goldstein, Poole and Safko, *Classical Mechanics*, 2002, § 5.7; Routh, *Advanced
-/// Rigid Dynamics*, 1905, § 207).
+/// Compares with `A Ω² cos θ − C n Ω + m g h = 0`, which has a slow and a fast solution. Nutations about them
+/// have `ω² = Ω² − 2 κ cos θ + κ² / Ω²` with `κ = m g h / A` (Goldstein, Poole and Safko, *Classical
+/// Mechanics*, 2002, § 5.7; Routh, *Advanced Rigid Dynamics*, 1905, § 207).
 #[test]
 fn a_top_precesses_slowly_or_fast() {
     let (theta, n) = (0.5_f64, 150.0_f64);
@@ -200,7 +200,7 @@ fn a_top_precesses_slowly_or_fast() {
     assert_eq!(condition, "nutation''");
 }
 
-/// A cart on rails with a pole that leans.
+/// Cart on a rail with an inverted pendulum.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct CartPole {
     #[body(mass = 2)]
@@ -218,22 +218,23 @@ struct CartPole {
 #[test]
 fn what_is_wrong_is_named() {
     let cart = CartPole {};
-    // The cart may stand anywhere.
+    // The position of the cart is not determined.
     let error = equilibrium(&cart).find().unwrap_err();
     assert!(matches!(&error, Error::Undetermined { unknowns, .. } if unknowns == &["rail"]), "{error}");
     assert!(equilibrium(&cart).nearest().find().is_ok());
-    // It is pushed, and nothing holds it.
+    // A force acts on the cart, and nothing balances it.
     let error = equilibrium(&cart).fix(["rail"]).with_inputs(vector![5.0]).find().unwrap_err();
     let Error::NoSteadyState { conditions: 2, unknowns: 1, residual, place, .. } = &error else {
         panic!("{error}")
     };
     assert!(residual.abs() > 0.1 && place[1].0 == "hinge", "{error}");
-    // An angle that the pole keeps while the cart is pushed: the acceleration is g tan of it.
+    // The pole remains at a constant angle while the cart accelerates: the acceleration is g times the
+    // tangent of the angle.
     let leaning =
         equilibrium(&cart).coordinates(["hinge"]).acceleration("rail", 2.0).inputs(["push"]).find().unwrap();
     close(leaning.q[1], -(2.0 / 9.81_f64).atan(), 1e-12);
     close(leaning.u[0], 2.3 * 2.0, 1e-12);
-    // A held cart: the pole falls by itself, and the locked system has one degree of freedom.
+    // With a locked cart, the pole is unstable, and the system has one degree of freedom.
     let held = equilibrium(&cart).hold(["rail"]);
     let upright = held.find().unwrap();
     let system = held.linear_system(&upright).unwrap();
@@ -249,7 +250,7 @@ fn what_is_wrong_is_named() {
     assert!(matches!(error, Error::NotFinite { .. }), "{error}");
 }
 
-/// An aircraft with lift, drag and moments in pitch; aileron and rudder are moments.
+/// Aircraft with lift, drag and pitching moment; aileron and rudder are torques.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 struct Aircraft {
     elevator: Input,
@@ -293,7 +294,8 @@ struct Aircraft {
     bank: Scalar,
 }
 
-/// Climbing straight on, and turning level: forces along and across the path, and `tan φ = V Ω / g`.
+/// Checks straight climbing and level turning flight: forces along and perpendicular to the path, and
+/// `tan φ = V Ω / g`.
 #[test]
 fn an_aircraft_climbs_and_turns() {
     let aircraft = Aircraft {};
@@ -319,14 +321,14 @@ fn an_aircraft_climbs_and_turns() {
         let thrust = found.u[Aircraft::INPUTS.iter().position(|n| *n == "thrust").unwrap()];
         let slope = (climb / speed).asin();
         close(thrust * alpha.cos(), drag + mass * g * slope.sin(), 1e-9);
-        // Across the path: the weight, and what turns it.
+        // Perpendicular to the path: the weight and the centripetal force.
         let across = pressure * cl + thrust * alpha.sin();
         let turned = mass * speed * slope.cos() * rate;
         close(across, (mass * g * slope.cos()).hypot(turned), 1e-9);
         if climb == 0.0 {
             close(aircraft.bank(&found.q), (speed * rate / g).atan().sin(), 1e-9);
         }
-        // Two inputs too few.
+        // Two unknowns too few.
         let short = problem.inputs([] as [&str; 0]).coordinates(["flight.wy"]);
         if rate > 0.0 {
             assert!(matches!(short.find(), Err(Error::NoSteadyState { .. })));
@@ -337,8 +339,8 @@ fn an_aircraft_climbs_and_turns() {
     assert!(system.starts_with("no output `climbs`, perhaps `climb`; there are airspeed"), "{system}");
 }
 
-/// A pendulum of a particle that a constraint holds, and one on a pin: pushed aside, what is measured of both
-/// is the same.
+/// Checks that a pendulum of a constrained particle and a pendulum on a pin have the same outputs under a
+/// horizontal force.
 #[test]
 fn outputs_under_constraints_are_those_of_independent_coordinates() {
     #[mechanism(gravity = -9.81 * y, derivatives)]
