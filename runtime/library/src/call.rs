@@ -1,27 +1,27 @@
-//! One function of a mechanism, for one state or many.
+//! Calls of one function of a mechanism, for one state or many.
 
 use crate::{Given, Library, Number, Sink};
 use std::any::Any;
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// How many states are side by side in the registers.
+/// Number of SIMD lanes, which is the number of states that are evaluated together.
 pub const LANES: usize = 8;
 
-/// Most arguments, and most results.
+/// Maximum number of arguments, and of results.
 const MAX_ARGUMENTS: usize = 12;
 
-/// Why there is no result, in words.
+/// Message of a failure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Failure(pub String);
 
 impl Failure {
-    /// What an error says.
+    /// Creates a failure with the message of an error.
     pub fn of(error: impl Display) -> Failure {
         Failure(error.to_string())
     }
 
-    /// What a panic says.
+    /// Creates a failure with the message of a panic, which is an internal error.
     pub(crate) fn of_panic(panic: &(dyn Any + Send)) -> Failure {
         let text = panic.downcast_ref::<&str>().copied();
         let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
@@ -29,44 +29,44 @@ impl Failure {
     }
 }
 
-/// A function on the arrays of its arguments and results.
+/// Function that reads its arguments from arrays and writes its results to arrays.
 pub type Body<M> = fn(
     &M,
     Given<'_, <M as Library>::Number>,
     &mut Sink<'_, '_, <M as Library>::Number>,
 ) -> Result<(), Failure>;
 
-/// A generated function behind plain arrays.
+/// Generated function with an interface of plain arrays.
 #[derive(Clone, Copy)]
 pub struct Function<M: Library> {
-    /// How many numbers each argument has.
+    /// Number of entries of each argument, for one state.
     pub arguments: &'static [usize],
-    /// How many numbers each result has.
+    /// Number of entries of each result, for one state.
     pub results: &'static [usize],
-    /// The function of one state.
+    /// Function for one state.
     pub one: Body<M>,
-    /// The function of eight states.
+    /// Function for eight states, if it exists.
     pub eight: Option<Body<M>>,
 }
 
-/// Arrays for many states: those of the first state, then those of the second, and so on.
+/// Arrays for many states, one state after the other.
 pub struct Batch<'a, N> {
-    /// The arguments.
+    /// Arrays of the arguments.
     pub arguments: Vec<&'a [N]>,
-    /// The results.
+    /// Arrays of the results.
     pub results: Vec<&'a mut [N]>,
-    /// How many states there are.
+    /// Number of states.
     pub states: usize,
-    /// How many threads share them out; zero for as many as there are processors.
+    /// Number of threads; zero for the number of processors.
     pub threads: usize,
 }
 
-/// Calls a function for every state. Results of a state that has none are not numbers.
+/// Calls a function for every state. Results of a state whose evaluation fails are NaN.
 ///
 /// # Errors
 ///
-/// Arrays of other lengths, before anything is written. Else the first failure, with the number of its state
-/// if there are several, when all are done.
+/// An error for arrays of wrong lengths, before anything is written. Otherwise the first failure, after all
+/// states are evaluated; its message contains the index of the state if there are several.
 pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> Result<(), Failure> {
     let Batch { arguments, results, states, threads } = batch;
     let lengths = f.arguments.iter().zip(arguments.iter().map(|array| array.len()));
@@ -99,7 +99,7 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
     }
 }
 
-/// How many states each thread takes, a multiple of the lanes.
+/// Returns the number of states per thread, a multiple of the number of lanes.
 pub(crate) fn shares(states: usize, threads: usize, lanes: usize) -> usize {
     let processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let threads = if threads == 0 { processors() } else { threads };
@@ -107,7 +107,7 @@ pub(crate) fn shares(states: usize, threads: usize, lanes: usize) -> usize {
     groups.div_ceil(threads.clamp(1, groups.max(1))).max(1) * lanes
 }
 
-/// The states of one thread.
+/// States that one thread evaluates.
 struct Part<'a, N> {
     first: usize,
     states: usize,
@@ -141,13 +141,13 @@ fn shared_out<'a, M: Library>(
     parts
 }
 
-/// Goes through the states; the first one that fails, and why.
+/// Evaluates the states, and returns the first one that fails with the reason.
 fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option<(usize, Failure)> {
     let Part { first, states, arguments, results } = part;
     let mut failed = None;
     let mut at = 0;
     let mut results = results;
-    // Of few states each call takes nanoseconds, which is what an allocation takes.
+    // For few states, a call takes nanoseconds, which an allocation would double.
     let mut given: Vec<&[M::Number]> = Vec::with_capacity(arguments.len());
     let mut places: Vec<&mut [M::Number]> = Vec::with_capacity(results.len());
     while at < states {
@@ -171,7 +171,7 @@ fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option
     failed
 }
 
-/// Calls a body; where it fails, results are not numbers.
+/// Calls a function; if it fails or panics, the results are set to NaN.
 fn guarded<M: Library>(
     m: &M,
     body: Body<M>,

@@ -1,4 +1,4 @@
-//! Simulations whose settings and controllers come from outside.
+//! Simulations with settings and controllers from callers in other languages.
 
 use crate::{Failure, Number};
 use linkwork::Rheonomic;
@@ -8,42 +8,42 @@ use linkwork::integrate::{
 use linkwork::nalgebra::SVector;
 use linkwork::simulate::{self, Overlaps, Sample};
 
-/// A method of integration, with the length of its steps or its tolerance.
+/// Integration method, with its step size or tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way<N> {
-    /// Dormand and Prince's of order 5, by a tolerance.
+    /// Dormand–Prince method of order 5, with its tolerance.
     DormandPrince(N),
-    /// Dormand and Prince's of order 8, by a tolerance.
+    /// Dormand–Prince method of order 8, with its tolerance.
     DormandPrince8(N),
-    /// For stiff equations, of order 4, by a tolerance.
+    /// Rosenbrock method of order 4 for stiff equations, with its tolerance.
     Rodas(N),
-    /// The classical one of order 4, by steps.
+    /// Classical Runge–Kutta method of order 4, with its step size.
     Rk4(N),
-    /// Symplectic and implicit, of order 2, by steps.
+    /// Implicit midpoint rule, symplectic and of order 2, with its step size.
     ImplicitMidpoint(N),
-    /// Contacts by their events, by a tolerance.
+    /// Event-driven integration of contacts, with its tolerance.
     EventDriven(N),
-    /// Contacts by impulses in steps. Surfaces that overlap at the start stay so: callers go on from where
-    /// steps have left them in each other.
+    /// Time stepping of contacts, with its step size. Initial penetrations are accepted, so that a caller can
+    /// continue from a state in which time stepping left penetrations.
     TimeStepping(N),
-    /// Contacts by impulses in steps through the middle of each: two evaluations of the dynamics in place of
-    /// four.
+    /// Time stepping of contacts with the midpoint rule, with its step size: two evaluations of the dynamics
+    /// per step instead of four.
     TimeSteppingMidpoint(N),
 }
 
-/// When inputs are asked for.
+/// Interval between evaluations of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Every<N> {
-    /// Whenever the method evaluates the dynamics.
+    /// The controller is called at every evaluation of the dynamics.
     Evaluation,
-    /// Once in so many seconds, and held in between.
+    /// The controller is called once per period, s, and its inputs are held constant in between.
     Period(N),
 }
 
-/// A controller: time, configuration and velocity → the inputs.
+/// Controller: function from time, configuration and velocity to the inputs.
 pub type Control<'a, N> = &'a mut dyn FnMut(N, &[N], &[N], &mut [N]) -> Result<(), Failure>;
 
-/// What is simulated, and where the samples go.
+/// Settings of a simulation, and the array for its samples.
 pub struct Motion<'a, N> {
     /// Time at the start, s.
     pub start: N,
@@ -51,27 +51,27 @@ pub struct Motion<'a, N> {
     pub q: &'a [N],
     /// Velocity at the start.
     pub v: &'a [N],
-    /// How long, s.
+    /// Duration, s.
     pub duration: N,
     /// Time between samples, s.
     pub interval: N,
-    /// The method.
+    /// Integration method.
     pub way: Way<N>,
-    /// When the controller is asked.
+    /// Interval between calls of the controller.
     pub every: Every<N>,
     /// The controller.
     pub control: Control<'a, N>,
-    /// Rows of time, configuration, velocity and inputs.
+    /// Samples: rows of time, configuration, velocity and inputs.
     pub samples: &'a mut [N],
-    /// How many rows were written.
+    /// Number of rows that were written.
     pub count: usize,
 }
 
-/// Simulates a mechanism without contacts that open and close, by the method that is wanted.
+/// Simulates a mechanism without unilateral contacts.
 ///
 /// # Errors
 ///
-/// Those of the method, and of the controller; methods for contacts.
+/// The errors of the method and of the controller, and an error for methods that require contacts.
 pub fn simulate<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     motion: &mut Motion<'_, N>,
@@ -92,11 +92,11 @@ where
     }
 }
 
-/// Simulates a mechanism with contacts that open and close.
+/// Simulates a mechanism with unilateral contacts.
 ///
 /// # Errors
 ///
-/// Those of the method, and of the controller; methods for smooth motions.
+/// The errors of the method and of the controller, and an error for methods that do not support contacts.
 pub fn simulate_with_contacts<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     motion: &mut Motion<'_, N>,
@@ -150,7 +150,7 @@ where
         {
             *failed = Some(why);
         }
-        // Ends the run: no motion goes on with such inputs.
+        // NaN inputs end the run.
         if failed.is_some() { u.map(|_| N::NAN) } else { u }
     };
     let ended = match every {

@@ -1,4 +1,4 @@
-//! Plain arrays → arguments of generated functions, and their results → plain arrays.
+//! Conversion of plain arrays to the arguments of generated functions, and of their results to plain arrays.
 
 use crate::Failure;
 use linkwork::constraint::Linearization;
@@ -7,9 +7,9 @@ use linkwork::nalgebra::{IsometryMatrix3, SMatrix};
 use linkwork::{Lanes, OutputJacobians, Real};
 use std::fmt::Display;
 
-/// A number of an array.
+/// Scalar type of arrays.
 pub trait Number: Real + Send + Sync + Display + Default {
-    /// Not a number.
+    /// The value NaN.
     const NAN: Self;
 }
 
@@ -21,16 +21,16 @@ impl Number for f32 {
     const NAN: f32 = f32::NAN;
 }
 
-/// A number of a matrix: of one state, or the same of several side by side. Arrays hold one state after
-/// another.
+/// Entry of a matrix: a scalar of one state, or SIMD lanes over several states. Arrays contain the states one
+/// after the other.
 pub trait Entry<N>: Copy {
-    /// Number `at` of every state, when a state has `length` numbers. What is not there is zero.
+    /// Reads entry `at` of every state, where a state has `length` entries. Missing entries are zero.
     fn read(numbers: &[N], at: usize, length: usize) -> Self;
-    /// Puts it there.
+    /// Writes entry `at` of every state, where a state has `length` entries.
     fn write(self, numbers: &mut [N], at: usize, length: usize);
-    /// All numbers of every state.
+    /// Reads all entries of every state.
     fn read_all<const LENGTH: usize>(numbers: &[N]) -> [Self; LENGTH];
-    /// Puts all numbers of every state there.
+    /// Writes all entries of every state.
     fn write_all(all: &[Self], numbers: &mut [N]);
 }
 
@@ -87,7 +87,7 @@ macro_rules! entry {
                 all
             }
 
-            // One state after another: writing along the array takes a fraction of the time of jumping.
+            // One state after the other: sequential writes take a fraction of the time of strided writes.
             #[inline(always)]
             fn write_all(all: &[Self], numbers: &mut [$number]) {
                 for (k, state) in numbers.chunks_exact_mut(all.len().max(1)).take(L).enumerate() {
@@ -100,9 +100,9 @@ macro_rules! entry {
 
 entry!(f64, f32);
 
-/// What a function is given, made of an array.
+/// Argument of a generated function that is read from an array.
 pub trait Argument<N> {
-    /// It.
+    /// Reads the argument.
     fn take(numbers: &[N]) -> Self;
 }
 
@@ -120,7 +120,7 @@ macro_rules! scalars {
             }
         }
 
-        /// A sign, such as an assembly mode: the number's integer part.
+        /// Sign, such as an assembly mode: the integer part of the number.
         impl Argument<$number> for i8 {
             fn take(numbers: &[$number]) -> Self {
                 numbers.first().map_or(0, |number| *number as i8)
@@ -162,7 +162,7 @@ impl<N, E: Entry<N>, const R: usize, const C: usize> Argument<N> for SMatrix<E, 
     }
 }
 
-/// Which of several are marked, by numbers that are not zero.
+/// Indices of the nonzero entries of an array, which mark a selection.
 #[derive(Clone, Debug)]
 pub struct Marked(Vec<usize>);
 
@@ -180,24 +180,24 @@ impl<N: Number> Argument<N> for Marked {
     }
 }
 
-/// The arguments of a function.
+/// Arrays of all arguments of a function.
 #[derive(Clone, Copy, Debug)]
 pub struct Given<'a, N>(pub &'a [&'a [N]]);
 
-/// The argument with an index.
+/// Reads the argument with an index; a missing array counts as empty.
 #[inline(always)]
 pub fn given<N, A: Argument<N>>(all: Given<'_, N>, k: usize) -> A {
     A::take(all.0.get(k).copied().unwrap_or_default())
 }
 
 impl<N: Number> Given<'_, N> {
-    /// Indices for an argument that marks some of several.
+    /// Reads an argument that marks a selection by nonzero entries.
     pub fn marked(self, k: usize) -> Marked {
         given(self, k)
     }
 }
 
-/// Where results go, one array after another.
+/// Arrays for the results of a function, which are filled in order.
 #[derive(Debug)]
 pub struct Sink<'a, 'b, N> {
     arrays: &'a mut [&'b mut [N]],
@@ -205,7 +205,7 @@ pub struct Sink<'a, 'b, N> {
 }
 
 impl<'a, 'b, N> Sink<'a, 'b, N> {
-    /// At the first array.
+    /// Starts at the first array.
     pub fn new(arrays: &'a mut [&'b mut [N]]) -> Self {
         Sink { arrays, next: 0 }
     }
@@ -217,14 +217,14 @@ impl<'a, 'b, N> Sink<'a, 'b, N> {
     }
 }
 
-/// What a function gives, put into arrays: matrices column by column, placements as matrices of four rows and
-/// columns.
+/// Result of a generated function that is written to arrays: matrices in column-major order, placements as 4
+/// × 4 matrices.
 pub trait Results<N> {
-    /// Puts it there.
+    /// Writes the result.
     ///
     /// # Errors
     ///
-    /// That of the function.
+    /// The error of the function, if the result is one.
     fn give(self, to: &mut Sink<'_, '_, N>) -> Result<(), Failure>;
 }
 

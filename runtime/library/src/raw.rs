@@ -1,5 +1,5 @@
-//! The border: what the functions of a library with C's calling convention do. This module alone handles
-//! pointers, and no panic leaves it.
+//! C interface: implementations of the exported functions with the C calling convention. Only this module
+//! handles pointers, and no panic leaves it.
 #![allow(unsafe_code, reason = "the border to callers in other languages, who hand over pointers")]
 
 use crate::{Batch, Every, Failure, Library, Motion, Rollout, Way};
@@ -8,16 +8,17 @@ use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-/// What functions return when all went well.
+/// Return value of a call that succeeded.
 pub const DONE: c_int = 0;
-/// What functions return when there is a message.
+/// Return value of a call that failed and set a message.
 pub const FAILED: c_int = 1;
 
 thread_local! {
     static MESSAGE: RefCell<CString> = RefCell::default();
 }
 
-/// Why the last call of this thread that returned [`FAILED`] did so. It stays until the next call.
+/// Returns the message of the last call of this thread that returned [`FAILED`]. The pointer is valid until
+/// the next call of this thread.
 pub fn message() -> *const c_char {
     MESSAGE.with_borrow(|message| message.as_ptr())
 }
@@ -32,33 +33,35 @@ fn ended(result: std::thread::Result<Result<(), Failure>>) -> c_int {
 
 /// # Safety
 ///
-/// `from` points to `length` numbers that nobody writes meanwhile, or `length` is zero.
+/// `from` points to `length` numbers that are not written to during the lifetime of the result, or `length`
+/// is zero.
 unsafe fn numbers<'a, N>(from: *const N, length: usize) -> &'a [N] {
     match length {
         0 => &[],
-        // SAFETY: as above.
+        // SAFETY: see the requirements of this function.
         _ => unsafe { slice::from_raw_parts(from, length) },
     }
 }
 
 /// # Safety
 ///
-/// `to` points to `length` numbers that nobody else uses meanwhile, or `length` is zero.
+/// `to` points to `length` numbers that are not accessed otherwise during the lifetime of the result, or
+/// `length` is zero.
 unsafe fn places<'a, N>(to: *mut N, length: usize) -> &'a mut [N] {
     match length {
         0 => &mut [],
-        // SAFETY: as above.
+        // SAFETY: see the requirements of this function.
         _ => unsafe { slice::from_raw_parts_mut(to, length) },
     }
 }
 
-/// A function by its number, for many states; [`crate::call`].
+/// Calls the function with this index for many states; see [`crate::call`].
 ///
 /// # Safety
 ///
-/// `parameters` points to as many numbers as the mechanism has parameters; `arguments` and `results` to as
-/// many pointers as the function has arguments and results, each to its numbers of all states. Nobody else
-/// uses the results meanwhile, and they do not overlap.
+/// `parameters` points to one number per parameter of the mechanism. `arguments` and `results` point to one
+/// pointer per argument and result of the function, each to the numbers of all states. The results are not
+/// accessed otherwise during the call, and do not overlap.
 pub unsafe fn call<M: Library>(
     function: usize,
     parameters: *const M::Number,
@@ -75,7 +78,7 @@ pub unsafe fn call<M: Library>(
         if !f.arguments.iter().chain(f.results).all(fits) {
             return Err(Failure::of("there are too many states"));
         }
-        // SAFETY: the caller promises all of it.
+        // SAFETY: guaranteed by the caller.
         let (m, arguments, results) = unsafe {
             let own = numbers(arguments, f.arguments.len());
             let given = f.arguments.iter().zip(own).map(|(one, from)| numbers(*from, one * states));
@@ -87,30 +90,30 @@ pub unsafe fn call<M: Library>(
     })))
 }
 
-/// Whether a mechanism can have these parameters.
+/// Checks whether the parameters are admissible.
 ///
 /// # Safety
 ///
-/// `parameters` points to as many numbers as the mechanism has parameters.
+/// `parameters` points to one number per parameter of the mechanism.
 pub unsafe fn check<M: Library>(parameters: *const M::Number) -> c_int {
     ended(catch_unwind(AssertUnwindSafe(|| {
-        // SAFETY: the caller promises it.
+        // SAFETY: guaranteed by the caller.
         M::with(unsafe { numbers(parameters, M::PARAMETERS) }).check()
     })))
 }
 
-/// Copies numbers out.
+/// Copies numbers to an array of the caller.
 ///
 /// # Safety
 ///
-/// `to` points to as many numbers.
+/// `to` points to at least as many numbers as `from` has.
 pub unsafe fn copy<N: Copy>(from: &[N], to: *mut N) {
-    // SAFETY: the caller promises it.
+    // SAFETY: guaranteed by the caller.
     unsafe { places(to, from.len()) }.copy_from_slice(from);
 }
 
-/// A controller in another language: what it was registered with, time, configuration, velocity, and where
-/// the inputs go. It returns zero, or anything else to end the run.
+/// Controller in another language. Its arguments are the pointer that it was registered with, time,
+/// configuration, velocity, and the array for the inputs. It returns zero, or a nonzero value to end the run.
 pub type Controller<N> = unsafe extern "C" fn(*mut c_void, N, *const N, *const N, *mut N) -> c_int;
 
 /// Settings of a simulation.
@@ -118,30 +121,30 @@ pub type Controller<N> = unsafe extern "C" fn(*mut c_void, N, *const N, *const N
 pub struct Settings<N> {
     /// Time at the start, s.
     pub start: N,
-    /// How long, s.
+    /// Duration, s.
     pub duration: N,
     /// Time between samples, s.
     pub interval: N,
-    /// The method by name: `dormand_prince`, `dormand_prince8`, `rodas`, `event_driven`, each with its
-    /// tolerance; `rk4`, `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`, each with its step,
-    /// s.
+    /// Name of the method: `dormand_prince`, `dormand_prince8`, `rodas`, `event_driven`, each with its
+    /// tolerance; `rk4`, `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`, each with its step
+    /// size, s.
     pub method: *const c_char,
-    /// The tolerance or the step.
+    /// Tolerance or step size.
     pub setting: N,
-    /// Time between calls of the controller, s; zero if it is called whenever the dynamics are evaluated.
+    /// Interval between calls of the controller, s; zero to call it at every evaluation of the dynamics.
     pub period: N,
-    /// The controller, or none.
+    /// Controller, if any.
     pub control: Option<Controller<N>>,
-    /// What the controller is given first.
+    /// First argument of the controller.
     pub user: *mut c_void,
 }
 
-/// Simulates, with samples of time, configuration, velocity and inputs in rows.
+/// Simulates, and writes samples as rows of time, configuration, velocity and inputs.
 ///
 /// # Safety
 ///
-/// `parameters`, `q` and `v` point to as many numbers as the mechanism has of them, `settings` to settings
-/// whose method is a text that ends with zero, `samples` to so many rows, `count` to a number. The controller
+/// `parameters`, `q` and `v` point to as many numbers as the mechanism has of each, `settings` to settings
+/// whose method is a null-terminated string, `samples` to `rows` rows, `count` to a number. The controller
 /// can be called with the arrays of a state, and does not unwind.
 #[allow(clippy::too_many_arguments, reason = "the signature of the library")]
 pub unsafe fn simulate<M: Library>(
@@ -154,7 +157,7 @@ pub unsafe fn simulate<M: Library>(
     rows: usize,
     count: *mut usize,
 ) -> c_int {
-    // SAFETY: the caller promises all of it.
+    // SAFETY: guaranteed by the caller.
     let (m, settings, q, v, samples, count, method) = unsafe {
         let settings = &*settings;
         *count = 0;
@@ -175,7 +178,7 @@ pub unsafe fn simulate<M: Library>(
         let every = if settings.period > zero { Every::Period(settings.period) } else { Every::Evaluation };
         let mut control = |t: M::Number, q: &[M::Number], v: &[M::Number], u: &mut [M::Number]| {
             let Some(control) = settings.control else { return Ok(()) };
-            // SAFETY: the caller promises it.
+            // SAFETY: guaranteed by the caller.
             match unsafe { control(settings.user, t, q.as_ptr(), v.as_ptr(), u.as_mut_ptr()) } {
                 0 => Ok(()),
                 _ => Err(Failure::of("the controller ended the run")),
@@ -206,23 +209,24 @@ pub struct RolloutSettings<N> {
     pub start: N,
     /// Length of a step, s.
     pub step: N,
-    /// How many steps.
+    /// Number of steps.
     pub steps: usize,
-    /// How many states.
+    /// Number of states.
     pub states: usize,
-    /// How many threads; as many as there are processors for zero.
+    /// Number of threads; zero for the number of processors.
     pub threads: usize,
-    /// Whose inputs are given: 0 none, 1 those of each step for all states, 2 those of each state and step.
+    /// Layout of the inputs: 0 none, 1 common to all states for each step, 2 separate for each state and
+    /// step.
     pub inputs_of: c_int,
 }
 
-/// Takes many states through many steps.
+/// Advances many states by many steps.
 ///
 /// # Safety
 ///
-/// `parameters` points to as many numbers as the mechanism has parameters; `q` and `v` to `steps + 1`
-/// configurations and velocities of each state, which nobody else uses meanwhile; `inputs` to those that the
-/// settings name.
+/// `parameters` points to one number per parameter of the mechanism; `q` and `v` to `steps + 1`
+/// configurations and velocities of each state, which are not accessed otherwise during the call; `inputs` to
+/// the inputs in the layout of the settings.
 pub unsafe fn roll_out<M: Library>(
     [nq, nv, nu]: [usize; 3],
     parameters: *const M::Number,
@@ -231,7 +235,7 @@ pub unsafe fn roll_out<M: Library>(
     q: *mut M::Number,
     v: *mut M::Number,
 ) -> c_int {
-    // SAFETY: the caller promises all of it.
+    // SAFETY: guaranteed by the caller.
     let settings = unsafe { &*settings };
     ended(catch_unwind(AssertUnwindSafe(|| {
         let RolloutSettings { start, step, steps, states, threads, inputs_of } = *settings;
@@ -246,7 +250,7 @@ pub unsafe fn roll_out<M: Library>(
             2 => steps * nu * states,
             _ => 0,
         };
-        // SAFETY: the caller promises all of it.
+        // SAFETY: guaranteed by the caller.
         let (m, q, v, inputs) = unsafe {
             (
                 M::with(numbers(parameters, M::PARAMETERS)),

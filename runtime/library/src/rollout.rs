@@ -1,4 +1,4 @@
-//! Many motions by steps of one length, under inputs that are given before.
+//! Rollouts of many states with a constant step size, under prescribed inputs.
 
 use crate::call::shares;
 use crate::{Entry, Failure, LANES, Number};
@@ -7,28 +7,29 @@ use linkwork::integrate::Rk4;
 use linkwork::nalgebra::SVector;
 use linkwork::{Batch, Lanes, Rheonomic, discrete};
 
-/// Motions of many states, all of as many steps.
+/// Rollout of many states with the same number of steps.
 pub struct Rollout<'a, N> {
     /// Time at the start, s.
     pub start: N,
     /// Length of a step, s.
     pub step: N,
-    /// How many steps.
+    /// Number of steps.
     pub steps: usize,
-    /// How many threads share them out; zero for as many as there are processors.
+    /// Number of threads; zero for the number of processors.
     pub threads: usize,
-    /// Configurations of every state after no step, one step and so on; the first one is given.
+    /// Configurations of every state after 0, 1, 2, … steps; the first one is an argument, the others are
+    /// results.
     pub q: &'a mut [N],
-    /// Velocities likewise.
+    /// Velocities, in the same layout.
     pub v: &'a mut [N],
-    /// Inputs of every state during the first step, the second one and so on; or those of all states; or
-    /// none, which are zero.
+    /// Inputs of every state during the first, second, … step, or inputs that all states have in common.
+    /// Empty for zero inputs.
     pub inputs: &'a [N],
-    /// Every state has inputs of its own.
+    /// Whether every state has its own inputs.
     pub own_inputs: bool,
 }
 
-/// The motions that one thread takes.
+/// States that one thread advances.
 struct Part<'a, N> {
     first: usize,
     q: &'a mut [N],
@@ -36,7 +37,7 @@ struct Part<'a, N> {
     inputs: &'a [N],
 }
 
-/// What all threads know.
+/// Settings that all threads have in common.
 #[derive(Clone, Copy)]
 struct Plan<N> {
     start: N,
@@ -45,14 +46,15 @@ struct Plan<N> {
     own_inputs: bool,
 }
 
-/// The first state that failed, and why.
+/// Index of the first state that failed, and the reason.
 type Failed = Option<(usize, Failure)>;
 
-/// Takes states through steps of the classical method of Runge and Kutta, one after another.
+/// Advances states by steps of the classical Runge–Kutta method, one state after the other.
 ///
 /// # Errors
 ///
-/// The first motion that does not stay finite or on its constraints; it ends with what is not a number.
+/// The failure of the first state whose motion does not remain finite or on its constraints; the remainder of
+/// its motion is NaN.
 pub fn roll_out<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     rollout: Rollout<'_, N>,
@@ -64,11 +66,11 @@ where
     shared_out(rollout, [NQ, NV, NU], 1, |plan, part| one_by_one::<M, N, NQ, NV, NU>(m, plan, part))
 }
 
-/// The same, eight states at a time.
+/// Advances states as [`roll_out`] does, eight at a time in SIMD lanes.
 ///
 /// # Errors
 ///
-/// Those of [`roll_out`].
+/// As for [`roll_out`].
 pub fn roll_out_in_lanes<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     rollout: Rollout<'_, N>,
@@ -105,7 +107,7 @@ where
     })
 }
 
-/// Divides the states among threads.
+/// Distributes the states over threads, after checking the lengths of the arrays.
 fn shared_out<N: Number>(
     rollout: Rollout<'_, N>,
     [nq, nv, nu]: [usize; 3],
@@ -156,7 +158,7 @@ fn shared_out<N: Number>(
     }
 }
 
-/// The time at which a step begins.
+/// Returns the time at the start of a step.
 fn time<N: Number>(plan: &Plan<N>, step: usize) -> N {
     plan.start + plan.step * linkwork::nalgebra::convert::<f64, N>(step as f64)
 }
@@ -196,7 +198,7 @@ where
     failed
 }
 
-/// Eight states, one in each lane.
+/// Advances eight states, one in each SIMD lane.
 fn side_by_side<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     plan: Plan<N>,
@@ -209,7 +211,7 @@ where
 {
     let lanes = m.lanes::<LANES>();
     let (of_q, of_v) = (NQ * (plan.steps + 1), NV * (plan.steps + 1));
-    // Entry i of all states, then the next one.
+    // Interleaved layout: entry i of all states, then entry i + 1.
     let mut q: Vec<N> = (0..NQ * LANES).map(|k| part.q[k % LANES * of_q + k / LANES]).collect();
     let mut v: Vec<N> = (0..NV * LANES).map(|k| part.v[k % LANES * of_v + k / LANES]).collect();
     let mut failed: Failed = None;

@@ -1,8 +1,8 @@
-//! Triangles of COLLADA files (`.dae`), versions 1.4 and 1.5: the meshes of the scene, each where its nodes
-//! place it, in metres.
+//! Triangles of COLLADA files (`.dae`), versions 1.4 and 1.5: the meshes of the scene, transformed by its
+//! nodes, in metres.
 //!
-//! `up_axis` is not applied. The frames of a robot's file are those of its links, no direction of which is
-//! up, and the viewers that such files are made with (RViz, Gazebo, MoveIt) take the numbers as they stand.
+//! `up_axis` is not applied. The frames of a robot description are those of its links, which have no upward
+//! direction, and common viewers of such files (RViz, Gazebo, MoveIt) also ignore it.
 
 use crate::mesh::MAX_TRIANGLES;
 use linkwork::nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3};
@@ -10,12 +10,13 @@ use roxmltree::{Document, Node, NodeId};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// Nodes inside one another, those that are instances counted in.
+/// Maximum depth of nested nodes, including instances of nodes.
 const MAX_DEPTH: usize = 64;
-/// Instances of nodes: each may hold further ones, so that a short file could hold any number.
+/// Maximum number of node instances. Instances may contain further instances, so that a short file could have
+/// an unlimited number.
 const MOST_INSTANCES: usize = 100_000;
 
-/// Corners of the triangles, three each, m.
+/// Returns the corners of all triangles, three per triangle, m.
 pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
     let document = Document::parse(text).map_err(|error| format!("no XML: {error}"))?;
     let root = document.root_element();
@@ -34,7 +35,7 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
     };
     let mut reader = Reader {
         geometries: named("library_geometries", "geometry"),
-        // An instance may show any node that has a name, in a library or not.
+        // An instance may refer to any node with an `id`, in a library or in a scene.
         nodes: root
             .descendants()
             .filter(|n| n.tag_name().name() == "node")
@@ -54,7 +55,7 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
                 reader.node(node, &to_metres, 0)?;
             }
         }
-        // A file of parts alone.
+        // A file that has geometries but no scene.
         None => {
             for geometry in children(root, "library_geometries").flat_map(|all| children(all, "geometry")) {
                 reader.geometry(geometry, &to_metres)?;
@@ -64,11 +65,11 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
     Ok(reader.corners)
 }
 
-/// What a file refers to by name, and the corners so far.
+/// State of the conversion: referenced elements by name, and the corners so far.
 struct Reader<'a> {
     geometries: HashMap<&'a str, Node<'a, 'a>>,
     nodes: HashMap<&'a str, Node<'a, 'a>>,
-    /// Meshes that were read, however many instances they have.
+    /// Triangulated meshes by geometry, so that each is read once for all its instances.
     meshes: HashMap<NodeId, Vec<Point3<f64>>>,
     instances: usize,
     corners: Vec<[f32; 3]>,
@@ -117,7 +118,7 @@ fn within_bounds(corners: usize) -> Result<(), String> {
     }
 }
 
-/// Corners of a geometry, three for each triangle, in its own axes.
+/// Returns the corners of a geometry, three per triangle, in its own axes.
 fn triangles(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
     let Some(mesh) = child(geometry, "mesh") else {
         let name = geometry.attribute("id").unwrap_or("a geometry without name");
@@ -141,7 +142,7 @@ fn triangles(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
     Ok(corners)
 }
 
-/// The faces of a list, or its strips or fans.
+/// Returns the corners of the faces, strips or fans of a list.
 fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>, String> {
     let kind = list.tag_name().name();
     if child(list, "ph").is_some() {
@@ -182,7 +183,7 @@ fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>
     Ok(faces)
 }
 
-/// The places of vertices: of the source that the input of positions names.
+/// Returns the positions of vertices from the source that their `POSITION` input refers to.
 fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
     let within = |of: &str, name: &str| {
         mesh.children().find(|node| node.tag_name().name() == of && node.attribute("id") == Some(name))
@@ -207,7 +208,7 @@ fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f6
     Ok(tuples.map(|p| Point3::new(p[0], p[1], p[2])).collect())
 }
 
-/// What an element of a node does to the place of what it holds.
+/// Returns the homogeneous transform of a transformation element of a node.
 fn transform(part: Node<'_, '_>) -> Result<Matrix4<f64>, String> {
     let (kind, n) = (part.tag_name().name(), numbers::<f64>(part)?);
     Ok(match (kind, n.as_slice()) {
@@ -233,14 +234,14 @@ fn children<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = 
     node.children().filter(move |child| child.tag_name().name() == name)
 }
 
-/// What an instance shows.
+/// Returns the element that an instance refers to.
 fn referred<'a>(instance: Node<'_, '_>, known: &HashMap<&str, Node<'a, 'a>>) -> Result<Node<'a, 'a>, String> {
     let url = instance.attribute("url").unwrap_or_default();
     let found = url.strip_prefix('#').and_then(|name| known.get(name)).copied();
     found.ok_or_else(|| format!("`{}` refers to `{url}`, which is not there", instance.tag_name().name()))
 }
 
-/// The numbers of an element's text.
+/// Parses the text of an element as a list of numbers.
 fn numbers<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>, String> {
     let read = |word: &str| {
         let shown: String = word.chars().take(60).collect();
@@ -253,7 +254,7 @@ fn numbers<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>, String> {
 mod tests {
     use super::*;
 
-    /// A file around a mesh of four corners, a square in the plane z = 0 with edges of 2.
+    /// Returns a file with a mesh of four corners: a square in the plane z = 0 with edges of length 2.
     fn file(unit: &str, faces: &str, scene: &str) -> String {
         format!(
             "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>
@@ -278,8 +279,8 @@ mod tests {
         <input semantic='NORMAL' source='#normals' offset='1'/><p>0 0 1 0 2 0 0 0 2 0 3 0</p></triangles>";
     const SHOWN: &str = "<instance_geometry url='#square'/>";
 
-    /// Triangles, polygons and fans of one square list the same corners; a strip cuts it along the other
-    /// diagonal.
+    /// Checks that triangles, polygons and fans of one square yield the same corners; a strip divides it
+    /// along the other diagonal.
     #[test]
     fn lists_of_faces_agree() {
         let square = corners(&file("", TWO, "")).unwrap();
@@ -298,14 +299,15 @@ mod tests {
         assert_eq!(corners(&file("", &strip, "")), Ok(vec![a, b, d, b, d, c]));
     }
 
-    /// Units, and transforms in the order of the nodes: inner ones act first.
+    /// Checks units and the order of nested transforms: inner ones are applied first.
     #[test]
     fn nodes_place_what_they_hold() {
         let nodes = format!(
             "<node><translate>100 0 0</translate><node><rotate>0 0 1 90</rotate><scale>1 3 1</scale>{SHOWN}</node></node>"
         );
         let found = corners(&file("<unit meter='0.01' name='cm'/>", TWO, &scene(&nodes))).unwrap();
-        // (2, 2, 0) is stretched to (2, 6, 0), turned to (−6, 2, 0), moved to (94, 2, 0), in centimetres.
+        // (2, 2, 0) is scaled to (2, 6, 0), rotated to (−6, 2, 0) and translated to (94, 2, 0), in
+        // centimetres.
         for (x, y) in found[2].into_iter().zip([0.94, 0.02, 0.0]) {
             assert!((x - y).abs() < 1e-6, "{:?}", found[2]);
         }

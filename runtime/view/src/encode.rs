@@ -1,20 +1,20 @@
-//! Samples as text: steps of a quantum, the differences of successive ones in as few bytes as they need, in
-//! base64.
+//! Encoding of samples as text: values are quantised, successive differences are written as variable-length
+//! integers, and the bytes are encoded in base64.
 //!
-//! A channel is its first value, then 0 if it keeps it, or 1 and the differences. Integers are written seven
-//! bits a byte, lowest first, with the sign in the lowest bit.
+//! A channel consists of its first value, then 0 if it is constant, or 1 and the differences. Integers are
+//! written with seven bits per byte, lowest first, with the sign in the lowest bit.
 
-/// Channels one after the other.
+/// Concatenated channels.
 #[derive(Default)]
 pub struct Stream {
     bytes: Vec<u8>,
 }
 
-/// The largest step: three quarters of what 31 bits hold.
+/// Maximum magnitude of a quantised value: three quarters of the range of 31 bits.
 const LARGEST: f64 = 1.5e9;
 
 impl Stream {
-    /// Adds a channel in steps of a quantum.
+    /// Appends a channel, quantised in multiples of `quantum`.
     pub fn channel(&mut self, values: impl Iterator<Item = f64>, quantum: f64) {
         let steps: Vec<i64> = values.map(|x| step(x / quantum)).collect();
         let Some(first) = steps.first() else { return };
@@ -35,7 +35,7 @@ impl Stream {
         self.bytes.push(rest as u8);
     }
 
-    /// All of it.
+    /// Returns all channels in base64.
     pub fn text(&self) -> String {
         base64(&self.bytes)
     }
@@ -45,7 +45,7 @@ fn step(x: f64) -> i64 {
     x.round().clamp(-LARGEST, LARGEST) as i64
 }
 
-/// Base64 with padding (RFC 4648).
+/// Encodes bytes in base64 with padding (RFC 4648).
 pub fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
@@ -64,7 +64,7 @@ pub fn base64(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// The examples of RFC 4648, section 10.
+    /// Checks the examples of RFC 4648, section 10.
     #[test]
     fn base64_is_that_of_the_standard() {
         let known = [

@@ -1,79 +1,80 @@
-//! Why there is no page, log or live view.
+//! Errors of pages, logs and live views.
 
 use std::fmt;
 use std::path::PathBuf;
 
-/// Why there is no page, log or live view. Every variant names what is to blame.
+/// Reason why a page, log or live view cannot be created. Every variant names the cause.
 #[non_exhaustive]
 pub enum Error {
-    /// A motion without a sample.
+    /// A motion without samples.
     Empty {
         /// Title of the motion.
         motion: String,
     },
-    /// A time that is not finite, or before the one that precedes it.
+    /// A time that is not finite, or before the previous one.
     Time {
         /// Title of the motion.
         motion: String,
-        /// Number of the sample.
+        /// Index of the sample.
         sample: usize,
     },
-    /// A frame whose placement is not finite.
+    /// A frame whose placement is not finite, or a state that is not finite.
     NotFinite {
         /// Title of the motion.
         motion: String,
-        /// Number of the sample.
+        /// Index of the sample.
         sample: usize,
-        /// The frame.
+        /// Name of the frame, or `state`.
         frame: String,
     },
-    /// A list that should have an entry for each sample, or for each frame.
+    /// A list whose length differs from the number of samples or frames.
     Count {
-        /// What the list is.
+        /// Description of the list.
         what: String,
-        /// How many fit.
+        /// Expected number of entries.
         expected: usize,
-        /// How many there are.
+        /// Actual number of entries.
         found: usize,
     },
-    /// A frame of this name does not exist.
+    /// An unknown frame name.
     Frame {
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// The frames that there are.
+        /// Existing frames.
         known: Vec<String>,
     },
-    /// A port where no live view can be opened: another program has it, or the system does not give it.
+    /// A port at which no live view can be opened, because another program uses it or the operating system
+    /// denies it.
     Port {
         /// The port.
         port: u16,
-        /// What the system says.
+        /// Error of the operating system.
         cause: std::io::Error,
     },
     /// A surface that cannot be drawn over its region.
     Surface {
         /// Name of the surface.
         name: String,
-        /// What is wrong.
+        /// Description of the error.
         what: String,
     },
     /// A file that cannot be read or written.
     File {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         cause: std::io::Error,
     },
-    /// A file that holds no triangles that are understood.
+    /// A file without readable triangles.
     Mesh {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong.
+        /// Description of the error.
         what: String,
     },
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, since `main` prints a returned error with `Debug`.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)

@@ -1,4 +1,4 @@
-//! What is drawn: pieces that are fixed in frames.
+//! Drawn geometry of a mechanism: pieces that are fixed in frames.
 
 use crate::mesh::{self, Mesh};
 use crate::{Error, text};
@@ -7,9 +7,10 @@ use linkwork::nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use linkwork::{Drawn, Real};
 use std::path::Path;
 
-/// A mechanism as it is drawn: its frames, and pieces fixed in them.
+/// Drawing of a mechanism: its frames, and pieces fixed in them.
 ///
-/// [`Figure::of`] takes those of a mechanism with the word `drawing`; further ones are [added](Figure::add).
+/// [`Figure::of`] takes the pieces of a mechanism with the option `drawing`; further pieces are
+/// [added](Figure::add).
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
     pub(crate) frames: Vec<String>,
@@ -17,7 +18,7 @@ pub struct Figure {
     pub(crate) gravity: [f64; 3],
 }
 
-/// A piece with its numbers.
+/// Piece with its dimensions.
 #[derive(Clone, Debug)]
 pub(crate) struct Shape {
     pub(crate) name: String,
@@ -26,19 +27,20 @@ pub(crate) struct Shape {
     pub(crate) frames: [Option<usize>; 2],
     pub(crate) numbers: Vec<f64>,
     pub(crate) mesh: Option<Mesh>,
-    /// True for an ellipsoid of mass and moments, drawn if no shape is declared.
+    /// Whether the piece is the equivalent ellipsoid of mass and moments of inertia, drawn if no shape is
+    /// declared.
     fitted: bool,
-    /// True if the mechanism declares the piece; false if the program adds it.
+    /// Whether the mechanism declares the piece; false if the program adds it.
     declared: bool,
 }
 
-/// A number of any scalar type.
+/// Converts a number of any scalar type to `f64`.
 pub(crate) fn plain<T: Real>(x: T) -> f64 {
     x.to_subset().unwrap_or(f64::NAN)
 }
 
 impl Figure {
-    /// What a mechanism declares, for its parameters as they are.
+    /// Returns the pieces that a mechanism declares, with the current values of its parameters.
     pub fn of<M, const NQ: usize, const NV: usize>(mechanism: &M) -> Figure
     where
         M: Drawn<NQ, NV>,
@@ -48,8 +50,8 @@ impl Figure {
         Figure::from_pieces(M::FRAMES.iter().map(ToString::to_string).collect(), M::DRAWING, &numbers)
     }
 
-    /// Pieces with their numbers, in frames of these names. Pieces whose numbers are missing or not finite
-    /// are left out.
+    /// Creates a drawing from pieces and their dimensions, in frames of these names. Pieces with missing
+    /// dimensions or dimensions that are not finite are omitted.
     pub fn from_pieces(frames: Vec<String>, pieces: &[Piece], numbers: &[f64]) -> Figure {
         let mut figure = Figure { frames, ..Figure::default() };
         for piece in pieces {
@@ -62,12 +64,12 @@ impl Figure {
         figure
     }
 
-    /// Adds a piece to a frame, to the ground if there is no name. Its numbers are those that [`Kind`] says,
-    /// m and rad.
+    /// Adds a piece to a frame, or to the ground if `frame` is `None`. The dimensions are those documented at
+    /// [`Kind`], m and rad.
     ///
     /// # Errors
     ///
-    /// If there is no such frame, or another number of numbers.
+    /// [`Error::Frame`] for an unknown frame, [`Error::Count`] for a wrong number of dimensions.
     pub fn add(
         mut self,
         name: &str,
@@ -84,16 +86,17 @@ impl Figure {
         Ok(self)
     }
 
-    /// Adds a surface to a frame, to the ground if there is no name: the places, m in the axes of the frame,
-    /// that a function gives for `u` and `w` between these bounds.
+    /// Adds a surface to a frame, or to the ground if `frame` is `None`. The function `place` maps the
+    /// parameters `u` and `w` between these bounds to a position, m in the axes of the frame.
     ///
-    /// Surfaces that contacts touch may be given by functions without an end. This draws a part of them, or
-    /// more of a terrain than [`Motion::of`](crate::Motion::of) draws of its own accord. Under a surface no
-    /// floor is drawn.
+    /// Contact surfaces given by functions may be unbounded. This method draws a region of such a surface, or
+    /// a larger region of a terrain than [`Motion::of`](crate::Motion::of) draws by default. No floor is
+    /// drawn under a surface.
     ///
     /// # Errors
     ///
-    /// If there is no such frame, if the bounds do not increase, or if a place is not finite.
+    /// [`Error::Frame`] for an unknown frame, [`Error::Surface`] if bounds do not increase or a position is
+    /// not finite.
     pub fn surface(
         mut self,
         name: &str,
@@ -115,14 +118,16 @@ impl Figure {
         Ok(self)
     }
 
-    /// Reads the triangles of a robot's meshes, STL, OBJ or COLLADA, from a folder. A path of the robot's
-    /// file, `package://name/path` or a path of its own, is looked for there with all of it, then with ever
-    /// fewer of its first folders. Without this call, and where no file of the name is found, the bodies are
-    /// drawn by their mass properties, and [`missing_meshes`](Self::missing_meshes) lists the files.
+    /// Reads the triangles of a robot's meshes, STL, OBJ or COLLADA, from a folder. A path in the robot's
+    /// file, `package://name/path` or a plain path, is searched in the folder, first in full, then without
+    /// its leading folders one after the other. If this method is not called, or if a file is not found,
+    /// bodies are drawn by their mass properties, and [`missing_meshes`](Self::missing_meshes) lists the
+    /// files.
     ///
     /// # Errors
     ///
-    /// If the folder cannot be read, or if a file of the name is found, and cannot be read as triangles.
+    /// [`Error::File`] if the folder or a file that is found cannot be read, [`Error::Mesh`] if a file has no
+    /// readable triangles.
     pub fn meshes(mut self, folder: impl AsRef<Path>) -> Result<Figure, Error> {
         let unreadable = |cause| Error::File { path: folder.as_ref().to_path_buf(), cause };
         std::fs::read_dir(folder.as_ref()).map_err(unreadable)?;
@@ -136,7 +141,7 @@ impl Figure {
         Ok(self)
     }
 
-    /// Paths of the meshes that were not read, each once, as the robot's file writes them.
+    /// Returns the distinct paths of meshes that were not read, as they are written in the robot's file.
     pub fn missing_meshes(&self) -> Vec<&str> {
         let mut missing = Vec::new();
         for shape in &self.shapes {
@@ -149,12 +154,12 @@ impl Figure {
         missing
     }
 
-    /// The shapes that are drawn.
+    /// Iterates over the shapes that are drawn.
     pub(crate) fn shown(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().filter(|shape| shape.is_visible() && !self.has_meshes(shape))
     }
 
-    /// Whether a shape shows the mass properties of a body whose meshes were all read.
+    /// Returns whether a shape represents the mass properties of a body whose meshes were all read.
     fn has_meshes(&self, shape: &Shape) -> bool {
         let is_mesh = |s: &&Shape| {
             s.declared && s.role == Role::Visual && matches!(s.kind, Kind::Mesh(_)) && s.name == shape.name
@@ -166,12 +171,12 @@ impl Figure {
             && meshes.all(|s| s.mesh.is_some())
     }
 
-    /// Names of the frames.
+    /// Returns the names of the frames.
     pub fn frames(&self) -> &[String] {
         &self.frames
     }
 
-    /// The number of a frame.
+    /// Returns the index of a frame.
     pub(crate) fn frame(&self, name: &str) -> Result<usize, Error> {
         let found = self.frames.iter().position(|known| known == name);
         found.ok_or_else(|| Error::Frame { name: name.to_string(), known: self.frames.clone() })
@@ -195,8 +200,8 @@ impl Figure {
         self.shapes.push(Shape { name, role, kind, frames, numbers, mesh: None, fitted, declared });
     }
 
-    /// Ellipsoids that stand for figures are no longer than the links: the inertias of many files are made
-    /// up.
+    /// Limits the equivalent ellipsoids to the length of the links, because many robot files have fictitious
+    /// inertias.
     fn fit(&mut self) {
         let length =
             |s: &Shape| (0..3).map(|k| (s.numbers[3 + k] - s.numbers[k]).powi(2)).sum::<f64>().sqrt();
@@ -213,12 +218,12 @@ impl Figure {
         }
     }
 
-    /// The frames that pieces are fixed in.
+    /// Returns the indices of the frames in which pieces are fixed.
     pub(crate) fn used(&self) -> Vec<usize> {
         (0..self.frames.len()).filter(|k| self.shapes.iter().any(|s| s.frames.contains(&Some(*k)))).collect()
     }
 
-    /// The directions of the axes of joints, if all are parallel: what moves in a plane.
+    /// Returns the common direction of all revolute axes if they are parallel, which makes the motion planar.
     pub(crate) fn normal(
         &self,
         turn: impl Fn(Option<usize>, Vector3<f64>) -> Vector3<f64>,
@@ -232,7 +237,8 @@ impl Figure {
 }
 
 impl Shape {
-    /// Points that it reaches, with the frame of each, and how far beyond.
+    /// Returns the reference points of the shape, each with its frame and the distance that the shape extends
+    /// beyond it.
     pub(crate) fn reach(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
         let at = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
@@ -253,7 +259,7 @@ impl Shape {
             Kind::Ellipsoid => vec![(a, at(0), n[12].max(n[13]).max(n[14]))],
             Kind::Bar | Kind::Coil | Kind::Damper => vec![(a, at(0), 0.0), (b, at(3), 0.0)],
             Kind::Terrain(_) => Vec::new(),
-            // As a plane it is as large as one likes.
+            // A surface has no definite size, like a plane.
             Kind::Mesh(_) if self.role == Role::Surface => Vec::new(),
             Kind::Mesh(_) => match &self.mesh {
                 Some(mesh) => vec![(a, at(0), mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()))],
@@ -294,9 +300,9 @@ impl Shape {
     }
 }
 
-/// The homogeneous ellipsoid with a mass and an inertia: with principal moments `I₁ …` its half axes fulfil
-/// `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Moments that no body can have, as those of plane mechanisms, give flat
-/// ones.
+/// Returns the homogeneous ellipsoid with a mass and an inertia: with principal moments `I₁ …`, its semi-axes
+/// satisfy `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Moments that no body can have, such as those of planar
+/// mechanisms, yield flat ellipsoids.
 fn equivalent(numbers: &[f64]) -> (Kind, Vec<f64>) {
     let [x, y, z, mass, xx, yy, zz, xy, xz, yz] = *numbers else { return (Kind::Point, vec![0.0; 3]) };
     if mass <= 0.0 {
@@ -319,7 +325,8 @@ fn equivalent(numbers: &[f64]) -> (Kind, Vec<f64>) {
 mod tests {
     use super::*;
 
-    /// A homogeneous ellipsoid with half axes a, b, c has `I_xx = m (b² + c²) / 5` (any table of mechanics).
+    /// Checks that the equivalent ellipsoid of a homogeneous ellipsoid is itself. With semi-axes a, b, c, its
+    /// inertia is `I_xx = m (b² + c²) / 5` (any table of mechanics).
     #[test]
     fn an_ellipsoid_is_its_own_equivalent() {
         let (m, [a, b, c]) = (3.0, [0.5, 0.2, 0.3_f64]);
@@ -327,7 +334,7 @@ mod tests {
         let numbers = [1.0, 2.0, 3.0, m, moment(b, c), moment(a, c), moment(a, b), 0.0, 0.0, 0.0];
         let (kind, n) = equivalent(&numbers);
         assert_eq!((kind, &n[..3]), (Kind::Ellipsoid, &[1.0, 2.0, 3.0][..]));
-        // Each column of the axes is a coordinate axis, with its half axis.
+        // Each column of the axes is a coordinate axis, with the corresponding semi-axis.
         for (k, half) in [a, b, c].into_iter().enumerate() {
             let column = (0..3).find(|j| n[3 + 3 * k + j].abs() > 0.999_999).unwrap();
             assert!((n[12 + column] - half).abs() < 1e-12);

@@ -1,5 +1,5 @@
-//! Free-body diagrams as SVG: a body by the points where something acts on it, forces and torques as arrows,
-//! with their figures.
+//! Free-body diagrams as SVG: a body, the points at which actions are applied, and forces and torques as
+//! arrows with their values.
 
 use crate::figure::plain;
 use crate::text::html as escaped;
@@ -8,39 +8,39 @@ use linkwork::free_body::{Action, Diagram, Origin};
 use linkwork::nalgebra::SVector;
 use std::fmt::Write;
 
-/// Width of the drawing, pixels, and of the list beside it.
+/// Widths of the drawing and of the list next to it, pixels.
 const DRAWING: f64 = 480.0;
 const LIST: f64 = 420.0;
 /// Height of the drawing, pixels.
 const HEIGHT: f64 = 480.0;
-/// The longest arrow, and the largest distance from the centre of mass, pixels.
+/// Maximum length of an arrow, and maximum distance of a point from the centre of mass, pixels.
 const LONGEST: f64 = 110.0;
 const REACH: f64 = 105.0;
-/// Radius of the arcs of torques, pixels.
+/// Radius of the arcs that represent torques, pixels.
 const ARC: f64 = 26.0;
-/// Arrows shorter than this are dots.
+/// Length below which an arrow is omitted, pixels.
 const SHORTEST: f64 = 1.5;
-/// Height of a line of the list.
+/// Height of a line of the list, pixels.
 const LINE: f64 = 19.0;
-/// Below this part of the largest figure one counts as zero.
+/// Torques below this fraction of the largest one count as zero.
 const ZERO: f64 = 1e-9;
 
-/// From where a free-body diagram is looked at, in the axes of the diagram.
+/// Viewing direction of a free-body diagram, in the axes of the diagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// x to the right, y upwards.
+    /// x to the right, y upward.
     #[default]
     Xy,
-    /// x to the right, z upwards.
+    /// x to the right, z upward.
     Xz,
-    /// y to the right, z upwards.
+    /// y to the right, z upward.
     Yz,
-    /// z upwards, x and y to the front, all three shortened alike.
+    /// Isometric view: z upward, x and y towards the viewer, with equal foreshortening of all axes.
     Isometric,
 }
 
 impl Side {
-    /// The directions to the right, upwards and to the viewer.
+    /// Returns the unit vectors to the right, upward and towards the viewer.
     fn axes(self) -> [[f64; 3]; 3] {
         let third = 1.0 / 3.0_f64.sqrt();
         let (a, b, c) = (0.5_f64.sqrt(), 1.0 / 6.0_f64.sqrt(), (2.0 / 3.0_f64).sqrt());
@@ -52,19 +52,19 @@ impl Side {
         }
     }
 
-    /// The components of a vector to the right, upwards and to the viewer.
+    /// Returns the components of a vector to the right, upward and towards the viewer.
     fn seen(self, v: [f64; 3]) -> [f64; 3] {
         self.axes().map(|axis| axis.iter().zip(v).map(|(a, b)| a * b).sum())
     }
 }
 
-/// A free-body diagram as SVG.
+/// Draws a free-body diagram as SVG.
 ///
-/// The body is shown by lines from its centre of mass to the points where something acts. Forces are arrows
-/// of one scale that begin at their points; of a torque the part across the picture is an arc with an arrow,
-/// counterclockwise where it points to the viewer, and the rest an arrow with two heads. Beside stand all
-/// actions with their figures in the axes of the diagram, and their sum. Figures that are not finite are not
-/// drawn, but listed.
+/// The body is represented by lines from its centre of mass to the points at which actions are applied.
+/// Forces are arrows with a common scale that begin at their points. The component of a torque perpendicular
+/// to the picture is an arc with an arrow, counterclockwise if it points towards the viewer. The components
+/// in the picture are an arrow with two heads. The list next to the drawing contains the values of all
+/// actions in the axes of the diagram, and their sum. Values that are not finite are listed but not drawn.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -101,7 +101,7 @@ pub fn free_body<T: Real, const N: usize>(diagram: &Diagram<T, N>, side: Side) -
     out
 }
 
-/// An action as it is seen.
+/// Action with its components in the picture.
 struct Shown {
     name: &'static str,
     colour: &'static str,
@@ -139,7 +139,7 @@ fn length(x: f64, y: f64) -> f64 {
     x.hypot(y)
 }
 
-/// A factor by which the largest of sizes becomes `to`.
+/// Returns the factor that scales the maximum of `sizes` to `to`.
 fn scale(sizes: impl Iterator<Item = f64>, to: f64) -> f64 {
     let largest = sizes.fold(0.0_f64, f64::max);
     if largest > 0.0 { to / largest } else { 0.0 }
@@ -175,7 +175,7 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
         arrow(out, (x, y), (right, -up), shown.colour, 1);
         let away = if up < 0.0 { 16.0 } else { -8.0 };
         let drawn = length(right, up) > SHORTEST;
-        // Outside of the arc of a torque.
+        // Outside the arc of a torque.
         let label = if drawn { (x + right, y - up + away) } else { (x + ARC, y - ARC - 8.0) };
         let _ = writeln!(
             out,
@@ -196,7 +196,7 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
     }
 }
 
-/// The axes of the diagram, in a corner.
+/// Draws the axes of the diagram in a corner.
 fn write_axes(out: &mut String, side: Side) {
     let origin = (46.0, HEIGHT - 46.0);
     for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
@@ -216,7 +216,7 @@ fn write_axes(out: &mut String, side: Side) {
     }
 }
 
-/// An arrow with so many heads, if it is long enough.
+/// Draws an arrow with this number of heads, unless it is too short.
 fn arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour: &str, heads: usize) {
     let long = length(dx, dy);
     if long <= SHORTEST {
@@ -246,9 +246,9 @@ fn arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour: &st
     }
 }
 
-/// Three quarters of a circle about a point, with an arrow.
+/// Draws three quarters of a circle about a point, with an arrow.
 fn arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &str) {
-    // From the right by way of the top, seen counterclockwise; its mirror image otherwise.
+    // Counterclockwise from the right through the top; otherwise the mirror image.
     let sign = if counterclockwise { 1.0 } else { -1.0 };
     let sweep = u8::from(!counterclockwise);
     let _ = writeln!(
@@ -267,7 +267,7 @@ fn arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &st
     );
 }
 
-/// All actions with their figures, and their sum.
+/// Writes the list of all actions with their values, and their sum.
 fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>, all: &[Shown]) {
     let x = DRAWING + 10.0;
     let mut y = 26.0;
@@ -292,7 +292,7 @@ fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>
     say(out, "#000", "normal", &format!("torque {} N·m", written(torque)));
 }
 
-/// Three components, four digits of the largest.
+/// Formats three components with four significant digits of the largest one.
 fn written(v: [f64; 3]) -> String {
     let largest = v.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     let decimals = if largest > 0.0 && largest.is_finite() {
@@ -300,7 +300,7 @@ fn written(v: [f64; 3]) -> String {
     } else {
         0
     };
-    // Without the sign of what is rounded to zero.
+    // Values that are rounded to zero are printed without their sign.
     let half = 0.5 * 10.0_f64.powi(-(decimals as i32));
     let parts = v.map(|x| format!("{:.decimals$}", if x.abs() < half { 0.0 } else { x }));
     format!("({})", parts.join(", "))

@@ -28,14 +28,14 @@ pub use page::Page;
 use linkwork::simulate::Sample;
 use linkwork::{Drawn, Rheonomic};
 
-/// A page that shows a motion of a mechanism, in one call: [`Motion::of`] on a [`Page`].
+/// Returns a page that shows the motion of a mechanism: [`Motion::of`] on a [`Page`].
 ///
-/// Meshes are not read: bodies that have some are drawn by their mass properties, and the page lists the
-/// files ([`Figure::meshes`] reads them, for [`Motion::figure`]).
+/// Meshes are not read: bodies with meshes are drawn by their mass properties, and the page lists the files.
+/// To read meshes, use [`Figure::meshes`] with [`Motion::figure`].
 ///
 /// # Errors
 ///
-/// Those of [`Motion::of`].
+/// As for [`Motion::of`].
 pub fn page<M, const NQ: usize, const NV: usize, const NU: usize>(
     title: &str,
     mechanism: &M,

@@ -1,4 +1,4 @@
-//! What a control loop does, in a browser while it runs.
+//! Live views of a control loop in a browser.
 
 use crate::figure::plain;
 use crate::motion::as_plain;
@@ -8,11 +8,12 @@ use linkwork::nalgebra::UnitQuaternion;
 use linkwork::simulate::Sample;
 use linkwork::{Drawn, Rheonomic};
 
-/// A live view: a page on this machine that shows what a running program [shows](Live::show) it.
+/// Live view: a page, served on this machine, that shows the samples which a running program
+/// [sends](Live::show).
 ///
-/// The page is that of [`Page`]: the last twenty seconds can be looked at while the loop goes on. Any number
-/// of browsers up to sixteen may look. The page is reached from this machine alone, and only pages of its own
-/// may open the socket.
+/// The page is that of [`Page`]. It can replay the last twenty seconds while the loop continues. Up to
+/// sixteen browsers may be connected. The page is accessible from this machine only, and only pages of its
+/// own origin may open the socket.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -26,11 +27,11 @@ use linkwork::{Drawn, Rheonomic};
 ///     hinge: Pin,
 /// }
 ///
-/// // Port 0 is any that is free.
+/// // Port 0 selects any free port.
 /// let mut live = Live::open(&Pendulum {}, 0)?;
 /// println!("open {}", live.url());
 /// for sample in simulate(&Pendulum {}).from([3.0], [0.0]).duration(2.0).sample_every(0.01) {
-///     // A loop of a real machine waits for its next instant here.
+///     // The loop of a real machine waits for its next period here.
 ///     live.show(&sample?)?;
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -38,13 +39,13 @@ use linkwork::{Drawn, Rheonomic};
 #[derive(Debug)]
 pub struct Live<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     mechanism: &'m M,
-    /// The frames of the page.
+    /// Frames of the page.
     frames: Vec<usize>,
-    /// How many coordinates are plotted.
+    /// Number of plotted coordinates.
     plotted: usize,
     server: Server,
-    /// The newest message: the time in eight bytes, then of each frame its place and its quaternion x y z w,
-    /// then what is plotted, then the inputs, each in four bytes.
+    /// Newest message: the time in eight bytes, then for each frame its position and its quaternion x y z w,
+    /// then the plotted coordinates, then the inputs, each in four bytes.
     message: Vec<u8>,
     samples: u64,
 }
@@ -53,21 +54,22 @@ impl<'m, M, const NQ: usize, const NV: usize, const NU: usize> Live<'m, M, NQ, N
 where
     M: Rheonomic<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Rheonomic<NQ, NV, NU>>::Scalar>,
 {
-    /// Opens the view at a port of this machine, `http://127.0.0.1:PORT/`; at any that is free if it is 0.
+    /// Opens the view at a port of this machine, `http://127.0.0.1:PORT/`; at any free port for port 0.
     ///
     /// # Errors
     ///
-    /// [`Error::Port`] if another program has the port, or the system does not give it; those of
-    /// [`Motion::of`] for the configuration zero.
+    /// [`Error::Port`] if another program uses the port or the operating system denies it; the errors of
+    /// [`Motion::of`] for the neutral configuration.
     pub fn open(mechanism: &'m M, port: u16) -> Result<Self, Error> {
         Live::of(mechanism, Figure::of(mechanism), port)
     }
 
-    /// As [`open`](Self::open), with a figure that has more than what is declared: meshes, terrain.
+    /// Opens the view as [`open`](Self::open) does, with a drawing that contains more than the declared
+    /// pieces, such as meshes or terrain.
     ///
     /// # Errors
     ///
-    /// Those of [`open`](Self::open), and of [`Motion::figure`].
+    /// As for [`open`](Self::open) and [`Motion::figure`].
     pub fn of(mechanism: &'m M, figure: Figure, port: u16) -> Result<Self, Error> {
         let name = std::any::type_name::<M>();
         let name = name.split('<').next().and_then(|path| path.rsplit("::").next()).unwrap_or("Mechanism");
@@ -86,18 +88,19 @@ where
         Ok(Live { mechanism, frames, plotted, server, message: Vec::new(), samples: 0 })
     }
 
-    /// Where the page is: to be opened in a browser.
+    /// Returns the address of the page, to be opened in a browser.
     pub fn url(&self) -> String {
         format!("http://{}/", self.server.address())
     }
 
-    /// Shows a sample. It takes the placements of the frames and a copy of them, waits for nothing, and
-    /// leaves out what a browser does not take: of samples that follow each other faster than a screen shows,
-    /// the newest is seen.
+    /// Shows a sample. The call computes and copies the placements of the frames and never blocks. Samples
+    /// that a browser does not read in time are dropped: if samples follow each other faster than the screen
+    /// refreshes, the newest one is shown.
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] if a placement, a coordinate or an input is not finite; nothing is shown then.
+    /// [`Error::NotFinite`] if a placement, a coordinate or an input is not finite; the sample is then not
+    /// shown.
     pub fn show(
         &mut self,
         sample: &Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>,

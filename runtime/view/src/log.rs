@@ -7,11 +7,11 @@ use linkwork::simulate::Sample;
 use linkwork::{Real, Rheonomic};
 use std::fmt::{Display, Write};
 
-/// Writes a motion as comma-separated values: a line of names, then one for each sample with time, s,
-/// configuration, velocity and inputs, each with all its digits.
+/// Writes a motion as comma-separated values: a line of names, then one line per sample with time, s,
+/// configuration, velocity and inputs, all in full precision.
 ///
-/// The columns are `t`, and the names of `CONFIGURATION`, `VELOCITIES` and `INPUTS` after `q.`, `v.` and
-/// `u.`. Names with commas, quotes or ends of lines are quoted.
+/// The columns are `t`, then the names of `CONFIGURATION`, `VELOCITIES` and `INPUTS` with the prefixes `q.`,
+/// `v.` and `u.`. Names with commas, quotes or line breaks are quoted.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -32,8 +32,9 @@ use std::fmt::{Display, Write};
 ///
 /// # Errors
 ///
-/// If there are no samples, or if a time is not finite or before the one that precedes it, as for
-/// [`page`](crate::page). Other numbers may be infinite or NaN: the log shows where a motion fails.
+/// [`Error::Empty`] without samples, [`Error::Time`] if a time is not finite or before the previous one, as
+/// for [`page`](crate::page). Other values may be infinite or NaN, so that the log shows where a motion
+/// fails.
 pub fn csv<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     _mechanism: &M,
     samples: &[Sample<T, NQ, NV, NU>],
@@ -59,7 +60,7 @@ where
     Ok(out)
 }
 
-/// A field, in quotes where it needs them.
+/// Returns a field, quoted if necessary.
 fn field(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),

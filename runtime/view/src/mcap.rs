@@ -1,8 +1,8 @@
-//! Logs of motions as files of the format MCAP, with the schemas of Foxglove (<https://mcap.dev/spec>).
+//! Logs of motions as MCAP files with Foxglove schemas (<https://mcap.dev/spec>).
 //!
-//! A file is a sequence of records: a byte that says what it is, the length of its content in eight bytes,
-//! the content. Numbers are little endian; strings have their length in four bytes before them. Messages are
-//! JSON, and stand one behind the other: without chunks and without compression.
+//! A file is a sequence of records: a byte for the kind, eight bytes for the length of the content, then the
+//! content. Numbers are little-endian; strings are preceded by their length in four bytes. Messages are JSON
+//! and are written one after the other, without chunks and without compression.
 
 use crate::figure::plain;
 use crate::motion::as_plain;
@@ -20,7 +20,7 @@ const MESSAGE: u8 = 0x05;
 const STATISTICS: u8 = 0x0b;
 const DATA_END: u8 = 0x0f;
 
-/// Topics, the names of their schemas, and these. Foxglove knows the first two by their names.
+/// Topics, with the names and contents of their schemas. Foxglove recognises the first two by name.
 const TOPICS: [(&str, &str, &str); 3] = [
     (
         "/tf",
@@ -39,13 +39,13 @@ const TOPICS: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// A motion as the content of an MCAP file, with a message of each of these topics for every sample:
+/// Returns a motion as the content of an MCAP file, with one message per topic and sample:
 ///
 /// - `/tf`, `foxglove.FrameTransforms`: the frames of the mechanism in the frame `ground`, m, quaternions;
-/// - `/joint_states`, `foxglove.JointStates`: position and velocity of every coordinate that is one number
-///   with a rate of its own name, m and m/s, rad and rad/s;
-/// - `/state`, `linkwork.State`: time, configuration `q`, velocity `v` and inputs `u` by name, with all their
-///   digits, for plots.
+/// - `/joint_states`, `foxglove.JointStates`: position and velocity of every coordinate that is a single
+///   number with a velocity of the same name, m and m/s, rad and rad/s;
+/// - `/state`, `linkwork.State`: time, configuration `q`, velocity `v` and inputs `u` by name in full
+///   precision, for plots.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -68,7 +68,8 @@ const TOPICS: [(&str, &str, &str); 3] = [
 ///
 /// # Errors
 ///
-/// If a time is negative, not finite, or before the one that precedes it, or if a number is not finite.
+/// [`Error::Time`] if a time is negative, not finite, or before the previous one; [`Error::NotFinite`] if a
+/// value is not finite.
 pub fn mcap<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     samples: &[Sample<<M as Rheonomic<NQ, NV, NU>>::Scalar, NQ, NV, NU>],
@@ -98,41 +99,42 @@ where
     mcap_of(&names, samples.iter().map(instant))
 }
 
-/// The names of what a log holds, in order.
+/// Names of the logged quantities, in order.
 #[derive(Clone, Copy, Debug)]
 pub struct Names<'a> {
-    /// The frames that have placements.
+    /// Frames with placements.
     pub frames: &'a [&'a str],
-    /// The entries of the configuration.
+    /// Entries of the configuration.
     pub configuration: &'a [&'a str],
-    /// The entries of the velocity.
+    /// Entries of the velocity.
     pub velocities: &'a [&'a str],
-    /// The inputs.
+    /// Names of the inputs.
     pub inputs: &'a [&'a str],
 }
 
-/// An instant of a motion that is logged.
+/// Logged state at one instant of a motion.
 #[derive(Clone, Debug)]
 pub struct Instant {
     /// Time, s.
     pub t: f64,
-    /// Configuration, an entry for each of [`Names::configuration`], m or rad.
+    /// Configuration, one entry per name in [`Names::configuration`], m or rad.
     pub q: Vec<f64>,
-    /// Velocity, an entry for each of [`Names::velocities`], m/s or rad/s.
+    /// Velocity, one entry per name in [`Names::velocities`], m/s or rad/s.
     pub v: Vec<f64>,
-    /// Inputs, an entry for each of [`Names::inputs`], in the units of their actuators.
+    /// Inputs, one entry per name in [`Names::inputs`], in the units of their actuators.
     pub u: Vec<f64>,
     /// Placements of [`Names::frames`] in the axes of the ground, m.
     pub placements: Vec<IsometryMatrix3<f64>>,
 }
 
-/// A log in MCAP's format of a motion that comes from elsewhere than generated code: placements of frames (m,
-/// in the axes of the ground), configurations, velocities and inputs in SI units, at the instants of
-/// `samples`. [`mcap`] writes the log of a mechanism.
+/// Returns an MCAP log of a motion that is not computed by generated code: placements of frames (m, in the
+/// axes of the ground), configurations, velocities and inputs in SI units, at the instants of `samples`.
+/// [`mcap`] writes the log of a mechanism.
 ///
 /// # Errors
 ///
-/// Those of [`mcap`], and if an instant has another number of entries than there are names.
+/// As for [`mcap`], and [`Error::Count`] if an instant has a different number of entries than there are
+/// names.
 pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) -> Result<Vec<u8>, Error> {
     let mut file = File::new();
     let mut last = 0.0;
@@ -190,7 +192,8 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
     Ok(file.finish())
 }
 
-/// Reports what a file does not hold: times that 64 bits of nanoseconds do not, numbers that are none.
+/// Reports values that the format cannot represent: times outside 64 bits of nanoseconds, and values that are
+/// not finite.
 fn check(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(), Error> {
     let motion = || "mcap".to_string();
     let not_finite =
@@ -220,16 +223,16 @@ fn check(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(),
     Ok(())
 }
 
-/// A file that is being written.
+/// MCAP file under construction.
 struct File {
     bytes: Vec<u8>,
-    /// Number and extent in time of the messages of each channel, ns.
+    /// Number of messages, and the first and last time of all messages, ns.
     count: u32,
     first: u64,
     last: u64,
 }
 
-/// The content of a record.
+/// Content of a record.
 #[derive(Default)]
 struct Content(Vec<u8>);
 
@@ -261,14 +264,14 @@ impl File {
         self.bytes.extend(content.0);
     }
 
-    /// Schemas and channels.
+    /// Writes the schemas and channels.
     fn describe(&mut self) {
         for (id, (topic, name, schema)) in (1_u16..).zip(TOPICS) {
             let id = id.to_le_bytes();
             let content = Content::default().bytes(&id).string(name).string("jsonschema").string(schema);
             self.record(SCHEMA, content);
             let content = Content::default().bytes(&id).bytes(&id).string(topic).string("json");
-            // No further data.
+            // No metadata.
             self.record(CHANNEL, content.bytes(&0_u32.to_le_bytes()));
         }
     }
@@ -285,9 +288,9 @@ impl File {
         self.record(MESSAGE, head.bytes(&time).bytes(&time).bytes(message.as_bytes()));
     }
 
-    /// All of it, with a summary: schemas, channels, and how many messages there are.
+    /// Completes the file with a summary: schemas, channels and the number of messages.
     fn finish(mut self) -> Vec<u8> {
-        // A checksum of zero is none.
+        // A checksum of zero means that none is provided.
         let none = 0_u32.to_le_bytes();
         self.record(DATA_END, Content::default().bytes(&none));
         let summary = self.bytes.len() as u64;
@@ -297,7 +300,7 @@ impl File {
             .bytes(&u64::from(self.count).to_le_bytes())
             .bytes(&channels.to_le_bytes())
             .bytes(&u32::from(channels).to_le_bytes())
-            // Attachments, metadata, chunks.
+            // Number of attachments, metadata records and chunks.
             .bytes(&[0; 12])
             .bytes(&self.first.to_le_bytes())
             .bytes(&self.last.to_le_bytes())

@@ -1,24 +1,24 @@
-//! Triangles of files: STL, binary or as text, OBJ, and [COLLADA](crate::collada).
+//! Triangles from files: STL (binary or ASCII), OBJ, and [COLLADA](crate::collada).
 
 use crate::encode::base64;
 use crate::{Error, collada, text};
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
-/// Triangles, three corners each.
+/// Triangles, with three corners each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Mesh {
     corners: Vec<[f32; 3]>,
 }
 
-/// Most triangles of a file: a page with more would be large and slow.
+/// Maximum number of triangles of a file: a page with more would be large and slow.
 pub(crate) const MAX_TRIANGLES: usize = 200_000;
 
-/// Cells of a surface along each of its two directions.
+/// Number of cells of a surface along each of its two directions.
 const CELLS: u32 = 80;
 
 impl Mesh {
-    /// The part of a surface between bounds of its two parameters, in cells of two triangles.
+    /// Triangulates a surface between bounds of its two parameters, with two triangles per cell.
     pub(crate) fn surface(
         u: [f64; 2],
         w: [f64; 2],
@@ -49,13 +49,14 @@ impl Mesh {
         Ok(Mesh { corners })
     }
 
-    /// The farthest corner from the origin.
+    /// Returns the distance of the farthest corner from the origin.
     pub(crate) fn radius(&self) -> f64 {
         let norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
         self.corners.iter().map(norm).fold(0.0, f64::max)
     }
 
-    /// Corners in 16 bits each, those that coincide once: lowest corner, size of a step, places, indices.
+    /// Serialises the mesh as JSON, with 16 bits per coordinate and coinciding corners merged: lowest corner,
+    /// step sizes, positions, indices.
     pub(crate) fn json(&self) -> String {
         let bound = |f: fn(f32, f32) -> f32, from: f32| {
             [0, 1, 2].map(|k| self.corners.iter().map(|c| c[k]).fold(from, f))
@@ -83,10 +84,10 @@ impl Mesh {
     }
 }
 
-/// The file that a robot's file means by a path.
+/// Returns the file in a folder that a path of a robot's file refers to.
 pub(crate) fn find(folder: &Path, path: &str) -> Option<PathBuf> {
     let path = path.split_once("://").map_or(path, |(_, path)| path);
-    // Nothing outside of the folder.
+    // `..` is dropped, so that no file outside the folder is read.
     let names: Vec<&std::ffi::OsStr> = Path::new(path)
         .components()
         .filter_map(|part| match part {
@@ -99,7 +100,7 @@ pub(crate) fn find(folder: &Path, path: &str) -> Option<PathBuf> {
     candidates.into_iter().find(|candidate| candidate.is_file())
 }
 
-/// Reads a file by what its name says.
+/// Reads a file in the format of its extension.
 pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
     let bytes = std::fs::read(path).map_err(|cause| Error::File { path: path.to_path_buf(), cause })?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
@@ -122,8 +123,8 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
     mesh.map_err(|what| Error::Mesh { path: path.to_path_buf(), what })
 }
 
-/// Binary: a header of 80 bytes, the number of triangles, 50 bytes for each; its length tells it from text,
-/// which also begins with `solid`.
+/// Reads an STL file. A binary file has a header of 80 bytes, the number of triangles, and 50 bytes per
+/// triangle. It is distinguished from ASCII by its length, since its header may also begin with `solid`.
 fn stl(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(80..84).and_then(|n| n.try_into().ok()).map(u32::from_le_bytes);
     if let Some(count) = count.filter(|n| bytes.len() as u64 == 84 + 50 * u64::from(*n)) {
@@ -153,7 +154,7 @@ fn stl(bytes: &[u8]) -> Result<Mesh, String> {
     }
 }
 
-/// Corners and faces; faces with more corners are fans.
+/// Reads the corners and faces of an OBJ file; faces with more than three corners are triangulated as fans.
 fn obj(text: &str) -> Result<Mesh, String> {
     let (mut corners, mut mesh): (Vec<[f32; 3]>, Mesh) = (Vec::new(), Mesh::default());
     for line in text.lines() {
@@ -215,7 +216,7 @@ mod tests {
         ] {
             assert!(found.unwrap_err().contains(what), "{what}");
         }
-        // A count that the file does not hold.
+        // The file is shorter than its number of triangles requires.
         let mut short = vec![0; 80];
         short.extend(u32::MAX.to_le_bytes());
         assert!(stl(&short).is_err());

@@ -1,4 +1,4 @@
-//! A motion: where the frames of a figure are at each instant, and what is plotted beside it.
+//! Motions: placements of the frames of a drawing at each instant, with plots.
 
 use crate::encode::Stream;
 use crate::figure::{Figure, plain};
@@ -8,32 +8,32 @@ use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Ve
 use linkwork::simulate::Sample;
 use linkwork::{Drawn, Rheonomic};
 
-/// Steps of quaternions.
+/// Quantisation step of quaternions.
 const TURN: f64 = 1.0 / 16384.0;
-/// Steps of time, s.
+/// Quantisation step of time, s.
 const TICK: f64 = 1e-5;
-/// Steps of what is plotted, of its range.
+/// Number of quantisation steps over the range of a plotted curve.
 const LEVELS: f64 = 4000.0;
-/// Parts of the size of the figure that places are rounded to.
+/// Number of quantisation steps of positions over the size of the mechanism.
 const PARTS: f64 = 10_000.0;
-/// More samples per second than this are not shown of a motion that has more than [`SHOWN`] of them.
+/// Maximum number of shown samples per second for a motion with more than [`SHOWN`] samples.
 const RATE: f64 = 60.0;
-/// Of a shorter motion, which one looks at slowly, as many samples are shown.
+/// Number of shown samples of a shorter motion, which is usually watched in slow motion.
 const SHOWN: f64 = 600.0;
-/// Coordinates that are plotted of their own accord.
+/// Maximum number of coordinates that are plotted by default.
 const PLOTTED: usize = 12;
 
-/// A motion of a figure: placements of its frames at instants, plots of anything beside them.
+/// Motion of a drawing: placements of its frames at instants, with plots of arbitrary quantities.
 ///
-/// [`Motion::of`] takes a mechanism with the word `drawing` and samples of `linkwork::simulate`.
+/// [`Motion::of`] takes a mechanism with the option `drawing` and samples of `linkwork::simulate`.
 #[derive(Clone, Debug)]
 pub struct Motion {
     title: String,
     figure: Figure,
     times: Vec<f64>,
-    /// Sample by sample, frame by frame.
+    /// Placements, indexed by sample, then by frame.
     placements: Vec<Vec<IsometryMatrix3<f64>>>,
-    /// Sample by sample.
+    /// Inputs, indexed by sample.
     inputs: Vec<Vec<f64>>,
     plots: Vec<Plot>,
     trails: Vec<(usize, [f64; 3], f64)>,
@@ -42,17 +42,17 @@ pub struct Motion {
     live: bool,
 }
 
-/// A vector over time.
+/// Vector over time, drawn as an arrow.
 #[derive(Clone, Debug)]
 struct Arrow {
     kind: &'static str,
     frame: Option<usize>,
     point: [f64; 3],
-    /// Sample by sample, in the ground's axes.
+    /// Vectors, indexed by sample, in the ground's axes.
     values: Vec<[f64; 3]>,
 }
 
-/// Curves over time.
+/// Plot with curves over time.
 #[derive(Clone, Debug)]
 struct Plot {
     title: String,
@@ -61,12 +61,13 @@ struct Plot {
 }
 
 impl Motion {
-    /// The motion that samples tell. Up to twelve coordinates are plotted, those of each unit together.
-    /// Terrain that contacts touch is drawn as far as the motion goes.
+    /// Creates a motion from samples. Up to twelve coordinates are plotted, with one plot per unit. Terrains
+    /// with contacts are drawn over the region of the motion.
     ///
     /// # Errors
     ///
-    /// If there are no samples, times decrease, or a placement is not finite.
+    /// [`Error::Empty`] without samples, [`Error::Time`] if times decrease, [`Error::NotFinite`] if a
+    /// placement is not finite.
     pub fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
         title: &str,
         mechanism: &M,
@@ -95,12 +96,12 @@ impl Motion {
         }))
     }
 
-    /// Placements of all frames of a figure at each time, s: of what moves by other means than generated
-    /// code.
+    /// Creates a motion from placements of all frames of a drawing at each time, s, for motions that are not
+    /// computed by generated code.
     ///
     /// # Errors
     ///
-    /// As those of [`of`](Self::of), and if the lists do not fit.
+    /// As for [`of`](Self::of), and [`Error::Count`] if the lengths of the lists differ.
     pub fn from_placements(
         title: &str,
         figure: Figure,
@@ -138,38 +139,38 @@ impl Motion {
         })
     }
 
-    /// Draws this figure, which has the same frames: with further pieces, or with meshes.
+    /// Replaces the drawing by one with the same frames, which has further pieces or meshes.
     ///
     /// # Errors
     ///
-    /// If its number of frames is another one.
+    /// [`Error::Count`] if the number of frames differs.
     pub fn figure(mut self, figure: Figure) -> Result<Motion, Error> {
         check(&format!("the frames of `{}`", self.title), self.figure.frames.len(), figure.frames.len())?;
         self.figure = figure;
         Ok(self)
     }
 
-    /// What is drawn, to be changed and given back to [`figure`](Self::figure).
+    /// Returns a copy of the drawing, to be modified and passed to [`figure`](Self::figure).
     pub fn drawn(&self) -> Figure {
         self.figure.clone()
     }
 
-    /// Draws the terrains of the figure ([`Kind::Terrain`](linkwork::drawing::Kind::Terrain)) as far as the
-    /// motion goes, and beyond by the size of the mechanism: `height` gives, by the number of a terrain, its
-    /// height at a place along its first two axes, m. One without a finite height everywhere there is left
-    /// out.
+    /// Draws the terrains of the drawing ([`Kind::Terrain`](linkwork::drawing::Kind::Terrain)) over the
+    /// region of the motion, extended by the size of the mechanism. `height` returns the height, m, of the
+    /// terrain with this index at a position along its first two axes. Terrains whose height is not finite
+    /// everywhere in the region are omitted.
     pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
         let size = Scene::of(&self.figure, &self.placements, &self.shown()).size;
         self.figure.raise(&self.placements, size, height);
         self
     }
 
-    /// Adds a plot over time: curves with a name and a value for each sample. Values that are not finite
-    /// leave gaps.
+    /// Adds a plot over time, with a name and one value per sample for each curve. Values that are not finite
+    /// are gaps.
     ///
     /// # Errors
     ///
-    /// If a curve has another number of values than there are samples.
+    /// [`Error::Count`] if the number of values of a curve differs from the number of samples.
     pub fn plot<N: Into<String>>(
         mut self,
         title: &str,
@@ -185,11 +186,11 @@ impl Motion {
         Ok(self)
     }
 
-    /// Adds a plot for each unit: curves with their unit, a name, and a value for each sample.
+    /// Adds one plot per unit, for curves with a unit, a name, and one value per sample.
     ///
     /// # Errors
     ///
-    /// As those of [`plot`](Self::plot).
+    /// As for [`plot`](Self::plot).
     pub fn plots<U: Into<String>, N: Into<String>>(
         mut self,
         title: &str,
@@ -209,28 +210,28 @@ impl Motion {
         Ok(self)
     }
 
-    /// Removes all plots: those of coordinates as well.
+    /// Removes all plots, including those of the coordinates.
     pub fn without_plots(mut self) -> Motion {
         self.plots.clear();
         self
     }
 
-    /// A point of a frame, m in its axes, leaves a trail of so many seconds.
+    /// Adds a trail of this duration, s, behind a point of a frame, m in its axes.
     ///
     /// # Errors
     ///
-    /// If there is no such frame.
+    /// [`Error::Frame`] for an unknown frame.
     pub fn trail(mut self, frame: &str, point: [f64; 3], seconds: f64) -> Result<Motion, Error> {
         let frame = self.figure.frame(frame)?;
         self.trails.push((frame, point, seconds));
         Ok(self)
     }
 
-    /// Draws a force as an arrow that begins at a point of a frame, m in its axes, or of the ground if there
-    /// is no name: for each sample its vector in the ground's axes. The longest force of the motion has half
-    /// the length of the mechanism.
+    /// Draws a force as an arrow that begins at a point of a frame, m in its axes, or of the ground if
+    /// `frame` is `None`. `values` has one vector per sample, in the ground's axes. The largest force of the
+    /// motion has half the length of the mechanism.
     ///
-    /// What contacts exert is the output `contact_force(…)` of the mechanism:
+    /// Forces of contacts are available as the output `contact_force(…)` of the mechanism:
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -257,16 +258,18 @@ impl Motion {
     ///
     /// # Errors
     ///
-    /// If there is no such frame, or another number of vectors than of samples.
+    /// [`Error::Frame`] for an unknown frame, [`Error::Count`] if the number of vectors differs from the
+    /// number of samples.
     pub fn force(self, frame: Option<&str>, point: [f64; 3], values: Vec<[f64; 3]>) -> Result<Motion, Error> {
         self.arrow("Force", frame, point, values)
     }
 
-    /// Draws a torque as an arrow that turns, with all else as for a [`force`](Self::force).
+    /// Draws a torque as a circular arrow, with arguments as for a [`force`](Self::force).
     ///
     /// # Errors
     ///
-    /// If there is no such frame, or another number of vectors than of samples.
+    /// [`Error::Frame`] for an unknown frame, [`Error::Count`] if the number of vectors differs from the
+    /// number of samples.
     pub fn torque(
         self,
         frame: Option<&str>,
@@ -289,14 +292,14 @@ impl Motion {
         Ok(self)
     }
 
-    /// Words that stand below the title from a time on, s.
+    /// Adds a caption that is shown below the title from a time on, s.
     pub fn caption(mut self, time: f64, words: &str) -> Motion {
         self.captions.push((time, words.to_string()));
         self
     }
 
-    /// The samples that are shown: of those that follow each other faster than a screen shows, some are left
-    /// out.
+    /// Returns the indices of the samples that are shown. Samples that follow each other faster than the
+    /// screen refreshes are omitted.
     fn shown(&self) -> Vec<usize> {
         let last = self.times.len() - 1;
         let apart = (1.0 / RATE).min((self.times[last] - self.times[0]) / SHOWN);
@@ -311,12 +314,12 @@ impl Motion {
         shown
     }
 
-    /// Paths of meshes of the mechanism that were not read.
+    /// Returns the paths of meshes of the mechanism that were not read.
     pub(crate) fn missing_meshes(&self) -> Vec<&str> {
         self.figure.missing_meshes()
     }
 
-    /// The frames that something moves with, by number.
+    /// Returns the indices of the frames that pieces, trails or arrows are fixed in.
     pub(crate) fn used(&self) -> Vec<usize> {
         let mut used = self.figure.used();
         used.extend(self.trails.iter().map(|(frame, ..)| *frame));
@@ -326,19 +329,19 @@ impl Motion {
         used
     }
 
-    /// How many numbers are plotted, and how many inputs there are.
+    /// Returns the numbers of plotted curves and of inputs.
     pub(crate) fn curves(&self) -> [usize; 2] {
         let inputs = self.inputs.first().map_or(0, Vec::len);
         [self.plots.iter().map(|plot| plot.curves.len()).sum(), inputs]
     }
 
-    /// Its samples come from a control loop while it is shown.
+    /// Marks the motion as live: its samples arrive from a control loop while it is shown.
     pub(crate) fn live(mut self) -> Motion {
         self.live = true;
         self
     }
 
-    /// The motion as data of a page.
+    /// Serialises the motion as the JSON data of a page.
     pub(crate) fn json(&self) -> String {
         let used = self.used();
         let renumber = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
@@ -416,7 +419,8 @@ impl Plot {
     }
 }
 
-/// A curve: its name, where it begins, the size of a step. A gap is the step −1.
+/// Appends a curve to the stream, and returns its name, lowest value and quantisation step. A gap is encoded
+/// as the step −1.
 fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mut Stream) -> String {
     let finite = || values.clone().filter(|x| x.is_finite());
     let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
@@ -427,12 +431,13 @@ fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mu
     text::list([text::json(name), exact(low), exact(step)])
 }
 
-/// All digits of a number.
+/// Formats a number in full precision.
 fn exact(x: f64) -> String {
     format!("{x:e}")
 }
 
-/// Units of coordinates, of those of their rates: a quaternion has none and moves with three velocities.
+/// Returns the units of coordinates, derived from those of the velocities. The four entries of a quaternion
+/// are dimensionless and correspond to three velocities.
 fn units(names: &[&str], of_rates: &[&'static str]) -> Vec<&'static str> {
     let (mut units, mut rates) = (Vec::new(), of_rates.iter());
     for name in names {
@@ -443,7 +448,7 @@ fn units(names: &[&str], of_rates: &[&'static str]) -> Vec<&'static str> {
     units
 }
 
-/// Checks that there are times, which are finite and do not decrease.
+/// Checks that the list of times is not empty and that times are finite and do not decrease.
 pub(crate) fn check_times(motion: &str, times: impl Iterator<Item = f64>) -> Result<(), Error> {
     let mut last = None;
     for (sample, t) in times.enumerate() {
@@ -468,7 +473,7 @@ pub(crate) fn as_plain<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMat
     IsometryMatrix3::from_parts(at.into(), Rotation3::from_matrix_unchecked(matrix))
 }
 
-/// Quaternions x y z w, each of the sign that is nearer to the one before.
+/// Returns quaternions x y z w, each with the sign that is nearer to the previous one.
 fn continuous(placements: &[&IsometryMatrix3<f64>]) -> Vec<[f64; 4]> {
     let mut before = [0.0, 0.0, 0.0, 1.0];
     let next = |p: &&IsometryMatrix3<f64>| {

@@ -1,13 +1,13 @@
-//! Pages: the motions as data, and what shows them.
+//! HTML pages: the data of motions, and the code that shows them.
 
 use crate::{Error, Motion, text};
 use std::path::Path;
 
-/// A page of HTML that shows motions, and needs nothing else: neither files nor a network.
+/// HTML page that shows motions, without further files and without a network.
 ///
-/// Motions stand side by side, under one time. Drag to turn, with two fingers or the right button to move,
-/// pinch or turn the wheel to zoom; the space bar plays and stops, arrows step, `+` and `−` zoom, `f` shows
-/// frames, `c` follows the motion, `0` looks as at the beginning.
+/// Motions are shown next to each other, with a common time. Drag to rotate the view, drag with two fingers
+/// or the right button to move it, pinch or use the wheel to zoom. The space bar starts and stops, arrow keys
+/// step, `+` and `−` zoom, `f` shows frames, `c` follows the motion, `0` restores the initial view.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
     title: String,
@@ -16,26 +16,26 @@ pub struct Page {
 }
 
 impl Page {
-    /// A page without motions.
+    /// Creates a page without motions.
     pub fn new(title: &str) -> Page {
         Page { title: title.to_string(), ..Page::default() }
     }
 
-    /// What stands below the title, in paragraphs with blank lines between them: the first one, and the
-    /// others when they are asked for. Lines that begin with `- ` are a list, words in backticks code, and
-    /// those between asterisks are emphasised.
+    /// Sets the text below the title, with paragraphs separated by blank lines. The first paragraph is always
+    /// visible, the others can be unfolded. Lines that begin with `- ` are a list, words in backticks are
+    /// code, and words between asterisks are emphasised.
     pub fn text(mut self, text: &str) -> Page {
         self.text = text.to_string();
         self
     }
 
-    /// Adds a motion, to the right of those before it.
+    /// Adds a motion, to the right of the previous ones.
     pub fn motion(mut self, motion: Motion) -> Page {
         self.motions.push(motion);
         self
     }
 
-    /// The whole page.
+    /// Returns the complete page.
     pub fn html(&self) -> String {
         let (title, mut about) = (text::html(&self.title), text::blocks(&self.text));
         if about.len() > 1 {
@@ -66,8 +66,8 @@ impl Page {
         )
     }
 
-    /// The motions as an element of another page, which has [`style`](Self::style) in its head, and
-    /// [`script`](Self::script) once behind all of them.
+    /// Returns the motions as an element for another page. That page needs [`style`](Self::style) in its
+    /// head, and [`script`](Self::script) once after all fragments.
     pub fn fragment(&self) -> String {
         let motions = text::list(self.motions.iter().map(Motion::json));
         format!(
@@ -76,21 +76,21 @@ impl Page {
         )
     }
 
-    /// What [fragments](Self::fragment) look like: the content of a `style` element.
+    /// Returns the style sheet of [fragments](Self::fragment): the content of a `style` element.
     pub fn style() -> &'static str {
         include_str!("view.css")
     }
 
-    /// What plays [fragments](Self::fragment): the content of a `script` element.
+    /// Returns the program that plays [fragments](Self::fragment): the content of a `script` element.
     pub fn script() -> &'static str {
         include_str!("view.js")
     }
 
-    /// Writes the page into a file; its folder is made if there is none.
+    /// Writes the page to a file, and creates its folder if necessary.
     ///
     /// # Errors
     ///
-    /// If the system does not let it.
+    /// [`Error::File`] if the folder or file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());

@@ -1,30 +1,31 @@
-//! What a camera has to know of a motion: where it is, how large, from where it is seen.
+//! Scene of a motion for the camera: position, extent and viewing direction.
 
 use crate::figure::{Figure, Shape};
 use crate::text;
 use linkwork::drawing::{Kind, Role};
 use linkwork::nalgebra::{IsometryMatrix3, Point3, Vector3};
 
-/// What a camera has to know.
+/// Scene of a motion, as the camera needs it.
 pub(crate) struct Scene {
-    /// Extent of the mechanism at the beginning, m.
+    /// Extent of the mechanism in the first sample, m.
     pub(crate) size: f64,
-    /// Middle of the motion.
+    /// Centre of the motion.
     centre: Vector3<f64>,
-    /// From there to the farthest that anything comes, m.
+    /// Maximum distance of any point of the motion from the centre, m.
     radius: f64,
-    /// Against gravity.
+    /// Unit vector opposite to gravity.
     up: Vector3<f64>,
-    /// Towards the eye.
+    /// Unit vector towards the eye.
     eye: Vector3<f64>,
-    /// All moves in a plane.
+    /// Whether the motion is planar.
     plane: bool,
-    /// Height of the floor along `up`, where there is gravity.
+    /// Height of the floor along `up`, if there is gravity and no terrain.
     floor: Option<f64>,
 }
 
 impl Scene {
-    /// Of a figure whose frames are placed sample by sample; of these some are shown, the first among them.
+    /// Computes the scene of a drawing whose frames are placed sample by sample. `shown` has the indices of
+    /// the samples that are shown, including the first one.
     pub(crate) fn of(figure: &Figure, placements: &[Vec<IsometryMatrix3<f64>>], shown: &[usize]) -> Scene {
         let first = &placements[0];
         let gravity = Vector3::from(figure.gravity);
@@ -78,7 +79,7 @@ impl Scene {
 }
 
 impl Figure {
-    /// Height of a plane of the ground that bodies touch from above.
+    /// Returns the height of the lowest horizontal contact plane of the ground that faces upward.
     fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
         let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
         let vector = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
@@ -88,18 +89,18 @@ impl Figure {
 }
 
 impl Shape {
-    /// Whether there is something to draw: meshes and terrains may not have been read or computed.
+    /// Returns whether the shape can be drawn: meshes and terrains may not have been read or computed.
     pub(crate) fn is_visible(&self) -> bool {
         !matches!(self.kind, Kind::Mesh(_) | Kind::Terrain(_)) || self.mesh.is_some()
     }
 
-    /// It is part of the mechanism itself, which has a size.
+    /// Returns whether the shape is part of the mechanism itself, whose size is measured.
     fn is_body(&self) -> bool {
         matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
     }
 }
 
-/// A box about what is drawn.
+/// Axis-aligned box around the drawn points.
 struct Extent {
     low: Vector3<f64>,
     high: Vector3<f64>,
@@ -130,13 +131,13 @@ impl Extent {
     }
 }
 
-/// Towards an eye that sees the ground's first horizontal axis point to the right.
+/// Returns the direction towards an eye that sees the ground's first horizontal axis to the right.
 fn sideways(up: &Vector3<f64>) -> Vector3<f64> {
     let right = if up.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     (right - up * right.dot(up)).cross(up).normalize()
 }
 
-/// Towards an eye that looks along a normal, from the side that shows the larger coordinates to the right.
+/// Returns the direction, along a normal, towards an eye that sees larger coordinates further to the right.
 fn facing(up: &Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
     let right = up.cross(&normal);
     if right[right.iamax()] < 0.0 { -normal } else { normal }

@@ -1,7 +1,7 @@
-//! A server on this machine for one page, and for web sockets that the page opens (RFC 6455).
+//! Server on this machine for one page and the web sockets that the page opens (RFC 6455).
 //!
-//! It sends messages and reads none: of the protocol that is a handshake and the frames of a server, for
-//! which a library would bring a dozen crates.
+//! The server sends messages and ignores those it receives. This needs only the handshake and the frames of a
+//! server, for which a library would add a dozen crates.
 
 use crate::Error;
 use crate::encode::base64;
@@ -12,22 +12,22 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Connections at a time.
+/// Maximum number of simultaneous connections.
 const MAX_CONNECTIONS: usize = 16;
-/// Bytes of a request without its content.
+/// Maximum length of the head of a request, bytes.
 const LONGEST_HEAD: usize = 16_384;
-/// A browser that takes nothing for so long is let go.
+/// Time after which an unresponsive connection is closed.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Between signs of life where there is nothing to show.
+/// Interval between pings while there are no messages.
 const SILENCE: Duration = Duration::from_millis(500);
-/// Between messages.
+/// Minimum interval between messages, about one screen refresh.
 const SCREEN: Duration = Duration::from_nanos(16_000_000);
 
 const BINARY: u8 = 0x82;
 const CLOSE: u8 = 0x88;
 const PING: u8 = 0x89;
 
-/// A server and its thread. It ends where it is dropped.
+/// Server with its thread, which ends when the server is dropped.
 #[derive(Debug)]
 pub(crate) struct Server {
     address: SocketAddr,
@@ -37,7 +37,7 @@ pub(crate) struct Server {
 
 #[derive(Debug)]
 struct Shared {
-    /// Names by which this machine is reached, with the port.
+    /// Accepted `Host` names of this machine, with the port.
     hosts: [String; 2],
     page: String,
     newest: Mutex<Newest>,
@@ -53,7 +53,7 @@ struct Newest {
 }
 
 impl Server {
-    /// Serves a page at a port of this machine, at any that is free if it is 0.
+    /// Serves a page at a port of this machine, or at any free port for port 0.
     pub(crate) fn open(port: u16, page: String) -> Result<Server, Error> {
         let failed = |cause| Error::Port { port, cause };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
@@ -75,7 +75,7 @@ impl Server {
         self.address
     }
 
-    /// Sends a message to all who look, unless one of them reads at this moment.
+    /// Sends a message to all browsers, unless the newest message is being read at this moment.
     pub(crate) fn publish(&self, message: &[u8]) {
         if let Ok(mut newest) = self.shared.newest.try_lock() {
             newest.number += 1;
@@ -101,13 +101,13 @@ impl Drop for Server {
 }
 
 impl Shared {
-    /// A thread that panics leaves the newest message as it was before.
+    /// Locks the newest message. A thread that panicked has left it unchanged.
     fn newest(&self) -> MutexGuard<'_, Newest> {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// One of the connections, as long as it is there.
+/// Open connection, which is counted until it is dropped.
 struct Guest(Arc<Shared>);
 
 impl Drop for Guest {
@@ -122,14 +122,14 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
             return;
         }
         let Ok(stream) = stream else {
-            // No file left, say: the next attempt would fail as well.
+            // For example, the file descriptors are exhausted: the next attempt would also fail.
             thread::sleep(Duration::from_millis(10));
             continue;
         };
         let before = shared.connections.fetch_add(1, Ordering::Relaxed);
         let guest = Guest(shared.clone());
         if before < MAX_CONNECTIONS {
-            // A browser that goes away is no error.
+            // A browser that disconnects is not an error.
             let _ = thread::Builder::new().spawn(move || {
                 let _ = serve(stream, &guest.0);
             });
@@ -149,7 +149,7 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
         let mut fields = head.lines().skip(1).filter_map(|line| line.split_once(':'));
         fields.find(|(known, _)| known.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.trim())
     };
-    // Pages of other origins are kept out, also those that reach this machine by a name of theirs.
+    // Rejects pages of other origins, including those that reach this machine by a host name of their own.
     let host = field("host").filter(|host| shared.hosts.iter().any(|known| known == host));
     let Some(host) = host else { return answer(&mut stream, "403 Forbidden", "") };
     if field("origin").is_some_and(|origin| origin.strip_prefix("http://") != Some(host)) {
@@ -169,7 +169,7 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     }
 }
 
-/// A request up to its first empty line.
+/// Reads the head of a request, up to its first empty line.
 fn head(stream: &mut TcpStream) -> io::Result<String> {
     let (mut head, mut part) = (Vec::new(), [0; 1024]);
     let start = Instant::now();
@@ -191,7 +191,7 @@ fn answer(stream: &mut TcpStream, status: &str, page: &str) -> io::Result<()> {
     )
 }
 
-/// Sends the newest message whenever there is one, as fast as a screen shows it.
+/// Sends the newest message whenever it changes, at most once per screen refresh.
 fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     let (mut seen, mut message) = (0, Vec::new());
     loop {
@@ -215,7 +215,7 @@ fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     }
 }
 
-/// A frame of a server: what it is, its length, its content.
+/// Sends a frame: its kind, its length and its content.
 fn send(stream: &mut TcpStream, kind: u8, content: &[u8]) -> io::Result<()> {
     let mut frame = vec![kind];
     match content.len() {
@@ -233,7 +233,7 @@ fn send(stream: &mut TcpStream, kind: u8, content: &[u8]) -> io::Result<()> {
     stream.write_all(&frame)
 }
 
-/// Takes what a browser answers, and tells if it has gone.
+/// Discards data from the browser, and returns an error if it has disconnected.
 fn forget_answers(stream: &mut TcpStream) -> io::Result<()> {
     stream.set_nonblocking(true)?;
     let found = loop {
@@ -248,8 +248,8 @@ fn forget_answers(stream: &mut TcpStream) -> io::Result<()> {
     found
 }
 
-/// The digest of the handshake (FIPS 180-4, SHA-1). It keeps no secret: the protocol uses it as a sign that
-/// it was understood.
+/// Computes the SHA-1 digest of the handshake (FIPS 180-4). It serves no secrecy: the protocol uses it to
+/// confirm that the server supports web sockets.
 fn sha1(text: &[u8]) -> [u8; 20] {
     let mut bytes = text.to_vec();
     bytes.push(0x80);
@@ -294,8 +294,8 @@ fn sha1(text: &[u8]) -> [u8; 20] {
 mod tests {
     use super::*;
 
-    /// The examples of FIPS 180-4's validation, those at the ends of a block, and the handshake of RFC 6455,
-    /// section 1.3.
+    /// Checks the examples of the validation of FIPS 180-4, texts at block boundaries, and the handshake of
+    /// RFC 6455, section 1.3.
     #[test]
     fn digests_are_those_of_the_standard() {
         let hex =

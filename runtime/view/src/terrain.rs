@@ -1,4 +1,4 @@
-//! Ground whose height a mechanism tells → a surface of triangles, as far as a motion goes.
+//! Triangulation of terrains, whose height is a function of the mechanism, over the region of a motion.
 
 use crate::figure::Figure;
 use crate::mesh::Mesh;
@@ -6,7 +6,7 @@ use linkwork::drawing::Kind;
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 
 impl Figure {
-    /// Makes a surface of every terrain around the places that frames come to; `beyond` them so far, m.
+    /// Replaces every terrain by a surface over the region of the frames' positions, extended by `beyond`, m.
     pub(crate) fn raise(
         &mut self,
         placements: &[Vec<IsometryMatrix3<f64>>],
@@ -36,7 +36,7 @@ impl Figure {
             let place = |u: f64, w: f64| [u, w, height(number, [u, w]).unwrap_or(f64::NAN)];
             if let Ok(mesh) = Mesh::surface(u, w, place) {
                 (shape.kind, shape.mesh) = (Kind::Mesh(""), Some(mesh));
-                // Scales along the axes.
+                // Unit scales along the axes.
                 shape.numbers.extend([1.0; 3]);
             }
         }

@@ -1,8 +1,8 @@
-//! Names in HTML and in the data of a page, whatever characters they have.
+//! Escaping of names with arbitrary characters for HTML and JSON.
 
 use std::fmt::Write;
 
-/// Text of an HTML element or of an attribute's value.
+/// Escapes text for an HTML element or attribute value.
 pub fn html(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -18,8 +18,8 @@ pub fn html(text: &str) -> String {
     out
 }
 
-/// Prose as HTML, block by block: paragraphs and lists with blank lines between them. Items begin with `- `,
-/// code stands in backticks, what is emphasised between asterisks, headings behind `#`.
+/// Converts prose to HTML blocks: paragraphs and lists separated by blank lines. List items begin with `- `,
+/// headings with `#`; code is in backticks, and emphasised text is between asterisks.
 pub fn blocks(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let blocks = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty());
@@ -52,7 +52,7 @@ fn block(lines: &[&str]) -> String {
     out
 }
 
-/// Words with code and emphasis; signs without their other half stand for themselves.
+/// Converts code and emphasis; unpaired backticks and asterisks are printed literally.
 fn inline(text: &str) -> String {
     let text = html(text);
     let parts: Vec<&str> = text.split('`').collect();
@@ -69,7 +69,7 @@ fn inline(text: &str) -> String {
     out
 }
 
-/// Text with what stands between asterisks emphasised; those of products stay.
+/// Converts text between asterisks to emphasis; asterisks of products are printed literally.
 fn emphasised(text: &str) -> String {
     let parts: Vec<&str> = text.split('*').collect();
     let mut out = String::new();
@@ -89,7 +89,7 @@ fn emphasised(text: &str) -> String {
     out
 }
 
-/// A string of JSON that may stand in a script of an HTML page: no character begins or ends markup.
+/// Returns a JSON string that is safe in a script of an HTML page: it contains no characters of markup.
 pub fn json(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 2);
     out.push('"');
@@ -112,23 +112,23 @@ pub fn json(text: &str) -> String {
     out
 }
 
-/// A list of JSON.
+/// Returns a JSON list.
 pub fn list(items: impl IntoIterator<Item = String>) -> String {
     let items: Vec<String> = items.into_iter().collect();
     format!("[{}]", items.join(","))
 }
 
-/// A number with seven digits, in the shortest spelling; zero if it is not finite.
+/// Formats a number with seven significant digits in the shortest notation; zero if it is not finite.
 pub fn number(x: f64) -> String {
     if !x.is_finite() {
         return "0".to_string();
     }
     let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
-    // Of zero without its sign.
+    // Removes the sign of zero.
     format!("{}", rounded + 0.0)
 }
 
-/// Numbers of JSON.
+/// Returns a JSON list of numbers.
 pub fn numbers(list: &[f64]) -> String {
     self::list(list.iter().map(|x| number(*x)))
 }

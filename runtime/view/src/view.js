@@ -1,4 +1,5 @@
-// Shows motions: each `.linkwork-view` holds a list of them as data. Vectors are arrays; matrices have 16 numbers, column by column.
+// Player of motions: each `.linkwork-view` element contains a list of motions as JSON. Vectors are arrays;
+// matrices are arrays of 16 numbers in column-major order.
 "use strict";
 (() => {
 
@@ -25,18 +26,18 @@ const IDENTITY = columns([1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 0]);
 const turned = (m, v) => [0, 1, 2].map(i => m[i] * v[0] + m[4 + i] * v[1] + m[8 + i] * v[2]);
 const moved = (m, v) => add(turned(m, v), [m[12], m[13], m[14]]);
 const scaled = (x, y, z) => columns([x, 0, 0], [0, y, 0], [0, 0, z], [0, 0, 0]);
-// Two directions normal to a third.
+// Returns two unit vectors normal to a third one.
 function normals(z) {
   const x = unit(cross(Math.abs(z[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0], z));
   return [x, cross(z, x)];
 }
-// A place with its third axis along a direction.
+// Returns the transform to a position, with its third axis along a direction.
 function along(place, direction) {
   const z = unit(direction), [x, y] = normals(z);
   return columns(x, y, z, place);
 }
 const rowsAt = (place, r) => columns([r[0], r[3], r[6]], [r[1], r[4], r[7]], [r[2], r[5], r[8]], place);
-// The matrix that turns normals: the cofactors.
+// Returns the matrix that transforms normals: the cofactor matrix.
 function cofactors(m) {
   const [x, y, z] = [0, 4, 8].map(k => [m[k], m[k + 1], m[k + 2]]);
   return [...cross(y, z), ...cross(z, x), ...cross(x, y)];
@@ -56,7 +57,7 @@ function bytesOf(text) {
   for (let k = 0; k < raw.length; k++) bytes[k] = raw.charCodeAt(k);
   return bytes;
 }
-// Reads channels: the first value, whether it changes, the differences.
+// Decodes channels: the first value, whether it changes, then the differences.
 function reader(bytes, count) {
   let at = 0;
   const integer = () => {
@@ -97,8 +98,9 @@ function decode(motion) {
     motion.inputs = motion.inputs.map(open);
   }
 }
-// Adds a sample of a control loop: the time in eight bytes, then placements, plots and inputs in four bytes each. What is older than
-// some seconds is forgotten; a loop that begins anew begins a new motion. False if the numbers are those of another mechanism.
+// Appends a sample of a control loop: the time in eight bytes, then placements, plots and inputs in four
+// bytes each. Samples older than KEPT seconds are removed, and a loop whose time restarts begins a new
+// motion. Returns false if the number of values is that of another mechanism.
 const KEPT = 20;
 function receive(motion, data) {
   const lists = [...motion.tracks.flat(), ...motion.plots.flatMap(plot => plot.curves.map(curve => curve.values)), ...motion.inputs];
@@ -112,7 +114,7 @@ function receive(motion, data) {
   times.push(t - motion.start);
   numbers.forEach((x, k) => { lists[k].push(x); });
   const last = times.length - 1;
-  // Of the two quaternions of a rotation that which is nearer to the one before.
+  // Of the two quaternions of a rotation, the one nearer to the previous quaternion is used.
   for (const turn of motion.tracks.map(track => track.slice(3)))
     if (last > 0 && turn.reduce((sum, list) => sum + list[last] * list[last - 1], 0) < 0) for (const list of turn) list[last] = -list[last];
   for (const list of motion.inputs) motion.largest = Math.max(motion.largest, Math.abs(list[last]));
@@ -121,7 +123,7 @@ function receive(motion, data) {
   if (old > 60) for (const list of lists) list.splice(0, old);
   return true;
 }
-// The sample before a time, and how far it is to the next.
+// Returns the index of the sample before a time, and the fraction of the interval to the next sample.
 function locate(times, t) {
   let low = 0, high = times.length - 1;
   if (t >= times[high]) return [high, 0];
@@ -140,11 +142,11 @@ function poses(motion, t) {
 
 // ---- Forms: corners with normals, three for each triangle
 
-// Parts of the steps of round forms: what is small on the screen needs few.
+// Fractions of the number of segments of round shapes: shapes that are small on the screen need fewer.
 const DETAILS = [0.3, 0.5, 1];
 let detail = 1;
 const some = (steps, least) => Math.max(least, Math.round(steps * detail));
-// With radii up to so many pixels a circle of the fewer steps is off by a third of one.
+// Level of detail: up to these radii in pixels, a circle of the coarser level deviates by a third of a pixel.
 const level = (name, m, pixels) => {
   if (name === "mesh" || name === "box" || name === "square") return 2;
   const column = k => Math.hypot(m[k], m[k + 1], m[k + 2]), round = Math.max(column(0), column(4));
@@ -157,7 +159,8 @@ function form() {
   const quad = (a, b, c, d) => { for (const [p, n] of [a, b, c, a, c, d]) corner(p, n); };
   return { data, corner, quad };
 }
-// A profile of points [radius, height, normal outwards, normal upwards], in pairs of which each is a strip, about z.
+// Revolves a profile of points [radius, height, outward normal, upward normal] about z. Each pair of points
+// is a strip.
 function revolve(strips, most = 40) {
   const { data, quad } = form(), steps = some(most, 8);
   for (const [a, b] of strips)
@@ -193,7 +196,7 @@ const shapes = {
     return data;
   },
   square: () => { const { data, quad } = form(), p = (x, y) => [[x, y, 0], [0, 0, 1]]; quad(p(-1, -1), p(1, -1), p(1, 1), p(-1, 1)); return data; },
-  // A wire of given radius along a curve, flattened where it will be stretched.
+  // A wire of this radius along a curve, flattened where it will be stretched.
   wire: (curve, radius, steps, flat = 1) => {
     const { data, quad } = form(), round = some(8, 4);
     const ring = k => {
@@ -227,7 +230,8 @@ function meshOf([low, step, places, indices]) {
   return data;
 }
 
-// Each corner once, and the order in which triangles have them: it is placed once for all triangles that meet there.
+// Merges equal corners and returns them with the indices of the triangles, so that each corner is transformed
+// once.
 function shared(data) {
   const known = new Map(), corners = [], order = [];
   for (let k = 0; k < data.length; k += 6) {
@@ -243,7 +247,7 @@ function shared(data) {
 const PALETTE = [[0.25, 0.48, 0.79], [0.87, 0.50, 0.24], [0.33, 0.63, 0.45], [0.63, 0.43, 0.74], [0.80, 0.38, 0.43], [0.30, 0.63, 0.70], [0.71, 0.61, 0.28], [0.50, 0.52, 0.62]];
 const TONES = { Link: [0.56, 0.6, 0.66], Joint: [0.27, 0.3, 0.35], Surface: [0.36, 0.55, 0.78], Element: [0.2, 0.62, 0.46], Input: [0.89, 0.32, 0.2], Arrow: [0.85, 0.6, 0.1] };
 
-// Parts that stay where they are on a frame: [form, arguments, matrix, alpha].
+// Parts that are fixed in a frame: [form, arguments, matrix, alpha].
 function fixed(kind, n, s) {
   const at = n.slice(0, 3), axis = n.slice(3, 6), round = (name, r, h, ...more) => [[name, more, mul(along(at, axis), scaled(r, r, h)), 1]];
   const boxed = (name, lengths) => [[name, [], mul(rowsAt(at, n.slice(3, 12)), scaled(...lengths)), 1]];
@@ -297,7 +301,8 @@ function arrow(kind, at, direction, size, s) {
   ];
 }
 
-// The parts of a piece for poses of the frames: [form, arguments, matrix, colour, alpha].
+// Returns the function from poses of the frames to the parts of a piece: [form, arguments, matrix, colour,
+// alpha].
 function builder(motion, piece, colour, key) {
   const [kind, , , a, b, n, more] = piece, s = motion.size;
   const frame = (frames, k) => k < 0 ? IDENTITY : frames[k];
@@ -315,12 +320,12 @@ function builder(motion, piece, colour, key) {
     };
   return () => [];
 }
-// The parts of an arrow whose vector is given over time, in the ground's axes.
+// Returns the function to the parts of an arrow for a vector over time, in the ground's axes.
 const pull = (motion, { kind, frame, point, axes, scale }) => (frames, k, part) => {
   const way = times(axes.map(axis => between(axis, k, part)), scale), at = frame < 0 ? point : moved(frames[frame], point);
   return arrow(kind, at, way, norm(way), motion.size).map(([name, list, m]) => [name, list, m, TONES.Arrow, 1]);
 };
-// What is said of a piece decides on its colour; the parts of one body have one.
+// Chooses the colours of the pieces by their roles; all pieces of one body have the same colour.
 function paint(motion, index) {
   const bodies = [];
   const pieces = motion.pieces.map((piece, k) => {
@@ -331,7 +336,7 @@ function paint(motion, index) {
       if (!bodies.includes(of)) bodies.push(of);
       colour = PALETTE[bodies.indexOf(of) % PALETTE.length];
     }
-    // The floor takes the place of a plane of the ground.
+    // The floor replaces a horizontal plane of the ground.
     const isFloor = kind === "Plane" && frame < 0 && motion.floor !== null && dot(piece[5].slice(3), motion.up) > 1 - 1e-6;
     motion.level ||= isFloor;
     return isFloor ? () => [] : builder(motion, piece, colour, index + "." + k);
@@ -398,7 +403,7 @@ function painter(canvas) {
     let found = forms.get(key);
     if (!found) {
       detail = DETAILS[fine];
-      // Facets of meshes have normals of their own, and share no corners.
+      // Facets of meshes have their own normals, and share no corners.
       const [corners, order] = name === "mesh" ? [meshOf(source(more[0])), null] : shared({ coil, spiral, bow, ...shapes }[name](...more));
       found = { array: gl.createVertexArray(), count: order ? order.length : corners.length / 6, order };
       gl.bindVertexArray(found.array);
@@ -447,7 +452,8 @@ function painter(canvas) {
       one("square", [], mul(along(floor.place, camera.up), scaled(floor.half, floor.half, 1)), tones.floor, 1);
       gl.depthMask(true);
       gl.disable(gl.BLEND);
-      // Shadows: all parts pressed onto the floor along the light; the first that covers a point darkens it.
+      // Shadows: all parts are projected onto the floor along the light; the first part that covers a pixel
+      // darkens it.
       gl.uniform1i(at.mode, 1);
       gl.depthMask(false);
       for (const [name, more, matrix, , alpha] of parts) if (alpha === 1) one(name, more, mul(floor.press, matrix), tones.shadow, 1);
@@ -487,7 +493,7 @@ function start(root) {
   const play = element("button", { class: "play", type: "button" });
   const slider = element("input", { type: "range", min: 0, max: duration, step: "any", value: 0, "aria-label": "time" });
   const clock = element("output");
-  // What is over within a second begins slowly.
+  // Motions shorter than a second are played in slow motion at first.
   const speeds = [0.01, 0.1, 0.25, 0.5, 1, 2, 4, 10], begun = live ? 1 : speeds.findLast(x => x <= 1 && duration >= x) ?? speeds[0];
   const speed = element("select", { "aria-label": "speed" }, ...speeds.map(x => element("option", x === begun ? { value: x, selected: "" } : { value: x }, x + " ×")));
   const toggle = (text, on) => { const b = element("button", { type: "button", "aria-pressed": on }, text); b.on = on; return b; };
@@ -538,7 +544,7 @@ function start(root) {
     if (act && act() !== true) { e.preventDefault(); state.dirty = true; }
   });
 
-  // One finger or the left button turns; two fingers move and zoom; the right button moves.
+  // One finger or the left button rotates; two fingers move and zoom; the right button moves.
   const touches = new Map();
   canvas.addEventListener("pointerdown", e => { canvas.setPointerCapture(e.pointerId); touches.set(e.pointerId, [e.clientX, e.clientY, e.button === 2 || e.shiftKey]); });
   canvas.addEventListener("pointermove", e => {
@@ -566,7 +572,7 @@ function start(root) {
   let visible = true;
   new IntersectionObserver(seen => { visible = seen[seen.length - 1].isIntersecting; state.dirty = true; }).observe(root);
 
-  // Cells side by side, as square as the stage allows.
+  // Arranges the views in cells that are as square as the stage allows.
   function cells(w, h) {
     const n = motions.length, shape = c => Math.min(w / c, h / Math.ceil(n / c));
     const c = Array.from({ length: n }, (_, k) => k + 1).reduce((best, c) => shape(c) > shape(best) ? c : best, 1), r = Math.ceil(n / c);
@@ -587,7 +593,7 @@ function start(root) {
     const f = 1 / Math.tan(angle);
     const lens = [f * h / w, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
     const sun = unit(add(add(times(up, 1), times(front, 0.45)), times(right, 0.5)));
-    // Parts of the height that a metre in the middle takes.
+    // Fraction of the height that one metre at the centre occupies.
     const pixels = 1 / (2 * away * Math.tan(angle));
     return { matrix: mul(lens, look), eye, up, sun, level: [right, front], pixels };
   }
@@ -617,7 +623,8 @@ function start(root) {
     });
   }
 
-  // Makes room for what a control loop does: the picture grows, and a floor that is not declared goes down.
+  // Extends the scene to new samples of a control loop: the view is enlarged, and a floor that is not
+  // declared is lowered.
   function widen(motion, parts) {
     for (const [, , m] of parts) {
       const place = [m[12], m[13], m[14]], beyond = Math.max(...[0, 4, 8].map(k => Math.hypot(m[k], m[k + 1], m[k + 2]))) / 2;
@@ -658,7 +665,7 @@ function start(root) {
       if (motion.floor !== null) {
         const half = FLOOR_HALF * Math.max(follow.on ? motion.size : motion.radius, 1e-9), lower = p => add(p, times(motion.up, motion.floor - dot(p, motion.up)));
         const cell = 10 ** Math.round(Math.log10(motion.size / 4)), up = motion.up, sun = camera.sun, lean = 1 / dot(sun, up);
-        // p − (up·p − height) sun / (sun·up), a little above the floor.
+        // p − (up·p − height) sun / (sun·up), slightly above the floor.
         const height = motion.floor + 0.001 * motion.size;
         const column = e => sub(e, times(sun, dot(e, up) * lean));
         const press = columns(column([1, 0, 0]), column([0, 1, 0]), column([0, 0, 1]), times(sun, height * lean));
@@ -672,7 +679,7 @@ function start(root) {
     figures.forEach(f => f.draw(state.now));
   }
 
-  // A control loop: while it plays the page shows the newest sample, else one that was.
+  // Control loop: the page shows the newest sample while it plays, otherwise an earlier one.
   function listen() {
     const socket = new WebSocket(`ws://${location.host}/socket`);
     socket.binaryType = "arraybuffer";
@@ -748,7 +755,7 @@ function figure(plot, span, seek) {
     pen.font = "11px system-ui, sans-serif";
     pen.fillStyle = soft; pen.strokeStyle = line; pen.lineWidth = 1;
     pen.textAlign = "right"; pen.textBaseline = "middle";
-    // Values that hardly differ are told by what they are more than the lowest mark, which stands in the picture.
+    // Labels of values that differ little are relative to the lowest mark, which is printed in the plot.
     const marks = ticks(low, high, 4), close = high - low < 1e-3 * Math.max(Math.abs(low), Math.abs(high)), base = close ? marks[0] : 0;
     for (const x of marks) {
       const y = rise(x, h);

@@ -1,5 +1,4 @@
-//! Pages in a browser, where there is one: no error on the console, the controls are there, and the picture
-//! could be made.
+//! Pages in a browser, if one is installed: without console errors, with controls, and with a picture.
 
 use linkwork::prelude::*;
 use linkwork::simulate::Sample;
@@ -29,7 +28,7 @@ struct Arm {
     floor: Contact,
 }
 
-/// The first browser of this kind on the path.
+/// Returns the first Chromium browser on the path.
 fn browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let names = ["chromium", "chromium-browser", "google-chrome", "chrome"];
@@ -41,8 +40,8 @@ fn sample(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
     Sample { t: start + t, q: [t, -t].into(), v: [1.0, -1.0].into(), u: [t.sin()].into(), event: None }
 }
 
-/// The document of a page after a second and a half, without a word on the console; `meanwhile` is done until
-/// then. `None` where no browser starts.
+/// Returns the document of a page after 1.5 s, and asserts that the console has no messages. `meanwhile` is
+/// called repeatedly until then. `None` if no browser starts.
 fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String> {
     let Some(browser) = browser() else {
         println!("skipped: no Chromium on the path");
@@ -55,7 +54,7 @@ fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String
     command.args(["--virtual-time-budget=1500", "--dump-dom"]);
     command.arg(format!("--user-data-dir={}", folder.join(name).display())).arg(address);
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // It ends when both of its outputs have been read.
+    // The browser exits when both of its outputs have been read.
     let [mut out, mut err] = [Vec::new(), Vec::new()];
     let (mut stdout, mut stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
     std::thread::scope(|scope| {
@@ -71,7 +70,7 @@ fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String
         println!("skipped: this browser does not start without a screen");
         return None;
     }
-    // Of drawing by software it says that it is slow.
+    // With software rendering, the browser reports that drawing is slow.
     let is_said = |line: &&str| line.contains("CONSOLE") && !line.contains("GL Driver Message");
     let console: Vec<&str> = log.lines().filter(is_said).collect();
     assert!(console.is_empty(), "{console:?}");
@@ -100,7 +99,7 @@ fn a_browser_plays_the_page() {
     );
 }
 
-/// A loop whose clock begins at 1000 s.
+/// Checks a live view of a loop whose clock begins at 1000 s.
 #[test]
 fn a_browser_looks_on() {
     let mut live = Live::open(&Arm {}, 0).unwrap();

@@ -3,7 +3,7 @@
 use linkwork::prelude::*;
 use linkwork_view::{Side, free_body};
 
-/// A level rod on a pin with a motor.
+/// Horizontal rod on a pin with a motor.
 #[mechanism(gravity = -9.81 * y)]
 struct Rod {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
@@ -16,7 +16,7 @@ struct Rod {
     loads: FreeBody,
 }
 
-/// Ends of the straight lines of a colour, right and up.
+/// Returns the endpoint displacements of the straight lines of a colour, to the right and upward.
 fn arrows(svg: &str, colour: &str) -> Vec<[f64; 2]> {
     let number = |line: &str, name: &str| -> f64 {
         let rest = line.split(&format!("{name}=\"")).nth(1).expect("an attribute");
@@ -33,11 +33,12 @@ fn arrows_are_forces_and_arcs_torques() {
     let (q, v) = ([0.0].into(), [0.0].into());
     let svg = free_body(&rod.loads(&q, &v, &[9.81].into()), Side::Xy);
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
-    // The weight goes down, the hinge pushes up: the motor holds the rod, and the hinge carries all.
+    // The weight acts downward, the hinge force upward: the motor balances the moment, and the hinge carries
+    // the weight.
     let [weight, hinge] = ["#5a5a5a", "#005aa0"].map(|colour| arrows(&svg, colour));
     assert!(weight.len() == 1 && hinge.len() == 1, "{svg}");
     assert!(weight[0][0] == 0.0 && weight[0][1] < -90.0 && hinge[0][1] > 90.0);
-    // A torque towards the viewer turns counterclockwise: no sweep.
+    // A torque towards the viewer is a counterclockwise arc, whose sweep flag is 0.
     let arc = svg.lines().find(|line| line.contains(" A ") && line.contains("#d55e00")).expect("an arc");
     assert!(arc.contains(" 0 1 0 "), "{arc}");
     let back = free_body(&rod.loads(&q, &v, &[-9.81].into()), Side::Xy);
@@ -48,7 +49,7 @@ fn arrows_are_forces_and_arcs_torques() {
     {
         assert!(svg.contains(listed), "{listed}: {svg}");
     }
-    // From the side the torque lies in the picture: an arrow with two heads, and no arc.
+    // Seen along y, the torque lies in the picture: an arrow with two heads, and no arc.
     let aside = free_body(&rod.loads(&q, &v, &[9.81].into()), Side::Xz);
     assert!(!aside.contains(" A ") && arrows(&aside, "#d55e00").len() == 1);
     assert_eq!(svg.matches("<line").count() - 3, aside.matches("<line").count() - 2);

@@ -1,4 +1,4 @@
-//! A live view, as a browser of its own sees it: the page, the handshake, the messages, and what is refused.
+//! Live views, seen by a test client: page, handshake, messages and rejected requests.
 
 use linkwork::prelude::*;
 use linkwork::simulate::Sample;
@@ -25,7 +25,7 @@ fn sample(t: f64) -> Sample<f64, 2, 2, 1> {
     Sample { t, q: [0.5 + t, -1.0].into(), v: [1.0, 0.0].into(), u: [3.5].into(), event: None }
 }
 
-/// A connection, with what a browser asks first; `fields` has further lines.
+/// Opens a connection and sends a request; `fields` has further header lines.
 fn ask(url: &str, path: &str, fields: &str) -> TcpStream {
     let host = url.trim_start_matches("http://").trim_end_matches('/');
     let mut stream = TcpStream::connect(host).unwrap();
@@ -49,7 +49,7 @@ fn take<const N: usize>(stream: &mut TcpStream) -> [u8; N] {
     bytes
 }
 
-/// An open socket, behind the answer to its handshake.
+/// Opens a web socket and checks the answer to its handshake.
 fn socket(url: &str) -> TcpStream {
     let mut stream = ask(url, "/socket", UPGRADE);
     let mut head = Vec::new();
@@ -64,7 +64,7 @@ fn socket(url: &str) -> TcpStream {
     stream
 }
 
-/// The next frame that is no sign of life: what it is, its content.
+/// Returns the kind and content of the next frame that is not a ping.
 fn frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
     loop {
         let [kind, length] = take(stream);
@@ -89,7 +89,7 @@ fn a_browser_gets_the_page_and_then_samples() {
     let motions: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
     let motion = &motions[0];
     assert_eq!(motion["live"], true);
-    // One that looks on before there is anything, and one that comes later, get the same.
+    // A client that connects before the first sample, and a later one, receive the same message.
     let mut early = socket(&live.url());
     let sample = sample(0.25);
     live.show(&sample).unwrap();
@@ -105,19 +105,20 @@ fn a_browser_gets_the_page_and_then_samples() {
         let k = Arm::FRAMES.iter().position(|known| name == known).unwrap();
         let placement = Arm {}.frame_placements(&sample.q)[k];
         assert!((0..3).all(|k| (n[k] - placement.translation.vector[k]).abs() < 1e-6));
-        // Turned about z by the sum of the angles.
+        // Rotated about z by the sum of the angles.
         let angle = if name == "upper" { 0.75 } else { -0.25_f64 };
         let known = [0.0, 0.0, (angle / 2.0).sin(), (angle / 2.0).cos()];
         assert!(n[3..].iter().zip(known).all(|(x, y)| (x - y).abs() < 1e-6), "{name} {n:?}");
     }
     assert_eq!(numbers[7 * frames.len()..], [0.75, -1.0, 3.5]);
-    // The end of the program is told.
+    // The end of the program closes the socket.
     drop(live);
     let (kind, reason) = frame(&mut early);
     assert_eq!((kind, reason), (0x88, 1001_u16.to_be_bytes().to_vec()));
 }
 
-/// One browser takes nothing, another all: the loop goes on, and the newest sample arrives.
+/// Checks that the loop does not block while one client reads nothing and another reads all: the newest
+/// sample arrives.
 #[test]
 fn the_loop_waits_for_nobody() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
@@ -128,7 +129,7 @@ fn the_loop_waits_for_nobody() {
     let last = sample(100.0);
     let mut seen = 0.0;
     while seen < 100.0 {
-        // The one that came while a browser read is left out; the next is not.
+        // A sample published while a client reads is dropped; the next one is not.
         live.show(&last).unwrap();
         let (_, message) = frame(&mut busy);
         let t = f64::from_le_bytes(message[..8].try_into().unwrap());
@@ -148,7 +149,7 @@ fn what_is_no_page_of_its_own_is_refused() {
     assert_eq!(status("/socket", &format!("{UPGRADE}Origin: http://elsewhere.example\r\n")), "403");
     assert_eq!(status("/", &format!("Host: rebound.example:{port}\r\n")), "403");
     assert_eq!(status("/", &format!("Host: localhost:{port}\r\n")), "200");
-    // What is no request ends the connection, and no other one.
+    // Invalid data ends its own connection only.
     let mut noise = ask(&url, "/", "");
     noise.write_all(&[0xff; 20_000]).ok();
     assert_eq!(status("/", ""), "200");
@@ -168,7 +169,7 @@ fn mistakes_are_told() {
     let mut broken = sample(0.0);
     broken.q[1] = f64::INFINITY;
     assert!(matches!(live.show(&broken), Err(Error::NotFinite { frame, .. }) if frame == "lower"));
-    // The port is free again where the view has ended.
+    // The port is free again after the view is dropped.
     drop(live);
     assert!(Live::open(&Arm {}, port).is_ok());
 }

@@ -1,4 +1,4 @@
-//! Logs as MCAP files, read by a reader that follows the published format record by record.
+//! Logs as MCAP files, read by a test reader that follows the published format record by record.
 
 use linkwork::nalgebra::{Quaternion, UnitQuaternion};
 use linkwork::prelude::*;
@@ -27,7 +27,7 @@ fn sample(t: f64) -> Sample<f64, 8, 7, 1> {
     Sample { t, q: q.into(), v: [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -0.7].into(), u: [4.5].into(), event: None }
 }
 
-/// Takes numbers and strings from the front.
+/// Reader that takes numbers and strings from the front.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -47,7 +47,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The records of a file, with their place.
+/// Returns the records of a file with their offsets.
 fn records(file: &[u8]) -> Vec<(usize, u8, Reader<'_>)> {
     let magic = b"\x89MCAP0\r\n";
     assert!(file.starts_with(magic) && file.ends_with(magic));
@@ -101,7 +101,8 @@ fn records_follow_the_format() {
     assert_eq!((footer.number(8), footer.number(8), footer.number(4)), (summary, 0, 0));
 }
 
-/// Placements are those of the mechanism, to the rounding of quaternions; numbers have all their digits.
+/// Checks that placements are those of the mechanism, up to rounding of quaternions, and that values have
+/// full precision.
 #[test]
 fn messages_say_what_the_samples_say() {
     let sample = sample(0.25);
@@ -126,7 +127,7 @@ fn messages_say_what_the_samples_say() {
         let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
         assert!((turn.to_rotation_matrix().matrix() - placement.rotation.matrix()).norm() < 1e-12);
     }
-    // Of the joints the pin alone has one number.
+    // Of all joints, only the pin has a single coordinate.
     let tilt = serde_json::json!([{"name": "tilt", "position": 0.1 + 1.0 / 3.0, "velocity": -0.7}]);
     assert_eq!(joints["joints"], tilt);
     assert_eq!((&state["t"], &state["u"]["winch"]), (&0.25.into(), &4.5.into()));
@@ -147,7 +148,7 @@ fn what_cannot_be_logged_is_told() {
     assert!(records(&mcap(&Boat {}, &[]).unwrap()).len() == 16);
 }
 
-/// What the reader of the format's makers finds, where Python has it.
+/// Compares with the reader of the format's authors, if Python has it.
 #[test]
 fn another_reader_agrees() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("boat.mcap");

@@ -1,5 +1,5 @@
-//! What stands in pages: the samples to their rounding, the pieces where the mechanism has them, nothing from
-//! outside.
+//! Content of pages: the samples up to rounding, the pieces in the positions of the mechanism, and no
+//! external resources.
 
 mod support;
 
@@ -15,7 +15,7 @@ struct Humanoid;
 
 type HumanoidSample = linkwork::simulate::Sample<f64, 36, 35, 29>;
 
-/// A flight of the humanoid with all joints in motion, 60 samples a second.
+/// Simulates a flight of the humanoid with all joints in motion, at 60 samples per second.
 fn flight(seconds: f64) -> Vec<HumanoidSample> {
     let v = SVector::<f64, 35>::from_fn(|k, _| if k < 6 { 0.2 } else { (k as f64).sin() });
     let stiff =
@@ -44,7 +44,8 @@ fn samples_come_back_to_half_a_step() {
             }
             let [x, y, z, w] = [3, 4, 5, 6].map(|j| read(j) * turn);
             let read = UnitQuaternion::from_quaternion(linkwork::nalgebra::Quaternion::new(w, x, y, z));
-            // Four numbers to half a step each, and twice the angle.
+            // Four entries with an error of half a step each; the rotation angle is twice that of the
+            // quaternion.
             let angle = read.angle_to(&UnitQuaternion::from_rotation_matrix(&placement.rotation));
             assert!(angle <= 2.0 * turn * 1.01, "{name}: {angle}");
         }
@@ -57,7 +58,7 @@ fn ten_seconds_of_a_humanoid_are_small() {
     assert!(html.len() < 400_000, "{} bytes", html.len());
 }
 
-/// Every solid, and parts that turn them.
+/// Mechanism with every kind of solid, and joints that rotate and translate them.
 #[mechanism(gravity = -9.81 * z, drawing)]
 struct Solids {
     m: f64,
@@ -129,7 +130,7 @@ fn every_solid_has_its_numbers() {
     assert_eq!(kinds("sphere"), [Kind::Sphere; 2]);
     assert_eq!(kinds("plate"), [Kind::Cuboid, Kind::Ellipsoid]);
     assert_eq!(kinds("figures"), [Kind::Inertia]);
-    // A quarter of a turn about z takes the first edge along y.
+    // A rotation by 90° about z maps the first edge to y.
     let cuboid = of("cuboid", Role::Body)[0].1;
     assert!((Vector3::new(cuboid[3], cuboid[6], cuboid[9]) - Vector3::y()).norm() < 1e-12);
     assert_eq!(cuboid[12..], [0.2, 0.4, 0.6]);
@@ -137,8 +138,8 @@ fn every_solid_has_its_numbers() {
     assert_eq!(of("gravity", Role::Gravity)[0].1[3..], [0.0, 0.0, -9.81]);
 }
 
-/// A crank with a rocker: where a joint is drawn on its parent, the bar of its child begins or ends, in every
-/// configuration of the tree.
+/// Checks that the bar of a child ends at the joint that is drawn on its parent, in an arbitrary
+/// configuration.
 #[test]
 fn joints_and_links_meet() {
     let solids = Solids { m: 2.0, r: 0.2, h: 0.6 };
@@ -155,7 +156,7 @@ fn joints_and_links_meet() {
         (piece.frames, &numbers[piece.first..])
     };
     let (hinge, ring) = (of("b", Role::Joint), of("rod", Role::Link));
-    // The rod's bars begin where it is held, and lead to its joint with the ring.
+    // The bars of the rod begin at its joint with the ground, and lead to its joint with the ring.
     assert!((place(hinge.0[0], hinge.1) - place(ring.0[1], &ring.1[3..])).norm() < 1e-12);
     let ring = solids.frame_placement(linkwork::frame!(Solids, "ring"), &q).translation.vector;
     assert!((place(hinge.0[0], hinge.1).coords - ring).norm() < 1e-12);
@@ -173,15 +174,15 @@ fn visual_geometry_of_files_is_drawn() {
     let numbers = Shapes.drawing_numbers();
     let visuals: Vec<_> = Shapes::DRAWING.iter().filter(|p| p.role == Role::Visual).collect();
     let kinds: Vec<Kind> = visuals.iter().map(|p| p.kind).collect();
-    // What cannot be read is left out.
+    // Unreadable geometry is omitted.
     let meshes = ["package://shapes/meshes/wedge.obj", "package://shapes/meshes/lost.stl"].map(Kind::Mesh);
     assert_eq!(kinds, [Kind::Cuboid, meshes[0], Kind::Cylinder, Kind::Sphere, meshes[1]]);
     let cylinder = &numbers[visuals[2].first..];
-    // A quarter of a turn about y takes z to x.
+    // A rotation by 90° about y maps z to x.
     assert!((Vector3::from_column_slice(&cylinder[3..6]) - Vector3::x()).norm() < 1e-12);
     assert_eq!(cylinder[6..8], [0.03, 0.5]);
-    // A link without visual geometry is drawn by its inertia; so are links with meshes, in place of those
-    // that cannot be read.
+    // A link without visual geometry is drawn by its inertia; so are links with meshes, in case these cannot
+    // be read.
     let bodies: Vec<&str> = Shapes::DRAWING.iter().filter(|p| p.role == Role::Body).map(|p| p.name).collect();
     assert_eq!(bodies, ["base", "arm", "tip"]);
 
@@ -191,19 +192,19 @@ fn visual_geometry_of_files_is_drawn() {
     let motion = &motions(&html)[0];
     let meshes: Vec<_> = motion["pieces"].as_array().unwrap().iter().filter(|p| p[0] == "Mesh").collect();
     assert_eq!(meshes.len(), 1, "the other one has no file");
-    // Four corners of three numbers with two bytes each.
+    // Four corners of three coordinates with two bytes each.
     assert_eq!(meshes[0][6][2].as_str().unwrap().len(), 4 * 3 * 2 * 4 / 3);
 }
 
-/// The page of a figure of `Shapes` in its neutral configuration.
+/// Returns the page of a drawing of `Shapes` in its neutral configuration.
 fn shown(figure: Figure) -> String {
     let placements = vec![Shapes.frame_placements(&Shapes.neutral()).to_vec()];
     let motion = Motion::from_placements("", figure, vec![0.0], placements).unwrap();
     Page::new("shapes").motion(motion).html()
 }
 
-/// A link whose meshes were all read has no other body; one of a missing mesh is drawn by its mass
-/// properties, and the page lists the file. A folder that does not exist is an error.
+/// Checks that a link whose meshes were all read is not also drawn by its mass properties. A link with a
+/// missing mesh is, and the page lists the file. A folder that does not exist is an error.
 #[test]
 fn missing_meshes_are_replaced_and_listed() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
@@ -222,7 +223,7 @@ fn missing_meshes_are_replaced_and_listed() {
             pieces.iter().filter(|p| p[1] == role).map(|p| p[2].as_str().unwrap()).collect()
         };
         assert_eq!(of_role("Body"), bodies);
-        // From the shoulder to the wrist and to the centre of mass.
+        // Bars from the shoulder to the wrist and to the centre of mass.
         assert_eq!(of_role("Link").iter().filter(|name| **name == "arm").count(), 2);
     }
     let error = Figure::of(&Shapes).meshes("/nowhere/meshes").unwrap_err();
@@ -230,7 +231,7 @@ fn missing_meshes_are_replaced_and_listed() {
     assert!(error.to_string().starts_with("/nowhere/meshes: "), "{error}");
 }
 
-/// A log has the errors of a page: no samples, and times that decrease.
+/// Checks that a log has the errors of a page: no samples, and times that decrease.
 #[test]
 fn logs_and_pages_agree_on_errors() {
     let at = |t: f64| Sample::new(&Shapes, t, [0.1, 0.2], [0.0; 2], [0.0; 2]).unwrap();
@@ -247,7 +248,8 @@ struct MujocoShapes;
 #[mechanism(sdf = "tests/shapes.sdf", drawing)]
 struct SdfShapes;
 
-/// Forms of the visual geometry with their places and first axes in the ground's, in the configuration zero.
+/// Returns the kinds of visual geometry with their positions and first axes in the ground frame, in the zero
+/// configuration.
 fn seen<M, const NV: usize>(mechanism: &M) -> Vec<(Kind, Vector3<f64>, Vector3<f64>)>
 where
     M: Drawn<NV, NV, Scalar = f64>,
@@ -265,15 +267,16 @@ where
     placed.collect()
 }
 
-/// The same robot in three formats looks the same; a cylinder has no first end.
+/// Checks that the same robot in three formats has the same drawing. The sign of a cylinder axis is
+/// irrelevant.
 #[test]
 fn formats_agree_on_what_is_seen() {
     let urdf = seen::<_, 2>(&Shapes);
     let [mujoco, sdf] = [seen::<_, 2>(&MujocoShapes), seen::<_, 2>(&SdfShapes)];
-    // In MuJoCo's file a shape that touches is drawn where a body has no other.
+    // In the MJCF file, a collision shape is drawn if a body has no visual geometry.
     assert_eq!(mujoco.len(), 5);
     assert_eq!(mujoco[4].0, Kind::Ellipsoid);
-    // The fifth of URDF has no file.
+    // The fifth piece of the URDF file refers to a missing file.
     assert_eq!((urdf.len(), sdf.len()), (5, 4));
     for (given, other) in urdf.iter().zip(&mujoco).take(4).chain(urdf.iter().zip(&sdf)) {
         assert_eq!(std::mem::discriminant(&given.0), std::mem::discriminant(&other.0));
@@ -354,8 +357,8 @@ fn what_cannot_be_shown_is_told() {
     assert!(matches!(wrong, Err(Error::Count { expected: 4, found: 3, .. })));
 }
 
-/// More samples than one looks at are left out, gaps in curves stay gaps: of a second ten times as many as a
-/// screen shows at once, of a minute as many.
+/// Checks that surplus samples are omitted and gaps in curves are preserved. A motion of one second has at
+/// most 600 samples, one of a minute at most 60 per second.
 #[test]
 fn samples_are_thinned_and_gaps_kept() {
     let sample = |k: i32| {
@@ -371,7 +374,7 @@ fn samples_are_thinned_and_gaps_kept() {
     assert_eq!(motion["count"], 501, "every second one");
     let channels = channels(motion);
     assert_eq!(channels[channels.len() - 1][0], -1);
-    // The last sample is shown, whatever the others.
+    // The last sample is always shown.
     assert_eq!(channels[0].last(), Some(&100_000));
     let slow = |k: i32| linkwork::simulate::Sample { t: 6e-3 * f64::from(k), ..sample(k) };
     let minute: Vec<_> = (0..=10_000).map(slow).collect();
@@ -387,7 +390,7 @@ struct Turning {
     axle: Pin,
 }
 
-/// A plot for each unit: places, quaternions, angles.
+/// Checks that there is one plot per unit: positions, quaternions, angles.
 #[test]
 fn coordinates_of_a_unit_are_plotted_together() {
     #[mechanism(drawing)]

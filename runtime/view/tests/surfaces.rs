@@ -1,5 +1,4 @@
-//! What is drawn on request: surfaces that have no end, arrows of forces, meshes of files that name their
-//! unit.
+//! Optional drawings: regions of unbounded surfaces, arrows of forces, and meshes whose files specify a unit.
 
 mod support;
 
@@ -41,7 +40,7 @@ fn meshes(motion: &Value) -> Vec<&Value> {
     motion["pieces"].as_array().unwrap().iter().filter(|piece| piece[0] == "Mesh").collect()
 }
 
-/// The lowest and the highest place of a mesh along each axis.
+/// Returns the lowest and highest coordinate of a mesh along each axis.
 fn bounds(surface: &Value) -> [[f64; 2]; 3] {
     let (low, step) = (&surface[6][0], &surface[6][1]);
     [0, 1, 2].map(|k| {
@@ -57,8 +56,8 @@ fn assert_bounds(surface: &Value, known: [[f64; 2]; 3]) {
     }
 }
 
-/// The bounds of the region, and the heights of the sine between them; the floor makes room for it, and the
-/// camera stays near.
+/// Checks the bounds of a surface and the heights of the sine over it. The floor is omitted, and the camera
+/// distance does not change.
 #[test]
 fn a_surface_is_drawn_over_a_region() {
     let plain = data(ball());
@@ -71,8 +70,8 @@ fn a_surface_is_drawn_over_a_region() {
     assert_eq!(plain["scene"][2], motion["scene"][2]);
 }
 
-/// Terrain is drawn by what is declared, as far as the motion goes and beyond it by the size of the ball: its
-/// diagonal.
+/// Checks that a declared terrain is drawn over the region of the motion, extended by the size of the ball,
+/// which is the diagonal of its bounding box.
 #[test]
 fn a_terrain_is_drawn_by_its_declaration() {
     let motion = data(ball());
@@ -86,7 +85,8 @@ fn a_terrain_is_drawn_by_its_declaration() {
     assert!(motion["scene"][6].is_null(), "no floor under it");
 }
 
-/// A table with parameters, on a tray that is tilted and moves: places are along the axes of the tray.
+/// Checks a terrain from a table with parameters on a tilted, moving tray: positions are along the axes of
+/// the tray.
 #[test]
 fn a_terrain_may_be_a_table_on_a_body() {
     #[mechanism(gravity = -9.81 * z, drawing)]
@@ -109,7 +109,8 @@ fn a_terrain_may_be_a_table_on_a_body() {
     let bumps = Table::new([&[-9.0, 0.0, 9.0], &[-9.0, 1.0, 9.0]], values).unwrap();
     let tray = Tray { share: 0.5, bumps };
     let turned = std::f64::consts::FRAC_PI_2;
-    // The axis x of the tray points down, z along x: the pearl is 2 m along −x and 1 m along y of the tray.
+    // The x axis of the tray points down, its z axis along x: the pearl is 2 m along −x and 1 m along y of
+    // the tray.
     let q = [turned, 0.7, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0];
     let sample = Sample { t: 0.0, q: q.into(), v: SVector::zeros(), u: [].into(), event: None };
     let motion = data(Motion::of("tray", &tray, &[sample]).unwrap());
@@ -119,7 +120,7 @@ fn a_terrain_may_be_a_table_on_a_body() {
     for (found, known) in found[..2].as_flattened().iter().zip([-2.0 - size, size, -size, 1.0 + size]) {
         assert!((found - known).abs() < 2e-3, "{found} {known}");
     }
-    // Half of the largest value, close to the grid's corner at 0, 1; nothing far from it.
+    // Half of the largest value, near the grid point at 0, 1; zero elsewhere.
     assert!(found[2][1] > 0.15 && found[2][1] <= 0.2 + 1e-6, "{found:?}");
 }
 
@@ -136,7 +137,8 @@ fn surfaces_that_cannot_be_drawn_are_told() {
     assert!(matches!(nowhere, Err(Error::Frame { name, .. }) if name == "moon"));
 }
 
-/// Three components of an arrow come back to a step of their range, those that are not finite as none.
+/// Checks that the components of an arrow are decoded to one quantisation step; components that are not
+/// finite are missing.
 #[test]
 fn arrows_are_the_vectors_that_were_given() {
     let vectors = vec![[0.0, 1.0, 20.0], [3.0, f64::NAN, 10.0], [-3.0, 0.0, 0.0]];
@@ -160,7 +162,7 @@ fn arrows_are_the_vectors_that_were_given() {
     assert!(matches!(few, Err(Error::Count { expected: 3, found: 1, .. })));
 }
 
-/// A wedge in centimetres, with edges of 0.1 m, 0.05 m along x.
+/// Checks a wedge in centimetres, with edges of 0.1 m and 0.05 m along x.
 #[test]
 fn collada_files_are_read_in_metres() {
     let mut numbers = [0.0; 15];

@@ -1,8 +1,8 @@
-//! Reads pages as `view.js` does, by a decoder of its own.
+//! Decoder of pages, independent of `view.js`.
 
 use serde_json::Value;
 
-/// The motions of a page, as its data says.
+/// Returns the motions in the JSON data of a page.
 pub fn motions(page: &str) -> Vec<Value> {
     let begin = "<script type=\"application/json\">";
     let (_, rest) = page.split_once(begin).unwrap();
@@ -10,8 +10,8 @@ pub fn motions(page: &str) -> Vec<Value> {
     serde_json::from_str(data).unwrap()
 }
 
-/// The channels of a motion: times, then of each frame three places and four numbers of a quaternion, then
-/// curves.
+/// Returns the channels of a motion: times, then for each frame three positions and four entries of a
+/// quaternion, then curves.
 pub fn channels(motion: &Value) -> Vec<Vec<i64>> {
     let bytes = base64(motion["data"].as_str().unwrap());
     let count = motion["count"].as_u64().unwrap() as usize;
