@@ -1,4 +1,4 @@
-//! States that constraints allow: near a given one, with what is held of it.
+//! Assembly: computes states that satisfy the constraints, near a given state and with some entries fixed.
 
 use crate::constrained::Metric;
 use crate::evaluate::{Evaluated, Values};
@@ -7,31 +7,32 @@ use linkwork_compiler::mechanism::Chart;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Velocities that miss a constraint by this part contradict it.
+/// Relative residual above which velocities contradict a constraint.
 const CONTRADICTION: f64 = 1e-6;
-/// Residuals of a configuration that lies on the constraints, m and rad.
+/// Maximum residual of a configuration that satisfies the constraints, m and rad.
 const SETTLED: f64 = 1e-12;
-/// Residuals of a configuration on the constraints from which whole turns were taken, m and rad.
+/// Maximum residual of a configuration after whole revolutions were subtracted from its angles, m and rad.
 const UNWOUND: f64 = 1e-10;
-/// Steps of Newton's method.
+/// Maximum number of Newton steps.
 const ATTEMPTS: usize = 50;
-/// A step that must be shorter than this part of Newton's leads nowhere.
+/// Minimum fraction of a Newton step; the line search fails below it.
 const SHORTEST: f64 = 1e-6;
-/// The least decrease of the residuals that a step is taken for, next to that which its linear equations
-/// promise.
+/// Minimum decrease of the residuals for which a step is accepted, relative to the decrease that the linear
+/// equations predict.
 const DECREASE: f64 = 1e-4;
-/// Steps in which what is given goes to its values.
+/// Number of steps in which the given entries move to their values.
 const STEPS: u8 = 40;
-/// How often a mechanism is assembled from another beginning.
+/// Number of perturbed initial configurations from which a mechanism is assembled.
 const ASSEMBLIES: u8 = 100;
-/// The longest step of an angle, rad: from a beginning near an assembly mode the steps lead into this one.
+/// Maximum step of an angle, rad. Short steps lead from an initial configuration near an assembly mode into
+/// that mode.
 const LONGEST: f64 = 0.3;
-/// Determinants of rows of length one that count as zero.
+/// Absolute value below which the determinant of a matrix with rows of length one counts as zero.
 const SINGULAR: f64 = 1e-9;
 
 impl Evaluated<'_, '_> {
-    /// Projects a state onto the constraints: the configuration, then the velocity. `None` where no state is
-    /// near.
+    /// Projects a state onto the constraints: the configuration, then the velocity. `None` if no such state
+    /// is near.
     pub fn settle(&self, t: f64, q: &mut Vec<f64>, v: &mut [f64]) -> Option<()> {
         if !self.is_constrained() {
             return Some(());
@@ -41,8 +42,8 @@ impl Evaluated<'_, '_> {
         self.move_along(t, q, v, &free)
     }
 
-    /// Entries of a configuration that move together, with their velocities: all of a rotation, or of the
-    /// place of a free body.
+    /// Iterates over the ranges of configuration entries that change together, with their velocities: the
+    /// entries of a rotation, or the position of a free body.
     fn together(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         self.model
             .charts
@@ -58,8 +59,8 @@ impl Evaluated<'_, '_> {
             .flatten()
     }
 
-    /// The velocities of joints that change marked entries of a configuration, or entries that move together
-    /// with them.
+    /// Returns which velocities of joints change marked entries of a configuration, or entries that change
+    /// together with them.
     pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
         for (entries, velocities) in self.together() {
@@ -68,7 +69,7 @@ impl Evaluated<'_, '_> {
         moving
     }
 
-    /// The entries of a configuration that no other velocities of joints change than the marked ones.
+    /// Returns which entries of a configuration are changed by marked velocities of joints only.
     pub fn entries(&self, marks: &[bool]) -> Vec<bool> {
         let mut found = vec![false; self.model.nq()];
         for (entries, velocities) in self.together() {
@@ -77,8 +78,9 @@ impl Evaluated<'_, '_> {
         found
     }
 
-    /// The velocities that change no constraint, in this configuration and near it: first those of the
-    /// joints, then the entries of `v`, which differ from them if speeds are declared.
+    /// Returns which velocities affect no constraint, at this configuration and near it. The first list has
+    /// the velocities of the joints, the second the entries of `v`, which differ if generalized speeds are
+    /// declared.
     pub fn unreached(&self, t: f64, q: &[f64]) -> [Vec<bool>; 2] {
         [true, false].map(|of_joints| self.unreached_of(t, q, of_joints))
     }
@@ -106,9 +108,9 @@ impl Evaluated<'_, '_> {
         unreached
     }
 
-    /// Returns a configuration that follows the given entries from the configuration on the constraints
-    /// nearest to zero, in small steps, so that a loop keeps the assembly mode that it has there. If the
-    /// given entries contradict the constraints, the configuration is off them.
+    /// Returns a configuration with the given entries, reached in small steps from the configuration on the
+    /// constraints that is nearest to zero, so that a loop stays in the assembly mode of that configuration.
+    /// If the given entries contradict the constraints, the result violates them.
     pub fn led(&self, t: f64, q: &[f64], given: &[bool], apart: &[bool], held: &[bool]) -> Vec<f64> {
         let mut zero = self.neutral();
         let is_apart = self.entries(apart);
@@ -125,14 +127,15 @@ impl Evaluated<'_, '_> {
             if self.normalise(&mut at).is_err() {
                 return q.to_vec();
             }
-            // As near as it comes.
+            // The nearest configuration that Newton's method reaches.
             _ = self.configure(t, &mut at, held);
         }
         at
     }
 
-    /// Returns a configuration on the constraints, from `q` or from others that are more and more off in what
-    /// is not held: the first whose angles are within half a turn of the guess, if there is one.
+    /// Returns a configuration on the constraints. The iteration starts from `q`, then from increasingly
+    /// perturbed values of the entries that are not held. The first result whose angles are within half a
+    /// revolution of the guess is preferred.
     pub fn assembled(
         &self,
         t: f64,
@@ -160,14 +163,14 @@ impl Evaluated<'_, '_> {
         found.or(far)
     }
 
-    /// Entries of a configuration that are angles.
+    /// Iterates over the indices of configuration entries that are angles.
     fn angles(&self) -> impl Iterator<Item = usize> {
         let units = self.model.units.configuration.iter().enumerate();
         units.filter(|(_, unit)| *unit == "rad").map(|(k, _)| k)
     }
 
-    /// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints
-    /// hold without these turns as well: all together, or else each by itself.
+    /// Subtracts whole revolutions from angles that differ by more than half a revolution from the guess, if
+    /// the constraints remain satisfied: from all angles together, or otherwise from each one separately.
     fn unwound(&self, t: f64, guess: &[f64], q: Vec<f64>) -> Vec<f64> {
         let v = vec![0.0; self.model.nv()];
         let without = |mut q: Vec<f64>, k: usize| {
@@ -189,8 +192,8 @@ impl Evaluated<'_, '_> {
     }
 
     /// Returns the assembly mode of a configuration, as generated code computes it: the sign of the
-    /// determinant of the derivatives of the constraints by the coordinates that are not held; none where
-    /// they do not determine one.
+    /// determinant of the derivatives of the constraints with respect to the coordinates that are not held.
+    /// `None` if the constraints do not determine these coordinates, or if the determinant is zero.
     pub fn assembly_mode(&self, t: f64, q: &[f64], held: &[bool]) -> Option<i8> {
         let v = vec![0.0; held.len()];
         let state = Values { t, q, v: &v, ..Values::default() };
@@ -215,8 +218,9 @@ impl Evaluated<'_, '_> {
         (determinant.abs() > SINGULAR).then_some(if determinant > 0.0 { 1 } else { -1 })
     }
 
-    /// Brings a configuration onto the constraints by Newton's method, the next one in the metric of the mass
-    /// matrix, without the velocities that are held. Steps that do not bring it nearer are halved.
+    /// Projects a configuration onto the constraints by Newton's method, with minimum steps in the metric of
+    /// the mass matrix and without changing held velocities. Steps that do not reduce the residuals are
+    /// halved.
     fn configure(&self, t: f64, q: &mut Vec<f64>, held: &[bool]) -> Option<()> {
         let v = vec![0.0; held.len()];
         let residuals = |q: &[f64]| {
@@ -231,7 +235,7 @@ impl Evaluated<'_, '_> {
             let state = Values { t, q, v: &v, ..Values::default() };
             let (all, positions) = (self.model.constraints.len(), left.len());
             let jacobian = self.by_joints(state, self.called("constraint_jacobian", state)?);
-            // Those on configurations come first.
+            // Position-level constraints come first.
             let jacobian: Vec<f64> =
                 jacobian.chunks(all).flat_map(|column| &column[..positions]).copied().collect();
             let target: Vec<f64> = left.iter().map(|x| -x).collect();
@@ -239,7 +243,7 @@ impl Evaluated<'_, '_> {
             let mass = self.by_joints(state, transposed(&self.by_joints(state, mass), held.len()));
             let (moved, _) = nearest(&mass, &jacobian, &target, held)?;
             let rates = self.rates_of_joints(q, &moved);
-            // The units of declared speeds do not distinguish rotations from translations.
+            // The units of declared generalized speeds do not distinguish rotations from translations.
             let units = self.model.speeds.is_none().then_some(&self.model.units.velocities);
             let rotations =
                 moved.iter().zip(units.into_iter().flatten()).filter(|(_, unit)| *unit == "rad/s");
@@ -260,8 +264,8 @@ impl Evaluated<'_, '_> {
         None
     }
 
-    /// Changes those velocities that are not held, as little as the constraints allow. `None` where these
-    /// contradict what is held.
+    /// Changes the velocities that are not held by the minimum amount that satisfies the constraints. `None`
+    /// if the held velocities contradict the constraints.
     pub fn move_along(&self, t: f64, q: &[f64], v: &mut [f64], held: &[bool]) -> Option<()> {
         let state = Values { t, q, v, ..Values::default() };
         let target: Vec<f64> = self.called("constraint_rates", state)?.iter().map(|rate| -rate).collect();
@@ -271,8 +275,8 @@ impl Evaluated<'_, '_> {
         (off <= CONTRADICTION).then_some(())
     }
 
-    /// A matrix, column by column, that multiplies the entries of `v`, as one that multiplies the velocities
-    /// of the joints.
+    /// Converts a matrix in column-major order that multiplies `v` to one that multiplies the velocities of
+    /// the joints.
     fn by_joints(&self, state: Values<'_>, matrix: Vec<f64>) -> Vec<f64> {
         let n = self.model.nv();
         if self.model.speeds.is_none() || n == 0 {
@@ -289,8 +293,8 @@ impl Evaluated<'_, '_> {
     }
 }
 
-/// The least motion with `jacobian · motion = target`, in the metric of the mass matrix, of the velocities
-/// that are not held.
+/// Returns the minimum motion of the velocities that are not held with `jacobian · motion = target`, in the
+/// metric of the mass matrix, and the largest residual.
 fn nearest(mass: &[f64], jacobian: &[f64], target: &[f64], held: &[bool]) -> Option<(Vec<f64>, f64)> {
     let (n, m) = (held.len(), target.len());
     let free: Vec<usize> = (0..n).filter(|k| !held[*k]).collect();
@@ -303,12 +307,12 @@ fn nearest(mass: &[f64], jacobian: &[f64], target: &[f64], held: &[bool]) -> Opt
     Some((motion, off))
 }
 
-/// A square matrix with rows and columns exchanged.
+/// Transposes a square matrix.
 fn transposed(matrix: &[f64], n: usize) -> Vec<f64> {
     (0..n).flat_map(|i| (0..n).map(move |j| j * n + i)).map(|at| matrix[at]).collect()
 }
 
-/// Numbers from −1 to 1 that repeat nothing: parts of a golden angle.
+/// Returns a number from −1 to 1 of a sequence that does not repeat (multiples of irrational fractions).
 fn beside(attempt: u8, k: usize) -> f64 {
     2.0 * (f64::from(attempt) * 0.618 + k as f64 * 0.755).fract() - 1.0
 }

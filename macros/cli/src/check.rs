@@ -1,4 +1,4 @@
-//! `linkwork check`: every mistake with its place.
+//! `linkwork check`: lists every error with its location.
 
 use crate::Stop;
 use crate::input::{Input, Mistake};

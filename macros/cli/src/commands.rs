@@ -1,9 +1,9 @@
-//! The grammar of the command line.
+//! Definition of the command line.
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
 
-/// `linkwork` with its commands.
+/// Returns the definition of `linkwork` with its subcommands.
 pub fn command() -> Command {
     Command::new("linkwork")
         .version(env!("CARGO_PKG_VERSION"))
@@ -228,7 +228,7 @@ fn out_file() -> Arg {
         .value_parser(value_parser!(PathBuf))
 }
 
-/// A text that was given.
+/// Returns the value of a text option, if present.
 pub fn given<'a>(matches: &'a ArgMatches, name: &str) -> Option<&'a str> {
     matches.get_one::<String>(name).map(String::as_str)
 }

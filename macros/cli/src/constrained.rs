@@ -1,17 +1,17 @@
-//! Motions under constraints: accelerations by Gauss's principle of least constraint, and states brought back
-//! onto the constraints after every step, in the metric of the mass matrix, as simulations in Rust do it.
+//! Constrained motion: accelerations by Gauss's principle of least constraint, and projection of states onto
+//! the constraints after every step. Both use the metric of the mass matrix, as simulations in Rust do.
 
-/// A mass matrix by its factor: `M = L Lᵀ`, row by row below the diagonal.
+/// Mass matrix with its Cholesky factor: `M = L Lᵀ`, stored row by row below the diagonal.
 pub struct Metric {
     n: usize,
     factor: Vec<f64>,
 }
 
-/// Directions of constraints that are this small, next to the largest, follow from others.
+/// Constraint directions whose norm is below this fraction of the largest are redundant.
 const REDUNDANT: f64 = 1e-9;
 
 impl Metric {
-    /// The factor of a matrix, column by column; none if it is not positive definite.
+    /// Factorises a matrix in column-major order; `None` if it is not positive definite.
     pub fn of(matrix: &[f64], n: usize) -> Option<Metric> {
         let mut factor = vec![0.0; n * n];
         for i in 0..n {
@@ -28,7 +28,7 @@ impl Metric {
         Some(Metric { n, factor })
     }
 
-    /// `L⁻¹ x`.
+    /// Computes `L⁻¹ x`.
     fn lower(&self, mut x: Vec<f64>) -> Vec<f64> {
         for i in 0..self.n {
             let known: f64 = (0..i).map(|k| self.factor[i * self.n + k] * x[k]).sum();
@@ -37,7 +37,7 @@ impl Metric {
         x
     }
 
-    /// `L⁻ᵀ x`.
+    /// Computes `L⁻ᵀ x`.
     fn upper(&self, mut x: Vec<f64>) -> Vec<f64> {
         for i in (0..self.n).rev() {
             let known: f64 = (i + 1..self.n).map(|k| self.factor[k * self.n + i] * x[k]).sum();
@@ -46,8 +46,9 @@ impl Metric {
         x
     }
 
-    /// The `a` next to `M⁻¹ force` with `jacobian a = target`, for a Jacobian column by column, and how far
-    /// the equation is off that it fulfils least: far only where constraints contradict each other.
+    /// Returns the vector `a` nearest to `M⁻¹ force` with `jacobian a = target`, for a Jacobian in
+    /// column-major order, and the largest residual of these equations, which is large only if constraints
+    /// contradict each other.
     pub fn nearest(&self, force: Vec<f64>, jacobian: &[f64], target: &[f64]) -> (Vec<f64>, f64) {
         let (n, m) = (self.n, target.len());
         let mut z = self.lower(force);
@@ -55,7 +56,7 @@ impl Metric {
             (0..m).map(|i| self.lower((0..n).map(|k| jacobian[k * m + i]).collect())).collect();
         let (mut left, mut open) = (rows.clone(), (0..m).collect::<Vec<_>>());
         let largest = rows.iter().map(|row| dot(row, row)).fold(0.0, f64::max);
-        // The direction first that is farthest from those before.
+        // The direction with the largest component orthogonal to the previous ones comes first.
         while let Some(at) = (0..open.len()).max_by(|a, b| {
             let size = |k: usize| dot(&left[open[k]], &left[open[k]]);
             size(*a).total_cmp(&size(*b))
@@ -69,7 +70,7 @@ impl Metric {
             let gap = (target[i] - dot(&rows[i], &z)) / dot(&direction, &rows[i]);
             z.iter_mut().zip(&direction).for_each(|(z, d)| *z += gap * d);
             for k in &open {
-                // Twice is enough (Parlett, The Symmetric Eigenvalue Problem, § 6.9).
+                // Two orthogonalisations suffice (Parlett, The Symmetric Eigenvalue Problem, § 6.9).
                 for _ in 0..2 {
                     let along = dot(&left[*k], &direction);
                     left[*k].iter_mut().zip(&direction).for_each(|(x, d)| *x -= along * d);
@@ -89,8 +90,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::Metric;
 
-    /// Two masses that are tied together share a force in the ratio of their masses; the tie said twice
-    /// changes nothing.
+    /// Checks that two connected masses share a force in the ratio of their masses, and that repeating the
+    /// constraint changes nothing.
     #[test]
     fn redundant_constraints_change_nothing() {
         let metric = Metric::of(&[2.0, 0.0, 0.0, 3.0], 2).expect("it is positive definite");
@@ -101,7 +102,7 @@ mod tests {
         }
     }
 
-    /// `x = 0` and `x = 1` cannot both be.
+    /// Checks that the contradiction of `x = 0` and `x = 1` is reported.
     #[test]
     fn contradictions_are_told() {
         let metric = Metric::of(&[2.0], 1).expect("it is positive definite");

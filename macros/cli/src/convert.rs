@@ -1,4 +1,4 @@
-//! `linkwork convert`: a robot file as the struct that a person goes on editing.
+//! `linkwork convert`: converts a robot file to a Rust struct for further editing.
 
 use crate::Stop;
 use crate::export::put;
@@ -52,16 +52,16 @@ struct Struct<'a> {
     links: Names,
     joints: Names,
     others: Names,
-    /// Lengths of cables that do not change.
+    /// Names of drives on cable lengths that do not change with the motion.
     constant: BTreeSet<String>,
     fields: String,
-    /// What is different from the file.
+    /// Differences from the file.
     notes: Vec<String>,
-    /// What has another name in the file, which is said, and the name here.
+    /// Description of each renamed element with its name in the file, and its new name.
     renamed: Vec<(String, String)>,
 }
 
-/// Names that are told where the struct is printed; its documentation has all.
+/// Number of renamed elements printed on the terminal; the documentation of the struct lists all.
 const RENAMED_SHOWN: usize = 4;
 
 impl<'a> Struct<'a> {
@@ -83,14 +83,14 @@ impl<'a> Struct<'a> {
         made
     }
 
-    /// Remembers what the file calls otherwise.
+    /// Records a name that differs from the one in the file.
     fn rename(&mut self, kind: &str, name: &str, field: &str) {
         if name != field {
             self.renamed.push((format!("{kind} `{name}`"), field.to_string()));
         }
     }
 
-    /// Says some of what the file calls otherwise.
+    /// Prints the first names that differ from those in the file.
     fn tell_renamed(&self) {
         let shown = self.renamed.iter().take(RENAMED_SHOWN);
         let shown: Vec<String> = shown.map(|(what, field)| format!("{what} is `{field}`")).collect();
@@ -157,14 +157,14 @@ impl<'a> Struct<'a> {
         let _ = writeln!(self.fields, "    {attribute}\n    {name}: {kind},");
     }
 
-    /// A field with a name that no other has.
+    /// Adds a field with a unique name, and returns the name.
     fn element(&mut self, attribute: &str, name: &str, kind: &str) -> String {
         let name = self.others.fresh(name, "element");
         self.field(attribute, &name, kind);
         name
     }
 
-    /// A field for what has a name in the file: its own name says which if it must be another.
+    /// Adds a field for a named element of the file, and records its name if it differs.
     fn named(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
         let field = self.element(attribute, name, kind);
         self.rename(what, name, &field);
@@ -215,7 +215,7 @@ impl<'a> Struct<'a> {
         text
     }
 
-    /// What a joint has beside its motion.
+    /// Adds the elements that belong to a joint: damping, friction, and the constraint of a mimic joint.
     fn elements_of(&mut self, joint: &Joint) {
         let on = self.joints.of(&joint.name.text);
         if let Some(damping) = &joint.damping {
@@ -243,7 +243,7 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Inputs, in the order of the file's.
+    /// Adds the inputs in the order of the file.
     fn inputs(&mut self) {
         for joint in self.description.joints.iter().filter(|joint| joint.driven && joint.mimic.is_none()) {
             let on = self.joints.of(&joint.name.text);
@@ -288,7 +288,7 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Adds the force and the torque of a wrench times a factor.
+    /// Adds forces and torques that are the components of a wrench times a factor.
     fn add_wrench(&mut self, wrench: &Wrench, name: &str, factor: &str) {
         let Some((point, body)) = self.body_of(wrench, name) else { return };
         for (kind, on, vector) in [("Force", &point, wrench.force), ("Torque", &body, wrench.torque)] {
@@ -300,7 +300,7 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Adds damping of the rate that a wrench works on.
+    /// Adds damping along the velocity of a wrench.
     fn add_wrench_damping(&mut self, wrench: &Wrench, name: &str, damping: f64) {
         let Some((point, body)) = self.body_of(wrench, name) else { return };
         let mut rates = Vec::new();
@@ -317,8 +317,8 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Returns the point that a wrench acts at, and its body; notes a wrench with a reaction on another body,
-    /// which is left out.
+    /// Returns the point of application of a wrench, and its body. A wrench with a reaction on another body
+    /// is omitted and noted.
     fn body_of(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
         if wrench.against.is_some() {
             self.notes.push(format!("`{name}`, which acts between points of two bodies, has no effect here"));
@@ -348,7 +348,7 @@ impl<'a> Struct<'a> {
             match drive.law {
                 DriveLaw::Push(force) => self.add_wrench(wrench, name, &number(force)),
                 DriveLaw::Damper(damping) => self.add_wrench_damping(wrench, name, damping),
-                // No other law has an effect without a length.
+                // The other laws have no effect without a length.
                 _ => {}
             }
             return;
@@ -358,7 +358,8 @@ impl<'a> Struct<'a> {
                 .notes
                 .push(format!("`{name}`, which acts on a length that does not change, is left out"));
         };
-        // Friction is smooth in the rate of the sum.
+        // The friction law is regularised in the velocity of the weighted sum, so that the weight cannot
+        // become a factor.
         let is_scaled = matches!(drive.law, DriveLaw::Friction(_));
         if let [(joint, w)] = drive.on.terms()
             && (w.abs() == 1.0 || !is_scaled)
@@ -433,7 +434,7 @@ impl<'a> Struct<'a> {
     }
 }
 
-/// A motor's type.
+/// Returns the type of a motor: a force for a prismatic joint, otherwise a torque.
 fn push(kind: JointKind) -> &'static str {
     if kind == JointKind::Sleeve { "Force" } else { "Torque" }
 }
@@ -444,7 +445,7 @@ fn vector_in_axes(vector: [f64; 3], body: &str) -> String {
     parts.map(|(x, axis)| format!("{} * {body}.{axis}", number(x))).collect::<Vec<_>>().join(" + ")
 }
 
-/// Returns the law of a damper; one that brings energy in is written by its force.
+/// Returns the law of a damper; one with a negative coefficient, which adds energy, is written as a force.
 fn damper(damping: f64) -> String {
     match damping < 0.0 {
         true => format!("force = {} * speed", number(damping)),
@@ -452,8 +453,8 @@ fn damper(damping: f64) -> String {
     }
 }
 
-/// Returns the names of the lengths among the drives that do not change with the motion: nothing on them has
-/// an effect.
+/// Returns the names of drives on lengths that do not change with the motion, so that the drives have no
+/// effect.
 fn constant_lengths(description: &Description) -> BTreeSet<String> {
     let is_length = |drive: &&Drive| matches!(drive.on, DriveOn::Length(_));
     let lengths: Vec<&Drive> = description.drives.iter().filter(is_length).collect();
@@ -469,7 +470,7 @@ fn constant_lengths(description: &Description) -> BTreeSet<String> {
     names.map(|(_, drive)| drive.name.text.clone()).collect()
 }
 
-/// The energy of a spring that is free in a range.
+/// Returns the energy of a spring that is slack within a range.
 fn slack(stiffness: f64, [low, high]: [f64; 2]) -> String {
     let (half, low, high) = (number(stiffness / 2.0), number(low), number(high));
     format!("energy = {half} * (pow(min(stretch - {low}, 0), 2) + pow(max(stretch - {high}, 0), 2))")

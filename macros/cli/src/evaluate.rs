@@ -1,5 +1,5 @@
-//! A mechanism's programs with numbers in place of symbols: its accelerations and the places of its frames,
-//! without a compiler of Rust. Slower than generated code, and equal to it.
+//! Numerical evaluation of a mechanism's programs: accelerations and placements of frames, without compiling
+//! Rust. Slower than generated code, with the same results.
 
 use crate::Stop;
 use crate::constrained::Metric;
@@ -12,9 +12,9 @@ use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, InQ, InV, Model, Quantity};
 use linkwork_compiler::syntax::RATE_OF_STATE;
 
-/// A mechanism with its parameters.
+/// Mechanism with values of its parameters.
 pub struct Evaluated<'a, 'g> {
-    /// The mechanism.
+    /// Model of the mechanism.
     pub model: &'a Model<'g>,
     output: &'a Output,
     parameters: Vec<f64>,
@@ -23,7 +23,7 @@ pub struct Evaluated<'a, 'g> {
     pub states: Vec<(String, usize)>,
 }
 
-/// Arguments of programs.
+/// Arguments of the programs.
 #[derive(Clone, Copy, Default)]
 pub struct Values<'a> {
     /// Time, s.
@@ -32,25 +32,25 @@ pub struct Values<'a> {
     pub q: &'a [f64],
     /// Velocity.
     pub v: &'a [f64],
-    /// States of first order; those among the parameters if it is empty.
+    /// States of first order; if empty, their values among the parameters are used.
     pub x: &'a [f64],
     /// Inputs.
     pub u: &'a [f64],
     /// Generalized forces.
     pub tau: &'a [f64],
-    /// What frames hang from: the placement of their link.
+    /// Placement of the link that a frame is fixed to, or other additional arguments.
     pub given: &'a [f64],
     /// Passive forces.
     pub passive: &'a [f64],
 }
 
-/// Accelerations that miss a constraint by this part contradict it.
+/// Relative residual above which accelerations contradict a constraint.
 const CONTRADICTION: f64 = 1e-6;
-/// A rotation matrix row by row, and a position: those of the ground.
+/// Placement of the ground: a rotation matrix row by row, then a position.
 const GROUND: [f64; 12] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
 
 impl<'a, 'g> Evaluated<'a, 'g> {
-    /// A mechanism with values of all parameters, and its tables.
+    /// Creates a mechanism with values of all parameters, and its tables.
     pub fn new(
         model: &'a Model<'g>,
         output: &'a Output,
@@ -61,12 +61,12 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         Evaluated { model, output, parameters, tables, states }
     }
 
-    /// Whether a mechanism with these parameters can be, as `validate` says it in Rust.
+    /// Checks whether the parameters are admissible, as `validate` does in Rust.
     pub fn validate(&self) -> Result<(), Stop> {
         use linkwork::__private::{Figure, Rule, validate};
         use linkwork_compiler::mechanism::Rule as Known;
         let Some(values) = self.called("__figures", Values::default()) else { return Ok(()) };
-        // The command ends soon.
+        // Leaking is acceptable, since the process ends soon.
         let kept = |text: &str| -> &'static str { Box::leak(text.to_string().into_boxed_str()) };
         let figures = self.model.requirements.iter().map(|requirement| Figure {
             rule: match requirement.rule {
@@ -89,7 +89,7 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         Ok(validate(&figures.collect::<Vec<_>>(), &values)?)
     }
 
-    /// The configuration zero.
+    /// Returns the neutral configuration.
     pub fn neutral(&self) -> Vec<f64> {
         let mut q = vec![0.0; self.model.nq()];
         for chart in &self.model.charts {
@@ -100,7 +100,7 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         q
     }
 
-    /// Makes quaternions unit ones; tells which is none.
+    /// Normalises quaternions; a zero quaternion is an error.
     pub fn normalise(&self, q: &mut [f64]) -> Result<(), Stop> {
         for first in self.model.charts.iter().filter_map(Chart::quaternion) {
             let quaternion = &mut q[first.and_next(4)];
@@ -114,7 +114,7 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         Ok(())
     }
 
-    /// Rates of `q` with the velocity `v`, which is one of declared speeds if there are any.
+    /// Returns the rates of `q` for the velocity `v`, which has the declared generalized speeds, if any.
     pub fn rates(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         match self.called("rates_of_speeds", Values { q, v, ..Values::default() }) {
             Some(of_joints) => self.rates_of_joints(q, &of_joints),
@@ -122,8 +122,8 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         }
     }
 
-    /// Rates of `q` with velocities of the joints: rotated into the axes of positions, and rates of
-    /// quaternions.
+    /// Returns the rates of `q` for velocities of the joints: linear velocities in the axes of the positions,
+    /// and rates of quaternions.
     pub fn rates_of_joints(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; q.len()];
         for chart in &self.model.charts {
@@ -143,7 +143,8 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         rates
     }
 
-    /// Accelerations, then the rates of the states of first order; NaN where constraints determine none.
+    /// Returns accelerations, then the rates of the states of first order; NaN if constraints do not
+    /// determine them.
     pub fn accelerations(&self, state: Values<'_>) -> Vec<f64> {
         let passive = self.called("__passive_forces", state).unwrap_or_default();
         let state = Values { passive: &passive, ..state };
@@ -184,17 +185,17 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         self.output.functions.iter().find(|f| f.name == name)
     }
 
-    /// What a generated function gives, if there is one of this name.
+    /// Evaluates the generated function with this name, if it exists.
     pub fn called(&self, name: &str, state: Values<'_>) -> Option<Vec<f64>> {
         Some(self.run(&self.find(name)?.program, state))
     }
 
-    /// There are constraints.
+    /// Returns whether the mechanism has constraints.
     pub fn is_constrained(&self) -> bool {
         !self.model.constraints.is_empty()
     }
 
-    /// Whether the mass matrix can be inverted at the time zero.
+    /// Returns whether the mass matrix is positive definite at time zero.
     pub fn has_inertia(&self, q: &[f64]) -> bool {
         self.metric(Values { q, v: &vec![0.0; self.model.nv()], ..Values::default() }).is_some()
     }
@@ -203,7 +204,8 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         Metric::of(&self.called("mass_matrix", state)?, self.model.nv())
     }
 
-    /// Of all accelerations that the constraints allow those next to what forces alone would do.
+    /// Returns the accelerations that satisfy the constraints and are nearest to the unconstrained
+    /// accelerations.
     fn constrained(&self, state: Values<'_>, mut force: Vec<f64>) -> Option<Vec<f64>> {
         let bias = self.called("bias_forces", state)?;
         force.iter_mut().zip(bias).for_each(|(f, h)| *f -= h);
@@ -214,7 +216,7 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         (off <= CONTRADICTION * scale).then_some(a)
     }
 
-    /// Why its accelerations cannot be computed here.
+    /// Returns the reason why the accelerations cannot be computed here, if any.
     pub fn obstacle(&self, without_contacts: bool) -> Option<String> {
         let m = self.model;
         let tell = |what: &str| {
@@ -264,7 +266,7 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         }
     }
 
-    /// The placement of every frame, by time, configuration and states of first order.
+    /// Returns the placement of every frame for a time, a configuration and states of first order.
     pub fn placements(&self, t: f64, q: &[f64], x: &[f64]) -> Vec<IsometryMatrix3<f64>> {
         let mut links: Vec<Vec<f64>> = Vec::new();
         let v = vec![0.0; self.model.nv()];
@@ -286,7 +288,7 @@ impl<'a, 'g> Evaluated<'a, 'g> {
             .collect()
     }
 
-    /// The value of an expression of the parameters.
+    /// Evaluates an expression of the parameters.
     pub fn value(&self, e: linkwork_compiler::expr::Expr<'_>) -> f64 {
         eval_one(e, &|symbol| self.symbol(symbol, Values::default()))
     }
@@ -318,12 +320,13 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     }
 }
 
-/// The name of the function that returns the rate of a state of first order.
+/// Returns the name of the function for the rate of a state of first order.
 fn rate_of(state: &str) -> String {
     format!("{state}{RATE_OF_STATE}")
 }
 
-/// The rate of a quaternion, x y z w, with an angular velocity in the turned axes: half their product.
+/// Computes the rate of a quaternion, x y z w, for an angular velocity in the rotated axes: half their
+/// product.
 fn spin(q: &[f64], w: &[f64], rate: &mut [f64]) {
     let (x, y, z, s) = (q[0], q[1], q[2], q[3]);
     rate[0] = 0.5 * (s * w[0] + y * w[2] - z * w[1]);
@@ -340,7 +343,7 @@ mod tests {
     use linkwork_compiler::{compile, read};
     use std::path::Path;
 
-    /// A function that is missing is reported, not taken for zero.
+    /// Checks that a missing function is reported and not treated as zero.
     #[test]
     fn missing_functions_are_internal_errors() {
         let cart = "#[body(mass = 2)] cart: Body, #[joint(ground -> cart, along = (x, y))] plane: Stage,

@@ -1,5 +1,5 @@
-//! `linkwork export`: a mechanism's functions in C, behind C's calling convention, for Python, and in Rust
-//! for reading.
+//! `linkwork export`: exports a mechanism's functions to C99, to a library with a C interface, to Python, and
+//! to readable Rust.
 
 use crate::Stop;
 use crate::commands::given;
@@ -15,7 +15,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A source file and a header.
+/// Writes a C source file and a header.
 pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
@@ -50,7 +50,7 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// A crate of functions on plain arrays.
+/// Writes a crate whose functions have an interface of plain arrays.
 pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let given_prefix = given(matches, "prefix").map(ToString::to_string);
@@ -72,8 +72,8 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// A package for Python. That of Linkwork for Python writes it: classes, stubs and documentation are made
-/// there.
+/// Writes a Python package. The work is done by the Python package `linkwork`, which generates classes, stubs
+/// and documentation.
 pub fn python(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let interpreter = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
@@ -106,7 +106,7 @@ fn has_linkwork(interpreter: &OsStr) -> bool {
     Command::new(interpreter).args(words).status().is_ok_and(|status| status.success())
 }
 
-/// The generated Rust, formatted.
+/// Writes the generated Rust code, formatted.
 pub fn rust(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
@@ -119,7 +119,7 @@ pub fn rust(matches: &ArgMatches) -> Result<(), Stop> {
     put(matches, &text)
 }
 
-/// Writes a text where `--out` says, or to standard output.
+/// Writes a text to the file of `--out`, or to standard output.
 pub fn put(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     match matches.get_one::<PathBuf>("out") {
         Some(path) => write(path, text),

@@ -1,5 +1,5 @@
-//! `--table NAME=FILE`: the figures of a table, a line of comma-separated values for each point of its grid:
-//! the variables, then the value.
+//! `--table NAME=FILE`: the values of a table, as one line of comma-separated values per grid point: the
+//! variables, then the value.
 
 use crate::Stop;
 use crate::table::text_of;
@@ -9,32 +9,32 @@ use linkwork_compiler::expr::Lookup;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A table.
+/// Values of a table on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// The points of each axis.
+    /// Grid points along each axis.
     pub axes: Vec<Vec<f64>>,
-    /// The values in the order of the points, those along the last axis side by side.
+    /// Values in the order of the grid points, with the last axis varying fastest.
     pub values: Vec<f64>,
-    /// Slopes are continuous.
+    /// Whether the table is interpolated by splines.
     pub smooth: bool,
-    /// It goes on beyond its edges.
+    /// Whether the table is extrapolated beyond its grid.
     pub extrapolated: bool,
 }
 
-/// A table that is looked up.
+/// Table for interpolation.
 #[derive(Clone, Copy)]
 pub enum Looked {
-    /// Of one variable.
+    /// Table of one variable.
     One(Table<1>),
-    /// Of two.
+    /// Table of two variables.
     Two(Table<2>),
-    /// Of three.
+    /// Table of three variables.
     Three(Table<3>),
 }
 
 impl Looked {
-    /// The derivative of some orders.
+    /// Returns the derivative of the orders that a lookup specifies.
     pub fn value(self, lookup: Lookup, x: [f64; 3]) -> f64 {
         let order = |k: usize| lookup.order(k) as u8;
         match self {
@@ -56,7 +56,7 @@ impl Grid {
                 fields.iter().map(|field| field.parse().ok().filter(|x: &f64| x.is_finite())).collect();
             let may_name = std::mem::take(&mut is_first);
             let Some(found) = found else {
-                // A line of names may come first.
+                // The first line may contain names.
                 if may_name && fields.iter().all(|field| field.parse::<f64>().is_err()) {
                     continue;
                 }
@@ -101,7 +101,7 @@ impl Grid {
         Ok(grid)
     }
 
-    /// The table; its figures live as long as the program.
+    /// Returns the table for interpolation; its values are leaked and live as long as the process.
     pub fn looked(&self) -> Result<Looked, TableError> {
         let kept = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
         let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| kept(axis)).collect();
@@ -120,8 +120,8 @@ impl Grid {
     }
 }
 
-/// The tables that are given, in the order of the mechanism's, which come with the numbers of their
-/// variables.
+/// Returns the tables of the `--table` options, in the order of the mechanism's tables, which are given with
+/// the number of their variables.
 pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Grid>, Stop> {
     let mut found: Vec<Option<Grid>> = vec![None; tables.len()];
     for given in matches.get_many::<String>("table").into_iter().flatten() {

@@ -1,4 +1,4 @@
-//! Files → what the attribute is given.
+//! Input files, converted to the arguments and the struct of the attribute.
 
 use crate::commands::given;
 use crate::{Stop, syntax};
@@ -16,37 +16,36 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use syn::spanned::Spanned;
 
-/// What `#[mechanism]` is given, and where it stands.
+/// Arguments and struct of a `#[mechanism]`, with their origin.
 pub struct Input {
-    /// The file as it was named.
+    /// File, as named on the command line.
     pub file: PathBuf,
     /// Arguments of the attribute.
     pub arguments: TokenStream,
-    /// The struct.
+    /// Struct.
     pub item: TokenStream,
-    /// The struct's name.
+    /// Name of the struct.
     pub name: String,
-    /// Where paths begin.
+    /// Folder to which paths in the arguments are relative.
     pub folder: PathBuf,
-    /// A robot file, not one of Rust.
+    /// Whether the file is a robot file, not a Rust file.
     pub is_robot: bool,
-    /// The attribute, if a `#[derive(…)]` stands above it.
+    /// Location of the attribute, if a `#[derive(…)]` is above it.
     pub derive_above: Option<Span>,
 }
 
-/// A mechanism without mistakes.
+/// Mechanism without errors.
 pub struct Compiled<'g> {
-    /// What the user wrote.
+    /// Parsed source.
     pub source: Source,
-    /// The checked mechanism.
+    /// Resolved model of the mechanism.
     pub model: Model<'g>,
-    /// What is generated for it.
+    /// Generated functions.
     pub output: Output,
 }
 
 impl Input {
-    /// The mechanism that is named on the command line; the only one of its file, or the one that `--struct`
-    /// names.
+    /// Returns the mechanism of the command line: the only one of its file, or the one that `--struct` names.
     pub fn one(matches: &ArgMatches) -> Result<Input, Stop> {
         let mut all = Input::all(matches)?;
         if all.len() > 1 {
@@ -60,7 +59,7 @@ impl Input {
         all.pop().ok_or_else(|| Stop::Failure("there is no mechanism".to_string()))
     }
 
-    /// All mechanisms of the file, or the one that `--struct` names.
+    /// Returns all mechanisms of the file, or the one that `--struct` names.
     pub fn all(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
         let file: &PathBuf =
             matches.get_one("file").ok_or_else(|| Stop::Failure("expected a file".to_string()))?;
@@ -87,7 +86,7 @@ impl Input {
         Ok(found)
     }
 
-    /// Adds arguments of the attribute.
+    /// Appends arguments of the attribute.
     pub fn add(&mut self, more: TokenStream) {
         if more.is_empty() {
             return;
@@ -99,7 +98,7 @@ impl Input {
         self.arguments.extend(more);
     }
 
-    /// What the user wrote. Mistakes are in `cx`.
+    /// Parses the arguments and the struct. Errors are added to `cx`.
     pub fn read(&self, cx: &mut Diagnostics) -> Option<Source> {
         if let Some(attribute) = self.derive_above {
             cx.add(derive_above(attribute));
@@ -107,7 +106,7 @@ impl Input {
         read(self.arguments.clone(), self.item.clone(), &self.folder, cx)
     }
 
-    /// Prints the mistakes, if there are any.
+    /// Prints the errors, if there are any.
     pub fn report(&self, cx: &Diagnostics) -> Stop {
         for one in cx.distinct() {
             crate::note!("{}", self.mistake(one));
@@ -115,7 +114,7 @@ impl Input {
         Stop::Mistakes
     }
 
-    /// What was made without mistakes; else these are printed.
+    /// Returns the result if there are no errors; otherwise prints them.
     pub fn checked<T>(&self, made: Option<T>, cx: &Diagnostics) -> Result<T, Stop> {
         match made {
             Some(made) if cx.is_empty() => Ok(made),
@@ -123,7 +122,7 @@ impl Input {
         }
     }
 
-    /// The mechanism with what is generated for it; else its mistakes are printed.
+    /// Returns the mechanism with its generated functions; otherwise prints the errors.
     pub fn compiled<'g>(&self, graph: &'g Graph) -> Result<Compiled<'g>, Stop> {
         let cx = &mut Diagnostics::new();
         let source = self.checked(self.read(cx), cx)?;
@@ -131,7 +130,7 @@ impl Input {
         Ok(Compiled { source, model, output })
     }
 
-    /// What is wrong, and where.
+    /// Converts a diagnostic to an error message with its location.
     pub fn mistake(&self, one: &Diagnostic) -> Mistake {
         let (file, at) = match &one.place().file {
             Some(at) => (at.file.to_string(), Some((at.line as usize, at.column as usize))),
@@ -149,18 +148,18 @@ impl Input {
     }
 }
 
-/// The endings of robot files.
+/// File extensions of robot files.
 const ENDINGS: [&str; 6] = ["urdf", "xacro", "sdf", "world", "mjcf", "xml"];
 
-/// Advice on the attribute as advice on the command: options are given by `--with`, and a file's ending says
-/// its format.
+/// Rewrites advice on the attribute to advice on the command, where options are passed by `--with` and the
+/// format follows from the file extension.
 fn for_command(text: &str) -> String {
     let mut said = text.to_string();
     let mut from = 0;
     while let Some(at) = said[from..].find("`#[mechanism(").map(|at| from + at) {
         let Some(end) = said[at..].find(")]`").map(|end| at + end) else { break };
         let options = &said[at + "`#[mechanism(".len()..end];
-        // The file is named already.
+        // The file is already named on the command line.
         let is_own = |option: &&str| *option == "…" || option.ends_with("= \"…\"");
         let options: Vec<&str> = options.split(", ").skip_while(is_own).collect();
         let with = format!("`--with \"{}\"`", options.join(", "));
@@ -176,30 +175,30 @@ fn for_command(text: &str) -> String {
     said
 }
 
-/// Line and column of a place, both from one.
+/// Returns line and column of the start of a span, both counted from one.
 fn start(span: Span) -> (usize, usize) {
     let start = span.start();
     (start.line, start.column + 1)
 }
 
-/// Something wrong in a file.
+/// Error in a file.
 #[derive(Default)]
 pub struct Mistake {
-    /// The struct, of what is one.
+    /// Name of the struct, if the error is in one.
     pub mechanism: Option<String>,
-    /// The file.
+    /// File.
     pub file: String,
-    /// Line and column, both from one.
+    /// Line and column, both counted from one.
     pub at: Option<(usize, usize)>,
-    /// What is wrong.
+    /// Error message.
     pub message: String,
-    /// What belongs to it.
+    /// Additional information.
     pub notes: Vec<String>,
-    /// What to do.
+    /// Suggested corrections.
     pub helps: Vec<String>,
 }
 
-/// As compilers print it.
+/// Formats the error as compilers do.
 impl std::fmt::Display for Mistake {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.at {
@@ -214,7 +213,7 @@ impl std::fmt::Display for Mistake {
     }
 }
 
-/// The text of a file of the user's.
+/// Reads the text of a user's file, and limits its size.
 fn text_of(path: &Path) -> Result<String, Stop> {
     let fail = |why: String| Stop::Failure(format!("{}: {why}", path.display()));
     let about = std::fs::metadata(path).map_err(|error| match error.kind() {
@@ -244,8 +243,8 @@ fn is_derive(attribute: &syn::Attribute) -> bool {
     attribute.path().segments.last().is_some_and(|segment| segment.ident == "derive")
 }
 
-/// The mechanisms of a Rust file, those in modules within it included. Paths in them are relative to the
-/// package.
+/// Returns the mechanisms of a Rust file, including those in inline modules. Paths in them are relative to
+/// the package.
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
     let parsed = syn::parse_file(&text).map_err(|error| {
@@ -297,7 +296,7 @@ fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     Ok(found)
 }
 
-/// A struct without fields of its own, which names a robot file.
+/// Returns a struct without fields whose arguments name a robot file.
 fn from_robot(path: &Path) -> Result<Input, Stop> {
     let is_known =
         path.extension().is_some_and(|end| ENDINGS.iter().any(|known| end.eq_ignore_ascii_case(known)));
@@ -314,7 +313,7 @@ fn from_robot(path: &Path) -> Result<Input, Stop> {
     let name = type_name(path);
     let ident = syn::Ident::new(&name, Span::call_site());
     let written = path.to_string_lossy().into_owned();
-    // As it is named, so that messages say it so; found from where the command runs.
+    // The path remains as written, so that messages show it, and is resolved in the current directory.
     let format = syn::Ident::new(format_of(path, &text).word(), Span::call_site());
     let arguments = quote::quote!(#format = #written);
     let folder = std::env::current_dir()?;
@@ -329,7 +328,7 @@ fn from_robot(path: &Path) -> Result<Input, Stop> {
     })
 }
 
-/// The format of a file: as it is named; where that tells nothing, as it looks.
+/// Returns the format of a file, from its extension or otherwise from its content.
 fn format_of(path: &Path, text: &str) -> FileFormat {
     let is = |end: &str| path.extension().is_some_and(|known| known.eq_ignore_ascii_case(end));
     match () {
@@ -341,7 +340,7 @@ fn format_of(path: &Path, text: &str) -> FileFormat {
     }
 }
 
-/// A type's name after a file's: `simple_humanoid.urdf` is `SimpleHumanoid`.
+/// Returns a type name derived from a file name: `simple_humanoid.urdf` becomes `SimpleHumanoid`.
 pub fn type_name(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let words = stem.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());

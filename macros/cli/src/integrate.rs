@@ -1,11 +1,12 @@
-//! Ordinary differential equations of any size with adaptive steps: by the pair of Dormand and Prince, *A
-//! family of embedded Runge–Kutta formulae* (1980), and where that needs too many steps, since the equations
-//! are stiff, by the linearly implicit method RODAS (Hairer and Wanner, *Solving Ordinary Differential
-//! Equations II*, 1996, § VI.4).
+//! Integration of ordinary differential equations with adaptive steps. The method is the pair of Dormand and
+//! Prince, *A family of embedded Runge–Kutta formulae* (1980). If the equations are stiff, so that it needs
+//! too many steps, the linearly implicit method RODAS takes over (Hairer and Wanner, *Solving Ordinary
+//! Differential Equations II*, 1996, § VI.4).
 
 use linkwork::__private::rodas::{ADDED, GAMMA, IN_TIME, STARTS, TIMES};
 
-/// Stages of Dormand and Prince: their times, as fractions of the step, and the weights of the earlier stages.
+/// Stages of the Dormand–Prince method: their times, as fractions of the step, and the weights of the earlier
+/// stages.
 const STAGES: [(f64, &[f64]); 6] = [
     (1.0 / 5.0, &[1.0 / 5.0]),
     (3.0 / 10.0, &[3.0 / 40.0, 9.0 / 40.0]),
@@ -14,31 +15,32 @@ const STAGES: [(f64, &[f64]); 6] = [
     (1.0, &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0]),
     (1.0, &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0]),
 ];
-/// Weights of the difference between the fifth and the fourth order.
+/// Weights of the difference between the solutions of orders five and four.
 const DIFFERENCE: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 
 /// Maximum number of steps from one stop to the next.
 const MAX_STEPS: usize = 1_000_000;
-/// Implicit steps whose cost in evaluations of the rates is observed before the other method is tried.
+/// Number of implicit steps whose cost, in evaluations of the rates, is observed before the other method is
+/// tried.
 const OBSERVED: usize = 30;
 /// Maximum number of observations between two trials of the other method.
 const LONGEST_WAIT: usize = 64;
 
-/// A system: the rates of its state, and the correction of a state at the end of a step.
+/// System of equations: the rates of its state, and the correction of the state at the end of a step.
 pub struct System<'a> {
-    /// Rates by time and state.
+    /// Rates as a function of time and state.
     pub rates: &'a dyn Fn(f64, &[f64]) -> Vec<f64>,
-    /// Projects a state at a time onto the constraints; `false` if there is no state near it.
+    /// Projects the state at a time onto the constraints; `false` if no such state is near.
     pub settle: &'a dyn Fn(f64, &mut Vec<f64>) -> bool,
 }
 
-/// A method of integration.
+/// Integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Method {
-    /// Dormand and Prince.
+    /// Dormand–Prince method.
     Explicit,
-    /// RODAS.
+    /// RODAS method.
     Implicit,
 }
 
@@ -50,7 +52,7 @@ impl Method {
         }
     }
 
-    /// Exponent of the error in the next step size.
+    /// Returns the exponent of the error in the formula for the next step size.
     fn exponent(self) -> f64 {
         match self {
             Method::Explicit => -0.2,
@@ -58,7 +60,7 @@ impl Method {
         }
     }
 
-    /// Evaluations of the rates that a step of a system of `n` equations takes.
+    /// Returns the number of evaluations of the rates per step, for a system of `n` equations.
     fn cost(self, n: usize) -> usize {
         match self {
             Method::Explicit => 7,
@@ -67,25 +69,26 @@ impl Method {
     }
 }
 
-/// An integration from stop to stop. It begins with the explicit method, and changes the method where a trial
-/// shows that the other one needs less than half of the evaluations.
+/// Integration between successive stop times. It begins with the explicit method, and switches if a trial
+/// shows that the other method needs less than half the number of evaluations.
 pub struct Integrator {
     tolerance: f64,
     method: Method,
     /// Step sizes of the explicit and of the implicit method.
     steps: [f64; 2],
-    /// Evaluations of the rates since the last observation, and the time that these have led through.
+    /// Number of evaluations of the rates since the last observation, and the time that they covered.
     observed: (usize, f64),
-    /// Observations to come before the next trial, and between the trials after it.
+    /// Number of observations before the next trial, and between the trials after it.
     wait: [usize; 2],
-    /// All evaluations of the rates.
+    /// Total number of evaluations of the rates.
     pub evaluations: usize,
-    /// When the implicit method took over for the first time.
+    /// Time at which the implicit method was first used.
     pub stiff_from: Option<f64>,
 }
 
 impl Integrator {
-    /// An integration with a first step and a tolerance of the error of a step, relative and absolute.
+    /// Creates an integration with an initial step and a tolerance for the relative and absolute error of a
+    /// step.
     pub fn new(step: f64, tolerance: f64) -> Integrator {
         Integrator {
             tolerance,
@@ -98,7 +101,8 @@ impl Integrator {
         }
     }
 
-    /// Integrates from one time to another. The error is the time beyond which no step leads.
+    /// Integrates from one time to another. The error is the time at which the integration could not
+    /// continue.
     pub fn advance(
         &mut self,
         system: &System<'_>,
@@ -107,7 +111,7 @@ impl Integrator {
     ) -> Result<(), f64> {
         let mut t = from;
         for _ in 0..MAX_STEPS {
-            // Stops that differ by rounding are one.
+            // Stop times that differ by rounding coincide.
             if to - t <= least_step(t) {
                 return Ok(());
             }
@@ -124,8 +128,9 @@ impl Integrator {
         Err(t)
     }
 
-    /// Tries the other method if its turn has come: goes on by it, and returns the time reached, if it takes
-    /// less than half of the evaluations that the present method took for the same time.
+    /// Tries the other method when the waiting time is over. If it needs less than half the number of
+    /// evaluations that the current method needed for the same time, switches to it and returns the time
+    /// reached.
     fn tried(&mut self, system: &System<'_>, (t, to): (f64, f64), y: &mut Vec<f64>) -> Option<f64> {
         let (evaluations, time) = self.observed;
         let other = self.method.other();
@@ -216,12 +221,12 @@ impl Integrator {
     }
 }
 
-/// Steps at a time that are not longer than this are lost in rounding.
+/// Returns the step size below which a step is lost in rounding.
 fn least_step(t: f64) -> f64 {
     1e-14 * t.abs().max(1e-3)
 }
 
-/// A step of Dormand and Prince, and its error.
+/// Takes a Dormand–Prince step and returns the state and the error.
 fn explicit(
     rates: &dyn Fn(f64, &[f64]) -> Vec<f64>,
     t: f64,
@@ -242,9 +247,9 @@ fn explicit(
     (at, error)
 }
 
-/// Derivatives of the rates, by differences.
+/// Derivatives of the rates, by finite differences.
 struct Linear {
-    /// Derivatives of the rates by the state, column by column.
+    /// Derivatives of the rates with respect to the state, column by column.
     by_state: Vec<Vec<f64>>,
     by_time: Vec<f64>,
 }
@@ -272,7 +277,7 @@ impl Linear {
     }
 }
 
-/// A step of RODAS, and its error; `None` if its matrix is singular.
+/// Takes a RODAS step and returns the state and the error; `None` if its matrix is singular.
 fn implicit(
     rates: &dyn Fn(f64, &[f64]) -> Vec<f64>,
     t: f64,
@@ -304,16 +309,16 @@ fn implicit(
     Some((at, error))
 }
 
-/// A matrix after Gaussian elimination with row pivots.
+/// Matrix after Gaussian elimination with row pivoting.
 struct Factored {
-    /// Rows of both triangles: multipliers below the diagonal.
+    /// Rows of both triangular factors, with the multipliers below the diagonal.
     rows: Vec<Vec<f64>>,
-    /// The original row of each row.
+    /// Original index of each row.
     order: Vec<usize>,
 }
 
 impl Factored {
-    /// `None` for a matrix that is singular or not finite.
+    /// Factorises a matrix; `None` if it is singular or not finite.
     fn eliminate(mut rows: Vec<Vec<f64>>) -> Option<Factored> {
         let n = rows.len();
         let mut order: Vec<usize> = (0..n).collect();
@@ -356,7 +361,7 @@ impl Factored {
 mod tests {
     use super::{Integrator, System};
 
-    /// Integrates from zero to an end, stopping at every tenth of it.
+    /// Integrates from zero to an end time, with stops at every tenth of it.
     fn integrated(
         rates: &dyn Fn(f64, &[f64]) -> Vec<f64>,
         end: f64,
@@ -369,7 +374,7 @@ mod tests {
         (integrator, done)
     }
 
-    /// `y'' = −y` has circles.
+    /// Checks `y'' = −y`, whose solutions are circles.
     #[test]
     fn a_circle_closes() {
         let mut y = vec![1.0, 0.0];
@@ -378,7 +383,7 @@ mod tests {
         assert_eq!(integrator.stiff_from, None);
     }
 
-    /// Stops that follow each other by the rounding of time are no failure.
+    /// Checks that stop times which differ only by rounding are no failure.
     #[test]
     fn stops_that_nearly_coincide_are_passed() {
         let system = System { rates: &|_, _| vec![1.0], settle: &|_, _| true };
@@ -389,15 +394,16 @@ mod tests {
         assert!((y[0] - 3.0).abs() < 1e-12);
     }
 
-    /// `y' = y²` ends at `t = 1`.
+    /// Checks that the singularity of `y' = y²` at `t = 1` is reported.
     #[test]
     fn an_end_is_reported() {
         let (_, done) = integrated(&|_, y| vec![y[0] * y[0]], 2.0, &mut vec![1.0]);
         assert!(done.is_err_and(|t| (t - 1.0).abs() < 1e-3));
     }
 
-    /// `x' = −10⁶ (x − cos t)`, `y'' = −x`: within 10⁻⁶ of `x = cos t + 10⁻⁶ sin t` and `y = cos t`, in few
-    /// evaluations; an explicit method takes two millions in a second.
+    /// Checks `x' = −10⁶ (x − cos t)`, `y'' = −x`, whose solution is within 10⁻⁶ of `x = cos t + 10⁻⁶ sin t`
+    /// and `y = cos t`. Few evaluations are needed; an explicit method takes two million per second of
+    /// simulated time.
     #[test]
     fn stiff_equations_are_solved_by_the_implicit_method() {
         let rates = |t: f64, y: &[f64]| vec![-1e6 * (y[0] - t.cos()), y[2], -y[0]];
@@ -406,7 +412,7 @@ mod tests {
         let (t, e) = (10.0_f64, 1e-6);
         assert!(done.is_ok() && integrator.stiff_from.is_some_and(|t| t < 0.1));
         assert!((y[0] - (t.cos() + e * t.sin()) / (1.0 + e * e)).abs() < 1e-8, "{y:?}");
-        // The integral of the exact solution twice: the transient contributes less than 10⁻¹¹.
+        // The double integral of the exact solution: the transient contributes less than 10⁻¹¹.
         let exact = (t.cos() + e * t.sin() - e * t) / (1.0 + e * e) + e * e;
         assert!((y[1] - exact).abs() < 1e-7, "{y:?} {exact}");
         assert!(integrator.evaluations < 100_000, "{}", integrator.evaluations);

@@ -24,13 +24,13 @@ mod written;
 
 use std::process::ExitCode;
 
-/// Why a command stops.
+/// Reason why a command stops.
 enum Stop {
-    /// The mechanism has mistakes, which were printed.
+    /// The mechanism has errors, which were printed.
     Mistakes,
-    /// A file cannot be read as what it is, at a place.
+    /// A syntax error of a file, with its location.
     Syntax(Box<input::Mistake>),
-    /// It cannot be carried out.
+    /// The command cannot be carried out.
     Failure(String),
 }
 
@@ -40,13 +40,13 @@ impl<E: std::error::Error> From<E> for Stop {
     }
 }
 
-/// Prints a line.
+/// Prints a line to standard output.
 macro_rules! say {
     ($($text:tt)*) => { $crate::print(format_args!("{}\n", format_args!($($text)*))) };
 }
 use say;
 
-/// Prints a line to standard error. Nobody may be reading there, which is no error.
+/// Prints a line to standard error, and ignores write errors.
 macro_rules! note {
     ($($text:tt)*) => {{
         use std::io::Write;
@@ -55,7 +55,7 @@ macro_rules! note {
 }
 use note;
 
-/// Prints a text to standard output. Exits quietly if the reader has closed it, as `head` does.
+/// Prints a text to standard output. Exits silently if the reader has closed it, as `head` does.
 fn print(text: std::fmt::Arguments<'_>) {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
@@ -101,7 +101,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints the completions of a shell.
+/// Prints the completion script for a shell.
 fn completions(matches: &clap::ArgMatches) -> Result<(), Stop> {
     let shell = matches.get_one::<clap_complete::Shell>("shell").copied();
     let shell = shell.ok_or_else(|| Stop::Failure("expected a shell".to_string()))?;

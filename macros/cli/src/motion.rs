@@ -1,4 +1,4 @@
-//! What a motion begins with, and where it goes.
+//! Initial state of a motion, and its simulation.
 
 use crate::Stop;
 use crate::evaluate::{Evaluated, Values};
@@ -12,7 +12,7 @@ use linkwork_compiler::diag::nearest;
 use linkwork_compiler::mechanism::Model;
 use std::path::PathBuf;
 
-/// An instant of a motion.
+/// State at one instant of a motion.
 pub struct Sample {
     /// Time, s.
     pub t: f64,
@@ -26,9 +26,9 @@ pub struct Sample {
     pub u: Vec<f64>,
 }
 
-/// A mechanism with its parameters, and the state and inputs to begin with.
+/// Mechanism with its parameters, initial state and initial inputs.
 pub struct Start<'a, 'g> {
-    /// The mechanism.
+    /// Mechanism with its parameters.
     pub mechanism: Evaluated<'a, 'g>,
     /// Configuration.
     pub q: Vec<f64>,
@@ -36,21 +36,22 @@ pub struct Start<'a, 'g> {
     /// States of first order.
     pub x: Vec<f64>,
     u: Vec<f64>,
-    /// Which entries of the configuration and of the velocity are given.
+    /// Whether each entry of the configuration and of the velocity was specified.
     given: [Vec<bool>; 2],
-    /// Some entries of the configuration are guessed.
+    /// Whether a guess was specified for some entries of the configuration.
     is_guessed: bool,
 }
 
-/// Moves of a beginning that are told, m and rad.
+/// Minimum relative change of an initial value that is reported, m and rad.
 const TOLD: f64 = 1e-6;
-/// Moves of what is given beyond rounded figures, m and rad, or per second: it is not what was meant.
+/// Change of a specified value above which it is not explained by rounding, m and rad, or per second. The
+/// simulation is then rejected.
 const FAR: f64 = 0.05;
-/// Most samples of a motion.
+/// Maximum number of samples of a motion.
 const MAX_SAMPLES: f64 = 1e7;
 
 impl<'a, 'g> Start<'a, 'g> {
-    /// What `--set` says.
+    /// Reads the parameters, the initial state and the inputs from `--set`, `--guess` and `--table`.
     pub fn new(
         source: &Source,
         model: &'a Model<'g>,
@@ -66,7 +67,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let mut parameters = vec![None; model.parameters.len()];
         let states: Vec<(String, usize)> =
             source.mechanism.description.states.iter().map(|(name, k)| (name.text.clone(), *k)).collect();
-        // States begin at zero, as coordinates do.
+        // States of first order are zero by default, as coordinates are.
         states.iter().for_each(|(_, k)| parameters[*k] = Some(0.0));
         let of_states: Vec<String> = states.iter().map(|(name, _)| format!("x.{name}")).collect();
         let empty = Evaluated::new(model, output, Vec::new(), Vec::new(), states.clone());
@@ -122,7 +123,7 @@ impl<'a, 'g> Start<'a, 'g> {
         Ok(Start { mechanism, q, v, x, u, given: known, is_guessed })
     }
 
-    /// The motion, sample by sample.
+    /// Simulates the motion and returns its samples.
     pub fn run(&self, matches: &ArgMatches) -> Result<Vec<Sample>, Stop> {
         if let Some(why) = self.mechanism.obstacle(matches.get_flag("without-contacts")) {
             return Err(Stop::Failure(format!(
@@ -142,7 +143,7 @@ impl<'a, 'g> Start<'a, 'g> {
             return Err(Stop::Failure(format!("more than {MAX_SAMPLES} samples: choose a larger `--every`")));
         }
         let inputs = self.inputs(matches)?;
-        // Inputs at a time; where they jump, those before or after the jump.
+        // Inputs at a time. At a jump, the limit before or after it.
         let given = |t: f64, is_before: bool| -> Vec<f64> {
             let at = |k: usize| match inputs
                 .as_ref()
@@ -166,7 +167,7 @@ impl<'a, 'g> Start<'a, 'g> {
         if times[count] < duration * (1.0 - 1e-9) {
             times.push(duration);
         }
-        // No step leads over a kink or a jump of inputs.
+        // Steps end at kinks and jumps of the inputs.
         let mut kinks = inputs.iter().flat_map(|(table, _)| &table.times).copied().peekable();
         let settle = |t: f64, y: &mut Vec<f64>| {
             let (mut q, mut v) = (y[..nq].to_vec(), y[nq..nq + nv].to_vec());
@@ -209,8 +210,8 @@ impl<'a, 'g> Start<'a, 'g> {
         Ok(samples)
     }
 
-    /// A state that the constraints allow: with what is given as it is, if there is one, else the nearest.
-    /// Says what moved.
+    /// Returns an initial state that satisfies the constraints: with the specified entries unchanged if
+    /// possible, otherwise the nearest one. Prints the changes.
     fn begin(&self) -> Result<Vec<f64>, Stop> {
         let (m, [in_q, in_v]) = (&self.mechanism, &self.given);
         if !m.has_inertia(&self.q) {
@@ -219,7 +220,7 @@ impl<'a, 'g> Start<'a, 'g> {
                 m.model.name
             )));
         }
-        // What no constraint reaches stays.
+        // Entries that no constraint affects remain unchanged.
         let [apart, still] = m.unreached(0.0, &self.q);
         let in_v: Vec<bool> = in_v.iter().zip(&still).map(|(given, still)| *given || *still).collect();
         let moving: Vec<bool> =
@@ -273,7 +274,7 @@ impl<'a, 'g> Start<'a, 'g> {
         Ok(begins)
     }
 
-    /// What of a beginning is other than what was wanted.
+    /// Formats the entries of the initial state that differ from the requested values.
     fn moves(&self, begins: &[f64]) -> String {
         let wanted = self.q.iter().chain(&self.v);
         let names = self.mechanism.model.configuration.iter().map(|name| format!("q.{name}"));
@@ -286,14 +287,14 @@ impl<'a, 'g> Start<'a, 'g> {
         moved.join(", ")
     }
 
-    /// Inputs of a file, by their number.
+    /// Returns the inputs of a file, by their indices.
     #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
     fn inputs(&self, matches: &ArgMatches) -> Result<Option<(Table, Vec<Option<Vec<f64>>>)>, Stop> {
         let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok(None) };
         let table = Table::read(path)?;
         let names: Vec<String> =
             self.mechanism.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
-        // What else a log has is left aside.
+        // Other columns of a log are ignored.
         let unknown = table.columns.iter().find(|(name, _)| name.starts_with("u.") && !names.contains(name));
         if let Some((name, _)) = unknown {
             let known = names.join(", ");
@@ -314,7 +315,7 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 }
 
-/// A name with its value, of an option.
+/// Parses the `NAME=VALUE` of an option.
 pub fn parse<'a>(option: &str, given: &'a str) -> Result<(&'a str, f64), Stop> {
     let fail =
         |what: &str, found: &str| Stop::Failure(format!("`{option}`: expected {what}, found `{found}`"));

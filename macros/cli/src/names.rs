@@ -1,15 +1,15 @@
-//! Names of files → names of fields.
+//! Conversion of names in files to field names.
 
 use linkwork_compiler::syntax::GROUND;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Words that mean something in expressions, or that no field can have.
+/// Words that have a meaning in expressions, or that are not valid field names.
 const WORDS: [&str; 24] = [
     "x", "y", "z", "t", "u", "w", "e", "pi", "ground", "world", "gravity", "time", "norm", "dot", "cross",
     "rate", "stretch", "speed", "crate", "self", "super", "Self", "true", "false",
 ];
 
-/// Names of fields by those of a file.
+/// Field names, by the names in a file.
 #[derive(Clone, Default)]
 pub struct Names {
     of: BTreeMap<String, String>,
@@ -17,7 +17,7 @@ pub struct Names {
 }
 
 impl Names {
-    /// Adds names of one kind; those that are taken by others get the kind behind them.
+    /// Adds names of one kind. A name that is already used gets the kind as a suffix.
     pub fn add<'a>(&mut self, names: impl Iterator<Item = &'a str>, kind: &str) -> Names {
         let mut of = BTreeMap::new();
         for name in names {
@@ -27,7 +27,7 @@ impl Names {
         Names { of, taken: BTreeSet::new() }
     }
 
-    /// A field's name that is not taken yet.
+    /// Returns an unused field name.
     pub fn fresh(&mut self, name: &str, kind: &str) -> String {
         let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         let plain = plain.trim_matches('_').to_ascii_lowercase();
@@ -47,12 +47,12 @@ impl Names {
         field
     }
 
-    /// The field of a name of the file.
+    /// Returns the field name of a name in the file, or the name itself.
     pub fn of(&self, name: &str) -> String {
         self.known(name).unwrap_or_else(|| name.to_string())
     }
 
-    /// The field, if the file has the name.
+    /// Returns the field name, if the name exists in the file.
     pub fn known(&self, name: &str) -> Option<String> {
         self.of.get(name).cloned()
     }

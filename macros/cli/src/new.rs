@@ -1,4 +1,4 @@
-//! `linkwork new`: a project that runs.
+//! `linkwork new`: creates an executable project.
 
 use crate::sources::dependency;
 use crate::{Stop, sources};
@@ -28,7 +28,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// What Cargo takes as the name of a package.
+/// Checks that Cargo accepts the name of a package.
 fn check_name(name: &str) -> Result<(), Stop> {
     let is_known = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let is_word = syn::parse_str::<syn::Ident>(&name.replace('-', "_")).is_err();
@@ -43,7 +43,7 @@ fn check_name(name: &str) -> Result<(), Stop> {
     Ok(())
 }
 
-/// The manifest, with the sources of Linkwork in a folder or its release.
+/// Returns the manifest, which depends on the Linkwork sources in a folder or on the release.
 fn manifest(name: &str, sources: Option<&Path>) -> String {
     let linkwork = dependency("linkwork", "runtime", sources);
     let view = dependency("linkwork-view", "runtime/view", sources);

@@ -1,4 +1,4 @@
-//! `linkwork show`: what the compiler made of a mechanism.
+//! `linkwork show`: prints the compiled model of a mechanism.
 
 use crate::Stop;
 use crate::input::{Compiled, Input};
@@ -32,7 +32,7 @@ struct Shown<'a, 'g> {
     structure: Vec<String>,
 }
 
-/// Title, key, names and units of a list.
+/// Title, JSON key, names and units of a list.
 type List<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
 
 impl Shown<'_, '_> {

@@ -1,4 +1,4 @@
-//! `linkwork simulate`: a motion as comma-separated values, or as a log in the format MCAP.
+//! `linkwork simulate`: writes a motion as comma-separated values, or as an MCAP log.
 
 use crate::Stop;
 use crate::export::put;
@@ -26,7 +26,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     }
 }
 
-/// The motion with the placements of all frames.
+/// Returns the MCAP log of a motion with the placements of all frames.
 fn mcap(model: &Model<'_>, start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
     let frames: Vec<&str> = model.frames.iter().map(|frame| frame.name.as_str()).collect();
     let configuration: Vec<&str> = model.configuration.iter().map(String::as_str).collect();

@@ -1,10 +1,10 @@
-//! The sources of Linkwork, which crates that the command writes depend on.
+//! Linkwork sources that generated crates depend on.
 
 use std::path::{Path, PathBuf};
 
-/// The folder of the repository that the command was built from, if it is still there: by
-/// `cargo install --path`, or in the repository itself. A command that was installed from a registry has
-/// none.
+/// Returns the folder of the repository that the command was built from, if it still exists: for
+/// `cargo install --path`, or within the repository itself. A command installed from a registry has no such
+/// folder.
 pub fn of_command() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?.parent()?;
     let is_there = |crate_: &str| folder.join(crate_).join("Cargo.toml").is_file();
@@ -14,7 +14,7 @@ pub fn of_command() -> Option<PathBuf> {
         .then(|| folder.to_path_buf())
 }
 
-/// A dependency in a manifest: by its folder in the sources, or by its version in the registry.
+/// Returns a dependency of a manifest: by its folder in the sources, or by its version in the registry.
 pub fn dependency(name: &str, folder: &str, sources: Option<&Path>) -> String {
     match sources {
         Some(sources) => format!("{name} = {{ path = {:?} }}", sources.join(folder).display().to_string()),

@@ -1,5 +1,5 @@
-//! Syntax errors of Rust files, located as the compiler of Rust locates them: brackets that are not closed,
-//! commas that are missing.
+//! Syntax errors of Rust files, located as the Rust compiler locates them: unclosed brackets and missing
+//! commas.
 
 use crate::input::Mistake;
 use proc_macro2::{Delimiter, LineColumn, TokenStream, TokenTree};
@@ -26,7 +26,7 @@ fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
     match found {
         Some(closing @ (')' | ']' | '}')) => match TokenStream::from_str(before) {
             Ok(_) => (at, format!("unexpected closing delimiter: `{closing}` closes nothing"), Vec::new()),
-            // The innermost bracket that is open before it does not match.
+            // The innermost bracket that is open before `at` does not match.
             Err(lexed) => {
                 let open = lexed.span().start();
                 let bracket = text[index(text, open)..].chars().next().unwrap_or('(');

@@ -1,19 +1,19 @@
-//! Comma-separated values with a line of names: inputs over time, and motions.
+//! Comma-separated values with a header line: inputs over time, and motions.
 
 use crate::Stop;
 use linkwork_compiler::import::with_plain_blanks;
 use std::path::Path;
 
-/// Columns of numbers with their names, by times that do not decrease.
+/// Named columns of numbers, for times that do not decrease.
 pub struct Table {
     /// Times, s.
     pub times: Vec<f64>,
-    /// The other columns.
+    /// Other columns, with their names.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Table {
-    /// Reads a file; one column is `t`.
+    /// Reads a file; one of its columns is `t`.
     pub fn read(path: &Path) -> Result<Table, Stop> {
         let text = text_of(path).map_err(Stop::Failure)?;
         Table::parse(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
@@ -56,7 +56,7 @@ impl Table {
         }
     }
 
-    /// A column by name.
+    /// Returns a column by name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
@@ -67,12 +67,12 @@ impl Table {
         self.behind(values, t, self.times.partition_point(|known| *known <= t))
     }
 
-    /// The limit of a column as time approaches `t` from before.
+    /// Returns the limit of a column as time approaches `t` from below.
     pub fn before(&self, values: &[f64], t: f64) -> f64 {
         self.behind(values, t, self.times.partition_point(|known| *known < t))
     }
 
-    /// The value on the straight line that leads to the row of a number.
+    /// Interpolates linearly between the row of this index and the previous one.
     fn behind(&self, values: &[f64], t: f64, row: usize) -> f64 {
         match row {
             0 => values[0],
@@ -85,14 +85,14 @@ impl Table {
     }
 }
 
-/// Reads a file of numbers. Byte order marks, which spreadsheets write, and no-break spaces count as blanks.
+/// Reads a text file. Byte order marks, which spreadsheets write, and no-break spaces count as blanks.
 pub fn text_of(path: &Path) -> Result<String, String> {
     let text =
         std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
     Ok(with_plain_blanks(&text).into_owned())
 }
 
-/// Fields of a line; those in quotes may have commas and doubled quotes.
+/// Splits a line into fields. Quoted fields may contain commas and doubled quotes.
 fn fields(line: &str) -> Vec<String> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
     let mut rest = line.trim_end_matches('\r').chars().peekable();
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(fields("t, q.a,\"b,\"\"c\"\"\"\r"), ["t", "q.a", "b,\"c\""]);
     }
 
-    /// Files of spreadsheets begin with a byte order mark, and may have no-break spaces.
+    /// Checks files of spreadsheets, which begin with a byte order mark and may contain no-break spaces.
     #[test]
     fn marks_and_strange_blanks_are_blanks() {
         let file = std::env::temp_dir().join(format!("linkwork-table-{}.csv", std::process::id()));

@@ -1,4 +1,4 @@
-//! `linkwork view`: a page of HTML that shows a motion.
+//! `linkwork view`: writes an HTML page that shows a motion.
 
 use crate::Stop;
 use crate::evaluate::Values;
@@ -14,10 +14,10 @@ use linkwork_compiler::mechanism::{self, PieceKind};
 use linkwork_view::{Figure, Motion, Page};
 use std::path::{Path, PathBuf};
 
-/// Time, configuration, states of first order, and inputs, where they are known.
+/// Time, configuration, states of first order, and inputs, if they are known.
 type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 
-/// Most coordinates that are plotted of their own accord.
+/// Maximum number of coordinates that are plotted by default.
 const PLOTTED: usize = 12;
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
@@ -45,7 +45,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             let read = figure.meshes(folder);
             figure = read.map_err(|error| Stop::Failure(format!("`--meshes`: {error}")))?;
         }
-        // Without being asked for, only those that can be read.
+        // Without the option, only meshes that can be read are used.
         None => {
             if let Some(folder) = beside.filter(|_| input.is_robot) {
                 let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
@@ -77,7 +77,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             motion.plots("Coordinates", curves(&model.configuration, &model.units.configuration, values))?;
     }
     if states.len() > 1 && model.nu() <= PLOTTED {
-        // Those that stay as they are need no plot.
+        // Constant inputs are not plotted.
         let values = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
         let curves = curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values);
         if curves.iter().any(|(.., values)| values.iter().any(|value| *value != values[0])) {
@@ -92,7 +92,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     Ok(())
 }
 
-/// The configurations of a log.
+/// Reads the configurations of a log.
 fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     let table = Table::read(path)?;
     let column = |name: &String| {
@@ -101,7 +101,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
         found.ok_or_else(|| Stop::Failure(format!("{}: there is no column `{name}`", path.display())))
     };
     let columns = start.mechanism.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
-    // All of them, or none.
+    // Inputs are used only if the log has all of them.
     let inputs: Vec<_> =
         start.mechanism.model.inputs.iter().map(|(name, _)| table.column(&format!("u.{name}"))).collect();
     let inputs = if inputs.contains(&None) { Vec::new() } else { inputs };
@@ -119,7 +119,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     table.times.iter().enumerate().map(state).collect()
 }
 
-/// Curves with their units and names.
+/// Returns curves with their units and names.
 fn curves<'n>(
     names: impl IntoIterator<Item = &'n String>,
     units: &'n [String],
@@ -129,7 +129,7 @@ fn curves<'n>(
     names.into_iter().enumerate().map(|(k, name)| (unit(k), name.as_str(), values(k))).collect()
 }
 
-/// What is declared, with numbers.
+/// Returns the declared drawing with the values of the parameters.
 fn figure(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
     let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
     for piece in &model.drawing {
@@ -154,7 +154,7 @@ fn role(role: mechanism::Role) -> Role {
     }
 }
 
-/// The form; the few paths of meshes live as long as the command.
+/// Converts the kind of a piece; paths of meshes are leaked and live as long as the process.
 fn kind(kind: &PieceKind) -> Kind {
     match kind {
         PieceKind::Rod => Kind::Rod,

@@ -1,15 +1,16 @@
-//! Expressions as they are written in attributes.
+//! Expressions as text of attributes.
 
 use linkwork_compiler::syntax::{BinaryOp, Expr, ExprKind};
 
-/// A number with all its digits.
+/// Formats a number in full precision.
 pub fn number(x: f64) -> String {
-    // Of zero without its sign.
+    // Removes the sign of zero.
     let x = x + 0.0;
     if x == x.trunc() && x.abs() < 1e9 { format!("{x}") } else { format!("{x:?}") }
 }
 
-/// A number that may be an angle of more than a turn, which is written as one that is meant.
+/// Formats a number that may be an angle. A literal of more than one revolution is written as a product,
+/// which the compiler accepts as intended.
 pub fn angle(text: &str) -> String {
     let turns = text.parse().is_ok_and(|x: f64| x.abs() > std::f64::consts::TAU);
     if turns { format!("1 * {text}") } else { text.to_string() }
@@ -18,18 +19,18 @@ pub fn angle(text: &str) -> String {
 /// Role of a name in an expression: a link and a joint of a file may share one name.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// A body: in arguments of functions, and where it has a point or an axis.
+    /// Body: in arguments of functions, and before a point or an axis.
     Body,
-    /// The coordinate of a joint.
+    /// Coordinate of a joint.
     Coordinate,
 }
 
-/// Returns an expression of coordinates as text; `rename` gives the fields of names.
+/// Returns an expression of coordinates as text; `rename` returns the field names.
 pub fn expression(e: &Expr, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
     spelled(e, Role::Coordinate, rename)
 }
 
-/// Returns a point of a body as text; `rename` gives the fields of bodies.
+/// Returns a point of a body as text; `rename` returns the field names of bodies.
 pub fn place(e: &Expr, rename: &dyn Fn(&str) -> Option<String>) -> String {
     spelled(e, Role::Body, &|name, _| rename(name))
 }
@@ -65,7 +66,7 @@ fn spelled(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) 
     }
 }
 
-/// The number that an expression is.
+/// Returns the value of a literal expression.
 fn value(e: &Expr) -> Option<f64> {
     match &e.kind {
         ExprKind::Number(x) => Some(*x),
@@ -74,13 +75,13 @@ fn value(e: &Expr) -> Option<f64> {
     }
 }
 
-/// The three numbers that an expression is.
+/// Returns the three values of a literal array.
 fn values(e: &Expr) -> Option<[f64; 3]> {
     let ExprKind::Array(all) = &e.kind else { return None };
     all.iter().map(value).collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
-/// A vector as one writes it: a sum along the axes.
+/// Formats a vector as a sum along the axes.
 pub fn vector(e: &Expr) -> Option<String> {
     let numbers = values(e)?;
     let mut text = String::new();
@@ -100,23 +101,23 @@ pub fn vector(e: &Expr) -> Option<String> {
     Some(if text.is_empty() { "0 * x".to_string() } else { text })
 }
 
-/// Gravity as a vector.
+/// Formats gravity as a vector.
 pub fn gravity(e: &Expr) -> String {
     vector(e).unwrap_or_else(|| expression(e, &|_, _| None))
 }
 
-/// A direction of unit length.
+/// Formats a direction, normalised to unit length.
 pub fn axis(e: &Expr) -> String {
     let Some(numbers) = values(e) else { return expression(e, &|_, _| None) };
     let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
-    // Along a coordinate axis the length is that entry's.
+    // Along a coordinate axis, the length is the magnitude of the single nonzero entry.
     let unit = numbers.map(|x| if x.abs() == size { x.signum() } else { x / size });
     let number = |x: f64| Expr { kind: ExprKind::Number(x), place: e.place.clone() };
     let unit = Expr { kind: ExprKind::Array(unit.map(number).to_vec()), place: e.place.clone() };
     vector(&unit).unwrap_or_default()
 }
 
-/// Returns an inertia as text: by its moments, if it has no more and none is negative.
+/// Returns an inertia as text: as `diagonal(…)` if it is diagonal without negative moments.
 pub fn inertia(e: &Expr, written: &str) -> String {
     let ExprKind::Array(rows) = &e.kind else { return written.to_string() };
     let Some(rows) = rows.iter().map(values).collect::<Option<Vec<_>>>() else { return written.to_string() };

@@ -1,11 +1,11 @@
-//! What the library says of itself: names, shapes, units and documentation as JSON.
+//! Self-description of the library: names, shapes, units and documentation as JSON.
 
 use super::{Function, Kind, Known};
 use linkwork_compiler::export::without_links;
 use linkwork_compiler::mechanism::Limit;
 use serde_json::{Value, json};
 
-/// The description.
+/// Returns the description as JSON.
 pub fn description(known: &Known<'_, '_>) -> String {
     let m = known.model;
     let named = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
@@ -45,7 +45,7 @@ pub fn description(known: &Known<'_, '_>) -> String {
     all.to_string()
 }
 
-/// Serialises the limits of a joint: numbers, `"parameters"` where a bound depends on parameters, or null.
+/// Serialises the limits of a joint: numbers, `"parameters"` for a bound that depends on parameters, or null.
 fn limit(limit: &Limit<'_>) -> Value {
     let [lower, upper, velocity, effort] = limit
         .bounds()

@@ -1,42 +1,42 @@
-//! The functions that a mechanism has, read from its generated Rust.
+//! Functions of a mechanism, read from its generated Rust code.
 
 use linkwork_compiler::export::without_links;
 use quote::ToTokens;
 use std::fmt::Write;
 use syn::{FnArg, GenericArgument, ImplItem, Item, PathArguments, ReturnType, Type};
 
-/// An argument.
+/// Kind of an argument.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A number by value.
+    /// Number passed by value.
     Number,
-    /// A matrix of so many rows and columns.
+    /// Matrix with this number of rows and columns.
     Matrix(usize, usize),
-    /// Marks at some of the velocities.
+    /// Selection of velocities, by nonzero entries.
     Marks,
-    /// The number of a frame.
+    /// Index of a frame.
     Frame,
 }
 
-/// A function behind plain arrays.
+/// Function with an interface of plain arrays.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// Paragraphs of documentation.
     pub docs: Vec<String>,
-    /// Names and kinds of its arguments.
+    /// Names and kinds of the arguments.
     pub arguments: Vec<(String, Kind)>,
-    /// Names and shapes of its results: none of a number, else the lengths of its sides.
+    /// Names and shapes of the results: an empty shape for a number, otherwise the lengths of its dimensions.
     pub results: Vec<(String, Vec<usize>)>,
-    /// How it is called: an expression of `m` with `#k` in the places of arguments.
+    /// Call expression of `m` that reads the arguments from `g`.
     pub call: String,
-    /// The same for several states.
+    /// Call expression for several states in SIMD lanes, if it exists.
     pub lanes: Option<String>,
 }
 
 impl Function {
-    /// How many numbers an argument has.
+    /// Returns the number of array entries of an argument.
     pub fn length(kind: &Kind, nv: usize) -> usize {
         match kind {
             Kind::Number | Kind::Frame => 1,
@@ -46,7 +46,7 @@ impl Function {
     }
 }
 
-/// All functions of the struct that plain arrays can be given to; the names of the others.
+/// Returns all functions of the struct that can be called with plain arrays, and the names of the others.
 pub fn read(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
     let (mut found, mut left_out, mut names) = (Vec::new(), Vec::new(), Vec::new());
     for item in items {
@@ -80,12 +80,12 @@ pub fn read(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
     (found, left_out)
 }
 
-/// A block of functions that are there to say why there are none.
+/// Returns whether a block contains placeholder functions that only explain why a function does not exist.
 fn asks(bounds: Option<&syn::WhereClause>) -> bool {
     bounds.is_some_and(|bounds| bounds.to_token_stream().to_string().contains("absent"))
 }
 
-/// Functions that stand here in another form.
+/// Returns whether a function is available under another name.
 fn is_known(name: &str) -> bool {
     name.ends_with("_into") || name.starts_with("frame_")
 }
@@ -124,7 +124,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
     Some(Function { name: name.to_string(), docs, arguments, results, call, lanes: None })
 }
 
-/// The paragraphs of doc comments.
+/// Returns the paragraphs of doc comments.
 pub fn docs(attributes: &[syn::Attribute]) -> Vec<String> {
     let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
         syn::Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
@@ -138,13 +138,13 @@ pub fn docs(attributes: &[syn::Attribute]) -> Vec<String> {
     });
     let text: Vec<String> = lines.map(|line| line.trim().to_string()).collect();
     let text = text.join("\n");
-    // Items of lists keep lines of their own.
+    // List items remain on separate lines.
     let joined = |text: &str| text.trim().replace("\n- ", "\0- ").replace('\n', " ").replace('\0', "\n");
     let paragraphs = text.split("\n\n").map(joined);
     paragraphs.filter(|paragraph| !paragraph.is_empty()).collect()
 }
 
-/// Paragraphs for those who read no Rust, and where there is no result.
+/// Converts documentation for readers without Rust: the paragraphs, and the description of errors.
 pub fn spoken(docs: &[String]) -> (Vec<String>, String) {
     let plain: Vec<String> = docs.iter().map(|paragraph| without_links(&without_trait(paragraph))).collect();
     let begin = plain.iter().position(|paragraph| paragraph.starts_with(ERRORS)).unwrap_or(plain.len());
@@ -154,7 +154,7 @@ pub fn spoken(docs: &[String]) -> (Vec<String>, String) {
 
 const ERRORS: &str = "# Errors";
 
-/// A paragraph without its word on the trait that has more.
+/// Removes the reference to a trait from a paragraph.
 fn without_trait(paragraph: &str) -> String {
     let end = " of the trait.";
     match (paragraph.find(" See ["), paragraph.find(end)) {
@@ -165,7 +165,8 @@ fn without_trait(paragraph: &str) -> String {
     }
 }
 
-/// Where an error is told, without the names that its kinds have in Rust: `` `Held` for an index `` is "for an index".
+/// Returns the condition of an error without the names of its variants in Rust: `` `Held` for an index ``
+/// becomes "for an index".
 fn without_variants(text: &str) -> String {
     let parts: Vec<&str> = text.split('`').collect();
     let told = |k: usize| {
@@ -185,14 +186,15 @@ fn without_variants(text: &str) -> String {
     out
 }
 
-/// Words for what is no number of the mechanism's scalar type.
+/// Type names that are not the mechanism's scalar type.
 const OTHERS: [&str; 5] = ["Self", "bool", "str", "u64", "usize"];
 
 fn is_number(kind: &Type) -> bool {
     matches!(kind, Type::Path(path) if path.path.get_ident().is_some_and(|name| !OTHERS.iter().any(|other| name == other)))
 }
 
-/// Returns true for `Option<i8>`, a sign that may be undetermined: plain arrays have zero for `None`.
+/// Returns whether a type is `Option<i8>`, a sign that may be undetermined. Plain arrays contain zero for
+/// `None`.
 fn is_optional_sign(kind: &Type) -> bool {
     word(kind).is_some_and(|(name, types, _)| {
         name == "Option" && types.iter().all(|inner| inner.to_token_stream().to_string() == "i8")
@@ -210,7 +212,7 @@ fn behind(kind: &Type) -> Option<Kind> {
     }
 }
 
-/// The last word of a type's path, and its sizes.
+/// Returns the last identifier of a type's path, with its type arguments and integer arguments.
 fn word(kind: &Type) -> Option<(String, Vec<Type>, Vec<usize>)> {
     let Type::Path(path) = kind else { return None };
     let last = path.path.segments.last()?;
@@ -230,7 +232,7 @@ fn word(kind: &Type) -> Option<(String, Vec<Type>, Vec<usize>)> {
     Some((last.ident.to_string(), types, sizes))
 }
 
-/// The sides of a number, vector or matrix.
+/// Returns the dimensions of a number, vector or matrix.
 fn shape(kind: &Type) -> Option<Vec<usize>> {
     if is_number(kind) {
         return Some(Vec::new());
@@ -243,7 +245,7 @@ fn shape(kind: &Type) -> Option<Vec<usize>> {
     }
 }
 
-/// The shapes of all that is returned.
+/// Returns the shapes of all results.
 fn shapes(kind: &Type) -> Option<Vec<Vec<usize>>> {
     if let Type::Tuple(tuple) = kind {
         if tuple.elems.is_empty() || tuple.elems.len() > 6 {
@@ -272,7 +274,7 @@ fn shapes(kind: &Type) -> Option<Vec<Vec<usize>>> {
     }
 }
 
-/// What results are called: those of derivatives by what they are derivatives by.
+/// Returns the names of results; derivatives are named by the variables of differentiation.
 fn result_names(function: &str, count: usize) -> Vec<String> {
     let names: &[&str] = match (function, count) {
         (_, 1) => &["result"],

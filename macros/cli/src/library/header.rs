@@ -1,10 +1,10 @@
-//! The header of the library.
+//! C header of the library.
 
 use super::{Function, Kind, Known};
 use linkwork_compiler::export::{in_comment, in_comment_lines};
 use std::fmt::Write;
 
-/// The text of the header.
+/// Returns the text of the header.
 pub fn header(known: &Known<'_, '_>) -> String {
     let m = known.model;
     let (prefix, number) = (known.prefix, if known.single() { "float" } else { "double" });

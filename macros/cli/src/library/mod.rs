@@ -1,5 +1,6 @@
-//! A mechanism → a crate whose functions take plain arrays, with C's calling convention, and a header: what C, Python and others
-//! load. The functions are those of the generated Rust, read from there, so that none is forgotten.
+//! Generation of a crate, and a header, whose functions take plain arrays with the C calling convention, for
+//! C, Python and other languages. The functions are read from the generated Rust code, so that none is
+//! omitted.
 
 mod describe;
 mod functions;
@@ -23,25 +24,25 @@ use quote::ToTokens;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The crate.
+/// Generated crate.
 pub struct Crate {
-    /// What names begin with.
+    /// Prefix of names.
     pub prefix: String,
-    /// By path within the crate: the text.
+    /// Files: path within the crate, and text.
     pub files: Vec<(&'static str, String)>,
-    /// Functions in Rust that are not there.
+    /// Rust functions that the library does not have.
     pub left_out: Vec<String>,
 }
 
-/// All that is known of the mechanism.
+/// Data of the mechanism for the generation.
 struct Known<'a, 'g> {
     input: &'a Input,
     source: &'a Source,
     model: &'a Model<'g>,
     prefix: &'a str,
-    /// Its tables.
+    /// Values of the tables.
     tables: Vec<Grid>,
-    /// Its functions, in the order of their numbers.
+    /// Functions, in the order of their indices.
     functions: Vec<Function>,
     left_out: Vec<String>,
     equations: String,
@@ -56,7 +57,7 @@ impl Known<'_, '_> {
         if self.single() { "f32" } else { "f64" }
     }
 
-    /// The struct's name with its arguments.
+    /// Returns the type of the struct with its generic argument.
     fn kind(&self) -> String {
         match self.source.mechanism.shell.generics.type_params().count() {
             0 => self.input.name.clone(),
@@ -64,14 +65,15 @@ impl Known<'_, '_> {
         }
     }
 
-    /// It has contacts that open and close.
+    /// Returns whether the mechanism has unilateral contacts.
     fn contacting(&self) -> bool {
         !self.model.contacts.is_empty()
     }
 }
 
-/// Writes the crate of a mechanism. It depends on the sources of Linkwork in the folder `--linkwork`, on those of the command if they
-/// are there, or else on crates of a registry.
+/// Generates the crate of a mechanism. It depends on the Linkwork sources in the folder `--linkwork`,
+/// otherwise on the sources that the command was built from, if they exist, otherwise on the release in the
+/// registry.
 pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
     let graph = Graph::new();
     let Compiled { source, model, output } = input.compiled(&graph)?;
@@ -123,14 +125,15 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
     })
 }
 
-/// The folder of Linkwork's sources as a whole path.
+/// Returns the folder of the Linkwork sources as an absolute path.
 fn home(folder: &str) -> Result<PathBuf, Stop> {
     let whole = Path::new(folder).canonicalize().ok();
     let whole = whole.filter(|whole| whole.join("runtime/library/Cargo.toml").is_file());
     whole.ok_or_else(|| Stop::Failure(format!("`--linkwork`: {folder} has no sources of Linkwork")))
 }
 
-/// Contacts that slip have forces of their own, which steps with Jacobians do not have.
+/// Returns whether the mechanism has sliding contacts. Their friction forces are missing from steps with
+/// Jacobians.
 fn model_slips(functions: &[Function]) -> bool {
     functions.iter().any(|f| f.name == "constraint_residuals")
         && functions.iter().all(|f| f.name != "forward_dynamics_derivatives")
@@ -159,7 +162,7 @@ fn declaration(input: &Input) -> Result<String, Stop> {
     Ok(format!("#[mechanism({arguments})]\n{}\n", input.item))
 }
 
-/// Frames by their numbers.
+/// Returns the functions that take a frame by its index.
 fn frames(model: &Model<'_>) -> Vec<Function> {
     if model.frames.is_empty() {
         return Vec::new();
@@ -216,7 +219,7 @@ fn frames(model: &Model<'_>) -> Vec<Function> {
     ]
 }
 
-/// Bounds of coordinates, rates and forces, if there are any.
+/// Returns the functions for limits of coordinates, velocities and forces, if there are any.
 fn limits(model: &Model<'_>) -> Vec<Function> {
     if model.limits.is_empty() {
         return Vec::new();
@@ -256,7 +259,7 @@ fn limits(model: &Model<'_>) -> Vec<Function> {
     ]
 }
 
-/// Steps of the classical method of Runge and Kutta.
+/// Returns the functions for steps of the classical Runge–Kutta method.
 fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     let [nq, nv, nu] = [model.nq(), model.nv(), model.nu()];
     let vector = |name: &str, n| (name.to_string(), Kind::Matrix(n, 1));
@@ -302,7 +305,7 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     std::iter::once(step).chain(with_jacobians.then_some(transition)).collect()
 }
 
-/// The manifest, with the sources of Linkwork in a folder or its release.
+/// Returns the manifest, which depends on the Linkwork sources in a folder or on the release.
 fn manifest(prefix: &str, linkwork: Option<&Path>) -> String {
     format!(
         "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[lib]\nname = \"{prefix}\"\ncrate-type = [\"cdylib\", \"staticlib\"]\n\n\
@@ -313,7 +316,7 @@ fn manifest(prefix: &str, linkwork: Option<&Path>) -> String {
     )
 }
 
-/// Values of all names: where the parameters of a struct are, by field.
+/// Returns the indices of the parameters of each field of a struct.
 fn by_field(members: &[String]) -> BTreeMap<&str, Vec<usize>> {
     let mut fields: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (k, member) in members.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! The Rust of the crate: the declaration, the table of functions, and those that other languages call.
+//! Rust source of the crate: the declaration, the table of functions, and the exported functions.
 
 use super::{Function, Kind, Known, by_field};
 use crate::Stop;
 use std::fmt::Write;
 
-/// Returns the text of `lib.rs`. Without a declaration the generated code has to follow it.
+/// Returns the text of `lib.rs`. Without a declaration, the caller must append the generated code.
 pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> Result<String, Stop> {
     let m = known.model;
     let (kind, number, prefix) = (known.kind(), known.number(), known.prefix);
@@ -72,7 +72,7 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
     Ok(prettyplease::unparse(&syn::parse_str(&text)?))
 }
 
-/// A row of the table.
+/// Returns a row of the function table.
 fn row(f: &Function, nv: usize) -> String {
     let arguments: Vec<String> =
         f.arguments.iter().map(|(_, kind)| Function::length(kind, nv).to_string()).collect();
@@ -94,7 +94,7 @@ fn row(f: &Function, nv: usize) -> String {
     )
 }
 
-/// The mechanism made of numbers, and of its tables.
+/// Returns the expression that constructs the mechanism from its parameters and tables.
 fn made(known: &Known<'_, '_>) -> String {
     let shell = &known.source.mechanism.shell;
     let name = &known.input.name;
@@ -130,7 +130,7 @@ fn made(known: &Known<'_, '_>) -> String {
     text + "m"
 }
 
-/// The figures of the tables, as constants.
+/// Returns the tables as constants.
 fn tables(known: &Known<'_, '_>) -> String {
     let mut text = String::new();
     for (k, grid) in known.tables.iter().enumerate() {
@@ -158,7 +158,7 @@ fn checked(known: &Known<'_, '_>) -> &'static str {
     }
 }
 
-/// What every library has.
+/// Writes the exported functions that every library has.
 fn write_exports(text: &mut String, known: &Known<'_, '_>) {
     let (prefix, kind, number, m) = (known.prefix, known.kind(), known.number(), known.model);
     let _ = write!(
@@ -208,7 +208,7 @@ fn write_exports(text: &mut String, known: &Known<'_, '_>) {
     }
 }
 
-/// The functions for motions, one and many.
+/// Writes the exported functions for simulations and rollouts.
 fn write_motions(text: &mut String, known: &Known<'_, '_>) {
     let (prefix, kind, number, m) = (known.prefix, known.kind(), known.number(), known.model);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
@@ -251,7 +251,7 @@ fn write_motions(text: &mut String, known: &Known<'_, '_>) {
     );
 }
 
-/// The function for the parameters that a file has.
+/// Writes the exported function for the parameters of a robot file.
 fn write_defaults(text: &mut String, known: &Known<'_, '_>) {
     let (prefix, number, m) = (known.prefix, known.number(), known.model);
     let of_file = known.source.mechanism.shell.file_fields.is_empty();
@@ -282,7 +282,7 @@ fn write_defaults(text: &mut String, known: &Known<'_, '_>) {
     );
 }
 
-/// A function by its name, for one state.
+/// Writes the exported function with this name, for one state.
 fn write_named(text: &mut String, k: usize, f: &Function, prefix: &str, number: &str, has_parameters: bool) {
     let own = has_parameters.then(|| format!("own: *const {number}"));
     let given = f.arguments.iter().map(|(name, kind)| match kind {
@@ -290,7 +290,7 @@ fn write_named(text: &mut String, k: usize, f: &Function, prefix: &str, number: 
         Kind::Frame => format!("{name}: c_int"),
         _ => format!("{name}: *const {number}"),
     });
-    // A result may be called as an argument is.
+    // The prefix avoids clashes, since a result may have the name of an argument.
     let wanted = f.results.iter().map(|(name, _)| format!("to_{name}: *mut {number}"));
     let list: Vec<String> = own.into_iter().chain(given).chain(wanted).collect();
     let own = if has_parameters { "own" } else { "std::ptr::null()" };

@@ -1,9 +1,10 @@
-//! A cart on a rail with a pole on it: change it into a mechanism of your own.
+//! Cart on a rail with a pole: modify it to your own mechanism.
 
 use linkwork::prelude::*;
 use linkwork_view::{Motion, Page};
 
-/// A type says what a field is, its attribute where it is. Fields of plain numbers are parameters.
+/// The type of a field declares what it is, its attribute where it is attached. Fields of plain numbers are
+/// parameters.
 #[mechanism(gravity = -9.81 * y, drawing)]
 pub struct CartPole {
     pub pole_length: f64,
@@ -18,19 +19,19 @@ pub struct CartPole {
     hinge: Pin,
     #[acts(on = hinge, damping = 0.005)]
     bearing: Dashpot,
-    /// An input: an entry of `u`.
+    /// Input, which is an entry of `u`.
     #[acts(on = cart, along = x)]
     push: Force,
 }
 
-/// A page that shows how the pole falls, and how it is kept upright.
+/// Returns a page that shows how the pole falls, and how a controller keeps it upright.
 pub fn page() -> Result<Page, Box<dyn std::error::Error>> {
     let cart_pole = CartPole { pole_length: 1.0 };
-    // The start: configuration q and velocity v, with entries named by `CartPole::CONFIGURATION` and
+    // Initial configuration q and velocity v, whose entries are named by `CartPole::CONFIGURATION` and
     // `CartPole::VELOCITIES`.
     let motion = || simulate(&cart_pole).from([0.0, 0.2], [0.0, 0.0]).duration(8.0).sample_every(1.0 / 60.0);
     let falls: Vec<_> = motion().collect::<Result<_, _>>()?;
-    // The pole leans to the left at positive angles, and the cart has to follow it.
+    // At positive angles the pole leans to the left, and the cart must follow it.
     let controller =
         |_t, q: &SVector<f64, 2>, v: &SVector<f64, 2>| [q[0] + 2.0 * v[0] - 30.0 * q[1] - 8.0 * v[1]].into();
     let stands: Vec<_> = motion().inputs(controller).collect::<Result<_, _>>()?;
