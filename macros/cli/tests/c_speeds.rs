@@ -1,4 +1,4 @@
-//! C of a mechanism with declared speeds against the same functions in Rust.
+//! C code of a mechanism with declared generalized speeds, compared with the same functions in Rust.
 
 use linkwork::prelude::*;
 use linkwork::{discrete, frame};
@@ -10,13 +10,13 @@ use std::process::Command;
 #[path = "mechanisms/speeds.rs"]
 mod mechanisms_in_speeds;
 
-/// An array as C writes it.
+/// Formats an array in C.
 fn array(name: &str, numbers: &[f64]) -> String {
     let list: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
     format!("    const double {name}[] = {{{}}};\n", list.join(", "))
 }
 
-/// What a program prints: a line for each function.
+/// Returns the numbers that the C program prints, one line per function.
 fn printed(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join("speeds");
     std::fs::create_dir_all(&folder).expect("a folder of the tests'");
@@ -53,7 +53,7 @@ fn printed(entries: &[(&str, &str, Vec<f64>)], given: &str) -> Vec<Vec<f64>> {
     text.lines().map(line).collect()
 }
 
-/// Numbers of several results, one after another.
+/// Concatenates several results.
 fn all(parts: &[&[f64]]) -> Vec<f64> {
     parts.concat()
 }
@@ -140,7 +140,7 @@ fn speeds_are_the_same_in_c() {
     let calls: Vec<(&str, String, Vec<f64>)> = entries
         .into_iter()
         .map(|(name, call, expected)| {
-            // The frame stands before everything but the parameters.
+            // Calls have the frame argument directly after the parameters.
             (name, format!("juggler_{name}{call}"), expected)
         })
         .collect();

@@ -1,4 +1,4 @@
-"""Functions of a cart with a pole as CasADi loads them: slopes against central differences, steps against each other."""
+"""Compares the functions of a cart-pole that CasADi loads: Jacobians with central differences, steps with each other."""
 
 import casadi
 import numpy as np
@@ -33,7 +33,7 @@ def check_jacobian(name):
 for name in ["forward_dynamics", "inverse_dynamics", "rk4_step", "semi_implicit_euler_step", "position_pole"]:
     check_jacobian("casadi_" + name)
 
-# The step that CasADi differentiates is the one that acados takes, with its Jacobian.
+# The step and its Jacobian by CasADi equal those that acados loads.
 x, u = casadi.MX.sym("x", 4), casadi.MX.sym("u", 1)
 end = casadi.vertcat(*external("casadi_rk4_step")(x[:2], x[2:], u, 0.01))
 step = casadi.Function("step", [x, u], [end, casadi.jacobian(end, casadi.vertcat(u, x)).T])
@@ -42,7 +42,7 @@ for found, expected in zip(external("dyn_disc_phi_fun_jac")(state, push, [0.01])
     assert np.abs(np.array(found) - np.array(expected)).max() < 1e-14
 assert np.abs(np.array(external("dyn_disc_phi_fun")(state, push, [0.01])) - np.array(step(state, push)[0])).max() < 1e-14
 
-# Rates, sensitivities forwards and backwards.
+# State derivatives, and forward and adjoint sensitivities.
 rates, a, b = (np.array(m) for m in external("expl_vde_forw")(state, np.eye(4), np.zeros((4, 1)), push, []))
 assert np.abs(np.array(external("expl_ode_fun")(state, push, [])) - rates).max() < 1e-14
 adjoint = np.array(external("expl_vde_adj")(state, [1, 2, 3, 4], push, [])).ravel()
@@ -50,12 +50,12 @@ assert np.abs(adjoint - np.concatenate([a.T, b.T]) @ [1, 2, 3, 4]).max() < 1e-12
 acceleration = external("casadi_forward_dynamics")
 assert np.abs(rates[2:].ravel() - np.array(acceleration(state[:2], state[2:], [0.5, 0])).ravel()).max() < 1e-12
 
-# Parameters that are not fixed are an argument.
+# Parameters that are not fixed are an additional argument.
 open_step = external("dyn_disc_phi_fun", "open")
 assert open_step.size1_in(2) == 4
 assert np.abs(np.array(open_step(state, push, [0.01, 0.3, 0.8, 0.4])) - np.array(step(state, push)[0])).max() < 1e-14
 
-# The pole is swung up by direct multiple shooting.
+# Swing-up of the pole by direct multiple shooting.
 problem = casadi.Opti()
 states, pushes = problem.variable(4, 51), problem.variable(1, 50)
 for k in range(50):

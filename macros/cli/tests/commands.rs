@@ -1,9 +1,9 @@
-//! What the command prints, and how it ends.
+//! Output and exit status of the command.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A folder of a test's own.
+/// Returns a folder for one test.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
@@ -57,12 +57,13 @@ fn mistakes_are_listed_with_their_places() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let places: Vec<_> = json["messages"].as_array().unwrap().iter().map(|m| m["line"].as_u64()).collect();
     assert_eq!((status, places), (1, vec![Some(line as u64); 2]));
-    // Nothing is written of what has mistakes.
+    // No files are written for a mechanism with errors.
     let (status, ..) = linkwork(&here, &["export", "c", "bad.rs"]);
     assert!(status == 1 && !here.join("pendulum.c").exists());
 }
 
-/// As rustc does it: the derives would see the elements.
+/// Checks that a derive above the attribute is an error, as with rustc, because it would apply to the element
+/// fields.
 #[test]
 fn a_derive_above_the_attribute_is_an_error() {
     let here = folder("derives");
@@ -123,8 +124,8 @@ fn what_cannot_be_done_is_said() {
     }
 }
 
-/// Advice on a robot file, which has no attribute, names an option of the command; with this option the file
-/// is accepted.
+/// Checks that advice on a robot file, which has no attribute, names an option of the command, and that the
+/// file is accepted with this option.
 #[test]
 fn advice_names_options_of_the_command() {
     let here = folder("advice");
@@ -143,7 +144,7 @@ fn advice_names_options_of_the_command() {
     assert!(status == 1 && told.contains("give it a name that ends in `.sdf`"), "{told}");
 }
 
-/// Meshes that are not found are listed; a folder that is not there is an error.
+/// Checks that missing meshes are listed, and that a missing folder is an error.
 #[test]
 fn missing_meshes_are_listed() {
     let here = folder("meshes");
@@ -163,7 +164,7 @@ fn missing_meshes_are_listed() {
     assert!(status == 2 && told.contains("`--meshes`: nowhere: "), "{told}");
 }
 
-/// What cannot be read at all is told as any other mistake is.
+/// Checks that syntax errors are reported in the format of other errors.
 #[test]
 fn syntax_errors_are_mistakes_among_others() {
     let here = folder("syntax");
@@ -185,7 +186,8 @@ fn syntax_errors_are_mistakes_among_others() {
     }
 }
 
-/// The page says what the struct's documentation says; descriptions of libraries have no links of rustdoc.
+/// Checks that the page has the struct's documentation, and that descriptions of libraries contain no rustdoc
+/// links.
 #[test]
 fn documentation_is_for_other_readers_too() {
     let here = folder("documented");
@@ -222,8 +224,8 @@ fn documentation_is_for_other_readers_too() {
     assert!(header.contains("* Returns 1 where none is found, for an index that is none."), "{header}");
 }
 
-/// With `--expanded` the crate contains the generated code instead of the attribute, and is otherwise the
-/// same. The description has the limits of the joints.
+/// Checks that with `--expanded` the crate contains the generated code instead of the attribute, and is
+/// otherwise identical. The description contains the limits of the joints.
 #[test]
 fn libraries_contain_the_attribute_or_its_code() {
     let here = folder("expanded");
@@ -249,14 +251,14 @@ fn libraries_contain_the_attribute_or_its_code() {
     assert_eq!(description["limits"], limits);
 }
 
-/// The text of the first block of a language in the guide.
+/// Returns the text of the first code block of a language in the README.
 fn block(language: &str) -> String {
     let guide = include_str!("../README.md");
     let (_, rest) = guide.split_once(&format!("```{language}\n")).unwrap();
     rest.split_once("```").unwrap().0.to_string()
 }
 
-/// Every command of the guide runs from the folder of the repository.
+/// Checks that every command of the README runs from the folder of the repository.
 #[test]
 #[cfg(unix)]
 fn documented_commands_run() {
@@ -269,7 +271,7 @@ fn documented_commands_run() {
     let commands = commands.lines().map(|line| line.split(['#', '>']).next().unwrap());
     let commands: Vec<Vec<&str>> = commands
         .filter_map(|line| line.strip_prefix("linkwork "))
-        // That for Python needs its package.
+        // The export for Python needs the Python package.
         .filter(|line| !line.contains("python"))
         .map(|line| line.split_whitespace().collect())
         .collect();
@@ -284,7 +286,7 @@ fn documented_commands_run() {
     }
 }
 
-/// The example of the guide does what it says, in C.
+/// Checks that the C example of the README compiles and succeeds.
 #[test]
 fn the_guide_runs() {
     let here = folder("guide");
@@ -302,7 +304,7 @@ fn the_guide_runs() {
     assert!(Command::new(here.join("main")).status().unwrap().success());
 }
 
-/// The format is what the file's name says, or else what the file looks like.
+/// Checks that the format of a robot file follows from its extension, or otherwise from its content.
 #[test]
 fn robots_are_read_in_their_formats() {
     let here = folder("formats");
@@ -333,7 +335,7 @@ fn robots_are_read_in_their_formats() {
     );
 }
 
-/// What has no form behind plain arrays is told, and so is a folder without sources.
+/// Checks the errors for mechanisms that cannot become a library, and for a folder without sources.
 #[test]
 fn libraries_that_cannot_be_are_told() {
     let fighter = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/fighter.rs");

@@ -1,4 +1,4 @@
-//! Robot files as structs: the same equations of motion.
+//! Conversion of robot files to structs with the same equations of motion.
 
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
@@ -8,7 +8,7 @@ use linkwork_compiler::{Source, compile, read};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Runs `test` with what is compiled of the attribute's arguments and a struct.
+/// Compiles a struct with arguments of the attribute, and passes the result to `test`.
 fn compiled<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Output) -> T) -> T {
     let cx = &mut Diagnostics::new();
     let source: Option<Source> = read(arguments.parse().unwrap(), item.parse().unwrap(), Path::new("/"), cx);
@@ -18,7 +18,7 @@ fn compiled<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Outpu
     test(&model, &output)
 }
 
-/// Returns the result of a function at a state that depends on the indices of its entries.
+/// Evaluates a function at a state that depends on the indices of its entries.
 fn run(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
     let value = |k: usize, shift: f64| (1.7 * k as f64 + shift).sin();
     let q = |k: usize| match model.configuration.get(k).and_then(|name| name.rsplit('.').next()) {
@@ -40,7 +40,7 @@ fn run(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
             other => panic!("{other:?}"),
         })
     };
-    // Where these are long, other functions call them.
+    // Long passive forces are a separate function, whose results are arguments of the other functions.
     let passive = find("__passive_forces").map(|_| run("__passive_forces", &[]));
     run(function, &passive.unwrap_or_default())
 }
@@ -54,14 +54,14 @@ fn converted(file: &Path, with: &str) -> (String, String) {
     (code, told)
 }
 
-/// The attribute's arguments, and the struct.
+/// Returns the attribute's arguments, and the struct.
 fn parts(code: &str) -> (String, String) {
     let (_, rest) = code.split_once("#[mechanism(").unwrap();
     let (arguments, item) = rest.split_once(")]\n").unwrap();
     (arguments.to_string(), item.to_string())
 }
 
-/// Frames that are not the ground itself, which is one of a file's links.
+/// Returns the number of frames except the ground, which is one of the links of a file.
 fn frames(model: &Model<'_>) -> usize {
     model.frames.iter().filter(|frame| frame.name != "ground").count()
 }
@@ -70,7 +70,8 @@ fn check(format: &str, file: &Path, with: &str) {
     check_beside(format, file, with, &[]);
 }
 
-/// Compares a struct with its file; `notes` are printed in addition to the list of renamed things.
+/// Compares a struct with its file; `notes` are expected messages in addition to the list of renamed
+/// elements.
 fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let (code, told) = converted(file, with);
     let (arguments, item) = parts(&code);
@@ -143,7 +144,7 @@ const CRANE: &str = r#"<mujoco model="crane">
   </actuator>
 </mujoco>"#;
 
-/// Names that are words, springs, rotors, gears and cables of another format.
+/// Checks names that are reserved words, springs, rotor inertias, gears and cables.
 #[test]
 fn elements_of_files_become_fields() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("converted");
@@ -173,8 +174,8 @@ fn written(name: &str, text: &str) -> PathBuf {
     file
 }
 
-/// Mass matrix and bias forces of the robot files of other tests. Followers have velocities of their own in
-/// structs.
+/// Compares mass matrix and bias forces for the robot files of other tests. Mimic joints have independent
+/// velocities in structs.
 #[test]
 fn robot_files_of_the_tests_become_structs() {
     for (format, file, with) in [
@@ -213,8 +214,8 @@ fn robot_files_of_the_tests_become_structs() {
     }
 }
 
-/// In expressions of the medium, of damping and of cables the name is the body's, in those of couplings the
-/// joint's.
+/// Checks a name that a body and a joint share. In expressions of the medium, of damping and of cables it
+/// means the body, in couplings the joint.
 #[test]
 fn links_and_joints_share_a_name() {
     let file = written(
@@ -241,7 +242,7 @@ fn links_and_joints_share_a_name() {
     }
 }
 
-/// Damping that brings energy in, gears, elements on several joints, and lengths that do not change.
+/// Checks damping that adds energy, gears, elements on several joints, and lengths that do not change.
 #[test]
 fn elements_of_any_sign_and_on_several_joints_become_fields() {
     let file = written(
@@ -282,7 +283,7 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
     }
 }
 
-/// Names that fields cannot have, and those of motors.
+/// Checks names that are not valid field names, and names of motors.
 #[test]
 fn other_names_than_in_the_file_are_told() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("renamed");
@@ -319,7 +320,7 @@ fn other_names_than_in_the_file_are_told() {
         shown.join(", ")
     );
     assert_eq!(told, expected);
-    // What keeps its names says nothing.
+    // Elements that retain their names are not mentioned.
     let (code, told) = converted(&file, "inputs = none, lock = [\"hand\", \"shoulder\"], base = free");
     assert!(!told.contains("shoulder") && !code.contains("shoulder` is"), "{told}{code}");
 }

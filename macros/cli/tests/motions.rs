@@ -1,4 +1,4 @@
-//! Motions and pages, without a program of one's own.
+//! Simulation and pages by the command.
 
 #[path = "motions/flail.rs"]
 mod flail;
@@ -26,12 +26,12 @@ fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
 }
 
-/// The numbers of a log, line by line.
+/// Returns the numbers of a log, line by line.
 fn rows(log: &str) -> Vec<Vec<f64>> {
     log.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect()
 }
 
-/// Generated code, integrated with steps of its own, goes the same way.
+/// Checks that the command's simulation agrees with generated code and a fixed-step method.
 #[test]
 fn programs_and_generated_code_move_alike() {
     let here = folder("alike");
@@ -66,8 +66,8 @@ fn programs_and_generated_code_move_alike() {
 
 const JUGGLER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/speeds.rs");
 
-/// With declared speeds configurations move as in Rust, in velocities along the ground's axes and in a
-/// mixture of rates; a speed of twice a rate is not the rate.
+/// Checks configurations of a mechanism with declared generalized speeds, which are velocities along the
+/// ground axes and combinations of rates. A speed that is a multiple of a rate is not confused with the rate.
 #[test]
 fn declared_speeds_move_configurations() {
     let here = folder("speeds");
@@ -109,8 +109,8 @@ pub struct Rotor {
     assert!(status == 0 && (end[1] - 1.5).abs() < 1e-9 && (end[2] - 3.0).abs() < 1e-12, "{end:?}");
 }
 
-/// States of first order begin at zero or where `--set` says, and move: a lag of 0.5 s, closed form. A log
-/// holds them, and a page is made from it.
+/// Checks states of first order: they start at zero or at the value of `--set`, and follow the closed form of
+/// a lag of 0.5 s. Logs contain them, and a page is made from a log.
 #[test]
 fn states_of_first_order_are_integrated() {
     let here = folder("states");
@@ -158,8 +158,8 @@ pub struct Sled {
     );
 }
 
-/// A stiff arm is integrated by an implicit method, with a message. The spring of 10⁶ N m/rad supports the
-/// arm where its weight deflects it.
+/// Checks that a stiff arm is integrated by an implicit method, which is reported. The arm settles at the
+/// deflection of the spring of 10⁶ N m/rad under its weight.
 #[test]
 fn stiff_mechanisms_are_integrated_by_an_implicit_method() {
     let here = folder("stiff");
@@ -189,12 +189,13 @@ pub struct Arm {
         linkwork(&here, &["simulate", "arm.rs", "--duration", "2", "--set", "q.wrist=0.1"]);
     assert!(status == 0 && told.contains("the motion is stiff: from 0.0"), "{told}");
     let end = rows(&log).pop().unwrap();
-    // Weight times lever by stiffness, at the angle zero but for parts in 10⁵.
+    // Torque of the weight divided by the stiffness, with a relative error of 10⁻⁵ from the lever arm at
+    // angle zero.
     let bend = -9.81 * (0.5 + 0.01 * 1.05) / 1e6;
     assert!((end[1] - bend).abs() < 1e-8 && (end[2] + 9.81 * 0.01 * 0.05 / 1e4).abs() < 1e-8, "{end:?}");
 }
 
-/// A log comes back as a page; so does a motion that is computed for it.
+/// Checks that a page is made from a log, and from a simulated motion.
 #[test]
 fn pages_show_motions() {
     let here = folder("pages");
@@ -207,11 +208,11 @@ fn pages_show_motions() {
     assert_eq!(linkwork(&here, &log), (0, String::new(), String::new()));
     let (status, _, told) = linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--motion", "log.csv"]);
     assert_eq!((status, told.as_str()), (0, ""));
-    // The same but for the figures of the last digit.
+    // Both pages are equal up to the last digits.
     let again = std::fs::read_to_string(here.join("Flail.html")).unwrap();
     assert_eq!(again.len(), page.len());
 
-    // Lengths and angles have plots of their own, and so have inputs that change.
+    // Lengths, angles and inputs that change have separate plots.
     let cart = "
 #[mechanism(gravity = -9.81 * y)]
 pub struct Cart {
@@ -238,7 +239,7 @@ pub struct Cart {
     }
 }
 
-/// The messages of an MCAP file: records begin with their kind and the length of the rest.
+/// Returns the messages of an MCAP file; a record begins with its kind and the length of its content.
 fn messages(file: &[u8]) -> Vec<serde_json::Value> {
     let (mut rest, mut found) = (&file[8..file.len() - 8], Vec::new());
     while let [kind, length @ ..] = rest {
@@ -250,8 +251,8 @@ fn messages(file: &[u8]) -> Vec<serde_json::Value> {
     found
 }
 
-/// The log for robotics tools holds the states of the table to the last digit, and the placements that
-/// generated code gives.
+/// Checks that the MCAP log has the states of the table in full precision, and the placements of generated
+/// code.
 #[test]
 fn logs_hold_what_tables_hold() {
     let here = folder("logs");
@@ -302,7 +303,8 @@ pub struct Ball {
 }
 ";
 
-/// Impacts are not left out unless that is asked for; then it falls by `g t² / 2`.
+/// Checks that a mechanism with contacts is simulated only with `--without-contacts`; the ball then falls by
+/// `g t² / 2`.
 #[test]
 fn contacts_are_no_free_fall() {
     let here = folder("contacts");
@@ -340,8 +342,8 @@ pub struct Closed {
 }
 ";
 
-/// A closed loop moves as generated code moves it: the same four-bar linkage, integrated by itself in Rust;
-/// its loop stays closed and, without a motor, its energy what it was.
+/// Checks that a closed loop moves as in Rust, for the same four-bar linkage. The loop remains closed, and
+/// without a motor the energy is constant.
 #[test]
 fn loops_stay_closed() {
     let here = folder("closed");
@@ -354,7 +356,7 @@ fn loops_stay_closed() {
     ]
     .concat();
     let (status, log, told) = linkwork(&here, &arguments);
-    // The two angles that are given close the loop to their digits, which is told.
+    // The given angles close the loop only up to their digits, which is reported.
     assert!(status == 0 && told.contains("what is given does not fulfil the constraints"), "{told}");
     assert!(told.contains("the motion begins near it, at q."), "{told}");
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
@@ -379,7 +381,7 @@ fn loops_stay_closed() {
             sample.v
         );
     }
-    // One angle and one rate are kept, and the loop gives the others.
+    // One angle and one velocity are preserved, and the constraints determine the others.
     let one = ["simulate", "closed.rs", "--duration", "0.1", "--set", "q.input=0.3", "--set", "v.output=2"];
     let (status, log, told) = linkwork(&here, &one);
     assert!(
@@ -390,18 +392,19 @@ fn loops_stay_closed() {
     let (at, rate) = state(&self::rows(&log)[0]);
     assert_eq!((at[0], rate[2]), (0.3, 2.0));
     assert!(m.constraint_residuals(&at).norm() < 1e-11 && m.constraint_rates(&at, &rate).norm() < 1e-11);
-    // The same angle in the loop's other form.
+    // The same angle in the other assembly mode.
     let guessed = [&one[..], &["--guess", "q.output=2"]].concat();
     let (status, log, told) = linkwork(&here, &guessed);
     assert!(status == 0 && told.contains("what is given is kept"), "{told}");
     let (other, _) = state(&self::rows(&log)[0]);
     assert!(other[0] == 0.3 && other[2] > 1.0 && at[2] < 0.0, "{other} {at}");
     assert!(m.constraint_residuals(&other).norm() < 1e-11);
-    // Angles that cannot be are none to begin with.
+    // Angles that contradict the constraints are rejected.
     let wrong = ["simulate", "closed.rs", "--set", "q.input=1.2", "--set", "q.output=1.9"];
     let (status, log, told) = linkwork(&here, &wrong);
     assert!(status == 2 && log.is_empty() && told.contains("what is nearest: q.input = "), "{told}");
-    // A loop that is stretched out is assembled near by, which is told; the page of it shows the motion.
+    // The singular stretched configuration is replaced by a nearby one, which is reported; the page shows the
+    // motion.
     let (status, _, told) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
     assert!(status == 0 && told.contains("the motion begins near it, at q."), "{told}");
     assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
@@ -433,8 +436,9 @@ pub struct Swing {
 }
 ";
 
-/// A joint that no constraint reaches is not moved where a motion begins. The loop keeps the form that it has
-/// at zero, a parallelogram, however far it swings. Parameters that no mechanism can have are refused.
+/// Checks that a joint which no constraint affects keeps its initial angle, and that the loop remains in the
+/// assembly mode of the zero configuration, a parallelogram, for any amplitude. Inadmissible parameters are
+/// rejected.
 #[test]
 fn beginnings_move_what_constraints_reach() {
     let here = folder("swing");
@@ -465,7 +469,7 @@ fn beginnings_move_what_constraints_reach() {
     }
 }
 
-/// What no configuration fulfils is told; so are tables, whose figures the command does not have.
+/// Checks the errors for a mechanism that cannot be assembled, and for missing values of tables.
 #[test]
 fn what_cannot_be_assembled_is_told() {
     let here = folder("apart");
@@ -480,8 +484,8 @@ fn what_cannot_be_assembled_is_told() {
     assert!(status == 2 && out.is_empty() && told.contains("--table lift=FILE --table drag=FILE"), "{told}");
 }
 
-/// A parabola by a smooth table of three points is the parabola: the spring that it makes swings as a spring
-/// does.
+/// Checks that a spline table with three points of a parabola is the parabola: the resulting spring
+/// oscillates with the expected frequency.
 #[test]
 fn tables_are_read_from_files() {
     let here = folder("tables");
@@ -553,7 +557,7 @@ fn what_cannot_be_done_is_told() {
     }
 }
 
-/// A crank that turns at a given speed, with a piston on its rod: no degree of freedom is left.
+/// Crank that rotates at constant speed, with a rod and a piston: no degrees of freedom.
 const DRIVEN: &str = "
 #[mechanism(gravity = -9.81 * y)]
 pub struct Driven {
@@ -577,7 +581,8 @@ pub struct Driven {
 }
 ";
 
-/// Every command takes a mechanism that time alone moves; it goes where it is driven.
+/// Checks that every command accepts a mechanism without degrees of freedom, which follows its prescribed
+/// motion.
 #[test]
 fn driven_mechanisms_follow_time() {
     let here = folder("driven");
@@ -596,7 +601,7 @@ fn driven_mechanisms_follow_time() {
         assert_eq!(linkwork(&here, command).0, 0, "{command:?}");
     }
     assert_eq!(linkwork(&here, &["view", "driven.rs", "--set", "speed=7", "--duration", "1"]).0, 0);
-    // Twice as fast and once cannot both be.
+    // A locked piston contradicts the prescribed rotation of the crank.
     let twice = DRIVEN
         .replace("#[output(crank)]\n    loads: FreeBody", "#[constraint(cylinder = 0.13)] stop: Holonomic");
     std::fs::write(here.join("twice.rs"), twice).unwrap();
@@ -605,7 +610,7 @@ fn driven_mechanisms_follow_time() {
     assert!(status != 0 && told.contains("cannot be assembled"), "{told}");
 }
 
-/// A leg of Jansen's beast.
+/// Leg of Jansen's linkage.
 const LEG: &str = "
 #[mechanism(gravity = -9.81 * y)]
 struct Leg {
@@ -646,8 +651,8 @@ struct Leg {
 }
 ";
 
-/// From any subset of a leg's angles the others are found within half a turn, and the assembly mode is
-/// printed.
+/// Checks that for any subset of given angles the others are found within half a revolution, and that the
+/// assembly mode is printed.
 #[test]
 fn legs_are_assembled_within_half_a_turn() {
     let here = folder("leg");

@@ -1,4 +1,4 @@
-//! The project to begin with, and what shells complete.
+//! Generated projects, and completions of shells.
 
 #[path = "../src/starter/main.rs"]
 #[allow(dead_code, reason = "the `main` of another program")]
@@ -21,13 +21,13 @@ fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
 }
 
-/// The program of the project: one pole falls, the other one is kept upright.
+/// Checks the program of the project: one pole falls, and the other one is kept upright.
 #[test]
 fn the_program_does_what_it_says() {
     let page = starter::page().unwrap().html();
     assert!(page.contains("It falls") && page.contains("It is kept upright"));
     let cart_pole = starter::CartPole { pole_length: 1.0 };
-    // About the upright pole, which falls from any lean.
+    // At a positive angle, the acceleration increases the angle: the upright pole is unstable.
     let a = cart_pole.forward_dynamics(&[0.0, 0.2].into(), &[0.0; 2].into(), &[0.0; 2].into());
     assert!(a[1] > 0.0, "{a}");
 }
@@ -39,7 +39,7 @@ fn projects_are_made_once() {
     assert!(status == 0 && told.contains("cargo run"), "{told}");
     let main = std::fs::read_to_string(here.join("my-arm/src/main.rs")).unwrap();
     assert_eq!(main, include_str!("../src/starter/main.rs"));
-    // The command of the repository depends on the repository, and Cargo reads the manifest.
+    // A command built from the repository depends on the repository, and Cargo accepts the manifest.
     let path = here.join("my-arm/Cargo.toml");
     let manifest = std::fs::read_to_string(&path).unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
@@ -53,7 +53,7 @@ fn projects_are_made_once() {
     let read: serde_json::Value = serde_json::from_slice(&cargo.stdout).unwrap();
     assert_eq!(read["packages"][0]["name"], "my-arm");
 
-    // With the sources in a folder the manifest names them itself.
+    // With `--linkwork FOLDER`, the manifest names the sources in that folder.
     let (status, _, told) = linkwork(&here, &["new", "own", "--linkwork", root.to_str().unwrap()]);
     assert_eq!(status, 0, "{told}");
     let own = std::fs::read_to_string(here.join("own/Cargo.toml")).unwrap();
@@ -80,7 +80,8 @@ fn shells_complete_all_commands() {
     assert_eq!(linkwork(&here, &["completions", "tcsh"]).0, 2);
 }
 
-/// Who reads no more than the first bytes of an output, or nothing of the errors, ends the command quietly.
+/// Checks that the command exits silently if its standard output is closed after the first bytes, or its
+/// standard error at once.
 #[test]
 fn closed_pipes_end_quietly() {
     use std::io::Read;

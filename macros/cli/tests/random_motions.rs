@@ -1,14 +1,14 @@
-//! Random mechanisms whose motion is known by another mechanism, or in closed form: declared speeds, states
-//! of first order, inputs over time, stiff springs.
+//! Random mechanisms whose motion is known from another mechanism or in closed form, with declared
+//! generalized speeds, states of first order, inputs over time and stiff springs.
 //!
-//! `LINKWORK_CASES` sets how many mechanisms of each kind are tried, `LINKWORK_COMMAND` names another build
-//! of the command.
+//! `LINKWORK_CASES` sets the number of mechanisms of each kind, and `LINKWORK_COMMAND` the path of another
+//! build of the command.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Numbers that look random (Knuth's linear congruential generator).
+/// Pseudorandom numbers (Knuth's linear congruential generator).
 struct Random(u64);
 
 impl Random {
@@ -21,7 +21,7 @@ impl Random {
         self.bits() % n
     }
 
-    /// A number of three digits between bounds.
+    /// Returns a number between bounds, rounded to three decimals.
     fn between(&mut self, low: f64, high: f64) -> f64 {
         let x = low + (high - low) * self.below(10_000) as f64 / 1e4;
         (x * 1e3).round() / 1e3
@@ -38,7 +38,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// A motion as the command prints it: names of the columns, and rows.
+/// Motion as printed by the command: names of the columns, and rows.
 struct Log {
     names: Vec<String>,
     rows: Vec<Vec<f64>>,
@@ -67,7 +67,7 @@ fn simulated(here: &Path, name: &str, text: &str, set: &[String], more: &[&str])
     Log { names, rows: lines.map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect() }
 }
 
-/// A chain of bodies on pins and sleeves with springs, or a slider-crank, and its coordinates.
+/// Returns a chain of bodies on pins and sleeves with springs, or a slider-crank, with its coordinates.
 fn linkage(random: &mut Random) -> (String, Vec<String>, bool) {
     let mut text = String::new();
     if random.below(4) == 0 {
@@ -106,7 +106,7 @@ fn mechanism(body: &str) -> String {
     format!("use linkwork::prelude::*;\n#[mechanism(gravity = -9.81 * y)]\npub struct Random {{\n{body}}}\n")
 }
 
-/// Speeds are another description of the same motion: the mechanism goes where it goes without them.
+/// Checks that a mechanism with declared generalized speeds has the same motion as without them.
 #[test]
 fn declared_speeds_lead_to_the_same_motion() {
     let here = folder("random_speeds");
@@ -115,14 +115,14 @@ fn declared_speeds_lead_to_the_same_motion() {
         let (body, joints, loops) = linkage(random);
         let mut with = body.clone();
         let (mut begin, mut of_speeds, mut of_rates) = (Vec::new(), Vec::new(), Vec::new());
-        // A loop begins where it is assembled; one rate is free.
+        // A loop starts in its assembled configuration; one velocity is free.
         let q: Vec<f64> =
             joints.iter().map(|_| if loops { 0.0 } else { random.between(-0.5, 0.5) }).collect();
         let v: Vec<f64> = joints.iter().map(|_| random.between(-1.0, 1.0)).collect();
         for (k, joint) in joints.iter().enumerate() {
             let (own, other) = (random.between(0.5, 3.0), random.between(-1.0, 1.0));
             let (mut value, mut speed) = (format!("{own} * rate({joint})"), own * v[k]);
-            // Triangular: it can be inverted everywhere.
+            // Triangular, hence invertible everywhere.
             if k > 0 && random.below(2) == 0 {
                 let before = &joints[k - 1];
                 let _ = write!(value, " + {other} * cos({joint}) * rate({before})");
@@ -150,8 +150,8 @@ fn declared_speeds_lead_to_the_same_motion() {
     }
 }
 
-/// A state of first order is the velocity of a particle of 1 kg, on a rail of its own, that its rate pushes
-/// as a force.
+/// Checks that a state of first order equals the velocity of a particle of 1 kg on a separate rail, under a
+/// force equal to the rate of the state.
 #[test]
 fn states_move_as_velocities_do() {
     let here = folder("random_states");
@@ -159,7 +159,7 @@ fn states_move_as_velocities_do() {
         let random = &mut Random(2 * case + 2);
         let (linkage, joints, loops) = linkage(random);
         let j = &joints[0];
-        // Units of parameters are inferred.
+        // Parameters have inferred units.
         let parameters = ["lag", "lift", "drag", "wave", "scale", "gain"];
         let values = [
             random.between(0.5, 20.0),
@@ -208,8 +208,8 @@ fn states_move_as_velocities_do() {
     }
 }
 
-/// A cart of 1 kg under a force on straight lines between random instants, which jumps and has short pulses:
-/// velocity and place are integrals of the table.
+/// Checks a cart of 1 kg under a piecewise linear force between random instants, with jumps and short pulses:
+/// velocity and position are integrals of the table.
 #[test]
 fn inputs_are_followed_exactly() {
     let here = folder("random_inputs");
@@ -247,8 +247,8 @@ fn inputs_are_followed_exactly() {
     }
 }
 
-/// A cart on a stiff, strongly damped spring under a constant force that begins at rest: `c` and `k` are
-/// large, and the motion is the closed form of an overdamped oscillator.
+/// Checks a cart on a stiff, overdamped spring under a constant force, which starts at rest: the motion is
+/// the closed form of an overdamped oscillator with large `c` and `k`.
 #[test]
 fn stiff_springs_are_integrated() {
     let here = folder("random_stiff");

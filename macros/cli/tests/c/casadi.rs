@@ -1,10 +1,10 @@
-//! Functions in the shapes that CasADi and acados take.
+//! Exported functions in the form that CasADi and acados load.
 
 use crate::compiled::{compilers, export, folder};
 use std::path::Path;
 use std::process::Command;
 
-/// A Python that has CasADi: that of `LINKWORK_PYTHON`, or the system's.
+/// Returns a Python interpreter that has CasADi: that of `LINKWORK_PYTHON`, or the system's.
 fn python() -> Option<String> {
     let python = std::env::var("LINKWORK_PYTHON").unwrap_or_else(|_| "python3".to_string());
     let has =
@@ -12,7 +12,8 @@ fn python() -> Option<String> {
     has.then_some(python)
 }
 
-/// CasADi loads functions with the right values and slopes, and acados' functions have consistent sizes.
+/// Checks that CasADi loads functions with the correct values and Jacobians, and that acados' functions have
+/// consistent sizes.
 #[test]
 fn casadi_loads_functions_with_their_jacobians() {
     let Some(compiler) = compilers().into_iter().next() else {
@@ -54,7 +55,8 @@ fn casadi_loads_functions_with_their_jacobians() {
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
 }
 
-/// What cannot be fixed, and numbers that CasADi does not have, are told.
+/// Checks the errors for parameters that cannot be fixed, and for single precision, which CasADi does not
+/// support.
 #[test]
 fn what_casadi_cannot_have_is_told() {
     for (arguments, part) in [

@@ -1,10 +1,11 @@
-//! A mechanism as C knows it: the program that calls its functions, compiled, run and compared.
+//! Tests of exported C code: generates a program that calls its functions, compiles and runs it, and compares
+//! the results.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A function with its arguments as C and Rust write them, and its results one after another.
+/// Function call: its arguments in C, and the expected results in order.
 pub struct Entry {
     pub name: &'static str,
     pub arguments: &'static str,
@@ -12,22 +13,22 @@ pub struct Entry {
     pub returned: bool,
 }
 
-/// A mechanism as C knows it.
+/// Exported mechanism with the calls to be compared.
 pub struct Case {
-    /// What identifiers and files begin with.
+    /// Prefix of identifiers and files.
     pub prefix: &'static str,
     pub parameters: Vec<f64>,
-    /// Tables as C writes them, and the arrays that they name.
+    /// C initialisers of tables, and the C arrays that they refer to.
     pub tables: [&'static str; 2],
     pub time: Option<f64>,
-    /// Arguments by name.
+    /// Arguments, by name.
     pub given: Vec<(&'static str, Vec<f64>)>,
     pub entries: Vec<Entry>,
-    /// How far results may be off, of the largest number of each.
+    /// Maximum error of the results, relative to the largest entry of each.
     pub tolerance: f64,
 }
 
-/// A program that prints the results of all entries, a line each.
+/// Returns a C program that prints the results of all calls, one line per call.
 pub fn program(case: &Case, scalar: &str) -> String {
     let p = case.prefix;
     let list = |numbers: &[f64]| {
@@ -111,7 +112,7 @@ pub fn export(folder: &Path, arguments: &[&str]) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// What a compiled program prints, which is compiled without a warning.
+/// Compiles a program without warnings, runs it, and returns the numbers that it prints.
 pub fn printed(compiler: &str, folder: &Path, p: &str, main: &str, flags: &[&str]) -> Vec<Vec<f64>> {
     let (source, executable) = (folder.join("main.c"), folder.join(format!("main_{compiler}")));
     std::fs::write(&source, main).expect("a file of the tests'");
@@ -151,11 +152,11 @@ pub fn compare(case: &Case, found: &[Vec<f64>], tolerance: f64) {
     }
 }
 
-/// Sources of more bytes are compiled as plain as can be alone: what a compiler of C fuses and reorders is in
-/// shorter ones, too.
+/// Size in bytes above which a source file is compiled without optimisation only. Fusing and reordering by
+/// the C compiler is tested with the shorter files.
 const LONG: u64 = 800_000;
 
-/// Exports, compiles and compares, once as plain as can be and once for this processor.
+/// Exports, compiles and compares: without optimisation, and with optimisation for this processor.
 pub fn agrees(case: &Case, arguments: &[&str]) {
     let compilers = compilers();
     if compilers.is_empty() {

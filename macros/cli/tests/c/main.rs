@@ -1,4 +1,4 @@
-//! The C code of `linkwork export c`, compiled by the C compiler of the system, against the same functions in
+//! C code of `linkwork export c`, compiled by the system's C compiler and compared with the same functions in
 //! Rust.
 
 mod casadi;
@@ -16,7 +16,7 @@ fn numbers(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + 1.7 * k as f64).sin()).collect()
 }
 
-/// The functions of every mechanism.
+/// Calls of functions that every mechanism has.
 macro_rules! functions {
     ($m:ident($($t:ident)?), $q:ident, $v:ident, $a:ident, $tau:ident) => {
         vec![
@@ -39,7 +39,7 @@ macro_rules! functions {
     };
 }
 
-/// Those of trees.
+/// Calls of functions of tree mechanisms.
 macro_rules! of_trees {
     ($m:ident($($t:ident)?), $q:ident, $v:ident, $a:ident, $tau:ident, $u:ident) => {{
         let (by_q, by_v) = $m.inverse_dynamics_derivatives($($t,)? &$q, &$v, &$a);
@@ -75,7 +75,7 @@ macro_rules! scalar {
     };
 }
 
-/// A case with a state, of the mechanism and its sizes.
+/// Test case of a mechanism at a state.
 macro_rules! case {
     ($prefix:literal, $kind:ident, $m:expr, [$($p:expr),*], time($($t:ident = $time:expr)?), $functions:ident) => {{
         let m = &$m;
@@ -111,7 +111,8 @@ macro_rules! case {
     }};
 }
 
-/// How the end of a step changes with its length, by central differences of sixth order.
+/// Returns the derivative of the end state of a step with respect to the step size, by central differences of
+/// order six.
 fn by_length<const NQ: usize, const NV: usize>(
     end: impl Fn(f64) -> (SVector<f64, NQ>, SVector<f64, NV>),
     difference: impl Fn(&SVector<f64, NQ>, &SVector<f64, NQ>) -> SVector<f64, NV>,
@@ -130,7 +131,7 @@ fn by_length<const NQ: usize, const NV: usize>(
     (0..2 * NV).map(slope).collect()
 }
 
-/// Steps and their Jacobians.
+/// Calls of steps and of their Jacobians.
 macro_rules! steps {
     ($kind:ident, $m:expr, $case:ident) => {{
         const NX: usize = 2 * $kind::NV;
@@ -170,7 +171,7 @@ fn vector<const N: usize>(numbers: &[f64]) -> linkwork::nalgebra::SVector<f64, N
     linkwork::nalgebra::SVector::from_fn(|k, _| numbers[k])
 }
 
-/// The first frame and the last one.
+/// Returns calls for the first and the last frame.
 fn frames<M, const NQ: usize, const NV: usize>(
     m: &M,
     time: Option<f64>,
@@ -269,7 +270,7 @@ fn what_is_driven_in_time() {
     agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
 }
 
-/// Figures of [`Wing`], and the same as C writes them.
+/// Returns tables of [`Wing`]; `ARRAYS` has the same values in C.
 fn tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1], [Table<3>; 1]) {
     let drag = Table::new([&[-1.0, 0.2, 0.5, 2.0]], &[0.3, -0.1, 0.4, 0.2]);
     let lift = Table::new([&[-0.2, 0.1, 0.5], &[-1.0, 1.0]], &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9]);
@@ -299,7 +300,7 @@ const ARRAYS: &str = "    static const double d0[] = {-1.0, 0.2, 0.5, 2.0}, d[] 
     static const double m[] = {0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95};
 ";
 
-/// Tables within the grid and beyond it, of every shape.
+/// Checks tables of every dimension within the grid and beyond it.
 #[test]
 fn tables_are_looked_up_alike() {
     let written = [
@@ -316,16 +317,16 @@ fn tables_are_looked_up_alike() {
         let mut case = case!("wing", Wing, m, [2.0], time(), of_trees);
         case.prefix = prefix;
         case.tables = [ARRAYS, c];
-        // Slopes by the length of a step are compared with differences, which are not exact where slopes
-        // jump.
+        // Derivatives with respect to the step size are compared with differences, which are inexact where
+        // the slope of a table is discontinuous.
         case.tolerance = 1e-9;
         case.entries.extend(steps!(Wing, m, case));
         agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
     }
 }
 
-/// Functions that solve for forces of constraints are not there, which the header and the command say; the
-/// others are.
+/// Checks a mechanism with a closed loop. Functions that solve for constraint forces are not exported, which
+/// the header and the command report; all others are.
 #[test]
 fn closed_loops_keep_what_needs_no_solution() {
     let m = FourBar { g: 9.8, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
@@ -354,8 +355,8 @@ fn in_single_precision() {
     compare(&case, &found, 2e-3);
 }
 
-/// Names of mechanisms that are those of helpers, of headers, of arguments or of types: what is written
-/// compiles with every one of them.
+/// Checks that the generated code compiles for mechanisms whose names are those of helper functions, header
+/// functions, arguments or types.
 #[test]
 fn any_name_of_a_mechanism_compiles() {
     let Some(compiler) = compilers().into_iter().next() else {
@@ -363,7 +364,7 @@ fn any_name_of_a_mechanism_compiles() {
         return;
     };
     let folder = folder("names");
-    // The helper's name stood for the mechanism's function, too.
+    // Some names once clashed with helper functions of the generated code.
     for (k, name) in [
         "Ball", "Free", "SinCos", "MulAdd", "Lw", "LwBall", "Which", "Given", "Product", "Arg", "Q", "W",
         "Self_", "Index", "Isnan", "FloatT", "Sinf", "Memcpy", "By", "Ffsll",

@@ -1,8 +1,8 @@
-//! Mechanisms that the command reads from this file, and the tests have in Rust.
+//! Mechanisms that the command reads from this file, and that the tests compile in Rust.
 
 use linkwork::prelude::*;
 
-/// Names that C does not have, a ball joint, functions of many kinds, a reaction.
+/// Names that are reserved in C, a ball joint, functions of many kinds, and a reaction as output.
 #[mechanism(
     gravity = -9.81 * z, second_derivatives, momentum_derivatives, sensitivities, centroidal, hamilton, conserved, regressor, packed
 )]
@@ -32,7 +32,7 @@ pub struct Awkward {
     load: Vector,
 }
 
-/// A free body that is driven in time and flies through the standard atmosphere.
+/// Free body with prescribed forces over time, in the standard atmosphere.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 pub struct Balloon {
     pub mass: f64,
@@ -55,7 +55,8 @@ pub struct Balloon {
     ropes: Limit,
 }
 
-/// Tables of one to three variables, with edges and beyond them, linear and smooth.
+/// Tables of one to three variables, evaluated within and beyond the grid, with linear and spline
+/// interpolation.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 pub struct Wing {
     pub mass: f64,

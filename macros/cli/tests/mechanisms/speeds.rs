@@ -1,9 +1,10 @@
-//! A mechanism with declared speeds, which the command reads from this file and the test has in Rust.
+//! Mechanism with declared generalized speeds that the command reads from this file, and that the tests
+//! compile in Rust.
 
 use linkwork::prelude::*;
 
-/// A body in space in velocities along the axes of the ground, with an arm on Cardan's angles in its angular
-/// velocity.
+/// Free body with velocities along the ground axes as speeds, and an arm on Cardan angles whose speeds
+/// combine both rates.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 pub struct Juggler {
     pub axial: f64,

@@ -1,4 +1,4 @@
-//! A body that flies, with a weight on a ball joint, and a thruster.
+//! Flying body with a thruster, and a weight on a ball joint.
 
 use linkwork::prelude::*;
 
