@@ -1,4 +1,4 @@
-"""Puts the sources of Linkwork into the wheel: the crates that mechanisms of Python are compiled with."""
+"""Adds the sources of Linkwork to the wheel: the crates that mechanisms in Python are compiled with."""
 
 import re
 import tempfile
@@ -12,10 +12,10 @@ ENDS = {".rs", ".md", ".toml", ".js", ".css", ".html", ".c", ".h", ".urdf", ".sd
 
 
 class Sources(BuildHookInterface):
-    """The hook."""
+    """Build hook of hatchling."""
 
     def initialize(self, version, build_data):
-        """Lists what is included."""
+        """Lists the files to include."""
         root = Path(self.root).parents[1]
         self.folder = tempfile.TemporaryDirectory()
         trimmed = Path(self.folder.name)
@@ -34,7 +34,7 @@ class Sources(BuildHookInterface):
         included[str(root / "Cargo.lock")] = "linkwork/_source/Cargo.lock"
         included[str(root / "README.md")] = "linkwork/_source/README.md"
         for member in MEMBERS:
-            # Tests stay behind, and what they need with them.
+            # Tests and their dependencies are omitted.
             text = (root / member / "Cargo.toml").read_text(encoding="utf-8")
             text = re.sub(r"^\[dev-dependencies\]\n.*?(?=^\[|\Z)", "", text, flags=re.DOTALL | re.MULTILINE)
             text = re.sub(r"^\[\[(?:test|bench|example)\]\]\n.*?(?=^\[|\Z)", "", text, flags=re.DOTALL | re.MULTILINE)
@@ -42,7 +42,7 @@ class Sources(BuildHookInterface):
             readme = root / member / "README.md"
             if readme.is_file():
                 included[str(readme)] = f"linkwork/_source/{member}/README.md"
-        # Paths in the gallery are relative to its package.
+        # Paths in the gallery are relative to the folder of its package.
         add("models/Cargo.toml", "[package]\nname = \"gallery\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n")
         for folder in [*FOLDERS, "runtime/guide"]:
             for path in sorted((root / folder).rglob("*")):
@@ -50,5 +50,5 @@ class Sources(BuildHookInterface):
                     included[str(path)] = f"linkwork/_source/{path.relative_to(root).as_posix()}"
 
     def finalize(self, version, build_data, artifact_path):
-        """Removes what was written for it."""
+        """Removes the temporary files."""
         self.folder.cleanup()

@@ -1,4 +1,5 @@
-"""Compares the functions of a cart-pole that CasADi loads: Jacobians with central differences, steps with each other."""
+"""Compares the functions of a cart-pole that CasADi loads: Jacobians with central differences, steps with
+each other."""
 
 import casadi
 import numpy as np

@@ -1,7 +1,8 @@
-"""What calls from Python cost: of one state, and of many.
+"""Measures the time of calls from Python, for one state and for many.
 
-Run with `python runtime/python/benches/calls.py`; it prints microseconds of a call, and nanoseconds of a state in a batch on one thread.
-The benchmark `batches` of Rust has as many states in arrays.
+Run with `python runtime/python/benches/calls.py`. It prints microseconds per call for one state, and
+nanoseconds per state for a batch on one thread. The Rust benchmark `batches` has arrays with the same number
+of states.
 """
 
 import time
@@ -13,7 +14,7 @@ import linkwork
 
 
 def least(function, count, turns=7):
-    """The least time of a call, in seconds."""
+    """Returns the minimum time of a call, in seconds."""
     function()
     best = float("inf")
     for _ in range(turns):
@@ -25,7 +26,7 @@ def least(function, count, turns=7):
 
 
 def main():
-    """Measures."""
+    """Prints a table of the times of several functions."""
     robot = Path(__file__).resolve().parents[3] / "models" / "urdf" / "ur5.urdf"
     arm = linkwork.compile(robot)()
     rng = np.random.default_rng(1)

@@ -1,11 +1,11 @@
-"""A sweep on Ray: where a million double pendulums are after two seconds, in chunks, with progress.
+"""Sweep on Ray: simulates a million double pendulums for two seconds, in chunks, with progress.
 
     pip install runtime/python ray
     python runtime/python/examples/sweep.py                     # all processors of this machine
     python runtime/python/examples/sweep.py --address auto      # a cluster of Ray whose machines have the package and Rust
 
-Every chunk starts from random angles that its own number decides, so that results depend neither on the number of workers nor on
-their order. A chunk whose worker is lost is done again.
+The random initial angles of a chunk depend on its index only, so that results depend neither on the number of
+workers nor on their order. A chunk whose worker is lost is computed again.
 """
 
 import argparse
@@ -35,12 +35,13 @@ STEP, STEPS = 2e-3, 1000
 
 
 def chunk(number, size, lose=None):
-    """The share of pendulums of a chunk whose elbow has gone over the top, and the largest error of their energies. `lose` is a file
-    that tells the first worker to die, for trying what happens then."""
+    """Returns the number of pendulums of a chunk whose elbow has rotated over the top, and the largest energy
+    error. If `lose` is a path without a file, the worker creates the file and exits, which tests the loss of a
+    worker."""
     if lose is not None and not os.path.exists(lose):
         open(lose, "w").close()
         os._exit(1)
-    # One process of each machine builds the library; the others load it.
+    # One process per machine builds the library; the others load it.
     pendulum = linkwork.compile(PENDULUM, quiet=True)()
     rng = np.random.default_rng([7, number])
     q, v = rng.uniform(-np.pi, np.pi, (size, 2)), np.zeros((size, 2))
@@ -51,8 +52,9 @@ def chunk(number, size, lose=None):
 
 
 def sweep(rollouts, size, progress=None, lose=None):
-    """All chunks on the workers of Ray: how many went over, and the largest error of an energy."""
-    # Three workers may be lost for a chunk.
+    """Computes all chunks on the workers of Ray; returns the number of elbows that went over the top, and the
+    largest energy error."""
+    # Up to three workers may be lost for a chunk.
     task = ray.remote(max_retries=3)(chunk)
     numbers = range(-(-rollouts // size))
     sizes = [min(size, rollouts - number * size) for number in numbers]
@@ -69,18 +71,18 @@ def sweep(rollouts, size, progress=None, lose=None):
 
 
 def bar(done, of):
-    """Progress on one line."""
+    """Prints the progress on one line."""
     print(f"\r{'#' * (40 * done // of):40} {done} of {of} chunks", end="", file=sys.stderr, flush=True)
 
 
 def main():
-    """Sweeps."""
+    """Runs the sweep and prints its results."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--rollouts", type=int, default=1_000_000)
     options.add_argument("--chunk", type=int, default=2000)
     options.add_argument("--address", default=None)
     given = options.parse_args()
-    # Shows the progress of the build; workers on other machines compile it as well.
+    # Shows the progress of the build; workers on other machines compile the mechanism themselves.
     linkwork.compile(PENDULUM)
     ray.init(address=given.address, log_to_driver=False)
     start = time.perf_counter()

@@ -1,7 +1,7 @@
 """Linkwork for Python: mechanisms compiled to native functions on NumPy arrays.
 
-A robot file (URDF, MJCF, SDF) or the declaration of a mechanism becomes a class; its functions are the generated ones of
-Rust, under the same names:
+A robot file (URDF, MJCF, SDF) or the declaration of a mechanism becomes a class. Its methods are the
+functions that Linkwork generates in Rust, with the same names:
 
 >>> import linkwork
 >>> Pendulum = linkwork.compile('''

@@ -1,4 +1,4 @@
-"""`python -m linkwork`: Linkwork's command, for checking, showing, converting and exporting mechanisms."""
+"""`python -m linkwork`: runs Linkwork's command, which checks, shows, converts and exports mechanisms."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Compiles declarations and robot files to libraries, which the cache keeps."""
+"""Compiles declarations and robot files to libraries, which are stored in the cache."""
 
 import contextlib
 import difflib
@@ -30,20 +30,20 @@ from ._results import Run
 _HERE = Path(__file__).resolve().parent
 
 
-#: Crates of the command that are not optimised, since that would take minutes. The command derives the
-#: equations of an arm in a second without it, those of a humanoid in four.
+#: Crates of the command that are compiled without optimisation, which would take minutes. Without it, the
+#: command derives the equations of an arm in a second, and those of a humanoid in four seconds.
 _UNOPTIMISED = (
     "clap clap_builder clap_complete linkwork-cli linkwork-compiler linkwork-view prettyplease proc-macro2 quote roxmltree serde_json syn"
 ).split()
-#: Omits the attribute from the crate `linkwork`, and so a second build of the compiler.
+#: Flags that omit the attribute from the crate `linkwork`, which avoids a second build of the compiler.
 _EXPANDED = "--cfg linkwork_expanded"
 
 
 def toolchain() -> str:
-    """The version of the Rust compiler that is used, as it prints it.
+    """Returns the version of the Rust compiler that is used, as the compiler prints it.
 
     Raises:
-        ToolchainError: there is none; the message says how to install one.
+        ToolchainError: no Rust compiler is installed; the message contains instructions.
     """
     cargo = _cargo()
     rustc = os.environ.get("RUSTC") or shutil.which("rustc") or str(cargo.with_name("rustc"))
@@ -69,35 +69,36 @@ def compile(
 ) -> type[Compiled]:
     """Compiles a mechanism to a class.
 
-    The first call builds Linkwork's command, which takes about 80 s of processor time (the environment
-    variable ``LINKWORK_COMMAND`` names an existing one of the same version). Every mechanism takes some
-    seconds to half a minute, and is loaded from the cache when it is compiled again. Any number of processes
-    can compile at the same time: one builds, and the others wait for the library.
+    The first call builds Linkwork's command, which takes about 80 s of processor time; the environment
+    variable ``LINKWORK_COMMAND`` may contain the path of an existing command of the same version. A mechanism
+    takes between some seconds and half a minute, and is loaded from the cache if it is compiled again. Any
+    number of processes can compile at the same time: one builds, and the others wait for the library.
 
     Args:
-        source: the path of a robot file (URDF, MJCF, SDF) or of a Rust file with a struct that has
-            ``#[mechanism]``; or such a declaration as text.
+        source: the path of a robot file (URDF, MJCF, SDF), the path of a Rust file that contains a struct
+            with the attribute ``#[mechanism]``, or the text of such a struct.
         options: further arguments of the attribute, as in ``"base = free, inertia = trust"``.
-        name: the struct, of a Rust file that has several.
-        tables: the figures of fields that are tables, by name: a path of a file of comma-separated values
-            (for each point of the grid a line with the variables, then the value), or ``(axes, values)`` with
-            the points of each axis and an array that has as many sides. Behind either may stand ``"smooth"``
-            and ``"extrapolated"``: ``(axes, values, "smooth")``, ``(path, "smooth")``. The figures become
-            constants of the library.
-        native: for the processor at hand rather than for all of its kind.
-        batch: also functions of eight states at once, for arrays of states. Takes longer to compile.
-        derivatives: also derivatives of the dynamics, linear systems, and steps with Jacobians. Takes longer
-            to compile.
-        quiet: says nothing while it builds.
+        name: the name of the struct, for a Rust file with several.
+        tables: the values of the tables, by the name of the field. A table is the path of a file with
+            comma-separated values (one line per grid point: the variables, then the value), or a tuple
+            ``(axes, values)`` of the grid points along each axis and an array of this shape. The options
+            ``"smooth"`` and ``"extrapolated"`` may follow: ``(axes, values, "smooth")``,
+            ``(path, "smooth")``. The values become constants of the library.
+        native: whether to compile for the processor of this machine instead of all processors of its kind.
+        batch: whether to compile functions that evaluate eight states at once, for arrays of states; this
+            takes longer.
+        derivatives: whether to compile derivatives of the dynamics, linear systems, and steps with Jacobians;
+            this takes longer.
+        quiet: whether to omit progress messages.
 
     Returns:
         A subclass of :class:`Mechanism`; its instances are mechanisms with values of the parameters.
 
     Raises:
-        ToolchainError: there is no toolchain of Rust, or it cannot build.
-        Error: the mechanism has mistakes, all of which the message has with their places; or the text is no
-            declaration.
-        FileNotFoundError: there is no such file.
+        ToolchainError: the Rust toolchain is missing, or the build fails.
+        Error: the mechanism has errors, all of which the message lists with their locations; or the text is
+            not a declaration.
+        FileNotFoundError: the file does not exist.
     """
     text, path = _source(source)
     written = {key: _table(key, table) for key, table in (tables or {}).items()}
@@ -119,8 +120,8 @@ def compile(
 
 
 def _compile_source(origin: dict[str, Any], native: bool, quiet: bool) -> tuple[Path, dict[str, str] | None]:
-    """Returns the compiled library of a source, and digests of the files that it was made of, if they are
-    known."""
+    """Returns the compiled library of a source, and digests of the source files, or `None` if one of them
+    cannot be read."""
     command, path = _command(quiet), origin["path"]
     with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
         if path is None:
@@ -140,7 +141,7 @@ def _compile_source(origin: dict[str, Any], native: bool, quiet: bool) -> tuple[
 
 
 def _digests(code: Path, path: str | None) -> dict[str, str] | None:
-    """Returns digests of the files of a mechanism, which its code includes; `None` if one cannot be read."""
+    """Returns digests of the files that the code of a mechanism includes; `None` if one cannot be read."""
     included = re.findall(r'include_bytes\s*!\s*\(\s*("(?:[^"\\]|\\.)*")', code.read_text(encoding="utf-8"))
     try:
         files = [json.loads(literal) for literal in included] + ([path] if path else [])
@@ -162,7 +163,7 @@ def _find_recorded(record: Path) -> Path | None:
 
 
 def _environment(native: bool) -> bytes:
-    """Returns what libraries depend on besides the mechanism: sources, toolchain, flags and processor."""
+    """Returns data of the sources, toolchain, flags and processor, on which libraries also depend."""
     about = f"{toolchain()}\n{_flags(native)}\n{os.environ.get('LINKWORK_COMMAND', '')}\n"
     return about.encode() + _fingerprint() + (_processor() if native else b"")
 
@@ -195,7 +196,7 @@ def gallery(name: str | None = None, **settings: Any) -> list[str] | type[Compil
 
 
 def view(origin: dict[str, Any], run: Run, path: Path) -> None:
-    """Writes a page of a motion."""
+    """Writes a page that shows a motion."""
     with tempfile.TemporaryDirectory(prefix="linkwork-") as folder:
         file = origin["path"]
         if file is None:
@@ -271,7 +272,7 @@ def _source(source: Any) -> tuple[str, None] | tuple[None, Path]:
 
 
 def _meant(path: Path) -> str:
-    """Returns a suggestion for a path without a file."""
+    """Returns a suggestion for a path that does not exist."""
     if re.fullmatch(r"\w+", str(path)) and str(path) in gallery():
         return f"; `linkwork.gallery({str(path)!r})` is the one of the gallery"
     beside = [file.name for file in path.parent.iterdir() if file.is_file()] if path.parent.is_dir() else []
@@ -280,7 +281,7 @@ def _meant(path: Path) -> str:
 
 
 def _words(path: Path | None, text: str | None, options: str, batch: bool, derivatives: bool) -> str:
-    """Returns the options that the declaration lacks."""
+    """Returns the options to add to those of the declaration."""
     if path is None or path.suffix == ".rs":
         text = text or (path.read_text(encoding="utf-8") if path else "")
         written = " ".join(re.findall(r"#\[(?:\w+::)*mechanism\((.*?)\)\]", text, flags=re.DOTALL))
@@ -296,7 +297,7 @@ def _words(path: Path | None, text: str | None, options: str, batch: bool, deriv
 
 
 def _build_library(crate: Path, native: bool, quiet: bool) -> Path:
-    """Returns the library of a crate, which is compiled unless the cache has it."""
+    """Returns the library of a crate, and compiles it if it is not in the cache."""
     key = hashlib.sha256(_environment(native))
     for file in ("Cargo.toml", "src/lib.rs"):
         key.update((crate / file).read_bytes())
@@ -307,7 +308,7 @@ def _build_library(crate: Path, native: bool, quiet: bool) -> Path:
         lock = _sources() / "Cargo.lock"
         if lock.is_file():
             shutil.copyfile(lock, crate / "Cargo.lock")
-        # A name that no other build has, not even one whose process was killed while cargo goes on.
+        # A unique name, since the cargo of a killed process may still be running.
         own = f"mechanism_{secrets.token_hex(8)}"
         manifest = crate / "Cargo.toml"
         text = manifest.read_text(encoding="utf-8")
@@ -333,13 +334,14 @@ def _keep_origin(path: Path, origin: dict[str, Any]) -> None:
             return
     except OSError:
         pass
-    # A cache that cannot be written to is good enough for libraries that it has.
+    # A read-only cache still provides the libraries that it contains.
     with contextlib.suppress(OSError):
         write(file, content)
 
 
 def _command(quiet: bool) -> Path:
-    """Returns Linkwork's command: the one that `LINKWORK_COMMAND` names, or the one that is compiled once."""
+    """Returns the path of Linkwork's command: that of `LINKWORK_COMMAND`, or that in the cache, which is
+    compiled if necessary."""
     own = os.environ.get("LINKWORK_COMMAND")
     if own:
         return _own_command(own)
@@ -348,12 +350,12 @@ def _command(quiet: bool) -> Path:
     def build(target: Path) -> Path:
         sources = _sources()
         if sources == _HERE / "_source":
-            # Cargo writes into the folder of a workspace; that of an installed package may be read-only.
+            # Cargo writes to the folder of a workspace, but an installed package may be read-only.
             sources = target / "source"
             shutil.rmtree(sources, ignore_errors=True)
             shutil.copytree(_sources(), sources, ignore=shutil.ignore_patterns("models"))
         manifest = sources / "macros" / "cli" / "Cargo.toml"
-        # The other crates are compiled once for the command and for libraries.
+        # Libraries reuse the other crates, which are compiled with the same flags.
         profile = [f'profile.release.package."{name}".opt-level=0' for name in _UNOPTIMISED]
         progress = Progress("compiling the compiler, once", quiet)
         _cargo_build(manifest, profile, _flags(native=True), target, progress, "Linkwork's command cannot be built")
@@ -374,7 +376,7 @@ def _own_command(path: str) -> Path:
 
 
 def _flags(native: bool) -> str:
-    """Returns the flags of rustc: for the processor at hand, or for all of its kind."""
+    """Returns the flags of rustc for the processor of this machine, or for all processors of its kind."""
     return " ".join([os.environ.get("RUSTFLAGS", ""), _EXPANDED, *(["-C target-cpu=native"] if native else [])]).strip()
 
 
@@ -395,7 +397,7 @@ def _cargo_build(
         "CARGO_TERM_VERBOSE": "false",
         "RUSTFLAGS": flags,
     }
-    # It would take precedence over `RUSTFLAGS`.
+    # This variable would take precedence over `RUSTFLAGS`.
     environment.pop("CARGO_ENCODED_RUSTFLAGS", None)
     complaints = []
     try:
@@ -413,7 +415,7 @@ def _cargo_build(
         raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
     with process, progress:
         try:
-            # Cargo ends the lines of its progress with carriage returns, which end a line here as well.
+            # Cargo ends progress lines with carriage returns, which text mode treats as line ends.
             for line in process.stderr or ():
                 step = re.match(r"\s*Building \[.*\] (\d+)/(\d+)", line)
                 if step:
@@ -429,8 +431,8 @@ def _cargo_build(
 
 
 class Progress:
-    """Shows a build on one line of a terminal, which is written again every second; elsewhere on a line every
-    ten seconds."""
+    """Shows the progress of a build: on a terminal in one line that is updated every second, otherwise in a
+    new line every ten seconds."""
 
     def __init__(self, task: str, quiet: bool) -> None:
         self.task, self.quiet, self.crates = f"linkwork: {task}", quiet, ""
@@ -451,7 +453,7 @@ class Progress:
             self._write(f"{self.task}: {time.monotonic() - self.start:.0f} s", end="\n")
 
     def show(self, done: str, count: str) -> None:
-        """Sets the number of crates that are compiled."""
+        """Sets the number of compiled crates and the number of all crates."""
         self.crates = f"{done} of {count} crates, "
 
     def _repeat(self) -> None:
@@ -473,7 +475,8 @@ def _host() -> str:
 
 
 def _sources() -> Path:
-    """Returns the folder of Linkwork's sources: in the package, or the repository that contains it."""
+    """Returns the folder of Linkwork's sources: in the package, or in the repository that contains the
+    package."""
     own = os.environ.get("LINKWORK_SOURCE")
     candidates = [Path(own)] if own else [_HERE / "_source", *_HERE.parents]
     for folder in candidates:
@@ -508,7 +511,7 @@ def _cargo() -> Path:
 
 
 def _processor() -> bytes:
-    """Returns the features of the processor that native code is compiled for."""
+    """Returns the features of the processor, on which native code depends."""
     try:
         return b"".join(l for l in Path("/proc/cpuinfo").read_bytes().splitlines() if l.startswith(b"flags"))[:4096]
     except OSError:
@@ -530,8 +533,8 @@ def _program_suffix() -> str:
 
 
 def _run(arguments: list[Any], failure: str | None) -> str:
-    """Returns the output of a command. Its complaints are the error; without `failure` they are errors of the
-    mechanism."""
+    """Runs a command and returns its output. If it fails, its error messages are raised: as a
+    `ToolchainError` with the text `failure`, or without it as an `Error` of the mechanism."""
     pauses = [1.0, 0.2, 0.05]
     while True:
         try:
@@ -544,7 +547,7 @@ def _run(arguments: list[Any], failure: str | None) -> str:
             )
             break
         except OSError as error:
-            # A process that another thread starts at this moment has the new file open a little longer.
+            # A process started by another thread may inherit the open file of a new program for a short time.
             if error.errno != errno.ETXTBSY or not pauses:
                 raise ToolchainError(f"cannot run {arguments[0]}: {error}") from None
             time.sleep(pauses.pop())
@@ -559,7 +562,7 @@ def _run(arguments: list[Any], failure: str | None) -> str:
 
 
 def _translate_complaints(complaints: str) -> str:
-    """Returns complaints of the command with arguments of Python instead of its own and of the attribute."""
+    """Replaces options of the command and of the attribute in error messages by arguments of Python."""
     complaints = re.sub(r"\S*linkwork-\w+[/\\]mechanism\.rs", "mechanism.rs", complaints)
     complaints = re.sub(r"`#\[mechanism\((?:…|(?:urdf|mjcf|sdf) = \"[^\"]*\"), ([^`]*)\)\]`", r"`options='\1'`", complaints)
     complaints = re.sub(r"`--with[ =]([\"'])([^`]*)\1`", r"`options='\2'`", complaints)

@@ -1,7 +1,8 @@
-"""The cache of compiled files, shared by any number of processes.
+"""Cache of compiled files, shared by any number of processes.
 
-Processes build one at a time, under a lock that the operating system releases when its holder ends, killed or
-not. A file is written under a unique name and then renamed, so that readers find a complete file or none.
+Processes build one at a time, under a lock that the operating system releases when the process that holds it
+ends, even if it is killed. A file is written under a unique name and then renamed, so that readers find a
+complete file or none.
 """
 
 import contextlib
@@ -36,16 +37,16 @@ def cache_folder() -> Path:
 
 
 def build_once(path: Path, build: Callable[[Path], Path], quiet: bool) -> Path:
-    """Returns a file of the cache. Builds it if it is missing or damaged; `build` gets cargo's target folder
-    and returns the built file."""
+    """Returns a file of the cache, and builds it if it is missing or damaged. `build` takes cargo's target
+    folder and returns the path of the built file."""
     with contextlib.suppress(OSError):
         if is_intact(path):
             return path
     with report_write_errors(), hold_lock(quiet) as target:
-        # Another process may have built it in the meantime.
+        # Another process may have built the file in the meantime.
         if not is_intact(path):
             path.parent.mkdir(parents=True, exist_ok=True)
-            # Files of killed processes: under the lock nobody else writes files of this kind.
+            # Remnants of killed processes: only the holder of the lock writes such files.
             for unfinished in path.parent.glob(f"*{path.suffix}.*unfinished"):
                 unfinished.unlink(missing_ok=True)
             content = build(target).read_bytes()
@@ -55,7 +56,7 @@ def build_once(path: Path, build: Callable[[Path], Path], quiet: bool) -> Path:
 
 
 def write(path: Path, content: bytes, mode: int = 0o644) -> None:
-    """Writes a file in one step: readers see the old content or the new one."""
+    """Writes a file atomically: readers find either the old or the new content."""
     unfinished = path.with_name(f"{path.name}.{secrets.token_hex(8)}.unfinished")
     try:
         unfinished.write_bytes(content)
@@ -69,7 +70,7 @@ def write(path: Path, content: bytes, mode: int = 0o644) -> None:
 
 @contextlib.contextmanager
 def report_write_errors() -> Iterator[None]:
-    """Reports errors of writing to the cache with the folder and the remedy."""
+    """Raises errors of writing to the cache with its folder, and with the variable that changes it."""
     try:
         yield
     except OSError as error:
@@ -80,8 +81,8 @@ def report_write_errors() -> Iterator[None]:
 
 @contextlib.contextmanager
 def hold_lock(quiet: bool) -> Iterator[Path]:
-    """Admits one process, and one of its threads, at a time. Returns cargo's target folder; a temporary one
-    where the file system of the cache has no locks."""
+    """Holds the lock of the cache, which admits one thread of one process at a time. Yields cargo's target
+    folder, or a temporary folder if the file system of the cache does not support locks."""
     folder = cache_folder()
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "a+b") as file:
@@ -102,8 +103,8 @@ _HELD: set[IO[bytes]] = set()
 
 
 def _close_inherited() -> None:
-    """Closes lock files in a forked process, which would hold the locks of its parent beyond the parent's
-    end."""
+    """Closes lock files in a forked process, which would otherwise hold its parent's locks after the parent
+    has ended."""
     for file in _HELD:
         file.close()
     _HELD.clear()
@@ -136,7 +137,7 @@ else:
     import fcntl
 
     def _acquire(file: IO[bytes], quiet: bool) -> bool:
-        """Waits for the lock; false where the file system has none."""
+        """Waits for the lock; returns false if the file system does not support locks."""
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

@@ -1,4 +1,4 @@
-"""Configurations at rest."""
+"""Equilibrium configurations."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +14,8 @@ Vector = NDArray[Any]
 
 
 class Rest:
-    """The equations of a mechanism at rest under inputs, of those velocities that are free: forces and those
-    of the constraints balance, and the constraints hold."""
+    """Equations of a mechanism at rest under constant inputs, along its free velocities: applied forces
+    balance constraint forces, and the constraints are satisfied."""
 
     def __init__(self, mechanism: "Mechanism", inputs: Vector, free: Vector) -> None:
         self.m: Any = mechanism
@@ -35,7 +35,7 @@ class Rest:
         return self.m.constraint_residuals(*self.time, q) if self.is_constrained else np.zeros(0)
 
     def multipliers(self, q: Vector) -> Any:
-        """Returns the multipliers that balance the forces best."""
+        """Returns the multipliers that balance the forces in the least-squares sense."""
         jacobian, forces = self.jacobian(q), self.forces(q)[self.free]
         if not (len(jacobian) and np.all(np.isfinite(forces)) and np.all(np.isfinite(jacobian))):
             return np.zeros(len(jacobian))
@@ -66,7 +66,7 @@ class Rest:
 
 
 def find(rest: Rest, q: Vector, tolerance: float, iterations: int) -> Vector:
-    """Returns a configuration near `q` at rest: Newton's method with half steps."""
+    """Returns an equilibrium configuration near `q`, by Newton's method with step halving."""
     x = (q, rest.multipliers(q))
     lacking = rest.lacking(*x)
     if not np.all(np.isfinite(lacking)):

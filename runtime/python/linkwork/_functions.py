@@ -1,4 +1,4 @@
-"""Functions of compiled libraries as methods."""
+"""Methods that call the functions of compiled libraries."""
 
 import ctypes
 import hashlib
@@ -15,8 +15,8 @@ from ._names import Error, count as whole, hint, index, numbers, safe
 
 
 def _structures(number: Any) -> tuple[Any, Any, Any]:
-    """Returns the settings of simulations and rollouts, and the type of controllers, for a type of
-    numbers."""
+    """Returns the structures of the settings of simulations and rollouts, and the type of controllers, for a
+    scalar type."""
 
     class Settings(ctypes.Structure):
         _fields_ = [
@@ -47,7 +47,7 @@ def _structures(number: Any) -> tuple[Any, Any, Any]:
 
 
 def digest_file(path: Path) -> Path:
-    """Returns the path of the file with the digest of a library or a command."""
+    """Returns the path of the file that contains the digest of a library or a command."""
     return path.with_name(f"{path.name}.sha256")
 
 
@@ -57,7 +57,7 @@ def digest(content: bytes) -> str:
 
 
 def is_intact(path: Path) -> bool:
-    """Whether a file has the content that was written."""
+    """Returns whether a file has the content that was written to it."""
     try:
         return digest(path.read_bytes()) == digest_file(path).read_text(encoding="ascii", errors="replace")
     except FileNotFoundError:
@@ -65,7 +65,7 @@ def is_intact(path: Path) -> bool:
 
 
 class Library:
-    """The functions of a shared library with their types."""
+    """Shared library with its functions and their types."""
 
     def __init__(self, path: Path, prefix: str = "mechanism") -> None:
         try:
@@ -102,7 +102,7 @@ class Library:
 
 
 def address(array: NDArray[Any]) -> int:
-    """Returns the address of an array's numbers. The fast path does not work for empty and for read-only
+    """Returns the address of an array's entries. The fast path does not support empty and read-only
     arrays."""
     try:
         return _addressof(_from_buffer(array))  # type: ignore[arg-type, unused-ignore]
@@ -113,12 +113,12 @@ def address(array: NDArray[Any]) -> int:
 _addressof, _from_buffer = ctypes.addressof, ctypes.c_char.from_buffer
 
 
-#: What the entries of an argument are, by its name: those of configurations, velocities and inputs.
+#: Kind of the vector for each argument name: configuration `q`, velocity `v` or input `u`.
 ENTRIES = {"q": "q", "from": "q", "to": "q", "v": "v", "a": "v", "tau": "v", "dv": "v", "u": "u"}
 
 
 def marked(chosen: str | int | Iterable[str | int], velocities: Sequence[str], dtype: Any) -> NDArray[Any]:
-    """Returns marks at velocities that are chosen by names or indices."""
+    """Returns an array that is one at the velocities selected by names or indices, and zero elsewhere."""
     marks = np.zeros(len(velocities), dtype)
     if not isinstance(chosen, (str, int, Iterable)):
         raise TypeError(f"velocities are chosen by names or indices, found {chosen!r}")
@@ -131,7 +131,7 @@ def marked(chosen: str | int | Iterable[str | int], velocities: Sequence[str], d
 
 
 def function(library: Library, k: int, about: dict[str, Any], cls: str) -> Callable[..., Any]:
-    """Returns the method that calls a function by its number."""
+    """Returns the method that calls the function with index `k`."""
     arguments, results = about["arguments"], about["results"]
     dtype, call, nv = library.dtype, library.call, len(library.description["velocities"])
     shapes: list[tuple[int, ...]] = []
@@ -139,7 +139,7 @@ def function(library: Library, k: int, about: dict[str, Any], cls: str) -> Calla
         shapes.append(tuple(a["shape"]) if a["kind"] == "array" else (nv,) if a["kind"] == "velocities" else ())
     kinds = [a["kind"] for a in arguments]
     names = [safe(a["name"]) for a in arguments]
-    # Matrices stand column by column: in memory their transposes.
+    # Matrices are stored in column-major order, which is the memory layout of their transposes.
     stored = [tuple(r["shape"][:-2] + r["shape"][:-3:-1]) if len(r["shape"]) > 1 else tuple(r["shape"]) for r in results]
     turned = [len(shape) > 1 for shape in stored]
     Arguments: Any = ctypes.c_void_p * max(len(arguments), 1)
@@ -178,7 +178,7 @@ def function(library: Library, k: int, about: dict[str, Any], cls: str) -> Calla
             if name in names:
                 raise TypeError(f"{about['name']}({', '.join(names)}): arguments are given without their names")
             raise TypeError(f"{about['name']}() has no argument {name!r}{hint(name, ['threads', 'out'])}")
-        # One state in arrays that need no conversion: the way of control loops.
+        # Fast path of control loops: one state, in arrays that need no conversion.
         if plain and out is None and len(given) == count:
             for array, shape in zip(given, shapes):
                 if type(array) is not ndarray or array.shape != shape or array.dtype != dtype:
@@ -199,7 +199,7 @@ def function(library: Library, k: int, about: dict[str, Any], cls: str) -> Calla
         return general(self, given, threads, out)
 
     def placed(out: Any, lead: tuple[int, ...]) -> list[NDArray[Any]]:
-        """Returns the arrays that results go into, as they are stored."""
+        """Returns the arrays for the results, in the layout in which they are stored."""
         given = out if isinstance(out, tuple) else (out,)
         if len(given) != len(stored):
             raise ValueError(f"{about['name']}: `out` has {len(given)} arrays for {len(stored)} results")
@@ -284,7 +284,7 @@ def documentation(about: dict[str, Any], shapes: Sequence[tuple[int, ...]]) -> s
 
 
 def quoted(text: str, indent: int = 4) -> str:
-    """Returns a text as a documentation string."""
+    """Returns a text as a docstring literal."""
     text = text.replace("\\", "\\\\").replace('"""', "'''").strip()
     lines = text.split("\n")
     inner = "\n".join([lines[0], *[(" " * indent + line).rstrip() for line in lines[1:]]])

@@ -1,4 +1,4 @@
-"""Compiled mechanisms as classes of Python."""
+"""Python classes of compiled mechanisms."""
 
 import copyreg
 import ctypes
@@ -18,11 +18,11 @@ from ._functions import ENTRIES, Library, address, function, marked, quoted
 from ._names import Error, checked, count, hint, index, number, numbers, safe
 from ._results import LinearSystem, Run, Units
 
-#: A mechanism of any class.
+#: Type variable of mechanism classes.
 M = TypeVar("M", bound="Mechanism")
-#: Entries of a vector: an array, or values by name.
+#: Vector: an array, or values by name.
 Entries = ArrayLike | Mapping[str, float]
-#: Methods of simulations, and what says how exact they are.
+#: Integration methods, with the setting that determines their accuracy.
 _METHODS = {
     "dormand_prince": "tolerance",
     "dormand_prince8": "tolerance",
@@ -36,29 +36,29 @@ _METHODS = {
 
 
 class _Kind(type):
-    """The type of the classes of mechanisms, which are pickled by the paths of their libraries."""
+    """Metaclass of mechanisms, whose classes are pickled by the paths of their libraries."""
 
 
 class Mechanism(metaclass=_Kind):
-    """A mechanism with values of its parameters. Its subclasses are made by :func:`linkwork.compile`;
-    parameters are given by name, those that have a dot in their names in a dictionary."""
+    """Mechanism with values of its parameters. Subclasses are created by :func:`linkwork.compile`. Parameters
+    are keyword arguments; those with a dot in their names are passed in a dictionary."""
 
-    #: The name of the struct.
+    #: Name of the struct.
     name: ClassVar[str] = ""
-    #: Names of the entries of `q`, `v` and `u`, of the parameters, the frames and the outputs.
+    #: Names of the entries of `q`, `v` and `u`, and of the parameters, frames and outputs.
     configuration: ClassVar[Sequence[str]] = ()
     velocities: ClassVar[Sequence[str]] = ()
     inputs: ClassVar[Sequence[str]] = ()
     parameter_names: ClassVar[Sequence[str]] = ()
     frames: ClassVar[Sequence[str]] = ()
     outputs: ClassVar[Sequence[str]] = ()
-    #: Units of all of these.
+    #: Units of the entries of `q`, `v` and `u`, and of the parameters.
     units: ClassVar[Units] = Units([], [], [], [])
-    #: Number of entries of `q`, `v` and `u`.
+    #: Numbers of entries of `q`, `v` and `u`.
     nq: ClassVar[int] = 0
     nv: ClassVar[int] = 0
     nu: ClassVar[int] = 0
-    #: The equations of motion as text; empty where they are too long to be read.
+    #: Equations of motion as text; empty if they are too long to be readable.
     equations: ClassVar[str] = ""
     #: Names of generated functions that Python cannot call.
     left_out: ClassVar[Sequence[str]] = ()
@@ -66,7 +66,7 @@ class Mechanism(metaclass=_Kind):
     _description: ClassVar[dict[str, Any]] = {}
     _functions: ClassVar[dict[str, Any]] = {}
     _path: ClassVar[Path] = Path()
-    #: Its source, where it was compiled in this process.
+    #: Source, if the class was compiled in this process.
     _source: ClassVar[dict[str, Any] | None] = None
 
     def __init__(self, parameters: Mapping[str, float] | None = None, /, *others: Any, **named: float) -> None:
@@ -89,16 +89,16 @@ class Mechanism(metaclass=_Kind):
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Values of the parameters by name."""
+        """Returns the values of the parameters by name."""
         return dict(zip(self.parameter_names, self._values.tolist()))
 
     def replace(self: M, parameters: Mapping[str, float] | None = None, /, *others: Any, **named: float) -> M:
-        """Returns the mechanism with other values of some parameters."""
+        """Returns a copy of the mechanism with other values for some parameters."""
         return type(self)({**self.parameters, **self._given(parameters, others, named)})
 
     @classmethod
     def _given(cls, parameters: Any, others: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
-        """Returns values of parameters by their names."""
+        """Returns the parameter values of a call by name, and rejects positional values."""
         if not others and (parameters is None or isinstance(parameters, Mapping)):
             return {**dict(parameters or {}), **named}
         words = [f"{name}=…" for name in cls.parameter_names if name.isidentifier()]
@@ -120,7 +120,7 @@ class Mechanism(metaclass=_Kind):
 
     @classmethod
     def _origin(cls) -> dict[str, Any]:
-        """Returns the source that it was compiled from."""
+        """Returns the source of the class."""
         if cls._source is not None:
             return cls._source
         found: dict[str, Any] = json.loads(Path(cls._path).with_suffix(".json").read_text(encoding="utf-8"))
@@ -128,7 +128,8 @@ class Mechanism(metaclass=_Kind):
 
     @classmethod
     def stub(cls) -> str:
-        """The class with types and documentation, as editors and type checkers read it: a file NAME.pyi."""
+        """Returns the text of a stub file (NAME.pyi), with types and documentation for editors and type
+        checkers."""
         lines = [
             "from collections.abc import Iterable, Mapping",
             "from typing import Any",
@@ -158,16 +159,16 @@ class Mechanism(metaclass=_Kind):
     @classmethod
     @checked
     def save(cls, folder: str | os.PathLike[str] = ".") -> Path:
-        """Writes the class as a package into a folder: a module with its library and its stubs, which needs
-        NumPy alone. It can be copied to machines without Linkwork and Rust that have the same system and the
-        same kind of processor; compile with `native=False` for those with an older one.
+        """Writes the class as a package to a folder: a module with its library and stubs, which depends only
+        on NumPy. The package can be copied to machines without Linkwork and Rust that have the same operating
+        system and the same kind of processor; compile with `native=False` for older processors.
 
         Returns:
-            The folder of the package. Its name is that of the class in small letters: `CartPole` is imported
+            The folder of the package. Its name is that of the class in snake case: `CartPole` is imported
             from `cart_pole`.
 
         Raises:
-            FileExistsError: something else has this name.
+            FileExistsError: a folder of this name exists that is not the package of a mechanism.
         """
         try:
             package = importlib.import_module("._package", __package__)
@@ -208,7 +209,7 @@ class Mechanism(metaclass=_Kind):
         return vector
 
     def _method(self, method: str | None, tolerance: float | None, step: float | None) -> tuple[str, float]:
-        """Returns the method, and its tolerance or the length of its steps."""
+        """Returns the integration method, and its tolerance or step size."""
         if method is None and self._description["contacts"]:
             method = "event_driven" if step is None else "time_stepping"
         elif method is None:
@@ -247,26 +248,26 @@ class Mechanism(metaclass=_Kind):
         """Simulates a motion.
 
         Args:
-            q: the configuration at the start: an array, or values by name; the neutral one if none is given.
-            v: the velocity at the start, likewise; at rest if none is given.
-            duration: how long, s.
-            every: time between samples, s; a hundredth of the duration if it is not given.
-            start: time at the start, s.
+            q: initial configuration: an array, or values by name. The default is the neutral configuration.
+            v: initial velocity: an array, or values by name. The default is zero.
+            duration: duration, s.
+            every: time between samples, s. The default is a hundredth of the duration.
+            start: initial time, s.
             inputs: constant inputs: an array, or values by name.
-            control: a function of `t, q, v` that returns the inputs, instead of constant ones.
-            period: time between calls of `control`, s; its inputs are held in between. Without it `control`
-                is called whenever the method evaluates the dynamics, and must be continuous.
-            method: `"dormand_prince"`, `"dormand_prince8"`, `"rodas"` (stiff), by tolerance; `"rk4"`,
-                `"implicit_midpoint"`, by step. With contacts `"event_driven"`, by tolerance, or
-                `"time_stepping"`, by step, or `"time_stepping_midpoint"` with two evaluations of the dynamics
-                per step in place of four. By default `"dormand_prince"` and `"event_driven"`; with a `step`
-                `"rk4"` and `"time_stepping"`.
-            tolerance: error of a step, relative and absolute, of methods by tolerance; 1e-8 if it is not
-                given.
-            step: length of a step, s, of methods by step.
+            control: a function of `t, q, v` that returns the inputs, instead of constant inputs.
+            period: time between calls of `control`, s; the inputs are constant in between. Without it,
+                `control` is called at every evaluation of the dynamics, and must be continuous.
+            method: integration method. Methods with a `tolerance` are `"dormand_prince"`,
+                `"dormand_prince8"`, `"rodas"` (for stiff equations) and, with contacts, `"event_driven"`.
+                Methods with a `step` are `"rk4"`, `"implicit_midpoint"` and, with contacts,
+                `"time_stepping"` and `"time_stepping_midpoint"`; the latter needs two evaluations of the
+                dynamics per step instead of four. The default is `"dormand_prince"`, or `"event_driven"`
+                with contacts; if `step` is specified, it is `"rk4"`, or `"time_stepping"` with contacts.
+            tolerance: relative and absolute error of a step; the default is 1e-8.
+            step: step size, s.
 
         Raises:
-            Error: the motion cannot go on; the samples so far are in its attribute `run`.
+            Error: the motion cannot be continued; the attribute `run` has the samples so far.
         """
         library = self._library
         first_q = self._neutral() if q is None else self._vector(q, self.nq, "q")
@@ -307,7 +308,7 @@ class Mechanism(metaclass=_Kind):
                 found = self._vector(returned, self.nu, "u")
                 ctypes.memmove(u, address(found), self.nu * size)
                 return 0
-            except BaseException as error:  # It cannot pass through the library: it is raised again behind it.
+            except BaseException as error:  # Cannot pass the library; raised again below.
                 raised.append(error)
                 return 1
 
@@ -350,21 +351,21 @@ class Mechanism(metaclass=_Kind):
         start: float = 0.0,
         threads: int = 0,
     ) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Simulates many motions by steps of the classical method of Runge and Kutta, eight states at a time
-        and on all processors, while other threads of Python go on.
+        """Simulates many motions by steps of the classical Runge–Kutta method, eight states at a time and on
+        all processors. Other threads of Python continue meanwhile.
 
         Args:
-            q: configurations at the start, (N, nq).
-            v: velocities at the start, (N, nv).
-            inputs: held during each step: (steps, nu) for all states alike, or (N, steps, nu); zero if none
-                are given.
-            steps: how many, if there are no inputs.
-            h: length of a step, s.
-            start: time at the start, s.
-            threads: how many; as many as there are processors for 0. Results do not depend on it.
+            q: initial configurations, (N, nq).
+            v: initial velocities, (N, nv).
+            inputs: inputs, constant during each step: (steps, nu) for all states, or (N, steps, nu) for each
+                state. The default is zero.
+            steps: number of steps; may be omitted if there are inputs.
+            h: step size, s.
+            start: initial time, s.
+            threads: number of threads; 0 for the number of processors. Results do not depend on it.
 
         Returns:
-            Configurations (N, steps + 1, nq) and velocities (N, steps + 1, nv), those at the start first.
+            Configurations (N, steps + 1, nq) and velocities (N, steps + 1, nv), including the initial ones.
         """
         library = self._library
         first_q, first_v = numbers(q, library.dtype, "q"), numbers(v, library.dtype, "v")
@@ -413,20 +414,21 @@ class Mechanism(metaclass=_Kind):
         tolerance: float = 1e-12,
         iterations: int = 50,
     ) -> NDArray[Any]:
-        """Returns a configuration near `q` in which the mechanism stays at rest under constant inputs:
-        Newton's method with half steps on the generated derivatives. Under constraints they hold there, and
-        their forces are found along with it (the change of these with the configuration by differences of the
-        generated Jacobian). Limits of joints are not heeded: a long way off `q` it may lie beyond them.
+        """Returns an equilibrium configuration near `q` under constant inputs, by Newton's method with step
+        halving and generated derivatives. The configuration satisfies the constraints, whose multipliers are
+        solved for at the same time; derivatives of the constraint forces are differences of the generated
+        Jacobian. Joint limits are ignored: an equilibrium far from `q` may violate them.
 
         Args:
-            q: where the search begins: an array, or values by name.
-            inputs: an array, or values by name.
-            held: names of velocities whose coordinates stay as they are.
-            tolerance: largest change of a coordinate that counts as none.
-            iterations: how many steps at most.
+            q: initial guess: an array, or values by name.
+            inputs: constant inputs: an array, or values by name.
+            held: names or indices of velocities whose coordinates are fixed.
+            tolerance: change of the coordinates, relative to one plus their magnitude, at which the iteration
+                ends.
+            iterations: maximum number of iterations.
 
         Raises:
-            Error: there is none near, or the mechanism has contacts or no derivatives.
+            Error: no equilibrium was found nearby, or the mechanism has contacts or no derivatives.
         """
         if self._description["contacts"]:
             raise Error("equilibria at contacts are found by the crate linkwork-design")
@@ -441,12 +443,13 @@ class Mechanism(metaclass=_Kind):
     def linear_system(
         self, q: Entries, v: Entries | None = None, inputs: Entries | None = None, *, t: float = 0.0
     ) -> LinearSystem:
-        """Returns the linear system about a state, which fulfils the constraints; of one that is no
-        equilibrium A and B describe what is added to its motion. Every joint of a robot file is an input
-        unless the option `inputs` says otherwise.
+        """Returns the linear system about a state, which must satisfy the constraints. About a state that is
+        not an equilibrium, A and B describe deviations from the motion. By default, every joint of a robot
+        file has an input; the option `inputs` changes this.
 
         Raises:
-            Error: without derivatives, or off the constraints: `assemble` brings a configuration onto them.
+            Error: the mechanism was compiled without derivatives, or the configuration violates the
+                constraints; `assemble` returns one that satisfies them.
         """
         self._need("linearize", "derivatives")
         time = [number(t, "`t`")] if self._description["time"] else []
@@ -471,7 +474,7 @@ class Mechanism(metaclass=_Kind):
         return getattr(self, name)(*arguments)
 
     def _neutral(self) -> NDArray[Any]:
-        """Returns the configuration in which all coordinates are zero."""
+        """Returns the neutral configuration, in which all coordinates are zero."""
         return np.array(self._call("neutral"))
 
     def _forces(self, time: list[float], q: NDArray[Any], v: NDArray[Any], u: NDArray[Any]) -> Any:
@@ -495,8 +498,8 @@ def _stub_type(argument: dict[str, Any], kinds: dict[str, str]) -> str:
 
 
 def _documentation(description: dict[str, Any]) -> str:
-    """Returns the documentation of a class: that of the struct, and tables of the coordinates, inputs and
-    parameters."""
+    """Returns the documentation of a class: the documentation of the struct, then tables of the coordinates,
+    inputs, parameters and outputs."""
     limits = {limit["index"]: limit for limit in description["limits"]}
     shown: Callable[[Any], str] = lambda value: "" if value is None else value if isinstance(value, str) else f"{value:g}"
     velocities = []
@@ -521,7 +524,7 @@ def _documentation(description: dict[str, Any]) -> str:
 
 
 def _align_columns(rows: list[list[str]]) -> str:
-    """Returns rows of text as aligned columns. Empty columns are left out."""
+    """Formats rows of text as aligned columns. Empty columns are omitted."""
     columns = [column for column in zip(*rows) if any(column[1:])]
     widths = [max(map(len, column)) for column in columns]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in zip(*columns)]
@@ -529,7 +532,7 @@ def _align_columns(rows: list[list[str]]) -> str:
 
 
 def _restore(path: str, parameters: dict[str, float]) -> "Mechanism":
-    """Returns a mechanism of another process."""
+    """Returns an unpickled mechanism."""
     return load(Path(path))(parameters)
 
 
@@ -542,7 +545,7 @@ copyreg.pickle(_Kind, _reduce_class)
 if TYPE_CHECKING:
 
     class Compiled(Mechanism):
-        """A mechanism whose generated functions are known when it is compiled."""
+        """Mechanism with generated functions, whose names type checkers cannot know."""
 
         def __getattr__(self, name: str) -> Any: ...
 

@@ -1,4 +1,4 @@
-"""Checks of names and numbers, and their errors."""
+"""Checks of names and numbers, with their errors."""
 
 import difflib
 import functools
@@ -16,27 +16,27 @@ R = TypeVar("R")
 
 
 class Error(Exception):
-    """An error of Linkwork: of a declaration, a file, or a call without a result."""
+    """Error of Linkwork: in a declaration, in a file, or in a call that has no result."""
 
-    #: The complaints and the exit status of the command that reported it.
+    #: Error messages and exit status of the command that reported the error.
     complaints: str | None = None
     status = 1
-    #: The samples before the error, of a simulation.
+    #: Samples before the error, for a simulation.
     run: Any = None
-    #: Configurations and velocities before the error, of rollouts.
+    #: Configurations and velocities before the error, for a rollout.
     q: Any = None
     v: Any = None
 
 
 class UnknownName(KeyError):
-    """An unknown name; the message has the nearest names."""
+    """Unknown name; the message contains the nearest existing names."""
 
     def __str__(self) -> str:
         return str(self.args[0])
 
 
 def hint(name: object, names: Sequence[str]) -> str:
-    """Returns the nearest of some names, or all of them."""
+    """Returns a hint for an unknown name: the nearest of the existing names, or all of them."""
     near = difflib.get_close_matches(str(name), names, n=3)
     return f": did you mean {', '.join(map(repr, near))}?" if near else f"; there are {', '.join(names) or 'none'}"
 
@@ -49,7 +49,7 @@ def index(names: Sequence[str], name: str, what: str) -> int:
 
 
 def checked(function: Callable[P, R]) -> Callable[P, R]:
-    """Reports unknown keywords with the nearest argument."""
+    """Wraps a function so that an unknown keyword argument is reported with the nearest existing one."""
     parameters = inspect.signature(function).parameters.values()
     known = [p.name for p in parameters if p.kind in (p.KEYWORD_ONLY, p.POSITIONAL_OR_KEYWORD) and p.name != "self"]
 
@@ -64,7 +64,7 @@ def checked(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def number(value: Any, what: str) -> float:
-    """Returns a single number."""
+    """Converts a value to a single number."""
     try:
         if isinstance(value, (str, bytes)) or np.ndim(value) != 0:
             raise TypeError
@@ -74,7 +74,7 @@ def number(value: Any, what: str) -> float:
 
 
 def count(value: Any, what: str) -> int:
-    """Returns a whole number that is not negative."""
+    """Converts a value to a nonnegative integer."""
     try:
         found = operator.index(value)
     except TypeError:
@@ -85,14 +85,14 @@ def count(value: Any, what: str) -> int:
 
 
 def numbers(value: Any, dtype: Any, what: str) -> NDArray[Any]:
-    """Returns an array of numbers. Rejects conversions that lose data silently."""
+    """Converts a value to an array of numbers. Conversions that would lose data silently are errors."""
     if np.iscomplexobj(value):
         raise TypeError(f"{what} has complex numbers")
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise TypeError(f"{what} has masked entries")
     try:
         array = np.asarray(value)
-        # NumPy would convert texts and dates.
+        # NumPy would convert strings and dates.
         if array.dtype.kind not in "biufO":
             raise ValueError
         return np.asarray(array, dtype)
@@ -101,5 +101,5 @@ def numbers(value: Any, dtype: Any, what: str) -> NDArray[Any]:
 
 
 def safe(name: str) -> str:
-    """Returns the name, with an underscore if it is a keyword."""
+    """Returns a name, with an underscore appended if it is a keyword of Python."""
     return f"{name}_" if keyword.iskeyword(name) else name

@@ -1,4 +1,4 @@
-"""Compiled mechanisms as packages of their own, which need neither Linkwork nor Rust."""
+"""Writes compiled mechanisms as separate packages, which need neither Linkwork nor Rust."""
 
 import argparse
 import keyword
@@ -27,18 +27,18 @@ from ._results import LinearSystem, Run
 __all__ = ["Error", "LinearSystem", "Mechanism", "Run", "{name}"]
 '''
 
-#: What a mechanism needs of Linkwork.
+#: Modules of Linkwork that a package contains.
 _PARTS = ("_equilibrium.py", "_functions.py", "_mechanism.py", "_names.py", "_results.py")
 
 
 def module_name(name: str) -> str:
-    """Returns the name of the package of a struct: `cart_pole` for `CartPole`."""
+    """Returns the package name for a struct: `cart_pole` for `CartPole`."""
     words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
     return f"{words}_" if keyword.iskeyword(words) else words
 
 
 def save(kind: type[Mechanism], folder: str | os.PathLike[str]) -> Path:
-    """Writes the package of a class into a folder."""
+    """Writes the package of a class to a folder."""
     library = Path(kind._path)
     package = Path(folder) / module_name(kind.name)
     if package.exists() and not (package / "_mechanism.py").is_file() and any(package.iterdir()):
@@ -46,7 +46,7 @@ def save(kind: type[Mechanism], folder: str | os.PathLike[str]) -> Path:
     package.mkdir(parents=True, exist_ok=True)
     own = "mechanism" + library.suffix
     machine = f"{platform.system()} {platform.machine()}"
-    # A library that is loaded is not overwritten, but replaced.
+    # The library may be loaded, so the file is replaced instead of overwritten.
     shutil.copyfile(library, package / (own + ".new"))
     shutil.copyfile(digest_file(library), digest_file(package / own))
     (package / (own + ".new")).replace(package / own)

@@ -1,4 +1,4 @@
-"""Results of mechanisms: motions, pages, linear systems."""
+"""Results of mechanisms: motions, pages and linear systems."""
 
 import csv
 import html
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Page:
-    """A page of HTML that shows a motion and opens offline. Notebooks show it in place."""
+    """HTML page that shows a motion and opens offline. Notebooks display it inline."""
 
-    #: Where it is.
+    #: Path of the file.
     path: Path
 
     def _repr_html_(self) -> str:
@@ -30,22 +30,22 @@ class Page:
         return f'<iframe srcdoc="{text}" width="100%" height="560" frameborder="0"></iframe>'
 
     def open(self) -> None:
-        """Opens the page in the browser."""
+        """Opens the page in the default browser."""
         webbrowser.open(Path(self.path).resolve().as_uri())
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
-    """A motion: samples of time, configuration, velocity and inputs, a row each."""
+    """Motion: samples of time, configuration, velocity and inputs, with one row per sample."""
 
     mechanism: "Mechanism"
     #: Times, s.
     t: NDArray[Any]
-    #: Configurations, a row for each time.
+    #: Configurations, one row per time.
     q: NDArray[Any]
-    #: Velocities, a row for each time.
+    #: Velocities, one row per time.
     v: NDArray[Any]
-    #: Inputs, a row for each time.
+    #: Inputs, one row per time.
     u: NDArray[Any]
 
     def __len__(self) -> int:
@@ -57,8 +57,8 @@ class Run:
         return f"Run({m.name}: {len(self)} samples{times}; t, q[{m.nq}], v[{m.nv}], u[{m.nu}])"
 
     def csv(self, path: str | os.PathLike[str]) -> None:
-        """Writes the samples as comma-separated values with the columns t, q.…, v.…, u.…, which `linkwork
-        view --motion` reads."""
+        """Writes the samples as comma-separated values with the columns t, q.…, v.…, u.…. The file can be
+        shown with `linkwork view --motion`."""
         m = self.mechanism
         head = ["t"] + [f"q.{n}" for n in m.configuration]
         head += [f"v.{n}" for n in m.velocities] + [f"u.{n}" for n in m.inputs]
@@ -69,8 +69,8 @@ class Run:
 
     @checked
     def view(self, path: str | os.PathLike[str] | None = None) -> Page:
-        """Writes a page that shows the motion, and opens offline: to `path`, or to the mechanism's name with
-        .html."""
+        """Writes an HTML page that shows the motion and opens offline, to `path` or by default to a file with
+        the mechanism's name and the extension `.html`."""
         try:
             build = importlib.import_module("._build", __package__)
         except ImportError:
@@ -82,12 +82,12 @@ class Run:
 
     @checked
     def plot(self, *names: str, ax: Any = None) -> Any:
-        """Draws entries of the motion over time with matplotlib: of the configuration by default, or those
-        that are named (`"hinge"`, `"v.hinge"`, `"u.motor"`). Entries of one unit share axes, one below the
-        other; all go into `ax` if it is given.
+        """Plots entries of the motion over time with matplotlib: the named ones (`"hinge"`, `"v.hinge"`,
+        `"u.motor"`), by default all entries of the configuration. There is one plot per unit, one below the
+        other; if `ax` is specified, all curves are drawn there.
 
         Returns:
-            The axes; an array of them where there are several.
+            The axes, or an array of several axes.
         """
         m = self.mechanism
         kinds = {
@@ -119,7 +119,7 @@ class Run:
             said = " and ".join(dict.fromkeys(_MANY[kind] for _, kind, _ in curves))
             own.set_ylabel("" if shares else f"{said} [{unit}]" if unit else said)
         for own in axes:
-            # Many names stand beside the curves.
+            # A legend with many names is placed next to the curves.
             beside: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(own.get_lines()) > 6 else {}
             own.legend(**beside)
         axes[-1].set_xlabel("t [s]")
@@ -131,8 +131,8 @@ _MANY = {"q": "coordinates", "v": "velocities", "u": "inputs"}
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
-    """x' = A x + B u about a state: displacements of the configuration, then changes of the velocity, each in
-    the order of `v`."""
+    """Linear system x' = A x + B u about a state. The entries of x are displacements of the configuration,
+    then changes of the velocity, each in the order of `v`."""
 
     a: NDArray[Any]
     b: NDArray[Any]
@@ -143,8 +143,8 @@ class LinearSystem:
 
     @checked
     def control(self, c: ArrayLike | None = None, d: ArrayLike | None = None) -> Any:
-        """Returns the system in the type of the package python-control, whose `lqr` and others take it; all
-        states are outputs if no others are given."""
+        """Returns the system as a `StateSpace` of the package python-control, for functions such as `lqr`. By
+        default, the outputs are all states."""
         control: Any = importlib.import_module("control")
 
         c = np.eye(len(self.a)) if c is None else c
@@ -154,7 +154,7 @@ class LinearSystem:
 
 @dataclass(frozen=True)
 class Units:
-    """Units of all entries, in their order."""
+    """Units of all entries, in the order of the entries."""
 
     configuration: list[str]
     velocities: list[str]

@@ -1,4 +1,4 @@
-"""Mechanisms that are tested, as declarations and as a file."""
+"""Mechanisms of the tests, as declarations and as a robot file."""
 
 import linkwork
 
@@ -16,7 +16,7 @@ pub struct Pendulum {
     motor: Torque,
 }
 """
-# A point on a circle of radius 1 in the plane: a pendulum by a constraint.
+# A particle on a circle of radius 1 in the plane: a pendulum modelled by a constraint.
 BEAD = """
 #[mechanism(gravity = -9.81 * y)]
 pub struct Bead {
@@ -29,7 +29,7 @@ pub struct Bead {
     wire: Holonomic,
 }
 """
-# A mass on a spring whose energy is a table.
+# A mass on a spring whose potential energy is a table.
 SLIDER = """
 #[mechanism]
 pub struct Slider {

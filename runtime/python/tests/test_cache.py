@@ -1,4 +1,4 @@
-"""The cache: processes at once, killed processes, damaged files, folders that cannot be written to."""
+"""Tests of the cache: concurrent processes, killed processes, damaged files, read-only folders."""
 
 import os
 import pickle
@@ -22,7 +22,7 @@ from linkwork._functions import digest_file, is_intact
 from mechanisms import PENDULUM, compiled
 
 PACKAGE = Path(linkwork.__file__).resolve().parents[1]
-# Builds a file slowly, in two steps, and notes that it did so.
+# Program that builds a file slowly, in two steps, and logs that it did.
 BUILD = """
 import os, sys, time
 from pathlib import Path
@@ -47,7 +47,7 @@ def environment(cache):
 
 
 class WithSeveralProcesses(unittest.TestCase):
-    """Processes that need the same file at once, in an empty cache."""
+    """Processes that need the same file at the same time, in an empty cache."""
 
     def race(self, rng, processes, killed, seconds):
         with tempfile.TemporaryDirectory() as folder:
@@ -62,7 +62,7 @@ class WithSeveralProcesses(unittest.TestCase):
             ended = [(process, *process.communicate(timeout=60)) for process in started]
             for process, out, err in ended[killed:]:
                 self.assertEqual((process.returncode, out.strip()), (0, "5000"), err)
-            # A process that was killed after its build may have logged it, and the file was built once more.
+            # A process that was killed after logging its build may have caused another build.
             built = len(log.read_text().splitlines())
             self.assertTrue(1 <= built <= 1 + killed, built)
             left = sorted(path.name for path in (cache / "libraries").iterdir() if path.suffix != ".unfinished")
@@ -125,7 +125,7 @@ class WithSeveralProcesses(unittest.TestCase):
                 parent.stdout.close()
 
     def test_processes_compile_a_mechanism_once(self):
-        # A mass of its own makes a declaration that no other run has compiled.
+        # A random mass makes a declaration that no other run has compiled.
         mass = 1 + np.random.default_rng().uniform()
         text = PENDULUM.replace("rod(mass, length, y)", f"sphere({mass}, 1)")
         code = (
@@ -138,9 +138,9 @@ class WithSeveralProcesses(unittest.TestCase):
             env={**os.environ, "PYTHONPATH": str(PACKAGE)},
         )
         compiled(PENDULUM)  # builds the command
-        # The first one is killed while it compiles; its cargo goes on.
+        # The first process is killed while it compiles; its cargo continues.
         first = run()
-        # It may have to wait for other tests.
+        # The process may have to wait for other tests.
         self.assertTrue(any("compiling Pendulum" in line for line in iter(first.stderr.readline, "")))
         first.kill()
         first.communicate()
@@ -152,7 +152,7 @@ class WithSeveralProcesses(unittest.TestCase):
 
 
 class WithDamage(unittest.TestCase):
-    """Files of the cache that are not what was built, and folders that cannot be used."""
+    """Damaged files of the cache, and folders that cannot be used."""
 
     def test_a_damaged_library_is_built_again(self):
         mass = 1 + np.random.default_rng().uniform()
@@ -162,7 +162,7 @@ class WithDamage(unittest.TestCase):
         path = Path(kind._path)
         content = path.read_bytes()
         for damaged in (b"", b"not a library", content[: len(content) // 2], bytes(len(content))):
-            # As another process would leave it: a new file, for this one has the old one loaded.
+            # As by another process: a new file, since this process has loaded the old one.
             path.unlink()
             path.write_bytes(damaged)
             code = f"import pickle; pickle.loads({pickle.dumps(kind)!r})"

@@ -1,4 +1,4 @@
-"""Tables, constraints, contacts, robots: mechanisms of all kinds."""
+"""Tests of mechanisms with tables, constraints and contacts, and of robot files."""
 
 import pickle
 import tempfile
@@ -13,7 +13,7 @@ from mechanisms import BALL, BEAD, PENDULUM, ROBOT, SLIDER, compiled
 
 
 class WithTables(unittest.TestCase):
-    """A parabola as a smooth table: the spring of that energy."""
+    """Spring whose energy is a parabola, declared as a spline table."""
 
     def test_figures_are_those_that_are_given(self):
         figures = ([[-2.0, 0.0, 2.0]], [16.0, 0.0, 16.0], "smooth")
@@ -44,7 +44,7 @@ class WithTables(unittest.TestCase):
 
 
 class UnderConstraints(unittest.TestCase):
-    """A bead on a wire: forces of constraints, assembling, and where it cannot go."""
+    """Bead on a wire: constraint forces, assembly, and configurations that cannot be reached."""
 
     @classmethod
     def setUpClass(cls):
@@ -92,10 +92,10 @@ class UnderConstraints(unittest.TestCase):
 
     def test_its_equilibria(self):
         np.testing.assert_allclose(self.m.equilibrium([0.3, -0.8]), [0.0, -1.0], atol=1e-9)
-        # At the side, where nothing holds it up, there is none.
+        # At the side, nothing balances the weight, and no equilibrium exists.
         with self.assertRaisesRegex(linkwork.Error, "no equilibrium"):
             self.m.equilibrium([1.0, 0.0], held=["plane.x"])
-        # Held in x it hangs from its holder and the wire.
+        # Held in x, the bead is supported by the holding force and the wire.
         np.testing.assert_allclose(self.m.equilibrium([0.6, -0.7], held=["plane.x"]), [0.6, -0.8], atol=1e-9)
 
     def test_its_linear_system(self):
@@ -107,7 +107,7 @@ class UnderConstraints(unittest.TestCase):
 
 
 class WithContacts(unittest.TestCase):
-    """A ball that bounces."""
+    """Bouncing ball."""
 
     def test_it_comes_to_rest_and_rises_half_as_fast(self):
         m = compiled(BALL)()
@@ -126,7 +126,7 @@ class WithContacts(unittest.TestCase):
 
 
 class OfRobots(unittest.TestCase):
-    """A file."""
+    """Robot files."""
 
     def test_a_file_and_its_frames(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -184,12 +184,12 @@ class OfRobots(unittest.TestCase):
     def test_errors_name_arguments_of_python(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "heavy.urdf"
-            # Moments of inertia that no body has: 1 + 0.1 < 2.
+            # Moments of inertia that violate the triangle inequality: 1 + 0.1 < 2.
             path.write_text(ROBOT.replace('ixx="0.1"', 'ixx="2"').replace('iyy="0.1"', 'iyy="1"').replace('izz="0.01"', 'izz="0.1"'))
             with self.assertRaisesRegex(linkwork.Error, "`options='inertia = trust'`") as caught:
                 linkwork.compile(path, quiet=True)
             self.assertNotRegex(str(caught.exception), r"#\[mechanism|--with")
-            # The option that the message names is the remedy.
+            # The option in the message makes the file acceptable.
             arm = linkwork.compile(path, options="inertia = trust", quiet=True)()
             np.testing.assert_allclose(arm.mass_matrix([0.0]), [[1 + 2 * 0.25]])
             for options, words in [("base = fre", "base"), ("inertia =", "inertia"), ("(", r"`options=`")]:

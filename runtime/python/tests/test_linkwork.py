@@ -1,4 +1,7 @@
-"""Physics, shapes and mistakes, as a user meets them. Run with `python -m unittest discover -s runtime/python/tests`."""
+"""Tests of physics, array shapes and errors.
+
+Run with `python -m unittest discover -s runtime/python/tests`.
+"""
 
 import importlib.util
 import pickle
@@ -16,7 +19,7 @@ from mechanisms import PENDULUM, compiled
 
 
 class OfAPendulum(unittest.TestCase):
-    """A rod on a hinge against its closed forms."""
+    """Rod on a hinge, compared with closed forms."""
 
     @classmethod
     def setUpClass(cls):
@@ -84,7 +87,7 @@ class OfAPendulum(unittest.TestCase):
                 many = np.asarray(function(q, v, tau, threads=threads))
                 many = np.moveaxis(many, 1, 0) if many.ndim > 3 else many
                 np.testing.assert_allclose(many, single, rtol=1e-13, atol=1e-13)
-        # Results may go where earlier ones are.
+        # Results may overwrite earlier results.
         kept = self.m.forward_dynamics_derivatives(q, v, tau)
         expected = [array.copy() for array in kept]
         kept[0][:] = 7.0
@@ -95,7 +98,7 @@ class OfAPendulum(unittest.TestCase):
         for wrong in (kept[0], kept[:2], tuple(array[:5] for array in kept), (1, 2, 3)):
             with self.assertRaisesRegex(ValueError, "`out`"):
                 self.m.forward_dynamics_derivatives(q, v, tau, out=wrong)
-        # One argument for all states.
+        # An argument may be common to all states.
         np.testing.assert_array_equal(self.m.kinetic_energy(q, [1.0]), self.m.kinetic_energy(q, np.ones((1003, 1))))
         self.assertEqual(self.m.mass_matrix(np.empty((0, 1))).shape, (0, 1, 1))
 
@@ -125,7 +128,7 @@ class OfAPendulum(unittest.TestCase):
     def test_a_regulator_of_python_control(self):
         import control
 
-        # θ̈ = a θ + b u about the upper position: the equation of Riccati has a closed form.
+        # θ̈ = a θ + b u about the upright position: the Riccati equation has a closed-form solution.
         q, (q1, q2), r = 2.0 * 1.5**2 / 3, (10.0, 1.0), 0.1
         a, b = 2.0 * 9.81 * 0.75 / q, 1 / q
         first = (a + np.sqrt(a**2 + b**2 * q1 / r)) / b
@@ -216,7 +219,7 @@ class OfAPendulum(unittest.TestCase):
         for wrong in ([1.0, 2.0], 1.0, np.zeros((2, 3, 1)), np.zeros((1, 2))):
             with self.assertRaisesRegex(ValueError, "has the shape"):
                 self.m.mass_matrix(wrong)
-        # NumPy would make numbers of all of these.
+        # NumPy would convert all of these to numbers.
         for wrong in (["a"], ["1"], np.array(["2020-01-01"], "datetime64[D]"), np.array([b"1"])):
             with self.assertRaisesRegex(ValueError, "q is an array of numbers"):
                 self.m.mass_matrix(wrong)
@@ -269,7 +272,7 @@ class OfAPendulum(unittest.TestCase):
             ({"duration": 1.0, "step": -0.1}, ValueError, "step"),
             ({"duration": 1.0, "step": 0}, ValueError, "`step` is a positive number"),
             ({"duration": "1"}, TypeError, "`duration` is a number, found '1'"),
-            # What would be without effect.
+            # Arguments that would have no effect.
             ({"duration": 1.0, "method": "rodas", "step": 0.1}, TypeError, "takes a `tolerance`, not a `step`"),
             ({"duration": 1.0, "step": 0.1, "tolerance": 1e-6}, TypeError, "rk4 takes a `step`, not a `tolerance`"),
             ({"duration": 1.0, "period": 0.1}, TypeError, "`period` is the time between calls of `control`"),
@@ -301,7 +304,7 @@ class OfAPendulum(unittest.TestCase):
 
         run = self.m.simulate([1.0], duration=1.0, every=0.05, inputs={"motor": 1.0})
         legend = lambda axes: [text.get_text() for text in axes.get_legend().get_texts()]
-        # A unit, axes of its own.
+        # One plot per unit.
         axes = run.plot("hinge", "v.hinge", "u.motor")
         self.assertEqual([legend(own) for own in axes], [["hinge"], ["v.hinge"], ["u.motor"]])
         units = ["coordinates [rad]", "velocities [rad/s]", "inputs [N·m]"]
@@ -310,7 +313,7 @@ class OfAPendulum(unittest.TestCase):
         np.testing.assert_array_equal(axes[2].get_lines()[0].get_ydata(), np.ones(21))
         one = run.plot()
         self.assertEqual((legend(one), one.get_xlabel(), one.get_ylabel()), (["hinge"], "t [s]", "coordinates [rad]"))
-        # In axes that are given, units stand with the names.
+        # In given axes, units are appended to the names.
         own = run.plot("hinge", "v.hinge", ax=pyplot.subplots()[1])
         self.assertEqual(legend(own), ["hinge [rad]", "v.hinge [rad/s]"])
         with self.assertRaisesRegex(KeyError, "did you mean 'hinge'"):
@@ -324,7 +327,7 @@ class OfAPendulum(unittest.TestCase):
 
 
 class InSinglePrecision(unittest.TestCase):
-    """Numbers of the mechanism's own type."""
+    """Mechanism in single precision."""
 
     def test_f32(self):
         m = compiled(PENDULUM.replace("#[mechanism(", "#[mechanism(scalar = f32, ").replace("f64", "f32"))(

@@ -1,4 +1,4 @@
-"""What is saved and kept, the guide, the gallery and the command."""
+"""Tests of saved packages, concurrent compilation, the guide, the gallery and the command."""
 
 import contextlib
 import importlib.util
@@ -21,10 +21,10 @@ from mechanisms import BEAD, PENDULUM, ROBOT, SLIDER, compiled
 
 
 class AsAPackage(unittest.TestCase):
-    """A class that is saved: what another machine has of it."""
+    """Saved class, used as on another machine."""
 
     def run_apart(self, folder, code):
-        # An interpreter that knows NumPy and this folder, but not Linkwork, and no toolchain.
+        # An interpreter with NumPy and this folder, but without Linkwork and without a toolchain.
         paths = os.pathsep.join([str(folder), str(Path(np.__file__).parents[1])])
         environment = {"PATH": "/nonexistent", "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"}
         barrier = "import sys; sys.modules['linkwork'] = None\n"
@@ -37,7 +37,7 @@ class AsAPackage(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             package = kind.save(folder)
             self.assertEqual(package, Path(folder) / "pendulum")
-            # Again over itself, but not over anything else.
+            # The package may overwrite itself, but no other folder.
             self.assertEqual(kind.save(folder), package)
             (Path(folder) / "else" / "pendulum" / "own").mkdir(parents=True)
             with self.assertRaisesRegex(FileExistsError, "no package of a mechanism"):
@@ -104,7 +104,7 @@ q, v = m.roll_out(np.zeros((3, 1)), np.zeros((3, 1)), steps=3, h=0.1)
             self.assertIn("__init__.pyi", done.stdout)
             code = "from slider import Slider; print(float(Slider(mass=2.0).potential_energy([0.5])))"
             self.assertAlmostEqual(float(self.run_apart(folder, code)), 1.0, places=13)
-            # Mistakes of the mechanism, and what cannot be read.
+            # Errors in the mechanism, several mechanisms, and a missing file.
             file.write_text(SLIDER.replace("along = x", "along = w"), encoding="utf-8")
             done = subprocess.run(words, capture_output=True, text=True)
             self.assertEqual(done.returncode, 1, done.stderr)
@@ -118,10 +118,10 @@ q, v = m.roll_out(np.zeros((3, 1)), np.zeros((3, 1)), steps=3, h=0.1)
 
 
 class AtTheSameTime(unittest.TestCase):
-    """Several are compiled at once: none is taken for another."""
+    """Mechanisms that are compiled at the same time are not confused with each other."""
 
     def test_threads_compile(self):
-        # A size of their own makes declarations that no other run has compiled.
+        # A random radius makes declarations that no other run has compiled.
         size = 1 + np.random.default_rng().uniform()
         kinds = [PENDULUM.replace("inertia = rod(mass, length, y)", f"inertia = sphere(mass, {k * size})") for k in (1, 2, 3)]
         with ThreadPoolExecutor(3) as pool:
@@ -136,7 +136,7 @@ class AtTheSameTime(unittest.TestCase):
 
 
 class OfTheGuide(unittest.TestCase):
-    """The chapter of the guide: its examples assert what they say."""
+    """Examples of the guide's chapter, which contain assertions."""
 
     def test_examples(self):
         home = _build._sources()
@@ -150,7 +150,7 @@ class OfTheGuide(unittest.TestCase):
             try:
                 with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
                     for block in blocks:
-                        # Other packages need not be there.
+                        # Examples that need packages which are not installed are skipped.
                         needed = re.findall(r"^import (\w+)", block, flags=re.MULTILINE)
                         if all(importlib.util.find_spec(name) for name in needed):
                             exec(compile(block, "python.md", "exec"), names)
@@ -160,7 +160,7 @@ class OfTheGuide(unittest.TestCase):
 
 
 class OfThePackage(unittest.TestCase):
-    """The gallery, and the command."""
+    """Gallery and command."""
 
     def test_the_gallery_has_names(self):
         self.assertIn("CartPole", linkwork.gallery())

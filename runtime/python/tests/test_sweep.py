@@ -1,4 +1,4 @@
-"""The sweep on Ray, on a local cluster of one worker and of two, one of which is lost."""
+"""Test of the sweep on Ray, on a local cluster of one worker, and of two workers of which one is lost."""
 
 import importlib.util
 import tempfile
@@ -11,7 +11,7 @@ EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "sweep.py"
 
 @unittest.skipUnless(importlib.util.find_spec("ray"), "Ray is not installed")
 class OnACluster(unittest.TestCase):
-    """Results do not depend on the workers."""
+    """Results that do not depend on the workers."""
 
     def test_workers_may_be_lost(self):
         with warnings.catch_warnings():
