@@ -21,14 +21,14 @@ impl fmt::Display for Counted {
 pub enum Error {
     /// A matrix whose shape does not fit the other matrices.
     Shape {
-        /// The matrix.
+        /// Name of the matrix.
         matrix: &'static str,
         /// Expected rows and columns.
         expected: (usize, usize),
         /// Actual rows and columns.
         found: (usize, usize),
     },
-    /// A matrix, polynomial or list has an entry that is infinite or NaN.
+    /// A matrix, polynomial or list with an infinite or NaN entry.
     NotFinite {
         /// Name of the matrix, polynomial or list.
         what: &'static str,
@@ -101,12 +101,12 @@ pub enum Error {
         /// Name of the matrix or equation.
         what: &'static str,
     },
-    /// A matrix that must be symmetric and positive (semi)definite is not.
+    /// A matrix that is not symmetric and positive (semi)definite, as required.
     Indefinite {
         /// Name of the matrix.
         matrix: &'static str,
     },
-    /// The connection has an algebraic loop without a solution: `I + D₁ D₂` is singular.
+    /// A connection that has an algebraic loop without a solution: `I + D₁ D₂` is singular.
     AlgebraicLoop,
     /// An iteration that did not converge.
     NotConverged {

@@ -87,7 +87,7 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
 }
 
 /// Interpolates values by a smooth curve with eight segments per interval. The curve is a centripetal
-/// Catmull–Rom spline, whose knots are spaced by the square roots of the chords; its curvature is even for
+/// Catmull–Rom spline: its knots are spaced by the square roots of the chords, which avoids sharp bends for
 /// unevenly spaced points (Barry and Goldman, *SIGGRAPH*, 1988).
 fn smooth(values: &[C]) -> Vec<C> {
     const PARTS: u32 = 8;

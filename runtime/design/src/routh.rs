@@ -102,8 +102,8 @@ impl Polynomial {
             first.windows(2).filter(|w| w[0] * w[1] < 0.0).count()
         };
         let right = changes(0);
-        // The factor with symmetric roots has as many roots in the left as in the right half-plane; the
-        // others are on the axis.
+        // The factor with symmetric roots has equal numbers of roots in both half-planes; the others are on
+        // the axis.
         let imaginary = symmetric_from.map_or(0, |k| (n + 1 - k) - 2 * changes(k - 1));
         Ok(Routh { rows, special, right, imaginary })
     }

@@ -71,8 +71,8 @@ type OutputsOf<M, const NQ: usize, const NV: usize, const NU: usize> =
 
 /// Unknowns and conditions of a steady state.
 ///
-/// By default, all coordinates are unknown, velocities and inputs are fixed at zero, and all accelerations
-/// are zero. States of first order, which are among the velocities of an [`Extended`](linkwork::Extended)
+/// All coordinates are unknown by default, velocities and inputs are fixed at zero, and all accelerations are
+/// zero. States of first order, which are among the velocities of an [`Extended`](linkwork::Extended)
 /// mechanism, are unknown unless they are [fixed](Trim::fix), and their rates are zero. Constraints are
 /// always conditions.
 pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
@@ -100,11 +100,11 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
-    /// Configuration.
+    /// Configuration, m and rad.
     pub q: SVector<f64, NQ>,
     /// Velocity, m/s and rad/s.
     pub v: SVector<f64, NV>,
-    /// Inputs.
+    /// Inputs, in their declared units.
     pub u: SVector<f64, NU>,
     /// Acceleration `v̇`, m/s² and rad/s². Zero up to rounding, except for entries whose value was specified
     /// or that were left without a condition.

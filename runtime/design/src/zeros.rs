@@ -48,8 +48,8 @@ impl Pencil {
         }
     }
 
-    /// Eliminates the states that zero outputs determine through rows of zero in `D`, until `D` has full row
-    /// rank.
+    /// Eliminates states until `D` has full row rank. At a zero the outputs vanish; those without feedthrough
+    /// fix a subspace of the states, which is removed.
     fn reduce(mut self) -> Self {
         loop {
             let (n, p) = (self.a.nrows(), self.d.nrows());

@@ -359,7 +359,7 @@ fn problems_that_are_posed_wrongly_are_named() {
         "the conditions leave hinge, torque', command open at hinge 0.000000, torque' 0.000000, command 0.000000: fix or hold one of them, add a condition, or take the nearest",
         rest().inputs(["command"]).find(),
     );
-    // Too few unknowns, and as many unknowns as conditions without a solution.
+    // Too few unknowns, and equal numbers of unknowns and conditions without a solution.
     for (trim, start) in [
         (
             rest().output("angle", 0.2),

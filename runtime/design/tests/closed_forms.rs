@@ -334,7 +334,7 @@ fn stable_gains_by_hurwitz() {
         (&[1.0, 0.0, 0.0, 0.0], &[1.0, 2.0, 1.0], &[(0.5, most)]),
         (&[1.0, 3.0, 2.0], &[1.0, 3.0, 2.0], &[(least, -1.0), (-1.0, most)]),
         (&[1.0, 3.0, 2.0], &[1.0], &[(-2.0, most)]),
-        // A higher degree: k s² + (1 + k) s + 1.
+        // The second polynomial has the higher degree: k s² + (1 + k) s + 1.
         (&[1.0, 1.0], &[1.0, 1.0, 0.0], &[(0.0, most)]),
         // Zeros at ±i: s + 1 + k (s² + 1).
         (&[1.0, 1.0], &[1.0, 0.0, 1.0], &[(0.0, most)]),

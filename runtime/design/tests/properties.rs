@@ -93,7 +93,7 @@ fn regulators_are_optimal() {
         small("discrete", &residual, x.norm() + cost.q.norm(), 1e-11);
         assert!(best.poles.iter().all(|p| p.norm() < 1.0));
     }
-    // A delay: A is singular.
+    // A delay, whose matrix A is singular.
     let (a, b) = (dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0]);
     assert!(discrete_riccati(&a, &b, &Cost::diagonal(&[1.0, 1.0], &[1.0])).is_ok());
 }
@@ -271,7 +271,7 @@ fn realisations_are_minimal() {
         let mute = StateSpace::new(hidden.a() * 1.5, hidden.b().clone(), DMatrix::zeros(1, 2), dmatrix![0.0])
             .unwrap();
         let both = seen.parallel(&still).unwrap().parallel(&mute).unwrap();
-        // In other coordinates.
+        // Similarity transformation to other states.
         let t = random.matrix(n + 4, n + 4) + DMatrix::identity(n + 4, n + 4) * 3.0;
         let inverse = t.clone().try_inverse().unwrap();
         let mixed =

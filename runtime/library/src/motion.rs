@@ -47,9 +47,9 @@ pub type Control<'a, N> = &'a mut dyn FnMut(N, &[N], &[N], &mut [N]) -> Result<(
 pub struct Motion<'a, N> {
     /// Time at the start, s.
     pub start: N,
-    /// Configuration at the start.
+    /// Initial configuration.
     pub q: &'a [N],
-    /// Velocity at the start.
+    /// Initial velocity.
     pub v: &'a [N],
     /// Duration, s.
     pub duration: N,
@@ -59,7 +59,7 @@ pub struct Motion<'a, N> {
     pub way: Way<N>,
     /// Interval between calls of the controller.
     pub every: Every<N>,
-    /// The controller.
+    /// Controller.
     pub control: Control<'a, N>,
     /// Samples: rows of time, configuration, velocity and inputs.
     pub samples: &'a mut [N],

@@ -106,7 +106,7 @@ pub unsafe fn check<M: Library>(parameters: *const M::Number) -> c_int {
 ///
 /// # Safety
 ///
-/// `to` points to at least as many numbers as `from` has.
+/// `to` points to an array of at least `from.len()` numbers.
 pub unsafe fn copy<N: Copy>(from: &[N], to: *mut N) {
     // SAFETY: guaranteed by the caller.
     unsafe { places(to, from.len()) }.copy_from_slice(from);
@@ -143,9 +143,9 @@ pub struct Settings<N> {
 ///
 /// # Safety
 ///
-/// `parameters`, `q` and `v` point to as many numbers as the mechanism has of each, `settings` to settings
-/// whose method is a null-terminated string, `samples` to `rows` rows, `count` to a number. The controller
-/// can be called with the arrays of a state, and does not unwind.
+/// `parameters`, `q` and `v` point to one number per parameter and per entry, `settings` to settings whose
+/// method is a null-terminated string, `samples` to `rows` rows, `count` to a number. The controller can be
+/// called with the arrays of a state, and does not unwind.
 #[allow(clippy::too_many_arguments, reason = "the signature of the library")]
 pub unsafe fn simulate<M: Library>(
     [nq, nv, nu]: [usize; 3],

@@ -46,7 +46,7 @@ pub enum Error {
     /// A port at which no live view can be opened, because another program uses it or the operating system
     /// denies it.
     Port {
-        /// The port.
+        /// Port number.
         port: u16,
         /// Error of the operating system.
         cause: std::io::Error,

@@ -141,7 +141,7 @@ impl Figure {
         Ok(self)
     }
 
-    /// Returns the distinct paths of meshes that were not read, as they are written in the robot's file.
+    /// Returns the distinct paths of meshes that were not read, in the spelling of the robot's file.
     pub fn missing_meshes(&self) -> Vec<&str> {
         let mut missing = Vec::new();
         for shape in &self.shapes {

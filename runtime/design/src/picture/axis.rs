@@ -81,7 +81,7 @@ fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
     (0..=count).map(|k| (first + k as f64) * step).collect()
 }
 
-/// Formats a number with as many decimals as the step requires.
+/// Formats a number with the number of decimals that the step requires.
 fn plain(x: f64, step: f64) -> String {
     let decimals = (-(step * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize;
     format!("{x:.decimals$}").replace('-', "−")
@@ -144,7 +144,7 @@ mod tests {
         assert_eq!(labels(&axis(-0.1, 0.8, true), 8), ["1", "2", "5"]);
         assert_eq!(labels(&axis(-16.0, -4.0, true), 3), ["10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴"]);
         assert_eq!(labels(&axis(0.0, 4e6, false), 4), ["0", "1·10⁶", "2·10⁶", "3·10⁶", "4·10⁶"]);
-        // A constant.
+        // The range of a constant value is not empty.
         let flat = Axis::of([3.0, 3.0].into_iter(), 0.06, false).unwrap();
         assert!(flat.low < 3.0 && flat.high > 3.0 && !flat.ticks(6).is_empty());
         assert!(Axis::of([f64::NAN].into_iter(), 0.0, false).is_none());

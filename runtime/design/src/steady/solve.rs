@@ -245,7 +245,7 @@ where
     if columns == 0 {
         return Vec::new();
     }
-    // At least as many rows as columns, so that the decomposition has every direction.
+    // Rows of zeros are appended to a wide matrix, so that the decomposition has every direction.
     let square = scaled.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = square.svd(false, true);
     let Some(directions) = svd.v_t else { return Vec::new() };
