@@ -108,7 +108,7 @@ impl StateSpace {
         let size = self.a.norm().max(wanted.norm()) / self.b.norm().max(f64::MIN_POSITIVE);
         let mut best: Option<(f64, DMatrix<f64>)> = None;
         for attempt in 0..ATTEMPTS {
-            // From the second attempt on, a random gain first displaces the poles, in case some are already present.
+            // Except in the first attempt, a random gain displaces poles that are already present.
             let away = scattered(m, n, attempt) * (if attempt == 0 { 0.0 } else { size });
             let moved = &self.a - &self.b * &away;
             let Ok(x) = sylvester(&moved, &-&wanted, &(&self.b * scattered(m, n, ATTEMPTS + attempt))) else {

@@ -36,8 +36,8 @@ STEP, STEPS = 2e-3, 1000
 
 def chunk(number, size, lose=None):
     """Returns the number of pendulums of a chunk whose elbow has rotated over the top, and the largest energy
-    error. If `lose` is a path without a file, the worker creates the file and exits, which tests the loss of a
-    worker."""
+    error. If `lose` is a path without a file, the worker creates the file and exits, which simulates the loss
+    of a worker."""
     if lose is not None and not os.path.exists(lose):
         open(lose, "w").close()
         os._exit(1)

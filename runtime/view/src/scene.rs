@@ -19,7 +19,7 @@ pub(crate) struct Scene {
     eye: Vector3<f64>,
     /// Whether the motion is planar.
     plane: bool,
-    /// Height of the floor along `up`: that of a ground plane, or below a motion with gravity without terrain.
+    /// Height of the floor along `up`: a ground plane, or below the motion if there is gravity but no terrain.
     floor: Option<f64>,
 }
 

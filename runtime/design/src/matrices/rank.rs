@@ -63,7 +63,7 @@ pub fn rank(m: &DMatrix<f64>, tolerance: f64) -> Result<usize, Error> {
     Ok(values.iter().filter(|value| **value > least).count())
 }
 
-/// Returns the smallest singular value of a complex matrix whose number of rows does not exceed that of columns.
+/// Returns the smallest singular value of a complex matrix that does not have more rows than columns.
 pub(crate) fn smallest_singular(m: &super::CMatrix) -> f64 {
     if m.is_empty() {
         return f64::INFINITY;
