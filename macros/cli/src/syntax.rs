@@ -139,8 +139,8 @@ fn index(text: &str, at: LineColumn) -> usize {
 mod tests {
     use super::located;
 
-    /// Positions of rustc 1.95, except for brackets that are open at the end of a file: rustc points at the end of
-    /// the file and labels the bracket.
+    /// Compares with the positions of rustc 1.95, except for brackets that are open at the end of a file: rustc
+    /// points at the end of the file and labels the bracket.
     #[test]
     fn errors_are_located_as_rustc_locates_them() {
         for (text, at, message) in [
