@@ -1,4 +1,4 @@
-//! Model → everything that is generated: the mechanics of each function, lowered.
+//! Derivation of all generated functions of a model: each function's mechanics, lowered to a program.
 
 use crate::catalogue::{self, Facts};
 use crate::diag::Diagnostics;
@@ -39,15 +39,16 @@ use specialisation::Specialisation;
 
 pub use output::{Constant, FrameSteps, Function, LinkSteps, Output, PLACEMENT, Prepared, TWIST};
 
-/// Most products of the elimination of constraints.
+/// Maximum number of products in the elimination of constraints.
 const MOST_PRODUCTS: usize = 100_000;
 
-/// Derives everything. `None` if the mass matrix cannot be inverted, with the reason in `cx`.
+/// Derives all functions without optional ones. Returns `None` with the error in `cx` if the mass matrix is
+/// singular.
 pub fn derive<'g>(model: &Model<'g>, cx: &mut Diagnostics) -> Option<Output> {
     derive_with(model, Requests::default(), Passes::default(), cx)
 }
 
-/// The same with what is generated on request, and a choice of passes.
+/// Like [`derive`], with optional functions and a choice of optimisation passes.
 pub fn derive_with<'g>(
     model: &Model<'g>,
     requests: Requests,
@@ -133,7 +134,7 @@ pub fn derive_with<'g>(
     sound(model, output, cx)
 }
 
-/// What is conserved, written in speeds where there are some.
+/// Writes the values of conserved quantities in generalized speeds, if the mechanism defines any.
 fn in_speeds<'g>(mut kept: Vec<Conserved<'g>>, speeds: Option<&InSpeeds<'g>>) -> Vec<Conserved<'g>> {
     if let Some(speeds) = speeds {
         kept.iter_mut().for_each(|c| c.value = speeds.written(&[c.value])[0]);
@@ -141,12 +142,12 @@ fn in_speeds<'g>(mut kept: Vec<Conserved<'g>>, speeds: Option<&InSpeeds<'g>>) ->
     kept
 }
 
-/// The constant of the word `drawing`.
+/// Returns the constant for the option `drawing`.
 fn drawing(model: &Model<'_>, requests: Requests) -> Vec<Constant> {
     requests.drawing.then(|| Constant::drawing(&model.drawing)).into_iter().collect()
 }
 
-/// Functions, with what leads to the frames.
+/// Builds the output from the functions, and adds the steps that compute link and frame placements.
 fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) -> Output {
     Output {
         functions,
@@ -160,8 +161,8 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
     }
 }
 
-/// What was derived, if its figures are finite, and if every program has the numbers that its result is made
-/// of.
+/// Checks the derived output: all coefficients must be finite, no expression may be NaN, and each program
+/// must return as many values as its result has. Returns `None` with the error in `cx` otherwise.
 fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
     if !output.functions.iter().all(|f| f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
@@ -189,7 +190,7 @@ fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Outp
     Some(output)
 }
 
-/// Those passes that a user has not switched off.
+/// Returns the passes that the user has not switched off.
 fn without(passes: Passes, skipped: Skipped) -> Passes {
     Passes {
         frames: passes.frames && !skipped.frames,
@@ -200,7 +201,8 @@ fn without(passes: Passes, skipped: Skipped) -> Passes {
     }
 }
 
-/// What there is only where forces do not depend on accelerations.
+/// Returns the first requested quantity that requires forces without accelerations: canonical momenta and
+/// second derivatives. Returns `None` if no such quantity is requested.
 fn without_momentum(requests: Requests) -> Option<&'static str> {
     let canonical = requests.hamilton || requests.equations == Printed::Hamilton;
     let reduced = requests.routh || requests.equations == Printed::Routh;
@@ -213,11 +215,11 @@ fn without_momentum(requests: Requests) -> Option<&'static str> {
     asked.into_iter().find_map(|(asked, what)| asked.then_some(what))
 }
 
-/// Most derivatives by parameters, and second ones of what elements store or dissipate, each with as many
-/// terms as there are velocities.
+/// Maximum number of parameter derivatives, and of second derivatives of the energies and dissipation
+/// functions of elements. Each has as many terms as there are velocities.
 const MOST_DERIVATIVES: usize = 300_000;
 
-/// What on request would have more lines than a compiler should be given.
+/// Returns the requested derivatives whose code would be too long for rustc, if there are any.
 fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
     let squared = model.nv() * model.nv();
     let elements = model.potentials.len()
@@ -232,23 +234,23 @@ fn too_long(model: &Model<'_>, requests: Requests) -> Option<&'static str> {
         .then_some("the derivatives of so many elements")
 }
 
-/// What some words need beside the model.
+/// Data that optional functions need in addition to the model.
 #[derive(Default)]
 struct Extras<'a, 'g> {
-    /// For `regressor`.
+    /// Base parameters, for `regressor`.
     identification: Option<Identification<'a, 'g>>,
-    /// For `packed`.
+    /// Row and column of each nonzero entry, for `packed`.
     entries: Option<Vec<(usize, usize)>>,
-    /// For `hamilton`.
+    /// Hamilton's equations, for `hamilton`.
     hamilton: Option<Hamilton<'g>>,
-    /// For `routh`.
+    /// Routh's equations, for `routh`.
     routh: Option<Routh<'g>>,
-    /// For `conserved`.
+    /// Conserved quantities, for `conserved`.
     conserved: Option<Vec<Conserved<'g>>>,
 }
 
-/// The cyclic coordinates for what eliminates them, if that is asked for; `None` where there are none, with
-/// the reason in `cx`.
+/// Returns the cyclic coordinates if Routh's equations are requested. The outer `None` means that there are
+/// none, or that the mechanism has constraints, with the error in `cx`.
 fn cyclic<'g>(
     model: &Model<'g>,
     requests: Requests,
@@ -273,7 +275,8 @@ fn cyclic<'g>(
     None
 }
 
-/// Constraints determine coordinates without inertia: momenta do not tell their velocities.
+/// Returns true if constraints determine coordinates without inertia. Momenta do not determine the velocities
+/// of such coordinates.
 fn has_massless(model: &Model<'_>) -> bool {
     model.constraints.iter().any(|c| c.determines)
 }
@@ -289,14 +292,14 @@ impl<'g> Extras<'_, 'g> {
     }
 }
 
-/// Row and column of the entries of the lower triangle that are not always zero, column by column.
+/// Returns row and column of the entries of the lower triangle that are not always zero, column by column.
 fn entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
     let n = mass.len();
     let all = (0..n).flat_map(|j| (j..n).map(move |i| (i, j)));
     all.filter(|(i, j)| !mass[*i][*j].is_zero()).collect()
 }
 
-/// All functions with their programs.
+/// Derives all functions with their programs.
 fn functions<'g>(
     (model, speeds): (&Model<'g>, Option<&Rc<InSpeeds<'g>>>),
     requests: Requests,
@@ -318,7 +321,7 @@ fn functions<'g>(
     let by_variants = facts.requests.derivatives && speeds.is_none();
     let variants = if by_variants { derivatives::variants(model, passes) } else { Vec::new() };
     let derivatives = Derivatives::new(model, &variants, passes, specialisation);
-    // How the derivatives of a large mechanism are put together is known only now.
+    // The structure of the derivatives of a large mechanism is known only at this point.
     let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
@@ -328,7 +331,7 @@ fn functions<'g>(
     functions
 }
 
-/// The last steps of lowering, which look at whole programs.
+/// Applies the last passes of lowering, which consider whole programs.
 fn finish(functions: &mut [Function]) {
     for f in functions {
         pipeline::begin(&f.name);
@@ -336,12 +339,13 @@ fn finish(functions: &mut [Function]) {
     }
 }
 
-/// The equations of motion in a line each; empty where they are too long to be read.
+/// Returns the equations of motion as plain text, one line per equation. The text is empty if the equations
+/// are too long to be readable.
 pub fn equations(model: &Model<'_>) -> String {
     written_alone(model).plain
 }
 
-/// The same as LaTeX: an `aligned` environment for math mode, with `amsmath`.
+/// Returns the equations of motion as LaTeX: an `aligned` environment for math mode, with `amsmath`.
 pub fn equations_latex(model: &Model<'_>) -> String {
     written_alone(model).latex
 }
@@ -353,8 +357,8 @@ fn written_alone(model: &Model<'_>) -> Written {
     written((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
 }
 
-/// The equations that are asked for; empty ones where readable ones would be too long, `None` where others
-/// are.
+/// Returns the requested form of the equations of motion. Readable equations are empty if they would be too
+/// long; other forms return `None` with the error in `cx`.
 fn printed<'g>(
     (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
@@ -387,7 +391,7 @@ fn printed<'g>(
                 ),
             }
         }
-        // Without constraints all velocities are independent, and the equations are the same.
+        // Without constraints all velocities are independent, and Kane's equations equal Lagrange's.
         Printed::Lagrange | Printed::Kane => {
             let equations = equations::derive(model, joints, mass, speeds, &Limits::ASKED);
             let named = speeds.map_or(model, |speeds| &speeds.model);
@@ -427,8 +431,8 @@ fn printed<'g>(
     }
 }
 
-/// The linear equations about declared equilibria, by name. `None` where one is none, with the reason in
-/// `cx`.
+/// Returns the equations linearised about each declared equilibrium, with its name. Returns `None` with the
+/// errors in `cx` if one of them has no linear equations.
 fn linear_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -455,7 +459,7 @@ fn written<'g>(
     equations.or_else(inertia).map_or_else(Written::default, |e| equations::written(named, &e))
 }
 
-/// A step from link to link.
+/// Lowers one step of the recursion from link to link.
 fn part(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).through(pipeline::PART)
 }

@@ -1,36 +1,36 @@
-//! Diagnostics: every stage adds to one list, and the pipeline stops between stages when the list is
-//! not empty. Knows no stage.
+//! Diagnostics of the compiler. All stages append errors to one list, and the pipeline stops between two
+//! stages if the list is not empty. This module depends on no stage.
 
 use proc_macro2::{Delimiter, Group, Literal, Span, TokenStream, TokenTree};
 use std::rc::Rc;
 
-/// Where something was said: a token of the user's source and, for an imported file, the line and column
-/// there.
+/// Source position of a diagnostic: a range of tokens of the user's source and, for an imported file, the
+/// line and column in that file.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// The first token that an error is shown at; for an imported file, the token of its path.
+    /// First token at which an error is shown; for an imported file, the token of its path.
     pub span: Span,
-    /// The last one.
+    /// Last token at which an error is shown.
     pub end: Span,
-    /// The position in the imported file, if the thing comes from one.
+    /// Position in the imported file, if the error is in one.
     pub file: Option<FilePosition>,
 }
 
 impl Place {
-    /// From the beginning of one place to the end of another.
+    /// Returns the range from the start of `self` to the end of `end`.
     pub fn to(&self, end: &Place) -> Place {
         Place { end: end.end, ..self.clone() }
     }
 }
 
-/// A position in an imported file, counted from one.
+/// Position in an imported file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FilePosition {
-    /// The file's path as the user wrote it.
+    /// Path of the file as the user wrote it.
     pub file: Rc<str>,
-    /// Line, from one.
+    /// Line, counted from one.
     pub line: u32,
-    /// Column, from one.
+    /// Column, counted from one.
     pub column: u32,
 }
 
@@ -40,7 +40,7 @@ impl From<Span> for Place {
     }
 }
 
-/// One mistake: what is wrong, where, and what to do about it.
+/// One error: its message, its position, and notes and help for the user.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     place: Place,
@@ -50,29 +50,30 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// A mistake without notes and help.
+    /// Creates an error without notes and help.
     pub fn new(place: impl Into<Place>, message: impl Into<String>) -> Diagnostic {
         Diagnostic { place: place.into(), message: message.into(), notes: Vec::new(), help: Vec::new() }
     }
 
-    /// Adds a line that says what else the mistake has to do with.
+    /// Adds a note: related information on the error.
     pub fn note(&mut self, text: impl Into<String>) -> &mut Diagnostic {
         self.notes.push(text.into());
         self
     }
 
-    /// True if nothing says how to mend it.
+    /// Returns true if the error has no help line.
     pub fn is_bare(&self) -> bool {
         self.help.is_empty()
     }
 
-    /// Adds a line that says how to mend it.
+    /// Adds a help line, which says how to correct the error.
     pub fn help(&mut self, text: impl Into<String>) -> &mut Diagnostic {
         self.help.push(text.into());
         self
     }
 
-    /// Adds "did you mean" for the candidate nearest to `name`, or else lists the candidates if they are few.
+    /// Adds "did you mean" for the candidate nearest to `name`. Without a near candidate, adds the list of
+    /// candidates if there are at most eight.
     pub fn suggest<'a>(
         &mut self,
         name: &str,
@@ -89,32 +90,32 @@ impl Diagnostic {
         self
     }
 
-    /// Where it is.
+    /// Returns the source position of the error.
     pub fn place(&self) -> &Place {
         &self.place
     }
 
-    /// What is wrong.
+    /// Returns the message without position, notes and help.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// What else it has to do with, a line each.
+    /// Returns the notes, one line each.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// How to mend it, a line each.
+    /// Returns the help lines.
     pub fn helps(&self) -> &[String] {
         &self.help
     }
 
-    /// One `compile_error!` at its token.
+    /// Returns a `compile_error!` at the tokens of the error.
     pub fn tokens(&self) -> TokenStream {
         compile_error(&self.place, &self.text())
     }
 
-    /// The message with the position in the imported file and all help lines, as the user reads it.
+    /// Returns the complete text for the user: position in the imported file, message, notes and help.
     pub fn text(&self) -> String {
         let mut text = match &self.place.file {
             Some(at) => format!("{}:{}:{}: {}", at.file, at.line, at.column, self.message),
@@ -129,15 +130,15 @@ impl Diagnostic {
     }
 }
 
-/// What stands between the message and the help of an error that passes through syn.
+/// Separator between message and help in the text of a [`syn::Error`].
 const HELP: &str = "\n\n= help: ";
 
-/// An error with a help line for those places where syn hands errors on.
+/// Creates a [`syn::Error`] with a help line, for parsers that return errors of `syn`.
 pub fn syn_error(span: Span, message: &str, help: &str) -> syn::Error {
     syn::Error::new(span, format!("{message}{HELP}{help}"))
 }
 
-/// The mistakes found so far.
+/// List of the errors found so far.
 #[derive(Default, Debug)]
 pub struct Diagnostics {
     errors: Vec<Diagnostic>,
@@ -146,33 +147,34 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// An empty list.
+    /// Creates an empty list.
     pub fn new() -> Diagnostics {
         Diagnostics::default()
     }
 
-    /// A list that nobody reads: it asks whether something is a mistake.
+    /// Creates a list that is never printed. Callers use it to test whether something is an error.
     pub fn unread() -> Diagnostics {
         Diagnostics { unread: true, ..Diagnostics::default() }
     }
 
-    /// True if the user will read the list.
+    /// Returns true if the list will be printed.
     pub fn is_read(&self) -> bool {
         !self.unread
     }
 
-    /// How many mistakes there are.
+    /// Returns the number of errors.
     pub fn len(&self) -> usize {
         self.errors.len()
     }
 
-    /// Reports a mistake. The message is lower case without a full stop, the user's words in backticks.
+    /// Reports an error and returns it for notes and help. The message is in lower case without a full stop,
+    /// with the user's identifiers in backticks.
     pub fn error(&mut self, place: impl Into<Place>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(Diagnostic::new(place, message));
         self.errors.last_mut().unwrap_or_else(|| unreachable!())
     }
 
-    /// Reports a mistake that syn found.
+    /// Reports the errors of a [`syn::Error`], with the help of [`syn_error`].
     pub fn syn(&mut self, error: syn::Error) {
         for one in error {
             let text = one.to_string();
@@ -184,28 +186,30 @@ impl Diagnostics {
         }
     }
 
-    /// Adds a mistake.
+    /// Adds an error.
     pub fn add(&mut self, one: Diagnostic) {
         self.errors.push(one);
     }
 
-    /// Adds what another list holds.
+    /// Moves all errors of another list to the end of this list.
     pub fn append(&mut self, mut other: Diagnostics) {
         self.errors.append(&mut other.errors);
     }
 
-    /// True if nothing was reported.
+    /// Returns true if no error was reported.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
-    /// Names with a number behind them, `leg_0` and `leg_1` of the list `leg`, stand for one thing in the
-    /// source: what is said of several of them alike is said once.
+    /// Sets the names of lists of elements. Errors that differ only in the index of an element, for example
+    /// `leg_0` and `leg_1` of the list `leg`, are then printed once, because both refer to the same source
+    /// text.
     pub fn count_alike(&mut self, lists: Vec<String>) {
         self.lists = lists;
     }
 
-    /// The mistakes in order, those of elements of one list that are alike once.
+    /// Returns the errors in order. Of errors that differ only in the index of a list element, only the first
+    /// is returned.
     pub fn distinct(&self) -> impl Iterator<Item = &Diagnostic> {
         let mut said = std::collections::BTreeSet::new();
         self.errors
@@ -213,7 +217,7 @@ impl Diagnostics {
             .filter(move |one| self.lists.is_empty() || said.insert(self.without_numbers(&one.message)))
     }
 
-    /// A message without the numbers of elements of lists.
+    /// Replaces the index of each list element in a message by `[]`.
     fn without_numbers(&self, message: &str) -> String {
         let is_word = |c: char| c.is_alphanumeric() || c == '_';
         let words = message.split_inclusive(|c| !is_word(c)).map(|word| {
@@ -227,18 +231,18 @@ impl Diagnostics {
         words.collect()
     }
 
-    /// The messages in order, as the user reads them.
+    /// Returns the complete texts of the errors in order.
     pub fn messages(&self) -> Vec<String> {
         self.distinct().map(Diagnostic::text).collect()
     }
 
-    /// One `compile_error!` for each mistake, at its token.
+    /// Returns one `compile_error!` per error, at its tokens.
     pub fn into_tokens(self) -> TokenStream {
         self.distinct().flat_map(Diagnostic::tokens).collect()
     }
 }
 
-/// `::core::compile_error! { "message" }`, shown from the first to the last token of the place.
+/// Returns `::core::compile_error! { "message" }`, shown from the first to the last token of `place`.
 fn compile_error(place: &Place, message: &str) -> TokenStream {
     let at = |mut token: TokenTree, span: Span| {
         token.set_span(span);
@@ -250,12 +254,12 @@ fn compile_error(place: &Place, message: &str) -> TokenStream {
     path.into_iter().map(|token| at(token, place.span)).chain([braces]).collect()
 }
 
-/// `a`, `a or b`, `a, b or c`.
+/// Joins the items as `a`, `a or b`, `a, b or c`.
 pub fn one_of(list: &[String]) -> String {
     joined(list, "or")
 }
 
-/// `a`, `a and b`, `a, b and c`.
+/// Joins the items as `a`, `a and b`, `a, b and c`.
 pub fn all_of(list: &[String]) -> String {
     joined(list, "and")
 }
@@ -268,9 +272,10 @@ fn joined(list: &[String], word: &str) -> String {
     }
 }
 
-/// The candidate with the smallest edit distance to `name`, if it is near enough to be a slip of the hand. A
-/// letter in the other case is the smallest of slips; something of the name must remain. Else the only
-/// candidate of whose words `name` is one: `elbow_joint` for `elbow`.
+/// Returns the candidate with the smallest edit distance to `name`, if the distance is small enough for a
+/// typing error. Names that differ only in case have distance zero, and at least one character must remain
+/// unchanged. Without a near candidate, returns the only candidate that contains `name` as a word:
+/// `elbow_joint` for `elbow`.
 pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let length = name.chars().count();
     let limit = (length / 3).clamp(1, 3);
@@ -289,7 +294,8 @@ pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
         .or(longer)
 }
 
-/// Edit distance with transpositions of neighbours counted as one edit (optimal string alignment).
+/// Returns the edit distance, with the transposition of two adjacent characters counted as one edit (optimal
+/// string alignment). Only the first 64 characters are compared.
 fn edit_distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().take(64).collect(), b.chars().take(64).collect());
     let mut before = vec![0; b.len() + 1];

@@ -33,11 +33,11 @@ pub use derive::{derive, derive_with, equations, equations_latex};
 pub use source::{Source, read};
 pub use syntax::second_definition;
 
-/// The whole compiler: `#[mechanism(arguments)] item` → the generated code, with one `compile_error!` for
-/// each mistake. Files are looked up in `folder`.
+/// Runs the whole compiler: translates `#[mechanism(arguments)] item` to the generated code, or to one
+/// `compile_error!` per error. Paths of files are relative to `folder`.
 pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
-    // What rustc has said of the struct's commas is not said again.
+    // rustc already reports missing and wrong commas of the struct.
     let item = syntax::separate(&item).map_or(item, |(separated, _)| separated);
     let Some(source) = read(arguments, item, folder, &mut cx) else {
         return Emitted { tokens: cx.into_tokens(), text: String::new() };
@@ -47,8 +47,8 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     if let Some((model, output)) = &output {
         return source.emit(model, output);
     }
-    // Of a robot whose file cannot be read even the sizes are unknown: whatever is said of them would be a
-    // second mistake.
+    // If an imported file could not be read, even the sizes of the mechanism are unknown. An interface with
+    // guessed sizes would only cause errors that follow from the first one.
     if !source.imported {
         return a_type_of_mistakes(&source, cx.distinct().map(Diagnostic::tokens));
     }
@@ -57,7 +57,8 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     emitted
 }
 
-/// The mistakes, the first of them in place of the struct, so that rustc says nothing of whatever uses it.
+/// Returns the errors as `compile_error!`. The first replaces the struct's definition, so that rustc reports
+/// no further errors where the type is used.
 fn a_type_of_mistakes(source: &Source, mut mistakes: impl Iterator<Item = TokenStream>) -> Emitted {
     let first = mistakes.next().unwrap_or_default();
     let mut tokens = emit::a_mistake_in_a_type(&source.mechanism.shell, &first);
@@ -65,8 +66,8 @@ fn a_type_of_mistakes(source: &Source, mut mistakes: impl Iterator<Item = TokenS
     Emitted { tokens, text: String::new() }
 }
 
-/// Of a struct whose derives come before the attribute and have seen its elements: one `compile_error!` for
-/// that, in place of the struct, and those of its grammar.
+/// Compiles a struct with a derive above the attribute: the derive has already seen the elements. Returns one
+/// `compile_error!` for the derive in place of the struct, and the errors of the struct's grammar.
 pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     let Some(source) = read(arguments, item, folder, &mut cx) else {
@@ -76,14 +77,15 @@ pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: 
     a_type_of_mistakes(&source, [error.tokens(), cx.into_tokens()].into_iter())
 }
 
-/// The error for a `#[derive(…)]` above the attribute, which is at this span.
+/// Returns the error for a `#[derive(…)]` above the attribute; `attribute` is the span of `#[mechanism]`.
 pub fn derive_above(attribute: proc_macro2::Span) -> Diagnostic {
     let mut error = Diagnostic::new(attribute, "`#[derive(…)]` stands above `#[mechanism]`");
     error.help("write it below: there it sees the struct without its elements, which do not stay");
     error
 }
 
-/// A mechanism as C99: the text of a source file and of its header. `None` with the reasons in `cx`.
+/// Compiles a mechanism to C99: the text of a source file and of its header. Returns `None` with the errors
+/// in `cx` if the mechanism or the options are not supported.
 pub fn export_c(
     source: &Source,
     options: &export::c::Options,
@@ -123,7 +125,7 @@ pub fn export_c(
         .ok()
 }
 
-/// The messages of the mistakes in a mechanism; empty if there is none.
+/// Returns the messages of all errors in a mechanism; the list is empty if the mechanism is valid.
 pub fn check(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
     let mut cx = Diagnostics::new();
     if let Some(source) = read(arguments, item, folder, &mut cx) {
@@ -132,7 +134,7 @@ pub fn check(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<St
     cx.messages()
 }
 
-/// Model and mechanics: the checked mechanism and everything that is generated from it.
+/// Builds the checked model of a mechanism and derives all generated functions from it.
 pub fn compile<'g>(
     source: &Source,
     graph: &'g Graph,
@@ -141,7 +143,7 @@ pub fn compile<'g>(
     compile_with(source, graph, passes::Passes::default(), cx)
 }
 
-/// [`compile`] with a choice of passes.
+/// Like [`compile`], with a choice of optimisation passes.
 pub fn compile_with<'g>(
     source: &Source,
     graph: &'g Graph,
@@ -154,7 +156,7 @@ pub fn compile_with<'g>(
     }
     let compiled = model_and_functions(source, graph, passes, cx);
     if graph.is_full() {
-        // What else is said is of expressions that are not all there.
+        // The other errors result from truncated expressions.
         *cx = Diagnostics::new();
         cx.error(source.mechanism.description.name.place.clone(), "the equations of this mechanism would be too long")
             .help("code without loops has a line for each of millions of operations: leave words out that ask for derivatives, or hold the bodies by shorter chains of joints and fewer elements");
@@ -179,8 +181,8 @@ fn model_and_functions<'g>(
     good.then_some((model, output))
 }
 
-/// Reports what is wrong with those parts of a mechanism that mistakes of its grammar do not touch: what has
-/// to do with them would only lead to further complaints.
+/// Checks the elements of a mechanism that are not affected by syntax errors. Elements that depend on wrong
+/// ones are not checked, because their errors would only follow from the syntax errors.
 pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     let Mechanism { reading, description, .. } = &source.mechanism;
     if let Some(rest) = reading.rest(description).filter(|_| source.imported) {
@@ -188,7 +190,7 @@ pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
     }
 }
 
-/// Puts what the user says of an output before the documentation of its function.
+/// Inserts the user's documentation of each output before the generated documentation of its functions.
 fn describe(output: &mut derive::Output, mechanism: &Mechanism) {
     let outputs = &mechanism.description.outputs;
     let notes = mechanism.shell.notes.iter().filter(|(name, _)| outputs.iter().any(|o| o.name.text == *name));
@@ -201,7 +203,8 @@ fn describe(output: &mut derive::Output, mechanism: &Mechanism) {
     }
 }
 
-/// Reports rates of states that depend on accelerations, which would depend on them in turn.
+/// Reports rates of states that depend on accelerations or reactions: accelerations depend on the rates of
+/// states, which would be circular. Returns true if there are none.
 fn check_rates(description: &Description, functions: &[derive::Function], cx: &mut Diagnostics) -> bool {
     let before = cx.len();
     for (state, _) in &description.states {
@@ -221,7 +224,8 @@ fn check_rates(description: &Description, functions: &[derive::Function], cx: &m
     cx.len() == before
 }
 
-/// Reports outputs that would be functions of the same name as others, or of none that a function can have.
+/// Reports outputs whose functions would have the name of another function, or a name that no function can
+/// have.
 fn check_outputs(
     description: &Description,
     functions: &[derive::Function],

@@ -25,8 +25,8 @@ pub const CALL: u32 = 50 * CYCLE;
 /// parallelism the processor is busy in any order, and scheduling only increases register pressure.
 pub const MOST_PARALLELISM: f64 = 5.0;
 
-/// Approximate number of instructions that the first-level cache holds. Those of a larger program are fetched
-/// on each call.
+/// Approximate number of instructions that the first-level cache holds. Instructions of a larger program are
+/// fetched on each call.
 pub const CACHED_INSTRUCTIONS: usize = 4000;
 
 /// Returns the cost of an instruction by its number of lanes, in tenths of an instruction on one lane. Eight

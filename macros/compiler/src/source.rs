@@ -1,4 +1,4 @@
-//! A mechanism as it was read, with its file, and what the outside sees of it.
+//! A mechanism as read from the struct and its imported file, and its public interface.
 
 use crate::catalogue::{self, ConstraintFacts, ContactSizes, Facts};
 use crate::diag::Diagnostics;
@@ -8,17 +8,18 @@ use crate::{derive, import, mechanism, resolve};
 use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
 
-/// A mechanism as read, with its file.
+/// A mechanism as read, with its imported file.
 pub struct Source {
-    /// What the struct and the file say.
+    /// Contents of the struct and of the file.
     pub mechanism: Mechanism,
-    /// Where the files are that were read.
+    /// Paths of all files that were read.
     files: Vec<PathBuf>,
-    /// The file, if one is named, could be read.
+    /// False if the mechanism imports a file that could not be read.
     pub(crate) imported: bool,
 }
 
-/// Syntax and import: what the user wrote, from tokens and file. `None` if there is nothing to go on.
+/// Parses the struct and imports its file. Returns `None` if the item is not a struct that can be analysed
+/// further.
 pub fn read(
     arguments: TokenStream,
     item: TokenStream,
@@ -43,7 +44,7 @@ pub fn read(
     Some(Source { mechanism, files, imported: cx.len() == before })
 }
 
-/// Puts the contents of a file before those of the struct.
+/// Merges the imported file into the description. Elements of the file precede those of the struct.
 fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
     let Mechanism { description, shell, .. } = mechanism;
     for field in &imported.fields {
@@ -77,7 +78,7 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     }
     description.bodies.extend(own_bodies);
     description.joints.extend(own_joints);
-    // Those of the file come first.
+    // Limits of the file come first.
     description.limits.splice(0..0, imported.limits);
     description.collisions = imported.collisions;
     description.contacts.splice(0..0, imported.contacts);
@@ -96,23 +97,23 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
 }
 
 impl Source {
-    /// The fields that are tables, with the numbers of their variables.
+    /// Returns the fields that are tables, with the number of variables of each.
     pub fn tables(&self) -> Vec<(String, usize)> {
         let tables = &self.mechanism.description.tables;
         tables.iter().map(|table| (table.name.text.clone(), table.variables)).collect()
     }
 
-    /// What every joint joins, in a line each.
+    /// Returns one line per joint with its type and the bodies that it connects.
     pub fn structure(&self) -> Vec<String> {
         self.mechanism.description.joints.iter().map(structure_line).collect()
     }
 
-    /// The code of the mechanism that was compiled.
+    /// Emits the code of the compiled mechanism.
     pub fn emit(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Emitted {
         emit::emit_mechanism(&self.interface(m, output), output)
     }
 
-    /// What the outside sees of the mechanism.
+    /// Returns the public interface of the compiled mechanism.
     fn interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
         let bare = self.bare_interface();
         let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
@@ -139,7 +140,7 @@ impl Source {
         }
     }
 
-    /// The part of the interface that needs no model.
+    /// Returns the part of the interface that does not depend on the model.
     fn bare_interface(&self) -> Interface<'_> {
         let d = &self.mechanism.description;
         Interface {
@@ -167,7 +168,7 @@ impl Source {
         }
     }
 
-    /// The interface of a mechanism that failed to compile, as far as it can be guessed.
+    /// Emits the interface of a mechanism that failed to compile, as far as it can be guessed.
     pub(crate) fn emit_failed(&self) -> Emitted {
         let outline = resolve::outline(&self.mechanism.description);
         let facts = self.guess(&outline);
@@ -178,7 +179,7 @@ impl Source {
                 continue;
             }
             for f in catalogue::output(&output.name, output.size, output.uses, &facts) {
-                // An output may have the wrong name.
+                // The name of an output may be invalid.
                 if !catalogue::has(&f.name, &facts) && functions.iter().all(|known| known.name != f.name) {
                     functions.push(f);
                 }
@@ -234,7 +235,8 @@ impl Source {
         emit_failed(&interface, &functions, &constants)
     }
 
-    /// What signatures of a mechanism that failed to compile depend on, as far as it can be guessed.
+    /// Guesses the properties of a mechanism that failed to compile on which the signatures of its functions
+    /// depend.
     fn guess(&self, outline: &resolve::Outline) -> Facts {
         let (description, requests) = (&self.mechanism.description, self.mechanism.requests);
         let kinematic = description.inertias == syntax::Inertias::None;
@@ -267,7 +269,7 @@ impl Source {
                 ContactSizes { count: 1, rates: 1 }
             },
             bodies: outline.bodies.len(),
-            // How many base parameters there are, only the equations could tell.
+            // Only the equations determine the number of base parameters.
             base: 7 * nv,
             parameters: description.parameters.len(),
             equilibria: description.equilibria.len(),
@@ -277,12 +279,12 @@ impl Source {
     }
 }
 
-/// True for names that neither Rust nor what is generated needs.
+/// Returns true for valid identifiers that are not reserved for generated items.
 pub(crate) fn can_be_a_function(name: &str) -> bool {
     syn::parse_str::<syn::Ident>(name).is_ok() && !catalogue::is_constant(name) && !name.starts_with("__")
 }
 
-/// What a joint joins, in a line of the documentation.
+/// Returns the documentation line of a joint: its type and the bodies that it connects.
 fn structure_line(joint: &syntax::Joint) -> String {
     let kind = syntax::joint_kind::kind_word(joint.kind);
     let (parent, child) = (&joint.parent.body.text, &joint.child.body.text);

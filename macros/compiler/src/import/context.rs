@@ -1,5 +1,5 @@
-//! Byte offsets of an imported file → [`Place`]s, and the file's mistakes → [`Diagnostics`].
-//! Knows no file format.
+//! Context of an import: converts byte offsets of files to [`Place`]s and reports errors to [`Diagnostics`].
+//! This module knows no file format.
 
 use crate::diag::{Diagnostic, Diagnostics, FilePosition, Place};
 use crate::syntax::Name;
@@ -7,37 +7,39 @@ use proc_macro2::Span;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-/// Mistakes of one file that are reported; a file that is not what it claims to be has thousands.
+/// Maximum number of reported errors of one import. A file of the wrong kind may have thousands.
 const MISTAKES_SHOWN: usize = 32;
 
-/// Bytes from one known position to the next.
+/// Distance in bytes between stored positions.
 const BLOCK: usize = 256;
 
-/// A file that was read.
+/// File that was read.
 struct File<'a> {
     text: &'a str,
     path: Rc<str>,
-    /// Line and column at the start of every block: without them, each place would cost a pass over the file.
+    /// Line and column at the start of every block. Otherwise each position would require a pass over the
+    /// file.
     blocks: Vec<(u32, u32)>,
 }
 
-/// From which byte on the whole text comes from which byte of which file.
+/// Piece of the composed text that is copied from one file.
 #[derive(Clone, Copy)]
 pub(super) struct Piece {
-    /// Its first byte in the whole text.
+    /// Offset of the piece in the composed text.
     pub(super) start: usize,
-    /// The file, by number.
+    /// Index of the file.
     pub(super) file: usize,
-    /// The byte there.
+    /// Offset of the piece in the file.
     pub(super) offset: usize,
 }
 
-/// Positions in one file, or in several that make one text, and their mistakes so far.
+/// Positions in a file, or in a text composed of several files, and the errors found so far.
 pub(super) struct Cx<'a> {
     files: Vec<File<'a>>,
     pieces: Vec<Piece>,
     span: Span,
-    /// What the parsed text has that the file has not: where it begins, its bytes, its characters.
+    /// Difference between the parsed text and the file: offset of the insertion, number of bytes, number of
+    /// characters.
     added: (usize, usize, u32),
     diagnostics: &'a mut Diagnostics,
     mistakes: usize,
@@ -46,14 +48,14 @@ pub(super) struct Cx<'a> {
 }
 
 impl<'a> Cx<'a> {
-    /// The context of the file `text`, named by `path`.
+    /// Creates the context of the file `text` at `path`.
     pub(super) fn new(text: &'a str, path: &Name, diagnostics: &'a mut Diagnostics) -> Cx<'a> {
         let piece = Piece { start: 0, file: 0, offset: 0 };
         Cx::of_pieces(&[(text, &path.text)], vec![piece], path.place.span, diagnostics)
     }
 
-    /// The context of a text that is put together from pieces of files, each with its path; the first piece
-    /// begins it.
+    /// Creates the context of a text that is composed of pieces of files. `files` contains text and path of
+    /// each file; the first piece starts at offset zero.
     pub(super) fn of_pieces(
         files: &[(&'a str, &str)],
         pieces: Vec<Piece>,
@@ -73,13 +75,13 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// Places are from now on those of a text that has `more` than the file, in a line, from the byte at
-    /// `offset` on.
+    /// Declares that the parsed text differs from the file: `more`, a text without line breaks, is inserted
+    /// at byte `offset`. Later positions refer to the parsed text.
     pub(super) fn add(&mut self, offset: usize, more: &str) {
         self.added = (offset, more.len(), more.chars().count() as u32);
     }
 
-    /// The file, and the offset in it, of an offset in the parsed text.
+    /// Converts an offset in the parsed text to the index of a file and the offset in that file.
     fn in_file(&self, offset: usize) -> (usize, usize) {
         let (start, bytes, _) = self.added;
         let offset = if offset <= start { offset } else { offset.saturating_sub(bytes).max(start) };
@@ -88,14 +90,14 @@ impl<'a> Cx<'a> {
         piece.map_or((0, offset), |piece| (piece.file, piece.offset + (offset - piece.start)))
     }
 
-    /// The place of the byte at `offset`.
+    /// Returns the source position of the byte at `offset` of the parsed text.
     pub(super) fn place(&self, offset: usize) -> Place {
         let (file, offset) = self.in_file(offset);
         let (line, column) = self.files[file].position(offset);
         self.place_at(file, line, column)
     }
 
-    /// The place at a line and a column of the parsed text, both from one.
+    /// Returns the source position for a line and a column of the parsed text, both counted from one.
     pub(super) fn parsed_at(&self, line: u32, column: u32) -> Place {
         let (start, _, characters) = self.added;
         let (first, from) = self.files[0].position(start);
@@ -105,25 +107,26 @@ impl<'a> Cx<'a> {
         self.place_at(0, line, column.saturating_sub(characters).max(from))
     }
 
-    /// The place at a line and a column of a file, both from one.
+    /// Returns the source position for a line and a column of a file, both counted from one.
     fn place_at(&self, file: usize, line: u32, column: u32) -> Place {
         let file = Some(FilePosition { file: self.files[file].path.clone(), line, column });
         Place { span: self.span, end: self.span, file }
     }
 
-    /// The place of the end of the file.
+    /// Returns the source position of the end of the file.
     pub(super) fn end(&self) -> Place {
         let (line, column) = self.files[0].position(usize::MAX);
         self.place_at(0, line, column)
     }
 
-    /// The file's bytes in a range of the parsed text, if they are whole characters.
+    /// Returns the text of the file in a range of the parsed text. Returns `None` if the range spans several
+    /// files or splits a character.
     pub(super) fn slice(&self, range: std::ops::Range<usize>) -> Option<&'a str> {
         let ((file, start), (other, end)) = (self.in_file(range.start), self.in_file(range.end));
         self.files[file].text.get(start..end).filter(|_| file == other)
     }
 
-    /// Reports a mistake; `mend` adds the help.
+    /// Reports an error; `mend` adds the help.
     pub(super) fn error(
         &mut self,
         place: &Place,
@@ -132,7 +135,7 @@ impl<'a> Cx<'a> {
     ) {
         let message = message.into();
         let at = place.file.as_ref().map_or((0, 0), |at| (at.line, at.column));
-        // What a default says wrongly is said for everything that has it.
+        // // An error in a default is found again at every element that uses the default.
         if !self.reported.insert((at, message.clone())) {
             return;
         }
@@ -146,7 +149,7 @@ impl<'a> Cx<'a> {
         }
     }
 
-    /// Reports a mistake that a file has all over, once: `help` tells it from others.
+    /// Reports only the first of many similar errors in a file. Errors with the same `help` are similar.
     pub(super) fn habit(&mut self, place: &Place, message: String, help: &'static str) {
         if self.habits.contains(&help) {
             self.mistakes += 1;
@@ -156,7 +159,7 @@ impl<'a> Cx<'a> {
         self.error(place, message, |d| d.help(help));
     }
 
-    /// True if this file had a mistake.
+    /// Returns true if an error was reported.
     pub(super) fn failed(&self) -> bool {
         self.mistakes > 0
     }
@@ -173,7 +176,7 @@ impl<'a> File<'a> {
         File { text, path: Rc::from(path), blocks }
     }
 
-    /// Line and column of a byte; of the end, if it is behind that.
+    /// Returns line and column of a byte. Offsets beyond the end return the position of the end.
     fn position(&self, offset: usize) -> (u32, u32) {
         let offset = offset.min(self.text.len());
         let block = offset / BLOCK;
@@ -182,7 +185,7 @@ impl<'a> File<'a> {
     }
 }
 
-/// The position behind a byte: columns count characters, as editors do.
+/// Returns the position after a byte. Columns count characters, as editors do.
 fn advance((line, column): (u32, u32), byte: &u8) -> (u32, u32) {
     match byte {
         b'\n' => (line + 1, 1),
@@ -191,7 +194,7 @@ fn advance((line, column): (u32, u32), byte: &u8) -> (u32, u32) {
     }
 }
 
-/// The user's word in backticks, shortened if it is no word.
+/// Returns a word of the file in backticks, truncated after 60 characters.
 pub(super) fn quote(word: &str) -> String {
     match word.char_indices().nth(60) {
         Some((end, _)) => format!("`{}…`", &word[..end]),
@@ -199,7 +202,7 @@ pub(super) fn quote(word: &str) -> String {
     }
 }
 
-/// The first of many words, each in backticks.
+/// Returns the words, each in backticks. Words after the eighth are replaced by an ellipsis.
 pub(super) fn quote_all<'n>(words: impl Iterator<Item = &'n str>) -> String {
     let mut list: Vec<String> = words.take(9).map(quote).collect();
     if list.len() == 9 {
@@ -208,7 +211,7 @@ pub(super) fn quote_all<'n>(words: impl Iterator<Item = &'n str>) -> String {
     list.join(", ")
 }
 
-/// `file:line:column` of a place, for the help of another one.
+/// Returns `file:line:column` of a position, for the help text of another error.
 pub(super) fn position(place: &Place) -> String {
     match &place.file {
         Some(at) => format!("{}:{}:{}", at.file, at.line, at.column),

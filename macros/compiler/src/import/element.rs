@@ -1,35 +1,36 @@
-//! One XML element → its children, numbers and names, each checked and with its place.
-//! Knows no particular element.
+//! Checked access to the children, attributes, numbers and names of one XML element, each with its source
+//! position. This module knows no particular element.
 
 use super::context::{Cx, position, quote, quote_all};
 use crate::diag::{Place, nearest};
 use crate::import::imported::Placed;
 use crate::syntax::Name;
 
-/// An element of the file.
+/// XML element of the file.
 pub(super) type Node<'a> = roxmltree::Node<'a, 'a>;
 
-/// An attribute of an element.
+/// Attribute of an XML element.
 pub(super) type Attribute<'a> = roxmltree::Attribute<'a, 'a>;
 
-/// The place of an element.
+/// Returns the source position of an element.
 pub(super) fn place(node: Node<'_>, cx: &Cx<'_>) -> Place {
     cx.place(node.range().start)
 }
 
-/// `<name>` of an element, in backticks.
+/// Returns `<name>` of an element, in backticks.
 pub(super) fn tag(node: Node<'_>) -> String {
     quote(&format!("<{}>", node.tag_name().name()))
 }
 
-/// The child elements of the file's own vocabulary; those with another prefix are extensions.
+/// Returns the child elements in the namespace of the element itself. Children with another prefix are
+/// extensions of other tools.
 pub(super) fn elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     let namespace = node.tag_name().namespace();
     node.children().filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
 }
 
-/// The child elements named in `known`, at most one of each. Others are ignored, unless they look like
-/// a slip of the hand: ignoring `<inertal>` would silently take a body's mass away.
+/// Returns the child elements named in `known`, at most one of each. Other children are ignored, unless their
+/// name looks like a typing error: ignoring `<inertal>` would silently remove a body's mass.
 pub(super) fn children<'a, const N: usize>(
     node: Node<'a>,
     known: [&str; N],
@@ -53,7 +54,7 @@ fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
     cx.error(&place(child, cx), message, |d| d.help(format!("the first is at {first}")));
 }
 
-/// Reports an element whose name is nearly one of `known`.
+/// Reports an element whose name is similar to, but not in, `known`.
 pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
     if known.contains(&node.tag_name().name()) {
         return;
@@ -64,8 +65,8 @@ pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>
     }
 }
 
-/// Reports the required attributes that are missing, and attributes that look like a misspelt one.
-/// One mistake for both: the misspelt attribute is the missing one.
+/// Reports missing required attributes and misspelt attributes. A misspelt required attribute is one error,
+/// not two.
 pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&str], cx: &mut Cx<'_>) {
     let mut missing: Vec<&str> = required.iter().copied().filter(|name| !node.has_attribute(*name)).collect();
     let known = |name: &str| required.contains(&name) || optional.contains(&name);
@@ -86,9 +87,9 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
     }
 }
 
-/// Reports all contents of an element of the file's own vocabulary except attributes with these names: other
-/// attributes, text and child elements, which would be ignored. Attributes in `foreign` belong to other
-/// tools.
+/// Reports all contents of an element except attributes in `required`, `optional` and `foreign`: other
+/// attributes, text and child elements of the same namespace would be ignored silently. Attributes in
+/// `foreign` belong to other tools.
 pub(super) fn check_only(
     node: Node<'_>,
     required: &[&str],
@@ -122,7 +123,7 @@ pub(super) fn check_only(
     }
 }
 
-/// Reports attributes other than those in `known` of an element whose values are its text or its elements.
+/// Reports attributes other than `known` of an element whose values are text or child elements.
 pub(super) fn check_plain(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
     check_attributes(node, &[], known, cx);
     let unknown = node.attributes().filter(|a| a.namespace().is_none() && !known.contains(&a.name()));
@@ -139,7 +140,8 @@ fn expected(element: &str, attributes: &[&str]) -> String {
     format!("expected `<{element}{attributes}/>`")
 }
 
-/// The child `element` of `node`, which must be there; `attributes` are those of the child.
+/// Returns the required child `element` of `node`, or reports that it is missing. `attributes` are the
+/// attributes of the child that the help text shows.
 pub(super) fn required<'a>(
     child: Option<Node<'a>>,
     node: Node<'_>,
@@ -154,7 +156,7 @@ pub(super) fn required<'a>(
     child
 }
 
-/// A name, if the attribute is there; an empty one is a mistake.
+/// Returns the name in an attribute, if the attribute is present. Reports an empty name.
 pub(super) fn name(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
     let found = node.attribute_node(attribute)?;
     let (text, place) = (found.value().to_string(), cx.place(found.range_value().start));
@@ -166,13 +168,14 @@ pub(super) fn name(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<N
     Some(Name { text, place })
 }
 
-/// A finite number, if the attribute is there and holds one.
+/// Returns the finite number in an attribute, if the attribute is present and valid. Reports invalid values.
 pub(super) fn number(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
     let Placed { value: [value], place } = numbers(node, attribute, cx)?;
     Some(Placed { value, place })
 }
 
-/// Finite numbers with spaces between them, if the attribute is there and holds as many.
+/// Returns the `N` finite numbers in an attribute, separated by spaces, if the attribute is present and
+/// valid.
 pub(super) fn numbers<const N: usize>(
     node: Node<'_>,
     attribute: &str,
@@ -182,7 +185,7 @@ pub(super) fn numbers<const N: usize>(
     read_numbers(found.value(), found.range_value(), attribute, cx)
 }
 
-/// Finite numbers with spaces between them that an element contains.
+/// Returns the `N` finite numbers in the text of an element, separated by spaces.
 pub(super) fn content<const N: usize>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Placed<[f64; N]>> {
     match node.children().find(|child| child.is_text()) {
         Some(text) => read_numbers(text.text().unwrap_or_default(), text.range(), node.tag_name().name(), cx),
@@ -190,7 +193,7 @@ pub(super) fn content<const N: usize>(node: Node<'_>, cx: &mut Cx<'_>) -> Option
     }
 }
 
-/// The word that an element contains, with its place.
+/// Returns the trimmed text of an element with its source position; `None` if it is empty.
 pub(super) fn word(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
     let found = node.children().find(|child| child.is_text())?;
     let whole = found.text()?;
@@ -208,7 +211,7 @@ fn read_numbers<const N: usize>(
     let start = range.start;
     let place = cx.place(start + text.len() - text.trim_start().len());
     if text.contains(',') {
-        // One habit is one mistake, however many vectors of the file have it.
+        // // Decimal commas usually occur in all vectors of a file and are reported once.
         let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
         let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
         cx.habit(&place, message, if N == 1 { POINT } else { SEPARATE });
@@ -222,14 +225,14 @@ fn read_numbers<const N: usize>(
         cx.error(&place, message, |d| d.help(missing));
         return None;
     }
-    // References (`&#32;`) in the value move its words away from their places in the file.
+    // // Character references (`&#32;`) change the offsets of the words after them.
     let verbatim = cx.slice(range) == Some(text);
     let mut value = [0.0; N];
     let mut good = true;
     for (k, word) in text.split_ascii_whitespace().enumerate() {
         let offset = if verbatim { word.as_ptr() as usize - text.as_ptr() as usize } else { 0 };
         match word.parse::<f64>() {
-            // Adding zero turns −0 into 0.
+            // // Adding zero converts −0 to 0.
             Ok(number) if number.is_finite() => value[k] = number + 0.0,
             Ok(_) => {
                 good = false;
@@ -246,12 +249,12 @@ fn read_numbers<const N: usize>(
     good.then_some(Placed { value, place })
 }
 
-/// Largest angle that is taken for one in radians however it is written: a full turn, and more than any
-/// rounding adds to it.
+/// Largest angle, rad, that is accepted as radians in any notation: a full revolution with a margin for
+/// rounding.
 const LARGEST_TURN: f64 = 7.0;
 
-/// Reports angles of an orientation that are most likely degrees, whole and half ones beyond a full turn:
-/// files have multiples of π too. `help` says what the format takes.
+/// Reports angles that are most likely in degrees: multiples of ½ beyond a full revolution. Multiples of π
+/// are accepted. `help` states the unit of the format.
 pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, cx: &mut Cx<'_>) {
     let is_likely = |n: &&f64| n.abs() > LARGEST_TURN && (2.0 * **n).fract() == 0.0;
     let Some(n) = angles.iter().find(is_likely) else { return };

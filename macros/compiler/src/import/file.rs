@@ -1,4 +1,4 @@
-//! A path → the text of the file. Knows no file format.
+//! Reading of files. This module knows no file format.
 
 use super::context::quote;
 use crate::diag::{Diagnostics, nearest};
@@ -8,18 +8,18 @@ use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// Largest file that is read, in bytes. The largest published robots take less than one mebibyte.
+/// Largest size of a file, bytes. The largest published robots take less than one mebibyte.
 pub const LARGEST_FILE: usize = 16 << 20;
 
-/// Neighbours of a missing file that are looked at.
+/// Maximum number of entries of a folder that are searched for names similar to a missing file.
 const NEIGHBOURS: usize = 1000;
 
-/// Characters without width that Unicode does not count as blanks: a zero-width space, a word joiner, a byte
+/// Zero-width characters that Unicode does not count as whitespace: zero-width space, word joiner and byte
 /// order mark.
 const INVISIBLE: [char; 3] = ['\u{200b}', '\u{2060}', '\u{feff}'];
 
-/// Returns a text without a byte order mark at its start, and with spaces in the place of invisible
-/// characters that parsers of XML and of numbers do not know, such as no-break spaces.
+/// Removes a byte order mark at the start of a text, and replaces whitespace and invisible characters that
+/// parsers of XML and of numbers do not know, such as no-break spaces, by spaces.
 pub fn with_plain_blanks(text: &str) -> Cow<'_, str> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_strange = |c: char| !c.is_ascii() && (c.is_whitespace() || INVISIBLE.contains(&c));
@@ -29,12 +29,12 @@ pub fn with_plain_blanks(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Reads the file at `path`; `options` say what the user wrote, and where.
+/// Reads the file at `path`. `options` contain the path as the user wrote it and its source position.
 pub fn read_file(path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<String> {
     read_named(path, &options.path, options.format, cx)
 }
 
-/// Reads the file at `path`, which is written as `name`, and where that stands.
+/// Reads the file at `path`. `name` is the path as shown in messages, with its source position.
 pub(super) fn read_named(
     path: &Path,
     name: &Name,
@@ -54,7 +54,7 @@ pub(super) fn read_named(
     None
 }
 
-/// The reason not to open a file. A pipe or a device might never end.
+/// Returns the reason not to open a file, if there is one. Reading a pipe or a device might never end.
 fn refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
     match () {
         _ if about.is_dir() => Some(format!("is a directory, expected {}", format.article())),
@@ -64,17 +64,18 @@ fn refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
     }
 }
 
-/// What is wrong with a file that is larger than any robot's description.
+/// Returns the error text for a file that exceeds the maximum size.
 pub(super) fn too_large(bytes: u64) -> String {
     format!("has {} MiB, expected at most {} MiB", bytes.div_ceil(1 << 20), LARGEST_FILE >> 20)
 }
 
-/// Reports a mistake of the file as a whole.
+/// Reports an error of the file as a whole.
 pub(super) fn report(reason: &str, name: &Name, cx: &mut Diagnostics) {
     cx.error(name.place.clone(), format!("{} {reason}", quote(&name.text)));
 }
 
-/// The bytes of the file, one more than is allowed if it grew meanwhile.
+/// Reads the bytes of the file. If the file has grown since the check, at most one byte more than the maximum
+/// size is read.
 fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     fs::File::open(path)?.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
@@ -115,7 +116,7 @@ fn report_unreadable(
             let neighbours = neighbours(path, written, format);
             let near = nearest(written, &neighbours.iter().map(String::as_str).collect::<Vec<_>>());
             diagnostic.suggest(written, neighbours.iter().map(String::as_str));
-            // Where it was looked for matters only if the name itself seems right.
+            // // The path is shown only if the name has no similar neighbour.
             if near.is_none() {
                 diagnostic.help(format!("looked for `{}`", path.display()));
             }
@@ -123,7 +124,8 @@ fn report_unreadable(
     }
 }
 
-/// The files of the format beside a missing one, written as the user would write them.
+/// Returns the files of the same format in the folder of a missing file, with the path as the user would
+/// write it.
 fn neighbours(path: &Path, written: &str, format: FileFormat) -> Vec<String> {
     let Some(Ok(entries)) = path.parent().map(|folder| match folder.as_os_str().is_empty() {
         true => fs::read_dir("."),
@@ -138,7 +140,7 @@ fn neighbours(path: &Path, written: &str, format: FileFormat) -> Vec<String> {
         format.endings().iter().any(|known| end.eq_ignore_ascii_case(known))
     };
     let mut list: Vec<String> = names.filter(is_description).map(|name| format!("{stem}{name}")).collect();
-    // The order of a directory differs from machine to machine.
+    // // The order of directory entries depends on the machine.
     list.sort();
     list
 }

@@ -1,50 +1,51 @@
-//! What is made of a file.
+//! Result of an import.
 
 use crate::diag::Place;
 use crate::syntax::figures::FileField;
 use crate::syntax::{Body, Collision, Constraint, Contact, Drive, Expr, Joint, Limit, Name, Visual};
 use std::path::PathBuf;
 
-/// What a file describes.
+/// Mechanism that a file describes.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// The links, a parent before its children.
+    /// Bodies of the links, each after its parent.
     pub bodies: Vec<Body>,
-    /// The joints in coordinate order: the root's, then depth first, alphabetical under one link.
+    /// Joints in coordinate order: first the root's joint, then depth first. Joints of one parent are sorted
+    /// by name.
     pub joints: Vec<Joint>,
     /// Springs, dampers, rotors and motors on coordinates.
     pub drives: Vec<Drive>,
-    /// Rayleigh's functions of what has no coordinate of its own.
+    /// Rayleigh dissipation functions: damping of ball and free joints, and drag of the surrounding fluid.
     pub dissipations: Vec<(Name, Expr)>,
-    /// Conditions on coordinates.
+    /// Constraints on coordinates.
     pub constraints: Vec<Constraint>,
-    /// Gravity, m/s², if the format says something of it.
+    /// Gravitational acceleration, m/s²; `None` if the format does not specify one.
     pub gravity: Option<Expr>,
     /// Limits of the joints.
     pub limits: Vec<Limit>,
-    /// Fields that hold figures of the file.
+    /// Fields of the mechanism that hold values of the file.
     pub fields: Vec<FileField>,
-    /// The file's root is the ground itself.
+    /// True if the root of the file is the ground.
     pub is_ground: bool,
-    /// What touches what, if it was asked for.
+    /// Contact pairs, if the options request them.
     pub contacts: Vec<Contact>,
-    /// Collision geometry of the links, if it was asked for.
+    /// Collision geometry of the links, if the options request it.
     pub collisions: Vec<Collision>,
-    /// Visual geometry of the links, if it was asked for.
+    /// Visual geometry of the links, if the options request it.
     pub visuals: Vec<Visual>,
-    /// Numbers that were rounded, as the user asked for: joint, entry, what it was, what it is.
+    /// Descriptions of the values that were rounded on request: joint, entry, value before and after.
     pub snapped: Vec<String>,
-    /// What is in the file and not in the mechanism.
+    /// Descriptions of contents of the file that the mechanism does not represent.
     pub left_out: Vec<String>,
-    /// Further files that were read.
+    /// Paths of included files.
     pub files: Vec<PathBuf>,
 }
 
-/// A value with its place.
+/// Value with its source position.
 #[derive(Clone, Debug)]
 pub struct Placed<T> {
-    /// The value.
+    /// Value as written in the file.
     pub value: T,
-    /// Its place.
+    /// Source position of the value.
     pub place: Place,
 }

@@ -1,8 +1,8 @@
-//! Files of other formats → the lists of bodies and joints of a [`Description`](crate::syntax::Description),
-//! with line and column of every word and number.
+//! Importers of URDF, MJCF and SDF files. They produce the bodies and joints of a
+//! [`Description`](crate::syntax::Description), with line and column of every name and number.
 //!
-//! Knows XML, URDF, MJCF and SDF; no mechanics. It does not judge masses and inertias, and it does not read
-//! geometry, limits, transmissions or the extensions of simulators.
+//! The importers know no mechanics: they do not check masses and inertias. URDF transmissions and the
+//! extensions of simulators are not read.
 
 use crate::diag::Diagnostics;
 use crate::syntax::FileFormat;
@@ -28,11 +28,11 @@ mod tests;
 pub use file::{LARGEST_FILE, read_file, with_plain_blanks};
 pub use imported::Imported;
 
-/// Reads the text of a file; other files that it names are looked up beside it, at `options.path` in
-/// `folder`.
+/// Reads the text of a file. Paths of other files are relative to the folder of the file, which is
+/// `options.path` in `folder`.
 ///
-/// Every mistake is reported to `cx`, at the option's literal and with the file's own line and column;
-/// `None` if there was any.
+/// Reports every error to `cx`, at the path's literal in the attribute and with line and column in the file.
+/// Returns `None` if there is an error.
 pub fn import(text: &str, folder: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
     if text.len() > LARGEST_FILE {
         file::report(&file::too_large(text.len() as u64), &options.path, cx);

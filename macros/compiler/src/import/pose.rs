@@ -1,91 +1,91 @@
-//! Rotations and positions as numbers.
+//! Numeric rotations, positions and symmetric matrices of the importers.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// A vector.
+/// Vector with three components.
 pub(in crate::import) type Vector = [f64; 3];
 
-/// A matrix by rows; of a rotation, its columns are the carried axes.
+/// Matrix stored by rows. The columns of a rotation matrix are the axes of the rotated frame.
 pub(in crate::import) type Matrix = [[f64; 3]; 3];
 
-/// No rotation.
+/// Identity matrix.
 pub(in crate::import) const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// What rounding leaves of zero.
+/// Maximum magnitude of rounding errors of zero.
 const ROUNDING: f64 = 1e-15;
 
-/// A frame in another one.
+/// Pose of a frame relative to a reference frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::import) struct Pose {
-    /// Its origin.
+    /// Origin of the frame, in the axes of the reference frame.
     pub(in crate::import) at: Vector,
-    /// Its axes.
+    /// Rotation matrix; its columns are the axes of the frame.
     pub(in crate::import) axes: Matrix,
 }
 
 impl Pose {
-    /// The other frame itself.
+    /// Identity pose.
     pub(in crate::import) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
 
-    /// The pose of the other frame in this one.
+    /// Returns the inverse: the pose of the reference frame relative to this frame.
     pub(in crate::import) fn back(&self) -> Pose {
         let axes = transpose(&self.axes);
         Pose { at: scale(apply(&axes, self.at), -1.0), axes }
     }
 
-    /// The pose in the outer frame of what has `inner` in this one.
+    /// Composes two poses. `inner` is relative to this frame, the result to the reference frame.
     pub(in crate::import) fn then(&self, inner: &Pose) -> Pose {
         Pose { at: add(self.at, apply(&self.axes, inner.at)), axes: product(&self.axes, &inner.axes) }
     }
 }
 
-/// The sum of vectors.
+/// Returns the sum of two vectors.
 pub(in crate::import) fn add(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|k| a[k] + b[k])
 }
 
-/// A vector times a number.
+/// Returns a vector times a scalar.
 pub(in crate::import) fn scale(a: Vector, factor: f64) -> Vector {
     a.map(|x| x * factor)
 }
 
-/// The scalar product.
+/// Returns the dot product.
 pub(in crate::import) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector product.
+/// Returns the cross product.
 pub(in crate::import) fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The length of a vector.
+/// Returns the Euclidean norm of a vector.
 pub(in crate::import) fn length(a: Vector) -> f64 {
     a[0].hypot(a[1]).hypot(a[2])
 }
 
-/// A matrix times a vector.
+/// Returns the product of a matrix and a vector.
 pub(in crate::import) fn apply(m: &Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
 
-/// A product of matrices.
+/// Returns the product of two matrices.
 pub(in crate::import) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let columns = transpose(b);
     a.map(|row| columns.map(|column| dot(row, column)))
 }
 
-/// The transpose.
+/// Returns the transpose of a matrix.
 pub(in crate::import) fn transpose(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
 }
 
-/// A symmetric matrix in the axes in which `m` is a rotation: `m s mᵀ`.
+/// Transforms a symmetric matrix with the rotation `m`: `m s mᵀ`.
 pub(in crate::import) fn turned(m: &Matrix, s: &Matrix) -> Matrix {
     product(&product(m, s), &transpose(m))
 }
 
-/// The rotation of a quaternion w, x, y, z of unit length.
+/// Returns the rotation matrix of a unit quaternion (w, x, y, z).
 pub(in crate::import) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
     [
         [w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
@@ -94,7 +94,7 @@ pub(in crate::import) fn of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix {
     ]
 }
 
-/// The rotation about an axis of unit length.
+/// Returns the rotation matrix about a unit axis; the angle is in radians.
 pub(in crate::import) fn about(axis: Vector, angle: f64) -> Matrix {
     let (s, c) = sin_cos(angle);
     std::array::from_fn(|i| {
@@ -112,14 +112,14 @@ pub(in crate::import) fn about(axis: Vector, angle: f64) -> Matrix {
     })
 }
 
-/// Sine and cosine, exact at right angles.
+/// Returns sine and cosine, exact at multiples of a right angle.
 fn sin_cos(angle: f64) -> (f64, f64) {
     let (s, c) = angle.sin_cos();
     let zero = |x: f64| if x.abs() < ROUNDING { 0.0 } else { x };
     (zero(s), zero(c))
 }
 
-/// The shortest rotation that takes z to a direction.
+/// Returns the smallest rotation that maps the z axis to `direction`.
 pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
     let size = length(axis);
@@ -127,8 +127,8 @@ pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
     about(axis, size.atan2(direction[2]))
 }
 
-/// Roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. One turn after the other is taken
-/// off, so that nothing is lost where two axes meet.
+/// Returns roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. The rotations are removed
+/// one after the other, which stays accurate at the singularity (pitch ±90°).
 pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
     let mut m = m.map(|row| row.map(|x| if x.abs() < ROUNDING { 0.0 } else { x }));
     let upright = m[0][0].hypot(m[1][0]) < 1e-12;
@@ -140,14 +140,14 @@ pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
     [roll, pitch, yaw]
 }
 
-/// A right angle where rounding misses it.
+/// Rounds an angle that is within rounding error of a multiple of a right angle.
 fn round(angle: f64) -> f64 {
     let right = (angle / FRAC_PI_2).round() * FRAC_PI_2;
-    // Adding zero turns −0 into 0.
+    // // Adding zero converts −0 to 0.
     if (angle - right).abs() < ROUNDING { right + 0.0 } else { angle }
 }
 
-/// Eigenvalues of a symmetric matrix, and its eigenvectors as columns: Jacobi's method.
+/// Returns the eigenvalues of a symmetric matrix, and its eigenvectors as columns (Jacobi's method).
 pub(in crate::import) fn principal(s: &Matrix) -> (Vector, Matrix) {
     let (mut s, mut axes) = (*s, IDENTITY);
     for _ in 0..64 {

@@ -1,5 +1,4 @@
-//! Texts that are put together from pieces of several files, which know where they come from. Knows no file
-//! format.
+//! Texts composed of pieces of several files, each with its file of origin. This module knows no file format.
 
 use super::context::{Cx, Piece, position, quote};
 use super::element::Node;
@@ -10,39 +9,39 @@ use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
-/// Files that include one another, each in the next.
+/// Maximum nesting depth of included files.
 pub(super) const MAX_DEPTH: usize = 32;
-/// Files of one mechanism.
+/// Maximum number of included files.
 pub(super) const MAX_FILES: usize = 256;
 
-/// A file that was read.
+/// File that was read.
 pub(super) struct Read {
-    /// Its text.
+    /// Text of the file.
     pub(super) text: String,
-    /// Its path, as a message names it.
+    /// Path of the file for messages.
     pub(super) shown: String,
-    /// Where it is.
+    /// Path of the file.
     pub(super) path: PathBuf,
 }
 
-/// The files, and the text that they make.
+/// Files of an import and the text composed of them.
 pub(super) struct Whole {
-    /// The first one is the file that the user names.
+    /// Files; the first is the one that the user names.
     pub(super) files: Vec<Read>,
-    /// The text.
+    /// Text composed so far.
     pub(super) text: String,
-    /// What of it comes from which file.
+    /// Pieces of the text, each with its file of origin.
     pub(super) pieces: Vec<Piece>,
 }
 
 impl Whole {
-    /// Nothing yet of the file that the user names.
+    /// Creates an empty text. The file that the user names is file 0.
     pub(super) fn new(text: &str, path: &Path, name: &Name) -> Whole {
         let first = Read { text: text.to_string(), shown: name.text.clone(), path: path.to_path_buf() };
         Whole { files: vec![first], text: String::new(), pieces: Vec::new() }
     }
 
-    /// Adds bytes of a file.
+    /// Appends bytes of a file.
     pub(super) fn copy(
         &mut self,
         file: usize,
@@ -57,7 +56,7 @@ impl Whole {
         self.check_size(name, cx)
     }
 
-    /// Adds a text that stands for what is at a place of a file.
+    /// Appends a text that is attributed to a position in a file.
     pub(super) fn put(
         &mut self,
         text: &str,
@@ -79,7 +78,7 @@ impl Whole {
     }
 }
 
-/// What `read` makes of a text of several files, of which the user names the first one.
+/// Parses a composed text and calls `read` with its root element. `name` is the file that the user names.
 pub(super) fn imported(
     whole: Whole,
     name: &Name,
@@ -97,7 +96,8 @@ pub(super) fn imported(
     Some(imported)
 }
 
-/// Reports a file that includes itself, by way of those that are open, which are included at these places.
+/// Reports a file that includes itself. `open` are the files of the chain of includes, and `places` the
+/// `<include>` of each file.
 pub(super) fn report_circle(
     known: usize,
     open: &[usize],
@@ -114,7 +114,7 @@ pub(super) fn report_circle(
     }
 }
 
-/// Reports files that are too many or too deep.
+/// Reports too many included files or too deep nesting.
 pub(super) fn report_many(depth: usize, at: &Name, cx: &mut Diagnostics) {
     let (most, what) = if depth > MAX_DEPTH {
         (MAX_DEPTH, "files inside one another")
@@ -124,7 +124,7 @@ pub(super) fn report_many(depth: usize, at: &Name, cx: &mut Diagnostics) {
     cx.error(at.place.clone(), format!("more than {most} {what}"));
 }
 
-/// A path without detours, so that one file has one.
+/// Returns the canonical path, so that each file has only one path.
 pub(super) fn plain(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }

@@ -1,5 +1,6 @@
-//! Text → XML tree, with the limits that keep a hostile file from taking time or memory, and the parser's
-//! errors in our words. Knows of the formats only that files are sometimes made by xacro.
+//! Parsing of XML. Limits prevent a hostile file from taking excessive time or memory, and the parser's
+//! errors are reported with the compiler's own messages. This module knows of the file formats only their
+//! depth and that xacro may generate them.
 
 use super::context::{Cx, quote};
 use super::file::with_plain_blanks;
@@ -10,20 +11,21 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
-/// Attributes of one element: the parser compares each with each.
+/// Maximum number of attributes of one element. The parser compares every pair of them.
 const MOST_ATTRIBUTES: usize = 64;
-/// Namespace declarations of a file: the parser hands each down the tree.
+/// Maximum number of namespace declarations in a file. The parser passes each one down the tree.
 const MOST_NAMESPACES: usize = 256;
-/// `<` and `=` of a file: the parser reserves memory for each.
+/// Maximum number of `<` and `=` in a file. The parser reserves memory for each.
 const MOST_MARKS: usize = 1_000_000;
 
-/// The elements whose attributes are read; the text of others (a plug-in's, say) may hold anything.
+/// Elements of URDF and MJCF whose attributes are searched for expressions of xacro. Attributes of other
+/// elements, for example of plug-ins, may contain any text.
 const READ: [&str; 12] = [
     "robot", "link", "joint", "inertial", "mass", "inertia", "origin", "axis", "parent", "child", "dynamics",
     "mimic",
 ];
 
-/// Most elements inside one another. URDF needs six, MJCF one for each link of a chain.
+/// Returns the maximum nesting depth of elements. URDF needs six levels, MJCF one for each link of a chain.
 fn max_depth(format: FileFormat) -> usize {
     match format {
         FileFormat::Urdf | FileFormat::Sdf => 64,
@@ -31,8 +33,9 @@ fn max_depth(format: FileFormat) -> usize {
     }
 }
 
-/// Returns the text of a file with spaces in the place of blanks that XML does not know, and of an XML
-/// declaration that follows empty lines: other readers of URDF take both. Lines and columns are preserved.
+/// Returns the text of a file in which whitespace characters that XML does not know, and an XML declaration
+/// after empty lines, are replaced by spaces. Other readers of URDF accept both. Lines and columns are
+/// preserved.
 pub(super) fn cleaned(text: &str) -> Cow<'_, str> {
     match with_plain_blanks(text.trim_end_matches('\0')) {
         Cow::Borrowed(plain) => without_late_declaration(plain),
@@ -51,14 +54,15 @@ fn without_late_declaration(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{}{blank}  {rest}", &text[..start]))
 }
 
-/// Prefixes that the root does not declare and that are declared for the file.
+/// Maximum number of undeclared prefixes for which declarations are added.
 const MOST_PREFIXES: usize = 16;
 
-/// Parses the file; `None` if it is not XML or is a template. `declared` holds its text where that lacks
-/// declarations.
+/// Parses a file. Returns `None` with the error in `cx` if the file is not XML or is a template of xacro. If
+/// the file uses undeclared prefixes, `declared` receives its text with the missing declarations.
 ///
-/// Exporters drop the declarations of simulators' prefixes (`drake:`, `sensor:`) and keep what bears them.
-/// All of that is skipped, so it is no mistake: the prefixes are declared in the root element.
+/// Exporters drop the declarations of simulators' prefixes (`drake:`, `sensor:`) but keep the elements and
+/// attributes with these prefixes. The importers skip all of these, so missing declarations are not an error:
+/// the prefixes are declared in the root element.
 pub(super) fn parse<'t>(
     text: &'t str,
     declared: &'t OnceCell<String>,
@@ -94,7 +98,7 @@ pub(super) fn parse<'t>(
     None
 }
 
-/// The end of an element's name.
+/// Returns the index of the byte after the name of the element that starts at byte `element`.
 fn behind_name(text: &str, element: usize) -> usize {
     let name = text.get(element + 1..).unwrap_or_default();
     let end = name.find(|c: char| c.is_whitespace() || matches!(c, '/' | '>' | '='));
@@ -106,14 +110,14 @@ fn with(text: &str, at: usize, more: &str) -> String {
     [before, more, after].concat()
 }
 
-/// Declarations of prefixes for the text of the root element, those that it declares itself left out: all at
-/// once, because each attempt to parse takes as long as the file.
+/// Returns declarations of the undeclared prefixes, for insertion into the root element. All are added at
+/// once, because each attempt to parse takes time proportional to the size of the file.
 fn declarations(root: &str, prefixes: &[&str]) -> String {
     let tag = &root[..scan_tag(root, 0, &mut Vec::new(), &mut |_| {}).unwrap_or(root.len())];
     let own: Vec<&str> =
         tag.split("xmlns:").skip(1).filter_map(|rest| rest.split(not_in_a_name).next()).collect();
     let is_wanted = |prefix: &&&str| {
-        // The root's own prefix would make all that is in it foreign.
+        // // Declaring the root's own prefix would put the whole tree into a foreign namespace.
         let is_root = tag
             .strip_prefix('<')
             .and_then(|name| name.strip_prefix(**prefix))
@@ -124,7 +128,7 @@ fn declarations(root: &str, prefixes: &[&str]) -> String {
     wanted.map(|prefix| format!(" xmlns:{prefix}=\"undeclared:{prefix}\"")).collect()
 }
 
-/// True for characters that stand in no prefix.
+/// Returns true for characters that cannot be part of a prefix.
 fn not_in_a_name(c: char) -> bool {
     c.is_ascii() && !c.is_ascii_alphanumeric() && !matches!(c, '_' | '-' | '.')
 }
@@ -133,20 +137,20 @@ fn parse_plain(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, ParsingOptions { allow_dtd: false, ..ParsingOptions::default() })
 }
 
-/// What a look at the marks of a file tells.
+/// Result of a scan of a file's markup.
 struct Scan<'t> {
-    /// Where the first element begins.
+    /// Byte offset of the first element.
     root: usize,
-    /// Where the innermost element begins that is never closed.
+    /// Byte offset of the innermost element that is never closed.
     unclosed: Option<usize>,
-    /// The prefixes of names, in the order in which they come first.
+    /// Prefixes of names, in the order of their first use.
     prefixes: Vec<&'t str>,
 }
 
 /// Checks the limits without building a tree.
 ///
-/// It follows the parser's own reading of the text up to the first mistake of the text; behind that it may
-/// err, because the parser stops there.
+/// The scan agrees with the parser up to the first syntax error. After it the scan may be wrong, which has no
+/// effect because the parser stops there.
 fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
     let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
@@ -190,13 +194,13 @@ fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
     Ok(Scan { root: root.unwrap_or(text.len()), unclosed: open.pop(), prefixes })
 }
 
-/// Length of a piece of markup that ends with `end`.
+/// Returns the length of a piece of markup that ends with `end`.
 fn end_behind(rest: &str, skip: usize, end: &str) -> usize {
     rest.get(skip..).and_then(|body| body.find(end)).map_or(rest.len(), |k| skip + k + end.len())
 }
 
-/// Length of the start tag at the head of `rest`; the element is added to `open` unless it is empty, and
-/// prefixes of names are noted.
+/// Returns the length of the start tag at the beginning of `rest`. Adds the element to `open` unless it is
+/// empty, and calls `note` with the prefixes of names.
 fn scan_tag<'t>(
     rest: &'t str,
     start: usize,
@@ -224,11 +228,12 @@ fn scan_tag<'t>(
     if bytes[k - 1] != b'/' {
         open.push(start);
     }
-    // The `<` of a tag without end belongs to the next one.
+    // // The `<` after an unterminated tag belongs to the next tag.
     Ok(if bytes.get(k) == Some(&b'>') { k + 1 } else { k })
 }
 
-/// Reports a file that xacro has still to expand, once; true if it is none.
+/// Reports a template that xacro must expand first; only its first instruction or expression is reported.
+/// Returns true if the document is not a template.
 fn refuse_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>) -> bool {
     for node in document.descendants().filter(Node::is_element) {
         let name = node.tag_name();
@@ -247,7 +252,7 @@ fn refuse_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>)
     true
 }
 
-/// An expression that xacro would have put a value for, and where it is.
+/// Returns an expression that xacro would have replaced by a value, with its byte offset.
 fn expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t str)> {
     let is_read = READ.contains(&node.tag_name().name());
     let is_expression = |value: &str| value.contains("${") || value.contains("$(");
@@ -256,7 +261,7 @@ fn expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t 
     if let Some(found) = said.next() {
         return Some((found.range_value().start, document_slice(node, found.range_value())?));
     }
-    // What SDF says stands in elements; those with elements in them, and plug-ins, may hold anything.
+    // // Values in SDF are the text of elements. Plug-ins and elements with children may contain any text.
     let text = node.first_child().filter(|child| format == FileFormat::Sdf && child.is_text())?;
     let in_plugin = node.ancestors().any(|above| above.tag_name().name() == "plugin");
     let found = text.text().filter(|text| is_expression(text) && !in_plugin)?;
@@ -268,7 +273,7 @@ fn document_slice<'t>(node: Node<'_, 't>, range: std::ops::Range<usize>) -> Opti
     node.document().input_text().get(range)
 }
 
-/// What expands a template.
+/// Returns the help text with the command that expands a template.
 fn run_xacro(format: FileFormat) -> &'static str {
     match format {
         FileFormat::Urdf => "expand the file first: `xacro robot.urdf.xacro > robot.urdf`",
@@ -277,7 +282,7 @@ fn run_xacro(format: FileFormat) -> &'static str {
     }
 }
 
-/// Reports the parser's error.
+/// Reports an error of the parser.
 fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat, cx: &mut Cx<'_>) {
     let mut help = None;
     let message = match error {
@@ -315,7 +320,7 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat
     });
 }
 
-/// The parser knows no place for an early end.
+/// Returns the position of a parser error. The parser gives no position for a premature end of the file.
 fn place_of(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
     match (error, unclosed) {
         (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.place(offset),

@@ -1,4 +1,5 @@
-//! The file's links and joints, their order and what moves them → bodies and joints of the language.
+//! Assembles bodies and joints of the language from the links and joints of a file, their order and their
+//! motions.
 
 use super::couplings;
 use super::drives;
@@ -14,7 +15,7 @@ use crate::syntax::{
     ROOT_JOINT,
 };
 
-/// Puts the robot together. Bodies come in the order of the joints that carry them.
+/// Assembles the mechanism. Bodies are in the order of the joints whose children they are.
 pub(in crate::import) fn assemble(
     robot: Robot,
     order: &Order,
@@ -66,7 +67,7 @@ pub(in crate::import) fn assemble(
     }
 }
 
-/// The joint that holds the root, which no URDF file names.
+/// Returns the joint between ground and root, which URDF files do not contain.
 fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     let link = &robot.links[root].name;
     let names = || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
@@ -83,12 +84,12 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     bare_joint(name(&text), kind, ground, end_at(link.clone()))
 }
 
-/// A body's own origin.
+/// Returns an endpoint at the origin of a body.
 pub(in crate::import) fn end_at(body: Name) -> Endpoint {
     Endpoint { body, at: None, rotated: Vec::new() }
 }
 
-/// A joint's end on its child.
+/// Returns the child's endpoint of a joint.
 fn place_at(anchor: [f64; 3], given: &FileJoint) -> Endpoint {
     let at = (anchor != [0.0; 3]).then(|| Expr::vector(anchor, &given.origin.xyz.place));
     Endpoint { at, ..end_at(given.child.clone()) }
@@ -113,7 +114,7 @@ pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoin
     }
 }
 
-/// A joint's end on its parent.
+/// Returns the parent's endpoint of a joint.
 fn parent_of(given: &FileJoint) -> Endpoint {
     Endpoint { body: given.parent.clone(), at: given.origin.at(), rotated: given.origin.rotated() }
 }
@@ -134,14 +135,14 @@ fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut
     joint
 }
 
-/// The joint with all that the file says of its ends and its axis.
+/// Converts a joint with its endpoints, axis, lead, damping and friction.
 pub(in crate::import) fn joint_of(given: FileJoint) -> Joint {
     let (parent, child) = (parent_of(&given), place_at(given.anchor, &given));
     let has_axis = given.has_axis();
     let mut joint = bare_joint(given.name, given.kind, parent, child);
     let axis = Expr::vector(given.axis.value, &given.axis.place);
     match given.kind {
-        // A planar joint moves in the plane perpendicular to its axis.
+        // // A planar joint moves in the plane perpendicular to its axis.
         JointKind::Pin | JointKind::Planar | JointKind::Screw => joint.about.push(axis),
         JointKind::Sleeve => joint.along.push(axis),
         _ => {}
@@ -152,7 +153,7 @@ pub(in crate::import) fn joint_of(given: FileJoint) -> Joint {
     joint
 }
 
-/// Moves a joint's end to where the joint stands still.
+/// Moves the parent's endpoint of a locked joint by the joint's displacement at `coordinate`.
 fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<'_>) {
     if coordinate == 0.0 {
         return;
@@ -174,7 +175,8 @@ fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<
     }
 }
 
-/// A turn about a unit axis; about a coordinate axis in the words that keep zeros and ones exact.
+/// Returns a rotation about a unit axis. Rotations about coordinate axes use `x`, `y` or `z`, which keep
+/// zeros and ones exact.
 fn turn_about(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
     let place = &given.axis.place;
     let (word, sign) = match axis {
@@ -189,7 +191,8 @@ fn turn_about(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
     Expr::call(word, vec![Expr::number(sign * angle, place)], place)
 }
 
-/// A vector of unit length; the detour by the largest entry keeps squares from overflow and underflow.
+/// Normalises a vector. Scaling by the largest component first prevents overflow and underflow of the
+/// squares.
 pub(in crate::import) fn unit(vector: [f64; 3]) -> [f64; 3] {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let scaled = vector.map(|x| x / largest);

@@ -1,20 +1,22 @@
-//! Joints to a link that another joint carries → joints that close loops.
+//! Detection of joints that close kinematic loops.
 
 use super::assemble::joint_of;
 use super::parts::Robot;
 use crate::import::context::{Cx, quote};
 use std::collections::BTreeSet;
 
-/// Takes the joints that close loops out of the tree: those whose child an earlier joint carries.
+/// Moves the joints that close loops from the tree to `robot.closing`. A joint closes a loop if an earlier
+/// joint has the same child link.
 ///
-/// They have no coordinate, so nothing may act on one: springs and dampers on them are reported.
+/// Loop-closing joints have no coordinates, so nothing can act on one: drives, damping, friction and `mimic`
+/// of such joints are reported.
 pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
     let links: BTreeSet<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
     let mut carried: BTreeSet<String> = BTreeSet::new();
     let (mut tree, mut closing) = (Vec::new(), Vec::new());
     for joint in std::mem::take(&mut robot.joints) {
         let is_first = carried.insert(joint.child.text.clone());
-        // What the ends are that a mistake names is said elsewhere.
+        // // Unknown links are reported by another check.
         let known = [&joint.parent, &joint.child].into_iter().all(|end| links.contains(end.text.as_str()));
         match is_first || !known || joint.parent.text == joint.child.text {
             true => tree.push(joint),

@@ -1,21 +1,21 @@
-//! Shapes of links that contacts name.
+//! Collision shapes of links, which contacts refer to.
 
 use super::origin::Origin;
 use crate::diag::Place;
 use crate::syntax::{Collision, Endpoint, Name, Shape};
 
-/// A part of a link's collision geometry.
+/// Collision shape of a link.
 pub(in crate::import) struct FileCollision {
-    /// Where its centre and its axes are.
+    /// Pose of the shape's centre relative to the link.
     pub(in crate::import) origin: Origin,
-    /// What it is.
+    /// Shape and its lengths, m.
     pub(in crate::import) shape: Shape,
-    /// Where the file says it.
+    /// Source position in the file.
     pub(in crate::import) place: Place,
 }
 
 impl FileCollision {
-    /// The part on a link of this name.
+    /// Attaches the shape to the link with this name.
     pub(in crate::import) fn on(&self, link: &Name) -> Collision {
         let (at, rotated) = (self.origin.at(), self.origin.rotated());
         let on = Endpoint { body: link.clone(), at, rotated };

@@ -1,4 +1,4 @@
-//! Conditions on coordinates, after locks: coordinates of joints that stand still are numbers.
+//! Substitutes the coordinates of locked joints into constraints.
 
 use super::joint::FileJoint;
 use super::motion::{Motion, frozen};
@@ -6,11 +6,11 @@ use crate::import::context::{Cx, quote};
 use crate::syntax::{BinaryOp, Constraint, Expr, ExprKind};
 use std::collections::BTreeMap;
 
-/// Residuals below this part of what a condition adds up are rounding errors.
+/// Tolerance of residuals of constraints without moving joints, relative to the sum of their terms.
 const ROUNDING: f64 = 1e-9;
 
-/// Returns the conditions on what still moves. One that binds only joints that stand still is reported
-/// unless it is met.
+/// Returns the constraints on moving joints. A constraint on locked joints alone is dropped if it is
+/// satisfied and reported otherwise.
 pub(in crate::import) fn resolve(
     constraints: Vec<Constraint>,
     joints: &[Option<(FileJoint, Motion)>],
@@ -36,7 +36,7 @@ fn without(mut constraint: Constraint, frozen: &BTreeMap<&str, f64>, cx: &mut Cx
     None
 }
 
-/// The expression with numbers in the place of the joints that stand still.
+/// Replaces the coordinates of locked joints by numbers.
 fn replaced(e: &Expr, frozen: &BTreeMap<&str, f64>) -> Expr {
     match &e.kind {
         ExprKind::Name(name) => {
@@ -47,7 +47,7 @@ fn replaced(e: &Expr, frozen: &BTreeMap<&str, f64>) -> Expr {
     }
 }
 
-/// The value of sums and products of numbers.
+/// Evaluates sums and products of numbers. Returns `None` for other expressions.
 fn number(e: &Expr) -> Option<f64> {
     match &e.kind {
         ExprKind::Binary(BinaryOp::Add, a, b, _) => Some(number(a)? + number(b)?),

@@ -1,17 +1,20 @@
-//! Force elements on coordinates, after locks: what stands still adds no force, but its share of a length.
+//! Removes locked joints from force elements on coordinates. A locked joint transmits no force, but its
+//! coordinate contributes a constant to the length of an element.
 
 use super::joint::FileJoint;
 use super::motion::{Motion, frozen};
 use crate::syntax::{Drive, DriveLaw, DriveOn};
 use std::collections::BTreeMap;
 
-/// The elements on what still moves. An input on nothing stays: programs count on its entry.
+/// Returns the elements that act on at least one moving joint. Inputs without a joint are preserved, because
+/// callers rely on the input's index.
 pub(super) fn resolve(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
     let frozen = frozen(joints);
     drives.into_iter().filter_map(|drive| without(drive, &frozen)).collect()
 }
 
-/// The element without the joints that stand still.
+/// Returns the element without the locked joints. Their contributions are subtracted from free lengths and
+/// ranges.
 fn without(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Drive> {
     let DriveOn::Sum(terms) = &mut drive.on else { return Some(drive) };
     let mut offset = 0.0;

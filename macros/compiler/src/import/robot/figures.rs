@@ -1,5 +1,5 @@
-//! `parameters = …`: figures of the file that become fields of the mechanism. Where a number stood, its field
-//! is named.
+//! The option `parameters`: values of the file become fields of the mechanism. Each value is replaced by a
+//! reference to its field.
 
 use super::names::unused;
 use crate::diag::Place;
@@ -8,7 +8,8 @@ use crate::import::imported::Imported;
 use crate::syntax::figures::{DAMPING, FRICTION, FileField, FileFieldKind, FileFigures, INERTIAL, PLACEMENT};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Joint, JointKind, Name};
 
-/// Makes fields of all figures that are asked for. `standing` are the links that enter no equation.
+/// Creates the fields of all requested values. `standing` are the names of links that are fixed to the
+/// ground, whose mass properties appear in no equation.
 pub(in crate::import) fn make_fields(
     imported: &mut Imported,
     standing: &[String],
@@ -78,7 +79,7 @@ fn of_joints(
     cx: &mut Cx<'_>,
 ) {
     let word = figures.word.text.as_str();
-    // The joint that holds the root stands in no file.
+    // // The joint between ground and root is not in the file.
     let of_file = |joint: &Joint| joint.parent.body.text != crate::syntax::GROUND || joint.child.at.is_some();
     let fits = |joint: &Joint| match word {
         PLACEMENT => of_file(joint),
@@ -127,7 +128,8 @@ fn of_joints(
     }
 }
 
-/// The links or joints that are meant; reports names that there are not.
+/// Returns the requested links or joints, or all of them if none are named. Reports unknown and repeated
+/// names.
 fn chosen(figures: &FileFigures, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
     let Some(of) = &figures.of else {
         let name = |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
@@ -146,7 +148,7 @@ fn chosen(figures: &FileFigures, known: &[String], what: &str, cx: &mut Cx<'_>) 
     of.clone()
 }
 
-/// Adds a field, and returns an expression for each of its figures.
+/// Adds a field, and returns one expression per value of the field.
 fn add(
     kind: FileFieldKind,
     of: &str,
@@ -175,7 +177,7 @@ fn add(
     expressions
 }
 
-/// Mass, centre of mass and the entries xx, xy, xz, yy, yz, zz of the inertia about it, in link axes.
+/// Returns mass, centre of mass and the entries xx, xy, xz, yy, yz, zz of the inertia about it, in link axes.
 fn properties(body: &Body) -> Vec<f64> {
     let mass = body.mass.as_ref().and_then(Expr::literal).unwrap_or(0.0);
     let com = body.com.as_ref().map_or([0.0; 3], numbers);
@@ -189,7 +191,7 @@ fn numbers(e: &Expr) -> [f64; 3] {
     std::array::from_fn(|k| items.get(k).and_then(Expr::literal).unwrap_or(0.0))
 }
 
-/// The inertia as it was read: a matrix, perhaps turned about carried axes.
+/// Returns the inertia matrix of the file as numbers, including rotations about successive axes.
 fn matrix(e: &Expr) -> [[f64; 3]; 3] {
     match &e.kind {
         ExprKind::Array(rows) => std::array::from_fn(|i| rows.get(i).map_or([0.0; 3], numbers)),
@@ -206,7 +208,7 @@ fn matrix(e: &Expr) -> [[f64; 3]; 3] {
     }
 }
 
-/// The axis and the angle of a turn about a coordinate axis.
+/// Returns axis index and angle of a rotation about a coordinate axis.
 fn turn(e: &Expr) -> (usize, f64) {
     let ExprKind::Call(axis, arguments) = &e.kind else { return (0, 0.0) };
     let axis = ["x", "y", "z"].iter().position(|known| *known == axis.text).unwrap_or(0);
@@ -222,7 +224,7 @@ fn rotation(e: &Expr) -> [[f64; 3]; 3] {
     m
 }
 
-/// Position, then roll, pitch and yaw.
+/// Returns position, roll, pitch and yaw of the joint's frame.
 fn placement(joint: &Joint) -> Vec<f64> {
     let mut rpy = [0.0; 3];
     for e in &joint.parent.rotated {

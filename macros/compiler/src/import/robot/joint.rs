@@ -1,60 +1,62 @@
-//! What a file says of one joint, before locks and followers are looked at.
+//! A joint as its file describes it, before locks and `mimic` are resolved.
 
 use super::limit::FileLimits;
 use super::origin::Origin;
 use crate::import::imported::Placed;
 use crate::syntax::{Expr, JointKind, Mimic, Name};
 
-/// A joint as the file gives it.
+/// Joint as its file describes it.
 pub(in crate::import) struct FileJoint {
-    /// Its name.
+    /// Name of the joint.
     pub(in crate::import) name: Name,
-    /// Which joint.
+    /// Type of the joint.
     pub(in crate::import) kind: JointKind,
-    /// The format's word for it.
+    /// Name of the joint type in the file format.
     pub(in crate::import) word: &'static str,
-    /// The link that carries it.
+    /// Name of the parent link.
     pub(in crate::import) parent: Name,
-    /// The link that it carries.
+    /// Name of the child link.
     pub(in crate::import) child: Name,
-    /// Its frame on the parent. While the coordinate is zero, the child's axes are its own.
+    /// Frame of the joint relative to the parent. At coordinate zero, the child's axes coincide with the
+    /// joint's.
     pub(in crate::import) origin: Origin,
-    /// Its place on the child, in the child's axes.
+    /// Position of the joint relative to the child's origin, in the child's axes.
     pub(in crate::import) anchor: [f64; 3],
-    /// Its axis, of any length but zero; unused by welds and free joints.
+    /// Joint axis, nonzero but not normalised; unused by welds and free joints.
     pub(in crate::import) axis: Placed<[f64; 3]>,
-    /// Whom it follows, if the user wants to know.
+    /// Leader and coefficients of a joint that follows another one; `None` if the user's options ignore
+    /// `mimic`.
     pub(in crate::import) mimic: Option<Mimic>,
-    /// The coordinate at which it is held.
+    /// Coordinate at which the file locks the joint.
     pub(in crate::import) held: Option<f64>,
-    /// What a screw advances in a turn.
+    /// Lead of a screw: advance per revolution, m.
     pub(in crate::import) lead: Option<Expr>,
-    /// Its limits.
+    /// Limits of the coordinate, velocity and force.
     pub(in crate::import) limits: FileLimits,
-    /// Viscous damping, not zero.
+    /// Coefficient of viscous damping; `None` for zero.
     pub(in crate::import) damping: Option<Expr>,
-    /// Coulomb friction, not zero.
+    /// Coulomb friction; `None` for zero.
     pub(in crate::import) friction: Option<Expr>,
 }
 
 impl FileJoint {
-    /// True if one number says where the joint stands.
+    /// Returns true if the joint has exactly one coordinate that limits and locks refer to.
     pub(in crate::import) fn has_coordinate(&self) -> bool {
         has_coordinate(self.kind)
     }
 
-    /// True if it moves about or along its axis.
+    /// Returns true if the joint moves about or along its axis.
     pub(in crate::import) fn has_axis(&self) -> bool {
         has_axis(self.kind)
     }
 }
 
-/// True if one number says where joints of the kind stand.
+/// Returns true if joints of this type have exactly one coordinate that limits and locks refer to.
 pub(in crate::import) fn has_coordinate(kind: JointKind) -> bool {
     matches!(kind, JointKind::Pin | JointKind::Sleeve)
 }
 
-/// True if joints of the kind move about or along an axis.
+/// Returns true if joints of this type move about or along an axis.
 pub(in crate::import) fn has_axis(kind: JointKind) -> bool {
     !matches!(kind, JointKind::Weld | JointKind::Free | JointKind::Ball)
 }

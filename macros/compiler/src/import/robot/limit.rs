@@ -1,33 +1,34 @@
-//! Bounds of a coordinate as a file has them.
+//! Limits of a joint as a file specifies them.
 
 use crate::import::imported::Placed;
 use crate::syntax::{Expr, ExprKind, Limit, Name, Restitution};
 
-/// What a file says of the limits of a joint; nothing where it bounds nothing.
+/// Limits of a joint; `None` for a quantity without a limit.
 #[derive(Default)]
 pub(in crate::import) struct FileLimits {
-    /// Least value.
+    /// Lower bound of the coordinate.
     pub(in crate::import) lower: Option<Placed<f64>>,
-    /// Largest value.
+    /// Upper bound of the coordinate.
     pub(in crate::import) upper: Option<Placed<f64>>,
-    /// Largest rate.
+    /// Maximum speed.
     pub(in crate::import) velocity: Option<Placed<f64>>,
-    /// Largest force or torque.
+    /// Maximum force or torque.
     pub(in crate::import) effort: Option<Placed<f64>>,
 }
 
-/// What to do with limits that are none.
+/// Help text for invalid limits.
 pub(in crate::import) const IGNORE_LIMITS: &str =
     "to leave limits out, write `#[mechanism(…, limits = ignore)]`";
 
 impl FileLimits {
-    /// True if there is any.
+    /// Returns true if any limit is specified.
     pub(in crate::import) fn bounds(&self) -> bool {
         [&self.lower, &self.upper, &self.velocity, &self.effort].into_iter().any(Option::is_some)
     }
 
-    /// The limits of a joint in the words of the language. A joint that follows another one bounds that one's
-    /// motion, and not what drives it.
+    /// Converts the limits of a joint to the language's representation. For a joint that follows another one
+    /// (`follows`), the limit of force is dropped, because nothing drives it. With `stops`, the ends of the
+    /// range are stops with restitution 0.
     pub(in crate::import) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {
         let expression =
             |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number(f.value, &f.place));

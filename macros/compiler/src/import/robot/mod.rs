@@ -1,7 +1,7 @@
-//! A robot as its file says, whatever its format → bodies and joints in coordinate order.
+//! Conversion of a robot file, independent of its format, to bodies and joints in coordinate order.
 //!
-//! Importers read a file into a [`Robot`]; names, locks, followers and the order of coordinates are looked at
-//! here. Knows no XML.
+//! The importers read a file into a [`Robot`]. This module checks names and topology, resolves locks and
+//! `mimic`, and determines the order of coordinates. It knows no XML.
 
 mod assemble;
 mod closing;

@@ -1,21 +1,22 @@
-//! Locks and `mimic` tags → what moves each joint.
+//! Resolves locks and `mimic` elements: determines for each joint whether it moves freely, follows another
+//! one or is locked.
 
 use super::joint::FileJoint;
 use crate::import::context::{Cx, quote, quote_all};
 use crate::syntax::{Mimic, Name};
 use std::collections::BTreeMap;
 
-/// What moves a joint.
+/// Motion of a joint: free, coupled or locked.
 pub(in crate::import) enum Motion {
-    /// It moves on its own.
+    /// Joint that moves independently.
     Own,
-    /// It follows a joint that moves on its own.
+    /// Joint that follows an independent joint.
     Follows(Mimic),
-    /// It stands still at this coordinate.
+    /// Joint that is locked at this coordinate.
     Frozen(f64),
 }
 
-/// The coordinates of the joints that stand still.
+/// Returns the coordinates of the locked joints by name.
 pub(in crate::import) fn frozen(joints: &[Option<(FileJoint, Motion)>]) -> BTreeMap<&str, f64> {
     joints
         .iter()
@@ -27,7 +28,8 @@ pub(in crate::import) fn frozen(joints: &[Option<(FileJoint, Motion)>]) -> BTree
         .collect()
 }
 
-/// Finds out what moves each joint. Locks come first: what follows a locked joint stands still as well.
+/// Determines the motion of each joint. Locks have priority: joints that follow a locked joint are locked,
+/// too.
 pub(in crate::import) fn resolve_motions(
     joints: &[FileJoint],
     locks: &[Name],
@@ -43,7 +45,7 @@ pub(in crate::import) fn resolve_motions(
         .map(|k| if locked[k] { None } else { find_leader(&joints[k], joints, &index, cx) })
         .collect();
     report_circles(joints, &leaders, cx);
-    // The chains end only if there are no circles.
+    // // Following the leaders terminates only if there are no cycles.
     if cx.failed() {
         return None;
     }
@@ -54,7 +56,8 @@ pub(in crate::import) fn resolve_motions(
     Some(motions.collect())
 }
 
-/// The joint that `joint` follows, both being such as can.
+/// Returns the index of the joint that `joint` follows. Reports unknown leaders, and joints that cannot
+/// follow or lead.
 fn find_leader(
     joint: &FileJoint,
     joints: &[FileJoint],
@@ -84,13 +87,14 @@ fn find_leader(
 const MOVE_ALONE: &str =
     "to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
 
-/// Reports joints that follow one another, each circle once.
+/// Reports cycles of joints that follow one another, each cycle once.
 fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'_>) {
     for start in 0..joints.len() {
         let walk = std::iter::successors(leaders[start], |k| leaders[*k]);
         let circle: Vec<usize> = walk.take(joints.len()).take_while(|k| *k != start).collect();
         let back = circle.last().map_or(leaders[start], |last| leaders[*last]);
-        // From outside the circle the walk never comes back; inside it, the first joint speaks for all.
+        // // A walk that starts outside the cycle never returns. Of the joints in the cycle only the first
+        // reports it.
         if back != Some(start) || circle.iter().any(|k| *k < start) {
             continue;
         }
@@ -107,7 +111,7 @@ fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'
     }
 }
 
-/// Follows the chain of leaders to its end: `q = factor × q_leader + offset`.
+/// Follows the chain of leaders to its end and composes the relations: `q = factor × q_leader + offset`.
 fn follow(
     start: usize,
     joints: &[FileJoint],

@@ -1,5 +1,5 @@
-//! Checks that names are there, and once only: links, joints, the ends of joints, locks. Names that the file
-//! leaves open.
+//! Checks of names: links, joints, endpoints of joints and locks must exist, and names must be unique. Also
+//! generates unused names.
 
 use super::joint::FileJoint;
 use super::parts::{Robot, bare_link};
@@ -7,17 +7,17 @@ use crate::import::context::{Cx, position, quote};
 use crate::syntax::{Base, FileFormat, GROUND, Name};
 use std::collections::BTreeMap;
 
-/// Reports links and joints that share a name with another.
+/// Reports links that share a name, and joints that share a name.
 pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
     check_unique(robot.links.iter().map(|link| &link.name), format.body(), cx);
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
 }
 
-/// The link that files hang from without declaring it.
+/// Link that files use as a parent without declaring it.
 const WORLD: &str = "world";
 
-/// Declares the link `world` if joints begin there and nothing says what it is: it is what the root is held
-/// by elsewhere.
+/// Declares the link `world` if joints have it as parent and the file does not define it. Other tools connect
+/// the root to this link.
 pub(in crate::import) fn declare_world(robot: &mut Robot) {
     let is_known = robot.links.iter().any(|link| link.name.text == WORLD)
         || robot.joints.iter().any(|joint| joint.child.text == WORLD);
@@ -27,8 +27,8 @@ pub(in crate::import) fn declare_world(robot: &mut Robot) {
     }
 }
 
-/// Gives a link `ground` another name, which the fixed frame has: `ground_link`. A fixed root may be called
-/// so: it is the ground.
+/// Renames a link `ground` to `ground_link`, because `ground` is the name of the fixed frame. The root of a
+/// fixed mechanism may be called `ground`: it is the ground then.
 pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
     if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;
@@ -41,7 +41,7 @@ pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
     }
 }
 
-/// The name, with a number if it is taken.
+/// Returns the name, with a number appended if it is taken.
 pub(in crate::import) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
     let mut text = name.to_string();
     for k in 2.. {
@@ -53,7 +53,7 @@ pub(in crate::import) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> 
     text
 }
 
-/// Reports names that elements of one kind share.
+/// Reports repeated names of elements of one kind.
 pub(in crate::import) fn check_unique<'a>(
     names: impl Iterator<Item = &'a Name>,
     what: &str,
@@ -70,7 +70,7 @@ pub(in crate::import) fn check_unique<'a>(
     }
 }
 
-/// Reports joints between links that are not there, or from a link to itself, and links with two parents.
+/// Reports joints with unknown links, joints from a link to itself, and links with two parents.
 pub(in crate::import) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
     let links: Vec<&str> = robot.links.iter().map(|link| link.name.text.as_str()).collect();
     let known: BTreeMap<&str, ()> = links.iter().map(|link| (*link, ())).collect();
@@ -86,7 +86,7 @@ pub(in crate::import) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
             let message = format!("joint {} joins a link to itself", quote(&joint.name.text));
             cx.error(&joint.child.place, message, |d| d);
         } else if let Some(first) = parents.get(joint.child.text.as_str()) {
-            // Two joints of one name are a mistake that was reported.
+            // // Repeated joint names are reported by `check_names`.
             if first.name.text == joint.name.text {
                 continue;
             }
@@ -105,7 +105,7 @@ fn report_two_parents(first: &FileJoint, second: &FileJoint, cx: &mut Cx<'_>) {
     });
 }
 
-/// Reports locked joints that are not there.
+/// Reports unknown joints in `lock`.
 pub(in crate::import) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
     for lock in locks.iter().filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text)) {
         let names = joints.iter().map(|joint| joint.name.text.as_str());

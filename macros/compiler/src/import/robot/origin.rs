@@ -1,31 +1,31 @@
-//! A position and rotations.
+//! Pose of a frame: a position and roll, pitch and yaw.
 
 use crate::import::imported::Placed;
 use crate::syntax::Expr;
 
-/// A frame as a file places it.
+/// Pose of a frame as a file specifies it.
 pub(in crate::import) struct Origin {
-    /// Its origin.
+    /// Position of the origin.
     pub(in crate::import) xyz: Placed<[f64; 3]>,
-    /// Roll, pitch and yaw: turns about the fixed x, y and z in this order.
+    /// Roll, pitch and yaw, rad: rotations about the fixed x, y and z axes, in this order.
     pub(in crate::import) rpy: Placed<[f64; 3]>,
 }
 
 impl Origin {
-    /// The position, unless it is zero.
+    /// Returns the position, or `None` if it is zero.
     pub(in crate::import) fn at(&self) -> Option<Expr> {
         (self.xyz.value != [0.0; 3]).then(|| Expr::vector(self.xyz.value, &self.xyz.place))
     }
 
-    /// The turns that are not zero, about carried axes. Turns about fixed axes in one order are turns about
-    /// carried axes in the opposite order: `R = R_z(yaw) R_y(pitch) R_x(roll)`.
+    /// Returns the nonzero rotations about successive (moving) axes. Rotations about fixed axes equal
+    /// rotations about moving axes in the opposite order: `R = R_z(yaw) R_y(pitch) R_x(roll)`.
     pub(in crate::import) fn rotated(&self) -> Vec<Expr> {
         let [roll, pitch, yaw] = self.rpy.value;
         let turns = [("z", yaw), ("y", pitch), ("x", roll)].into_iter().filter(|(_, angle)| *angle != 0.0);
         turns.map(|(axis, angle)| turn(axis, angle, self)).collect()
     }
 
-    /// A vector of the origin's axes, in the axes that it is placed in.
+    /// Rotates a vector from the axes of this frame to those of its reference frame.
     pub(in crate::import) fn rotate(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.value.map(f64::sin_cos);
         let (y, z) = (cr * y - sr * z, sr * y + cr * z);

@@ -1,4 +1,4 @@
-//! What a file says, in its own order.
+//! Contents of a robot file, in the order of the file.
 
 use super::collision::FileCollision;
 use super::joint::FileJoint;
@@ -6,41 +6,41 @@ use super::origin::Origin;
 use super::visual::FileVisual;
 use crate::syntax::{Body, Constraint, Contact, Drive, Expr, Joint, Name};
 
-/// Links or joints of one file.
+/// Maximum number of links, and of joints, of one file.
 pub(in crate::import) const MAX_ELEMENTS: usize = 1024;
 
-/// What the file says, in its own order.
+/// Contents of a robot file, in the order of the file.
 #[derive(Default)]
 pub(in crate::import) struct Robot {
-    /// Its links.
+    /// Links.
     pub(in crate::import) links: Vec<Body>,
-    /// Its joints.
+    /// Joints of the tree.
     pub(in crate::import) joints: Vec<FileJoint>,
-    /// Where the root stands on the ground, if not in its axes.
+    /// Pose of the root relative to the ground; `None` for the identity.
     pub(in crate::import) root: Option<Origin>,
     /// Joints that close loops.
     pub(in crate::import) closing: Vec<Joint>,
-    /// Conditions on coordinates.
+    /// Constraints on coordinates.
     pub(in crate::import) constraints: Vec<Constraint>,
-    /// What touches what.
+    /// Contact pairs.
     pub(in crate::import) contacts: Vec<Contact>,
-    /// Collision geometry: the link's number, what it is.
+    /// Collision geometry, each with the index of its link.
     pub(in crate::import) collisions: Vec<(usize, FileCollision)>,
-    /// Visual geometry: the link's number, what it is.
+    /// Visual geometry, each with the index of its link.
     pub(in crate::import) visuals: Vec<(usize, FileVisual)>,
     /// Springs, dampers, rotors and motors on coordinates.
     pub(in crate::import) drives: Vec<Drive>,
-    /// Rayleigh's functions of what has no coordinate of its own.
+    /// Rayleigh dissipation functions: damping of ball and free joints, and drag of the surrounding fluid.
     pub(in crate::import) dissipations: Vec<(Name, Expr)>,
-    /// Gravity, m/s²; nothing if the format has none.
+    /// Gravitational acceleration, m/s²; `None` if the format does not specify one.
     pub(in crate::import) gravity: Option<Expr>,
-    /// What was rounded.
+    /// Descriptions of the rounded values.
     pub(in crate::import) snapped: Vec<String>,
-    /// What is in the file and not in the mechanism.
+    /// Descriptions of contents of the file that the mechanism does not represent.
     pub(in crate::import) left_out: Vec<String>,
 }
 
-/// A body without mass.
+/// Returns a link without mass properties.
 pub(in crate::import) fn bare_link(name: Name) -> Body {
     Body { name, mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }

@@ -1,14 +1,14 @@
-//! Numbers that were meant to be round: right angles written with five digits, axes that lean by what an
-//! exporter lost. They are rounded if the user asks for it, and each is reported, since this changes the
-//! robot.
+//! Rounding of inexact values of a file: right angles written with five digits, and axes that deviate by an
+//! exporter's rounding. Values are rounded only if the user requests it, and each is reported, because
+//! rounding changes the robot.
 
 use super::assemble::unit;
 use super::joint::FileJoint;
 use std::f64::consts::FRAC_PI_2;
 
-/// Rounds the frame and the axis of a joint: angles that lie within `tolerance` (rad) of a multiple of a
-/// right one, positions within it (m) of zero, components of the unit axis within it of zero. Returns what it
-/// was, by entry.
+/// Rounds the frame and the axis of a joint. Angles within `tolerance` (rad) of a multiple of a right angle
+/// are rounded to it. Positions (m) and components of the unit axis within `tolerance` of zero become zero.
+/// Returns one line per changed value, with the value before and after.
 pub(in crate::import) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
     let mut found = Vec::new();
     let mut report = |entry: &str, from: f64, to: f64| {

@@ -1,18 +1,19 @@
-//! Joints in the file's order → joints in coordinate order, by way of the tree that the links form.
+//! Ordering of joints by the kinematic tree.
 
 use super::parts::Robot;
 use crate::import::context::{Cx, quote, quote_all};
 use std::collections::BTreeMap;
 
-/// The tree of the links.
+/// Root of the kinematic tree, and the joints in coordinate order.
 pub(in crate::import) struct Order {
-    /// The link that is no joint's child.
+    /// Index of the link that is no joint's child.
     pub(in crate::import) root: usize,
-    /// Joints, each with its child link: depth first, those of one link in the order of their names.
+    /// Indices of each joint and its child link, depth first. Joints of one parent are sorted by name.
     pub(in crate::import) joints: Vec<(usize, usize)>,
 }
 
-/// Orders the joints; `None` if the links do not form one tree. Their names are known to be good.
+/// Orders the joints. Names must have been checked before. Returns `None` with the error in `cx` if the links
+/// do not form a single tree.
 pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<Order> {
     let index = |(k, name): (usize, &str)| (name.to_string(), k);
     let links: BTreeMap<String, usize> =
@@ -32,7 +33,7 @@ pub(in crate::import) fn order_joints(robot: &Robot, cx: &mut Cx<'_>) -> Option<
     Some(Order { root, joints: depth_first(robot, root, &ends) })
 }
 
-/// The link without a parent. With none, a cycle has been reported.
+/// Returns the link without a parent. Without such a link there is a cycle, which is reported separately.
 fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<usize> {
     let mut roots = (0..above.len()).filter(|link| above[*link].is_none());
     let root = roots.next()?;
@@ -49,7 +50,8 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
 
 /// Reports every cycle of joints once.
 fn report_cycles(robot: &Robot, ends: &[(usize, usize)], above: &[Option<usize>], cx: &mut Cx<'_>) {
-    // Each walk up marks its links with its own number: it ends at a root, at an earlier walk, or at itself.
+    // // Each upward walk marks its links with its own number. It ends at the root, at an earlier walk or at
+    // itself.
     let mut walks = vec![None; above.len()];
     for start in 0..above.len() {
         let mut link = start;
@@ -82,14 +84,14 @@ fn report_cycle(
     cx.error(&joint.parent.place, message, |d| d.help(help));
 }
 
-/// Walks the tree with a stack of its own: a chain may be as long as the file allows.
+/// Traverses the tree depth first. An explicit stack replaces recursion, because chains may be long.
 fn depth_first(robot: &Robot, root: usize, ends: &[(usize, usize)]) -> Vec<(usize, usize)> {
     let mut below: Vec<Vec<(usize, usize)>> = vec![Vec::new(); robot.links.len()];
     for (joint, (parent, child)) in ends.iter().enumerate() {
         below[*parent].push((joint, *child));
     }
     for joints in &mut below {
-        // Reversed, because the stack is left from its end.
+        // // In reverse order, because the stack is popped from its end.
         joints.sort_by(|a, b| robot.joints[b.0].name.text.cmp(&robot.joints[a.0].name.text));
     }
     let mut order = Vec::with_capacity(ends.len());

@@ -1,20 +1,20 @@
-//! Shapes of links that are drawn.
+//! Visual shapes of links.
 
 use super::origin::Origin;
 use crate::syntax::{Endpoint, Mesh, Name, Shape, Visual};
 
-/// A part of a link's visual geometry.
+/// Visual shape of a link.
 pub(in crate::import) struct FileVisual {
-    /// Where its centre and its axes are.
+    /// Pose of the shape's centre relative to the link.
     pub(in crate::import) origin: Origin,
-    /// What it is.
+    /// Shape and its lengths, m.
     pub(in crate::import) shape: Shape,
-    /// Its triangles, if it is a mesh.
+    /// Triangles of a mesh; `None` for other shapes.
     pub(in crate::import) mesh: Option<Mesh>,
 }
 
 impl FileVisual {
-    /// The part on a link of this name.
+    /// Attaches the shape to the link with this name.
     pub(in crate::import) fn on(&self, link: &Name) -> Visual {
         let on = Endpoint { body: link.clone(), at: self.origin.at(), rotated: self.origin.rotated() };
         Visual { on, shape: self.shape, mesh: self.mesh.clone() }

@@ -1,4 +1,4 @@
-//! `<collision>` → shapes of links that contacts name.
+//! `<collision>` → collision shapes of links, which contacts refer to.
 
 use super::frames::{Frames, origin_in};
 use super::scope::Scope;
@@ -7,7 +7,7 @@ use crate::import::element::{Node, check_attributes, children, content, elements
 use crate::import::robot::FileCollision;
 use crate::syntax::{Name, Shape};
 
-/// Shapes that can touch.
+/// Supported shapes.
 pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
 
 /// Reads all collision geometry of a link.
@@ -34,7 +34,7 @@ fn read_part(
     Some(FileCollision { origin, shape: read_shape(shape, cx)?, place: place(node, cx) })
 }
 
-/// What an element of `<geometry>` is.
+/// Reads a child element of `<geometry>` as a shape.
 pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
     check_attributes(shape, &[], &[], cx);
     match shape.tag_name().name() {
@@ -70,7 +70,7 @@ pub(super) fn read_shape(shape: Node<'_>, cx: &mut Cx<'_>) -> Option<Shape> {
     }
 }
 
-/// Positive lengths, m.
+/// Reads positive lengths, m.
 fn lengths<const N: usize>(
     child: Option<Node<'_>>,
     shape: Node<'_>,

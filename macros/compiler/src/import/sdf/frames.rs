@@ -1,4 +1,4 @@
-//! Frames that name one another → where each is in the model.
+//! Resolution of frames that are defined relative to one another to their poses in the model.
 
 use super::scope::{Scope, WORLD};
 use super::version::is_before;
@@ -11,32 +11,33 @@ use crate::import::robot::Origin;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
-/// Frames inside one another that a pose is looked up through.
+/// Maximum length of a chain of frames that are relative to one another.
 const MAX_DEPTH: usize = 1024;
 
-/// A frame of the file: a link, a joint, a model, or one that is nothing else.
+/// Frame of the file: a link, a joint, a model or a `<frame>`.
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
-    /// What its pose is relative to: the whole name of another frame.
+    /// Full name of the frame that the pose is relative to.
     pub(super) base: Name,
-    /// Its pose there.
+    /// Pose relative to `base`.
     pub(super) pose: Pose,
-    /// The frame that it moves with; links move by themselves.
+    /// Frame that this frame is attached to; `None` for links.
     pub(super) attached: Option<Name>,
 }
 
-/// All frames by their whole names: `arm::wrist` is the link `wrist` of the model `arm` in the outermost one.
+/// All frames by their full names: `arm::wrist` is the link `wrist` of the model `arm` in the outermost
+/// model.
 #[derive(Default)]
 pub(super) struct Frames {
-    /// The frames.
+    /// Frames by full name.
     pub(super) known: BTreeMap<String, Frame>,
 }
 
-/// The first version in which a pose says by `relative_to`, no longer by `frame`, what it is relative to.
+/// First version in which the attribute `relative_to` of a pose replaces `frame`.
 const RELATIVE_TO: (u32, u32) = (1, 7);
 
-/// Reads `<pose relative_to="…">` of an element, `<pose frame="…">` in files of old versions; the pose is
-/// relative to `base` if neither is written.
+/// Reads `<pose relative_to="…">` of an element, or `<pose frame="…">` in old versions. Without either
+/// attribute, the pose is relative to `base`.
 pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> Frame {
     let own = |at: Place| Name { text: base.to_string(), place: at };
     let Some(found) = elements(node).find(|child| child.tag_name().name() == "pose") else {
@@ -56,7 +57,7 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
     Frame { base, pose, attached: None }
 }
 
-/// Returns the attribute of a `<pose>` that names a frame.
+/// Returns the attribute of a `<pose>` that names its reference frame.
 pub(super) fn reference<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute<'a>> {
     let written = |word| pose.attribute_node(word).filter(|said| !said.value().trim().is_empty());
     let old = written("frame");
@@ -69,15 +70,15 @@ pub(super) fn reference<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute
     old.or_else(|| written("relative_to"))
 }
 
-/// Returns the whole name of the frame `name` that the link or joint around a pose declares in itself, as
-/// versions 1.5 and 1.6 allow.
+/// Returns the full name of the frame `name` if the link or joint around a pose declares this frame inside
+/// itself, as versions 1.5 and 1.6 allow.
 fn own_frame(pose: Node<'_>, name: &str, scope: &Scope) -> Option<String> {
     let owner = pose.ancestors().find(|above| matches!(above.tag_name().name(), "link" | "joint"))?;
     let is_declared = own_frames(owner).any(|frame| frame.attribute("name") == Some(name));
     is_declared.then(|| name_in_owner(&scope.name_of_part(owner.attribute("name").unwrap_or_default()), name))
 }
 
-/// Returns the frames that a link or a joint declares in itself.
+/// Returns the frames that a link or a joint declares inside itself.
 pub(super) fn own_frames<'a>(owner: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     let is_frame = |node: &Node<'a>| node.tag_name().name() == "frame";
     let parts = owner.children().filter(|node| node.is_element());
@@ -86,12 +87,12 @@ pub(super) fn own_frames<'a>(owner: Node<'a>) -> impl Iterator<Item = Node<'a>> 
     around.flat_map(elements).filter(is_frame).filter(|frame| is_before(*frame, RELATIVE_TO))
 }
 
-/// Returns the whole name of a frame that a link or a joint declares in itself.
+/// Returns the full name of a frame that a link or a joint declares inside itself.
 pub(super) fn name_in_owner(owner: &str, name: &str) -> String {
     format!("{owner}::{name}")
 }
 
-/// Returns the pose of an element of a link in the link's axes.
+/// Returns the pose of an element of a link relative to the link.
 pub(super) fn pose_in(
     node: Node<'_>,
     (link, scope): (&Name, &Scope),
@@ -102,7 +103,7 @@ pub(super) fn pose_in(
     Some(frames.resolve(link, cx)?.back().then(&frames.resolve(&frame.base, cx)?.then(&frame.pose)))
 }
 
-/// Returns the pose of an element of a link in the link's axes, in the words of all formats.
+/// Returns the pose of an element of a link relative to the link, as an [`Origin`].
 pub(super) fn origin_in(
     node: Node<'_>,
     link: (&Name, &Scope),
@@ -139,8 +140,8 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
 }
 
 impl Frames {
-    /// The link that carries a frame, with the place of what was said; tells of names that there are not, and
-    /// of circles.
+    /// Returns the link that a frame is attached to, directly or through other frames, with the source
+    /// position of `name`. Reports unknown names and cycles.
     pub(super) fn carrier(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Name> {
         let mut at = name.clone();
         for _ in 0..MAX_DEPTH {
@@ -167,7 +168,7 @@ impl Frames {
         cx.error(&name.place, message, |d| d.suggest(&name.text, known));
     }
 
-    /// Where a frame is in the world; tells of names that there are not, and of circles.
+    /// Returns the pose of a frame relative to the world. Reports unknown names and cycles.
     pub(super) fn resolve(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Pose> {
         let mut pose = Pose::ZERO;
         let mut at = name.clone();
@@ -188,7 +189,7 @@ impl Frames {
     }
 }
 
-/// A pose in the words of all formats.
+/// Converts a pose to an [`Origin`].
 pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
     let at = |value| Placed { value, place: place.clone() };
     Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }

@@ -1,7 +1,7 @@
-//! `<include>` → the model of another file in its place, with the name and the pose that are given: one text,
-//! of pieces that know from which file they are.
+//! Expands `<include>` elements to the model of the included file, with the name and pose of the `<include>`.
+//! The result is one text composed of pieces, each with its file of origin.
 //!
-//! Each file is parsed on its own first, so that what is wrong with one is told at its own place.
+//! Each file is first parsed separately, so that errors are reported at their positions in that file.
 
 use super::version;
 use crate::diag::Diagnostics;
@@ -13,26 +13,26 @@ use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
-/// What an `<include>` holds.
+/// Child elements of `<include>`.
 const INCLUDE: [&str; 6] = ["uri", "name", "pose", "static", "plugin", "placement_frame"];
 
-/// Bytes of a file.
+/// Range of bytes in a file.
 type Range = std::ops::Range<usize>;
 
-/// What is still to be copied, last first.
+/// Step of the expansion. The list of steps is a stack: the last step is executed first.
 enum Step {
-    /// Bytes of a file.
+    /// Copy of bytes of a file with this index.
     Copy(usize, Range),
-    /// A text in the place of what stands at a byte of a file.
+    /// Inserted text, attributed to a byte of a file: text, index of the file, offset.
     Put(String, usize, usize),
-    /// The model of another file.
+    /// Expansion of an included file.
     Include(Box<Include>),
-    /// The file is through: what includes it again does so twice, not in a circle.
+    /// End of an included file. A later `<include>` of the same file is a repetition, not a cycle.
     Leave,
 }
 
-/// An `<include>`: the file that has it and its first byte, what it names and where, its name and pose, and
-/// how deep it is.
+/// An `<include>` element: index of the including file and byte offset there, URI with its source position,
+/// name and pose, and nesting depth.
 struct Include {
     by: usize,
     from: usize,
@@ -42,7 +42,7 @@ struct Include {
     depth: usize,
 }
 
-/// Reads a file with all that it includes.
+/// Reads a file with all included files.
 pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
     let mut whole = Whole::new(text, path, name);
     let mut places = vec![name.clone()];
@@ -81,7 +81,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
     Some(whole)
 }
 
-/// The pieces of a file, last first: the whole of it, or its model for an `<include>`.
+/// Returns the steps that expand a file, last first: the whole file, or only its model for an `<include>`.
 fn scan(
     files: &[Read],
     file: usize,
@@ -95,7 +95,7 @@ fn scan(
     let declared = OnceCell::new();
     let document = xml::parse(&read.text, &declared, FileFormat::Sdf, cx)?;
     version::check(document.root_element(), cx);
-    // Prefixes that are not declared are declared for the whole text, where all bytes stand elsewhere.
+    // // Declarations of undeclared prefixes shift the bytes of the text, so pieces of it cannot be copied.
     if declared.get().is_some() {
         return match include {
             None => plain_copy(&document, file, read, cx),
@@ -128,7 +128,7 @@ fn scan(
         } else if node.tag_name().name() == "include" {
             match read_include(node, files, file, depth, cx) {
                 Some(found) => Some(Step::Include(Box::new(found))),
-                // What the world includes beside the robot need not be there.
+                // // A world may include missing models, which are skipped.
                 None => continue,
             }
         } else {
@@ -146,7 +146,7 @@ fn scan(
     (!cx.failed()).then_some(steps)
 }
 
-/// A file with prefixes that it does not declare, which is read as it is.
+/// Returns the single copy step of a file with undeclared prefixes. Reports an `<include>` in it.
 fn plain_copy(
     document: &roxmltree::Document<'_>,
     file: usize,
@@ -172,7 +172,8 @@ fn in_world(node: Node<'_>) -> bool {
     node.parent().is_some_and(|parent| parent.tag_name().name() == "world")
 }
 
-/// The beginning of a model: its name and pose are those that the `<include>` gives, or its own.
+/// Adds the start tag of an included model. Name and pose are those of the `<include>`, or else the model's
+/// own.
 fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Include) {
     let start = model.range().start;
     let put = |text: &str| Step::Put(text.to_string(), file, start);
@@ -182,7 +183,7 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
         None => steps.extend(model.attribute_node("name").map(|name| Step::Copy(file, name.range_value()))),
     }
     steps.push(put("\""));
-    // The version that the file is written in decides how its elements are read.
+    // // The version of the included file determines the interpretation of its elements.
     if let Some(version) = model.document().root_element().attribute_node("version") {
         steps.push(put(&format!(" {}=\"", version::OF_INCLUDED)));
         steps.push(Step::Copy(file, version.range_value()));
@@ -200,7 +201,7 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
     }
 }
 
-/// The model of an included file.
+/// Returns the only model of an included file, or reports that there is none or more than one.
 fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
     let mut models = elements(root).filter(|node| node.tag_name().name() == "model");
     let found = models.next().filter(|_| root.tag_name().name() == "sdf");
@@ -216,7 +217,8 @@ fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
     None
 }
 
-/// Reads an `<include>`; `None` with a mistake, or where it is left out.
+/// Reads an `<include>`. Returns `None` if it is invalid, which is reported, or if a world includes a missing
+/// or static model.
 fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mut Cx<'_>) -> Option<Include> {
     check_attributes(node, &[], &["merge"], cx);
     if node.attribute("merge").is_some_and(|merge| matches!(merge.trim(), "true" | "1")) {
@@ -260,7 +262,7 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
     Some(Include { by, from, uri, name: own_name, pose, depth })
 }
 
-/// The bytes of a text without spaces around it.
+/// Returns the byte range of a text without surrounding whitespace.
 fn trimmed(text: Node<'_>) -> Range {
     let (range, all) = (text.range(), text.text().unwrap_or_default());
     let before = all.len() - all.trim_start().len();
@@ -268,8 +270,9 @@ fn trimmed(text: Node<'_>) -> Range {
     range.start + before..range.end.saturating_sub(after).max(range.start + before)
 }
 
-/// Where a file may be: beside the one that includes it or the one that the user names, or one folder above,
-/// each with how it is shown. A folder has its model in `model.sdf`, or where its `model.config` says.
+/// Returns the possible paths of an included file, each with the path for messages: relative to the including
+/// file or to the user's file, and one folder above each. For a folder, the path is that of its model, which
+/// is `model.sdf` unless `model.config` names another file.
 fn candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     let rest = ["model://", "file://", "package://"].iter().find_map(|scheme| uri.strip_prefix(scheme));
     let named = rest.unwrap_or(uri);
@@ -290,7 +293,7 @@ fn candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// The file of a folder's model.
+/// Returns the file name of the model in a folder.
 fn model_of(folder: &Path) -> String {
     let usual = "model.sdf".to_string();
     let Ok(config) = std::fs::read_to_string(folder.join("model.config")) else { return usual };
@@ -300,7 +303,7 @@ fn model_of(folder: &Path) -> String {
     last.unwrap_or(usual)
 }
 
-/// Reads the file that an `<include>` names.
+/// Finds and reads the file of an `<include>`.
 fn find(files: &[Read], include: &Include, cx: &mut Diagnostics) -> Option<Read> {
     let all = candidates(files, include.by, &include.uri.text);
     let there = all.iter().find(|(path, _)| path.is_file());

@@ -1,4 +1,4 @@
-//! `<joint>` → [`FileJoint`]: one, or two with a massless link between them for joints with two axes.
+//! `<joint>` → [`FileJoint`]. A joint with two axes becomes two joints with a massless link between them.
 
 use super::frames::{Frames, origin};
 use super::scope::Scope;
@@ -14,7 +14,7 @@ use crate::import::robot::{
 };
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
 
-/// SDF's words for the joints, and how many axes they have.
+/// SDF's names of the joint types, with the number of axes of each.
 const TYPES: [(&str, JointKind, usize); 8] = [
     ("revolute", JointKind::Pin, 1),
     ("continuous", JointKind::Pin, 1),
@@ -26,26 +26,27 @@ const TYPES: [(&str, JointKind, usize); 8] = [
     ("revolute2", JointKind::Pin, 2),
 ];
 
-/// Limits beyond this are none.
+/// Bounds of at least this magnitude are treated as infinite.
 const ENDLESS: f64 = 1e15;
 
 const IGNORE_PASSIVE: &str =
     "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
 
-/// The first version in which an axis is in the axes of its joint; before it is in those of the model.
+/// First version in which an axis is expressed in the axes of its joint. Earlier versions express it in the
+/// axes of the model.
 const IN_JOINT: (u32, u32) = (1, 5);
 
-/// The first version without `<use_parent_model_frame>`.
+/// First version without `<use_parent_model_frame>`.
 const EXPRESSED_IN: (u32, u32) = (1, 7);
 
-/// Returns the whole name of the frame at one end of a joint.
+/// Returns the full name of the frame at one end of a joint.
 pub(super) fn end(node: Node<'_>, which: &str, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     let found = elements(node).find(|child| child.tag_name().name() == which)?;
     let said = word(found, cx)?;
     Some(Name { text: scope.whole_name(&said.text), ..said })
 }
 
-/// Reads a joint into the robot.
+/// Reads a joint and adds it to the robot.
 pub(super) fn read_joint(
     (node, joint, scope): (Node<'_>, &Name, &Scope),
     frames: &Frames,
@@ -62,7 +63,7 @@ pub(super) fn read_joint(
     let (parent, child) = (end(node, "parent", scope, cx)?, end(node, "child", scope, cx)?);
     let (word, kind, axes) = read_type(node, cx)?;
     let at = frames.resolve(joint, cx)?;
-    // What a joint joins may be frames on links.
+    // // The ends of a joint may be frames that are attached to links.
     let (parent, child) = (frames.carrier(&parent, cx)?, frames.carrier(&child, cx)?);
     let (outer, inner) = (frames.resolve(&parent, cx)?, frames.resolve(&child, cx)?);
     let anchor = inner.back().then(&at).at;
@@ -116,8 +117,8 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     known.copied()
 }
 
-/// Reads how far a screw advances in a turn, m. The older word for it, in rad/m, is positive for left-handed
-/// threads.
+/// Reads the lead of a screw: advance per revolution, m. The older element `<thread_pitch>`, in rad/m, is
+/// positive for left-handed threads.
 fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     let Some(written) = lead.or(old) else {
         cx.error(&place(node, cx), "screw without `<screw_thread_pitch>`", |d| {
@@ -137,7 +138,7 @@ fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: 
     Some(Expr::number(lead, &found.place))
 }
 
-/// A joint that holds.
+/// Returns a fixed joint.
 pub(super) fn weld(name: Name, parent: Name, child: Name, origin: Origin) -> FileJoint {
     let axis = Placed { value: [0.0, 0.0, 1.0], place: name.place.clone() };
     FileJoint {
@@ -158,7 +159,7 @@ pub(super) fn weld(name: Name, parent: Name, child: Name, origin: Origin) -> Fil
     }
 }
 
-/// What is said of one axis of a joint.
+/// Data for reading one axis of a joint.
 struct Said<'n> {
     node: Node<'n>,
     named: &'n Name,
@@ -168,7 +169,7 @@ struct Said<'n> {
 }
 
 impl Said<'_> {
-    /// The joint, its ends apart.
+    /// Reads the joint of this axis. Parent, child and origin are placeholders, which the caller sets.
     fn read(
         &self,
         (at, inner): (&Pose, &Pose),
@@ -209,7 +210,8 @@ impl Said<'_> {
     }
 }
 
-/// True if an axis is in the axes of the model: it is so in old files, or where they say so.
+/// Returns true if an axis is expressed in the axes of the model: by default in old versions, otherwise if
+/// `<use_parent_model_frame>` is true.
 fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
     let Some(old) = old else { return is_before(axis, IN_JOINT) };
     let is_said = word(old, cx).is_some_and(|word| matches!(&*word.text.to_ascii_lowercase(), "true" | "1"));
@@ -220,8 +222,8 @@ fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
     is_said
 }
 
-/// Reads an axis, z unless `<xyz>` says another, and returns it in the axes of the child. It is in the axes
-/// of `usual` unless it names a frame.
+/// Reads an axis and returns it in the axes of the child. The default is z. The axis is expressed in the axes
+/// of `usual` unless `expressed_in` names another frame.
 fn read_axis(
     xyz: Option<Node<'_>>,
     axis: Node<'_>,
@@ -294,7 +296,7 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
     };
     let [lower, upper, velocity, effort] = found.map(&mut number);
     let end = |end: Option<Placed<f64>>| end.filter(|_| !continuous);
-    // Less than zero stands for none.
+    // // Negative limits mean that there is no limit.
     let size = |size: Option<Placed<f64>>| size.filter(|size| size.value >= 0.0);
     let limits =
         FileLimits { lower: end(lower), upper: end(upper), velocity: size(velocity), effort: size(effort) };
@@ -307,7 +309,7 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
     limits
 }
 
-/// `q = multiplier (q_leader − reference) + offset`.
+/// Reads `<mimic>`: `q = multiplier (q_leader − reference) + offset`.
 fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
     check_attributes(node, &["joint"], &["axis"], cx);
     let mut leader = name(node, "joint", cx)?;

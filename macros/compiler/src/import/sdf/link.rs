@@ -10,15 +10,15 @@ use crate::import::pose::{Matrix, Pose, turned};
 use crate::import::robot::bare_link;
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 
-/// The entries of the inertia matrix, with what they are if nothing is said.
+/// Entries of the inertia matrix with their defaults, kg·m².
 const INERTIA: [(&str, f64); 6] =
     [("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0)];
 
-/// The first version in which the pose of an `<inertial>` names no frame.
+/// First version in which the pose of an `<inertial>` is always relative to its link.
 const IN_LINK: (u32, u32) = (1, 7);
 
-/// Reads a link. What it does not say of its mass is what the format says: 1 kg, and 1 kg·m² about every
-/// axis.
+/// Reads a link. The defaults of the format apply to missing mass properties: mass 1 kg, and inertia 1 kg·m²
+/// about every axis.
 pub(super) fn read_link(
     node: Node<'_>,
     (name, scope): (&Name, &Scope),
@@ -69,7 +69,7 @@ pub(super) fn read_link(
     Some(body)
 }
 
-/// What changes the motion and is not taken over.
+/// Reports settings of a link that affect its motion and are not supported.
 fn check_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
     for child in elements(node) {
         let kind = child.tag_name().name();
@@ -113,7 +113,7 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }
 
-/// Gives a link its mass properties.
+/// Sets the mass properties of a body.
 fn give(body: &mut Body, mass: f64, pose: &Pose, inertia: &Matrix, at: &Place) {
     body.mass = Some(Expr::number(mass, at));
     body.com = (pose.at != [0.0; 3]).then(|| Expr::vector(pose.at, at));

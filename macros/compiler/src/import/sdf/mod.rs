@@ -1,7 +1,7 @@
 //! `<sdf>` → bodies and joints in coordinate order (SDFormat specification, versions 1.2 to 1.12).
 //!
-//! A link, a joint, a model and a `<frame>` are frames, and a pose is relative to any of them. Nested models
-//! become one mechanism; their links and joints have names with `::`.
+//! Links, joints, models and `<frame>` elements are frames, and a pose is relative to any of them. Nested
+//! models become one mechanism; names of their links and joints contain `::`.
 
 use super::context::{Cx, quote};
 use super::element::{Node, check_attributes, check_element_name, content, elements, name, place, tag, word};
@@ -26,11 +26,11 @@ mod scope;
 mod version;
 mod visual;
 
-/// What a model holds.
+/// Child elements of a model.
 const MODEL: [&str; 10] =
     ["link", "joint", "frame", "model", "pose", "static", "include", "plugin", "self_collide", "gripper"];
 
-/// Elements of a world.
+/// Child elements of a world.
 const WORLD_PARTS: [&str; 20] = [
     "model",
     "joint",
@@ -54,10 +54,11 @@ const WORLD_PARTS: [&str; 20] = [
     "name",
 ];
 
-/// The first version in which gravity is an element of the world, not of its `<physics>`.
+/// First version in which gravity is an element of the world instead of its `<physics>`.
 const GRAVITY_OF_WORLD: (u32, u32) = (1, 6);
 
-/// What the motion without contact does not depend on.
+/// Elements without influence on the motion apart from contact, with the text that the generated
+/// documentation lists for each.
 const ASIDE: [(&str, &str); 9] = [
     ("include", "models that the world includes and that are not beside the file"),
     ("visual", "visual geometry of links"),
@@ -70,26 +71,26 @@ const ASIDE: [(&str, &str); 9] = [
     ("actor", "actors"),
 ];
 
-/// What is read of a file.
+/// Elements of a file, collected before they are read.
 #[derive(Default)]
 struct Reader<'a> {
     frames: Frames,
     links: Vec<(Node<'a>, Name, Scope)>,
-    /// Frames that are nothing else.
+    /// Frames from `<frame>` elements.
     marks: Vec<Name>,
     joints: Vec<(Node<'a>, Name, Scope)>,
 }
 
-/// The models that make the mechanism, each with the text that whole names of its parts begin with.
+/// Models of the mechanism, each with the prefix of the full names of its elements.
 struct Models<'a> {
     moving: Vec<(Node<'a>, String)>,
     /// Static models of the same world.
     fixed: Vec<(Node<'a>, String)>,
-    /// The world around them, if there is one.
+    /// World of the models, if the file has one.
     world: Option<Node<'a>>,
 }
 
-/// Reads the text of the file at `path`, with the models that it includes.
+/// Reads the text of the file at `path` and the models that it includes.
 pub(super) fn import(
     text: &str,
     path: &Path,
@@ -144,7 +145,7 @@ fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Opti
     let order = robot::order_joints(&robot, cx)?;
     let motions = robot::resolve_motions(&robot.joints, &options.lock, cx)?;
     let root = robot.links.get(order.root)?.name.clone();
-    // What the world itself is called stands where it is.
+    // // If the root is a frame of the file, its pose relative to the world is known.
     if reader.frames.known.contains_key(&root.text) {
         robot.root = Some(origin(&reader.frames.resolve(&root, cx)?, &root.place));
     }
@@ -158,7 +159,7 @@ fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Opti
     (!cx.failed()).then_some(imported)
 }
 
-/// What the generated documentation lists.
+/// Returns the contents of the file that the mechanism does not represent, for the generated documentation.
 fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
     let mut counts = [0; ASIDE.len()];
     for node in root.descendants().filter(Node::is_element) {
@@ -175,7 +176,7 @@ fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
     found.map(|((_, what), count)| format!("{what}: {count}")).collect()
 }
 
-/// Finds the one model of a file that moves, or several that joints of their world connect.
+/// Returns the only moving model of a file, or several models that joints of their world connect.
 fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     let kind = root.tag_name().name();
     if kind != "sdf" {
@@ -195,7 +196,7 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     };
     let mut found = named(root, "model");
     found.extend(named(root, "world").into_iter().flat_map(|world| named(world, "model")));
-    // Static models of a world are not the mechanism, if another model moves.
+    // // If another model moves, static models of a world are not part of the mechanism.
     let mut fixed = Vec::new();
     if found.len() > 1 {
         (fixed, found) = found.into_iter().partition(|model| is_static(*model));
@@ -232,19 +233,20 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     None
 }
 
-/// Returns the first child element of this kind.
+/// Returns the first child element with this name.
 fn first<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
     elements(node).find(|child| child.tag_name().name() == kind)
 }
 
-/// True for a model that nothing moves.
+/// Returns true for a static model.
 fn is_static(model: Node<'_>) -> bool {
     first(model, "static")
         .and_then(|said| said.text())
         .is_some_and(|word| matches!(word.trim(), "true" | "1"))
 }
 
-/// Gravity of a world, which is 9.8 m/s² unless it says another; a model alone says nothing of it.
+/// Returns the gravitational acceleration of a world, by default 9.8 m/s² downwards. Returns `None` for a
+/// model without a world.
 fn gravity(root: Node<'_>, cx: &mut Cx<'_>) -> Option<Expr> {
     let world = first(root, "world")?;
     let said = first(world, "gravity").or_else(|| {
@@ -261,7 +263,7 @@ fn gravity(root: Node<'_>, cx: &mut Cx<'_>) -> Option<Expr> {
 }
 
 impl<'a> Reader<'a> {
-    /// Gathers the links, joints and frames of the models and of their world.
+    /// Collects the links, joints and frames of the models and of their world.
     fn read_top(&mut self, top: &Models<'a>, cx: &mut Cx<'_>) -> Option<()> {
         let all = [top.moving.as_slice(), &top.fixed].concat();
         let world = Scope::World(Rc::new(World::new(top.world, &all)));
@@ -280,8 +282,8 @@ impl<'a> Reader<'a> {
         Some(())
     }
 
-    /// Gathers the links, joints and frames of a model and of those in it. A model that is fixed in the world
-    /// has frames alone.
+    /// Collects the links, joints and frames of a model and of its nested models. Of a static model only
+    /// frames are collected.
     fn read_models(
         &mut self,
         (top, prefix): (Node<'a>, &str),
@@ -340,7 +342,7 @@ impl<'a> Reader<'a> {
         Some(())
     }
 
-    /// A link, a joint or a frame: all of them are frames.
+    /// Collects a link, a joint or a frame. Each of them defines a frame.
     fn read_part(&mut self, node: Node<'a>, kind: &str, scope: &Scope, is_fixed: bool, cx: &mut Cx<'_>) {
         let Some(mut part) = name(node, "name", cx) else {
             check_attributes(node, &["name"], &[], cx);
@@ -348,7 +350,7 @@ impl<'a> Reader<'a> {
         };
         part.text = scope.name_of_part(&part.text);
         let base = match kind {
-            // Joints stand on their children.
+            // // The pose of a joint is relative to its child by default.
             "joint" => joint::end(node, "child", scope, cx).map_or(scope.frame(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
                 Some(to) => scope.whole_name(to),
@@ -382,13 +384,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Frames that are nothing else become links without mass, welded to what they are attached to.
+    /// Adds a massless link for each `<frame>`, welded to the link that the frame is attached to.
     fn mark(&self, robot: &mut Robot, cx: &mut Cx<'_>) -> Option<()> {
         let mut names: BTreeSet<String> = robot.joints.iter().map(|joint| joint.name.text.clone()).collect();
         let hangs_from_world = robot.joints.iter().any(|joint| joint.parent.text == WORLD);
         for mark in &self.marks {
             let carrier = self.frames.carrier(mark, cx)?;
-            // Without joints that begin in the world it is no link, and nothing can be welded to it.
+            // // Without joints that start at the world, the world is not a link, and nothing can be welded
+            // to it.
             if carrier.text == WORLD && !hangs_from_world {
                 continue;
             }
@@ -408,7 +411,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The link that a model's own frame moves with: the one that it says, or its first.
+/// Returns the link that the frame of a model is attached to: the canonical link, or the first link by
+/// default.
 fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     if let Some(said) = node.attribute_node("canonical_link").filter(|said| !said.value().is_empty()) {
         let text = scope.whole_name(said.value());
@@ -421,7 +425,7 @@ fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     named("link").or_else(|| named("model"))
 }
 
-/// Names of the links that nothing lets move.
+/// Returns the names of the links that are fixed to the ground.
 fn standing(robot: &Robot, root: &str, options: &FileOptions) -> Vec<String> {
     if options.base == crate::syntax::Base::Free {
         return Vec::new();
@@ -429,7 +433,7 @@ fn standing(robot: &Robot, root: &str, options: &FileOptions) -> Vec<String> {
     let mut standing = BTreeSet::from([GROUND, root]);
     let joints: BTreeMap<&str, &robot::FileJoint> =
         robot.joints.iter().map(|joint| (joint.child.text.as_str(), joint)).collect();
-    // As often as links can stand on one another.
+    // // Repeated until no link is added.
     loop {
         let before = standing.len();
         for (child, joint) in &joints {

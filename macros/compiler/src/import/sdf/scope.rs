@@ -1,23 +1,24 @@
-//! Names that a model, the world or a link gives its parts → their whole names.
+//! Scopes of names: translate the names inside a model or world to full names.
 
 use crate::import::element::{Node, elements};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-/// The frame of the world, and of the outermost model: all others are at last relative to it.
+/// Frame of the world, and of the outermost model. All other frames are relative to it, directly or
+/// indirectly.
 pub(super) const WORLD: &str = "world";
 
-/// A model or the world: where names are looked up.
+/// Scope in which names are looked up: a model or the world.
 #[derive(Clone, Debug)]
 pub(super) enum Scope {
-    /// A model. The whole names of its parts begin with this text: `arm::hand::`, or nothing for the only
-    /// model of a file.
+    /// Scope of a model: the prefix of the full names of its elements, for example `arm::hand::`. The prefix
+    /// is empty for the only model of a file.
     Model(String),
-    /// The world around the models.
+    /// Scope of the world around the models.
     World(Rc<World>),
 }
 
-/// The names of a world.
+/// Names of a world.
 #[derive(Debug, Default)]
 pub(super) struct World {
     /// Prefix of the full names of each model's parts.
@@ -30,7 +31,8 @@ impl World {
     /// Collects the names of the world `node`, if there is one, whose `models` have these prefixes.
     pub(super) fn new(node: Option<Node<'_>>, models: &[(Node<'_>, String)]) -> World {
         let name = |node: &Node<'_>| node.attribute("name").map(str::to_string);
-        // Parts of a model without a prefix keep their names: equal ones of the world become others.
+        // // Elements of a model without a prefix keep their names; equal names of the world get a prefix
+        // instead.
         let bare = models.iter().filter(|(_, prefix)| prefix.is_empty());
         let taken: BTreeSet<String> =
             bare.flat_map(|(model, _)| elements(*model)).filter_map(|part| name(&part)).collect();
@@ -68,7 +70,7 @@ impl Scope {
         }
     }
 
-    /// Returns the whole name of a part that is declared with this name.
+    /// Returns the full name of an element that is declared with this name.
     pub(super) fn name_of_part(&self, name: &str) -> String {
         match self {
             Scope::Model(prefix) => format!("{prefix}{name}"),
@@ -76,7 +78,7 @@ impl Scope {
         }
     }
 
-    /// Returns the whole name of the frame of the model, or of the world.
+    /// Returns the full name of the frame of the model, or of the world.
     pub(super) fn frame(&self) -> String {
         match self {
             Scope::Model(prefix) => model(prefix),
@@ -85,7 +87,7 @@ impl Scope {
     }
 }
 
-/// Returns the whole name of the frame of a model.
+/// Returns the full name of the frame of a model.
 fn model(prefix: &str) -> String {
     format!("{prefix}__model__")
 }

@@ -1,16 +1,16 @@
-//! The version of the format that an element is written in.
+//! SDF version of the file in which an element is written.
 
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, place};
 
-/// Attribute of an included model: the version of its file.
+/// Attribute of an included model that stores the version of its file.
 pub(super) const OF_INCLUDED: &str = "sdf_version";
 
-/// The first version in which links, joints and poses are elements with text.
+/// First version in which links, joints and poses are elements with text.
 const FIRST: (u32, u32) = (1, 2);
 
-/// True if an element belongs to a file of an earlier version than `number`; a file that gives none is of the
-/// latest.
+/// Returns true if an element belongs to a file of an earlier version than `number`. A file without a version
+/// is treated as the latest version.
 pub(super) fn is_before(node: Node<'_>, number: (u32, u32)) -> bool {
     let version = node.ancestors().find_map(|above| {
         above
@@ -20,7 +20,7 @@ pub(super) fn is_before(node: Node<'_>, number: (u32, u32)) -> bool {
     version.and_then(parse).is_some_and(|version| version < number)
 }
 
-/// Reports a version that cannot be read.
+/// Reports an invalid or unsupported version.
 pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
     let is_sdf = root.tag_name().name() == "sdf";
     let Some(version) = root.attribute_node("version").filter(|_| is_sdf) else { return };
@@ -35,7 +35,7 @@ pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
     }
 }
 
-/// Reports a file of the first version, whose elements have other names.
+/// Reports a file of version 1.0, whose elements have other names.
 pub(super) fn report_first(root: Node<'_>, cx: &mut Cx<'_>) {
     cx.error(&place(root, cx), "version 1.0 of SDF is not supported", |d| {
         d.help("convert the file: `gz sdf -p robot.sdf > converted.sdf`")

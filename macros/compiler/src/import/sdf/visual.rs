@@ -1,4 +1,5 @@
-//! `<visual>` → shapes to draw. Nothing that is drawn enters an equation: what has no form is left out.
+//! `<visual>` → shapes to draw. They appear in no equation, so unsupported shapes are skipped without an
+//! error.
 
 use super::collision::{SHAPES, read_shape};
 use super::frames::{Frames, origin_in};

@@ -1,4 +1,4 @@
-//! `<collision>` → shapes of links that contacts name.
+//! `<collision>` → collision shapes of links, which contacts refer to.
 
 use super::origin::read_origin;
 use crate::diag::Place;
@@ -8,7 +8,7 @@ use crate::import::imported::Placed;
 use crate::import::robot::FileCollision;
 use crate::syntax::Shape;
 
-/// Shapes that a file can name.
+/// Supported shapes.
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
 
 /// Reads all collision geometry of a link.

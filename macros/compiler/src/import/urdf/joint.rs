@@ -1,4 +1,4 @@
-//! `<joint>` → [`FileJoint`]: what the file says of one joint, before locks and followers are looked at.
+//! `<joint>` → [`FileJoint`]: one joint as the file describes it, before locks and `mimic` are resolved.
 
 use super::limit::read_limits;
 use super::misplaced;
@@ -12,7 +12,7 @@ use crate::import::imported::Placed;
 use crate::import::robot::{FileJoint, has_axis, has_coordinate};
 use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
 
-/// URDF's words for the joints, and `spherical`, which simulators take as well.
+/// URDF's names of the joint types, and `spherical`, which simulators also accept.
 const TYPES: [(&str, JointKind); 7] = [
     ("revolute", JointKind::Pin),
     ("continuous", JointKind::Pin),
@@ -23,16 +23,16 @@ const TYPES: [(&str, JointKind); 7] = [
     ("spherical", JointKind::Ball),
 ];
 
-/// The elements of `<joint>` that are read.
+/// Child elements of `<joint>` that are read.
 const PARTS: [&str; 7] = ["origin", "parent", "child", "axis", "dynamics", "mimic", "limit"];
 
 const ELEMENTS: &str = "a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";
 
-/// Coefficients of other tools' controllers in `<dynamics>`.
+/// Attributes of `<dynamics>` that parametrise the controllers of other tools.
 const OF_CONTROLLERS: [&str; 4] = ["D", "K", "mu_coulomb", "mu_viscous"];
 
-/// Reads a joint; `None` if it does not say what it joins. Lists in `left_out` a leader that a fixed joint
-/// cannot follow.
+/// Reads a joint. Returns `None` if its name, parent or child is missing. Adds the `mimic` of a fixed joint
+/// to `left_out`.
 pub(super) fn read_joint(
     node: Node<'_>,
     options: &FileOptions,
@@ -47,7 +47,7 @@ pub(super) fn read_joint(
     let origin = read_origin(origin, node, cx);
     let parent = read_end(parent, node, "parent", cx);
     let child = read_end(child, node, "child", cx);
-    // Exporters write an axis of zeros and a damping into fixed joints.
+    // // Exporters write an axis of zeros and damping into fixed joints.
     let (word, kind) = kind.unwrap_or(("fixed", JointKind::Weld));
     let moves = kind != JointKind::Weld;
     let axis = read_axis(axis.filter(|_| has_axis(kind)), node, cx);
@@ -91,20 +91,20 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     known.copied()
 }
 
-/// The link at one end of a joint.
+/// Reads the link at one end of a joint.
 fn read_end(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
     let end = required(end, node, which, &["link"], cx)?;
     check_only(end, &["link"], &[], &[], cx);
     name(end, "link", cx)
 }
 
-/// The axis; URDF's default is x.
+/// Reads the axis; URDF's default is x.
 fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
     let default = |place: Place| Placed { value: [1.0, 0.0, 0.0], place };
     let Some(axis) = axis else {
         return default(place(node, cx));
     };
-    // Some exporters write an identity orientation.
+    // // Some exporters add an identity orientation to the axis.
     let has_rpy =
         axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
     check_only(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
@@ -115,7 +115,7 @@ fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<
     axis
 }
 
-/// Damping and friction, in this order.
+/// Reads damping and friction, in this order.
 fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut Cx<'_>) -> [Option<Expr>; 2] {
     let Some(node) = node else {
         return [None, None];

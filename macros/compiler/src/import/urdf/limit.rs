@@ -1,4 +1,4 @@
-//! `<limit>` of a joint → bounds of its coordinate.
+//! `<limit>` of a joint → bounds of its coordinate, velocity and force.
 
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, check_only, number};
@@ -8,7 +8,8 @@ use crate::syntax::Name;
 
 const BOUNDS: [&str; 4] = ["lower", "upper", "velocity", "effort"];
 
-/// Bounds that other tools read: they are not of this joint's coordinate, its rate or its force.
+/// Attributes that other tools read. They bound other quantities than the joint's coordinate, velocity and
+/// force.
 const OF_OTHERS: [&str; 10] = [
     "acceleration",
     "deceleration",
@@ -22,7 +23,7 @@ const OF_OTHERS: [&str; 10] = [
     "soft_upper_limit",
 ];
 
-/// Reads the limits of a joint that has one coordinate; `continuous` ones have no ends.
+/// Reads the limits of a joint with one coordinate. `continuous` joints have no bounds of the coordinate.
 pub(super) fn read_limits(
     node: Option<Node<'_>>,
     joint: Option<&Name>,
@@ -53,7 +54,7 @@ pub(super) fn read_limits(
     FileLimits { lower, upper, velocity, effort }
 }
 
-/// A number, or infinity, which bounds nothing; 0 if it is not written.
+/// Reads a bound. Returns `None` for infinity, and 0 if the attribute is missing.
 fn bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
     let Some(text) = node.attribute(which) else {
         return Some(Placed { value: 0.0, place: cx.place(node.range().start) });

@@ -10,20 +10,22 @@ use crate::import::element::{
 use crate::import::robot::{Origin, bare_link};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 
-/// The entries of the inertia matrix, as URDF names them.
+/// Attributes of `<inertia>`: the entries of the inertia matrix.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 
-/// Entries that some exporters write although the matrix is symmetric, and their counterparts.
+/// Redundant entries that some exporters write although the matrix is symmetric, each with its symmetric
+/// counterpart.
 const BELOW_DIAGONAL: [(&str, &str); 3] = [("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")];
 
-/// Difference between these that exporters make, as a part of the largest entry.
+/// Maximum difference between an entry and its counterpart, relative to the largest entry. Exporters round
+/// the two differently.
 const ASYMMETRY: f64 = 0.01;
 
-/// The elements of `<inertial>`.
+/// Child elements of `<inertial>`.
 const PARTS: [&str; 3] = ["origin", "mass", "inertia"];
 
-/// Reads a link; `None` if it has no name. Where nothing needs inertia, it is not read; what `stands` on the
-/// ground may lack some.
+/// Reads a link. Returns `None` if it has no name. Mass properties are skipped if the mechanism needs none,
+/// and may be incomplete for a link that is fixed to the ground (`stands`).
 pub(super) fn read_link(
     node: Node<'_>,
     stands: impl FnOnce(&str) -> bool,
@@ -50,7 +52,7 @@ pub(super) fn read_link(
     Some(body)
 }
 
-/// Reads mass, centre of mass and inertia. A link that says that all are zero is one that says nothing.
+/// Reads mass, centre of mass and inertia. If all values are zero, the body has no mass properties.
 fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>) {
     let [origin, mass, inertia] = children(node, PARTS, cx);
     check_parts(node, cx);
@@ -73,7 +75,7 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
     }
 }
 
-/// Reports contents of `<inertial>` other than its parts.
+/// Reports contents of `<inertial>` other than its known child elements.
 fn check_parts(node: Node<'_>, cx: &mut Cx<'_>) {
     let help = "expected `<origin>`, `<mass>` and `<inertia>`";
     for child in elements(node).filter(|child| !PARTS.contains(&child.tag_name().name())) {
@@ -89,8 +91,8 @@ fn is_zero(expr: Option<&Expr>) -> bool {
     matches!(expr, Some(Expr { kind: ExprKind::Number(value), .. }) if *value == 0.0)
 }
 
-/// Reads the inertia matrix, rotated from the axes of the inertial frame into those of the link; `None` if it
-/// is zero.
+/// Reads the inertia matrix, transformed from the axes of the inertial frame to those of the link. Returns
+/// `None` if the matrix is zero.
 fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr> {
     check_only(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
     let read = INERTIA.map(|entry| number(node, entry, cx));

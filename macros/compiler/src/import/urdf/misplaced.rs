@@ -1,12 +1,11 @@
-//! Words in robots, links and joints that mean something in another place: they are errors, because otherwise
-//! they would be lost without a word. Elements and attributes of other tools pass.
+//! Misplaced elements and attributes in robots, links and joints. They are errors, because otherwise they
+//! would be ignored silently. Elements and attributes of other tools are accepted.
 
 use crate::diag::nearest;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, place, tag};
 
-/// Elements and attributes of URDF and of other formats that say where something is, how heavy it is, or how
-/// it moves.
+/// Elements and attributes of URDF and of other formats that describe position, mass properties or motion.
 const WORDS: [&str; 38] = [
     "armature",
     "axis",
@@ -48,11 +47,11 @@ const WORDS: [&str; 38] = [
     "xyz",
 ];
 
-/// Reports attributes, text, and elements other than `own` in a robot, a link or a joint, if they mean
-/// something in another place. Text between links is a remark.
+/// Reports attributes, text, and elements other than `own` in a robot, a link or a joint, if they have a
+/// meaning elsewhere in the file. Text between links is accepted as a comment.
 pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
     for child in elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
-        // Names that are nearly one of its own are reported by others.
+        // // Misspelt names of elements in `own` are reported by other functions.
         if nearest(child.tag_name().name(), own).is_none() && !is_neutral(child) {
             let message = format!("unexpected {} in {}", tag(child), tag(node));
             cx.error(&place(child, cx), message, |d| d.help(help));
@@ -72,7 +71,7 @@ pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
     }
 }
 
-/// True for an element that moves nothing: without text, and all numbers of its attributes are zero.
+/// Returns true for an element without effect: it has no text or children, and all its attributes are zero.
 fn is_neutral(node: Node<'_>) -> bool {
     let is_zero = |text: &str| text.split_whitespace().all(|word| word.parse() == Ok(0.0));
     node.attributes().all(|attribute| is_zero(attribute.value()))

@@ -1,8 +1,8 @@
 //! `<robot>` → bodies and joints in coordinate order.
 //!
-//! The file is read whole before anything is concluded from it: a joint may stand before its links, and
-//! all mistakes of one kind are reported together. What follows from the topology is looked at only when
-//! every element was read, because a joint that is missing makes roots and cycles that are not the user's.
+//! The whole file is read before its topology is checked: joints may precede their links, and all errors of
+//! one kind are reported together. The topology is checked only if every element could be read, because a
+//! missing joint creates roots and cycles that are not in the file.
 
 use super::context::Cx;
 use super::element::{Node, check_element_name, elements, place, tag};
@@ -44,7 +44,7 @@ pub(super) fn read(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Op
     (!cx.failed()).then_some(imported)
 }
 
-/// True if the file is a robot's.
+/// Returns true if the root element is `<robot>`; otherwise reports an error.
 fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     let name = node.tag_name().name();
     if name == "robot" {

@@ -7,7 +7,7 @@ use crate::import::robot::Origin;
 
 const RADIANS: &str = "`rpy` is in radians: write the angle that is meant, everywhere in the file";
 
-/// Reads the `<origin>` of `owner`; without one, the frames coincide.
+/// Reads the `<origin>` of `owner`. Without an `<origin>`, the pose is the identity.
 pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> Origin {
     let zero = |node| Placed { value: [0.0; 3], place: place(node, cx) };
     let Some(node) = node else {

@@ -1,12 +1,12 @@
-//! The links that stand on the ground, found before anything is read: their mass properties enter no
-//! equation.
+//! Links that are fixed to the ground. They are found before the links are read, because their mass
+//! properties appear in no equation and may be incomplete.
 
 use crate::import::element::{Node, elements};
 use crate::syntax::{Base, FileOptions};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Names of the links that fixed and locked joints hold to a fixed root. A file with mistakes in its tree may
-/// have others.
+/// Returns the names of the links that fixed and locked joints connect to a fixed root. If the file's tree is
+/// invalid, the result may contain other links.
 pub(super) fn links<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a str> {
     let mut standing = BTreeSet::new();
     if options.base == Base::Free {
@@ -29,7 +29,7 @@ pub(super) fn links<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a 
     let links = elements(robot).filter(|node| node.tag_name().name() == "link");
     let mut open: Vec<&str> = links.filter_map(|link| link.attribute("name")).collect();
     open.retain(|link| !carried.contains(link));
-    // A root that is used and not declared.
+    // // Links that are used as a parent but not declared are roots, too.
     open.extend(below.keys().filter(|link| !carried.contains(*link)));
     while let Some(link) = open.pop() {
         if standing.insert(link) {

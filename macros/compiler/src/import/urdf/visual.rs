@@ -1,4 +1,5 @@
-//! `<visual>` → shapes to draw. Nothing that is drawn enters an equation: what cannot be read is left out.
+//! `<visual>` → shapes to draw. They appear in no equation, so shapes that cannot be read are skipped without
+//! an error.
 
 use crate::import::context::Cx;
 use crate::import::element::{Node, elements, place};
@@ -43,12 +44,12 @@ fn read_shape(node: Node<'_>) -> Option<(Shape, Option<Mesh>)> {
     Some((shape, None))
 }
 
-/// A length that something can have.
+/// Parses a positive finite length.
 fn size(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0)
 }
 
-/// Three numbers, or what stands for none.
+/// Parses an attribute with three numbers. Returns `none` if the attribute is missing.
 fn list(node: Node<'_>, name: &str, none: [f64; 3]) -> Option<[f64; 3]> {
     let Some(text) = node.attribute(name) else { return Some(none) };
     let numbers = text.split_whitespace().map(|word| word.parse().ok().filter(|x: &f64| x.is_finite()));
