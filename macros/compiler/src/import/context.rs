@@ -135,7 +135,7 @@ impl<'a> Cx<'a> {
     ) {
         let message = message.into();
         let at = place.file.as_ref().map_or((0, 0), |at| (at.line, at.column));
-        // // An error in a default is found again at every element that uses the default.
+        // An error in a default is found again at every element that uses the default.
         if !self.reported.insert((at, message.clone())) {
             return;
         }

@@ -211,7 +211,7 @@ fn read_numbers<const N: usize>(
     let start = range.start;
     let place = cx.place(start + text.len() - text.trim_start().len());
     if text.contains(',') {
-        // // Decimal commas usually occur in all vectors of a file and are reported once.
+        // Decimal commas usually occur in all vectors of a file and are reported once.
         let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
         let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
         cx.habit(&place, message, if N == 1 { POINT } else { SEPARATE });
@@ -225,14 +225,14 @@ fn read_numbers<const N: usize>(
         cx.error(&place, message, |d| d.help(missing));
         return None;
     }
-    // // Character references (`&#32;`) change the offsets of the words after them.
+    // Character references (`&#32;`) change the offsets of the words after them.
     let verbatim = cx.slice(range) == Some(text);
     let mut value = [0.0; N];
     let mut good = true;
     for (k, word) in text.split_ascii_whitespace().enumerate() {
         let offset = if verbatim { word.as_ptr() as usize - text.as_ptr() as usize } else { 0 };
         match word.parse::<f64>() {
-            // // Adding zero converts −0 to 0.
+            // Adding zero converts −0 to 0.
             Ok(number) if number.is_finite() => value[k] = number + 0.0,
             Ok(_) => {
                 good = false;

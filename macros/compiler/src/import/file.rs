@@ -116,7 +116,7 @@ fn report_unreadable(
             let neighbours = neighbours(path, written, format);
             let near = nearest(written, &neighbours.iter().map(String::as_str).collect::<Vec<_>>());
             diagnostic.suggest(written, neighbours.iter().map(String::as_str));
-            // // The path is shown only if the name has no similar neighbour.
+            // The path is shown only if the name has no similar neighbour.
             if near.is_none() {
                 diagnostic.help(format!("looked for `{}`", path.display()));
             }
@@ -140,7 +140,7 @@ fn neighbours(path: &Path, written: &str, format: FileFormat) -> Vec<String> {
         format.endings().iter().any(|known| end.eq_ignore_ascii_case(known))
     };
     let mut list: Vec<String> = names.filter(is_description).map(|name| format!("{stem}{name}")).collect();
-    // // The order of directory entries depends on the machine.
+    // The order of directory entries depends on the machine.
     list.sort();
     list
 }

@@ -143,7 +143,7 @@ pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
 /// Rounds an angle that is within rounding error of a multiple of a right angle.
 fn round(angle: f64) -> f64 {
     let right = (angle / FRAC_PI_2).round() * FRAC_PI_2;
-    // // Adding zero converts −0 to 0.
+    // Adding zero converts −0 to 0.
     if (angle - right).abs() < ROUNDING { right + 0.0 } else { angle }
 }
 

@@ -117,7 +117,7 @@ fn declarations(root: &str, prefixes: &[&str]) -> String {
     let own: Vec<&str> =
         tag.split("xmlns:").skip(1).filter_map(|rest| rest.split(not_in_a_name).next()).collect();
     let is_wanted = |prefix: &&&str| {
-        // // Declaring the root's own prefix would put the whole tree into a foreign namespace.
+        // Declaring the root's own prefix would put the whole tree into a foreign namespace.
         let is_root = tag
             .strip_prefix('<')
             .and_then(|name| name.strip_prefix(**prefix))
@@ -228,7 +228,7 @@ fn scan_tag<'t>(
     if bytes[k - 1] != b'/' {
         open.push(start);
     }
-    // // The `<` after an unterminated tag belongs to the next tag.
+    // The `<` after an unterminated tag belongs to the next tag.
     Ok(if bytes.get(k) == Some(&b'>') { k + 1 } else { k })
 }
 
@@ -261,7 +261,7 @@ fn expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t 
     if let Some(found) = said.next() {
         return Some((found.range_value().start, document_slice(node, found.range_value())?));
     }
-    // // Values in SDF are the text of elements. Plug-ins and elements with children may contain any text.
+    // Values in SDF are the text of elements. Plug-ins and elements with children may contain any text.
     let text = node.first_child().filter(|child| format == FileFormat::Sdf && child.is_text())?;
     let in_plugin = node.ancestors().any(|above| above.tag_name().name() == "plugin");
     let found = text.text().filter(|text| is_expression(text) && !in_plugin)?;

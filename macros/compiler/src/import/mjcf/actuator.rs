@@ -1,8 +1,8 @@
-//! `<actuator>` → inputs, with the springs and dampers that servos are.
+//! `<actuator>` → inputs, and the springs and dampers of servos.
 //!
-//! An actuator has a length: a gear ratio times a coordinate or the length of a tendon, or zero on a site.
-//! Its force is `gain · u + b₀ + b₁ length + b₂ rate` (MuJoCo, *Computation*, "Actuation model", with neither
-//! activation nor muscles).
+//! The length of an actuator is a gear ratio times a coordinate or the length of a tendon; on a site it is
+//! zero. The force is `gain · u + b₀ + b₁ length + b₂ rate` (MuJoCo, *Computation*, "Actuation model",
+//! without activation and muscles).
 
 use super::defaults::Element;
 use super::law::{Force, OTHER_INPUTS, read_force};
@@ -15,10 +15,10 @@ use crate::import::robot::unused;
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, InputOption, JointKind, LimitOption, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The shortcuts that are understood, and `general`.
+/// Supported actuator types: shortcuts and `general`.
 const KNOWN: [&str; 4] = ["motor", "position", "velocity", "general"];
 
-/// All of MuJoCo's.
+/// All actuator types of MuJoCo.
 pub(super) const ALL: [&str; 13] = [
     "general",
     "motor",
@@ -35,10 +35,10 @@ pub(super) const ALL: [&str; 13] = [
     "dcmotor",
 ];
 
-/// The attributes that say what an actuator acts on.
+/// Attributes that select what an actuator acts on.
 const TARGETS: [&str; 7] = ["joint", "jointinparent", "tendon", "site", "slidersite", "cranksite", "body"];
 
-/// The sum of what actuators may exert on each joint; nothing where one of them has no limit.
+/// Maximum effort of each joint: the sum over its actuators, or `None` if one of them is unlimited.
 type Efforts = BTreeMap<String, Option<Placed<f64>>>;
 
 impl<'a> Reader<'a> {
@@ -54,7 +54,7 @@ impl<'a> Reader<'a> {
             nodes.iter().filter_map(|node| node.attribute("name")).map(str::to_string).collect();
         let mut efforts = Efforts::new();
         for node in nodes {
-            // What all actuators have may be said in the defaults of any.
+            // Attributes common to all actuators may come from the defaults of any actuator type.
             let any = self.defaults.element(node, &ALL, 0, cx);
             self.add_losses(&any, tendons, cx);
             let group = any.number("group", cx).map_or(0.0, |group| group.value);
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
         let node = any.node;
         let kind = node.tag_name().name();
         if !KNOWN.contains(&kind) {
-            // Elements that MJCF does not have are reported elsewhere.
+            // Unknown elements are reported by the schema check.
             if ALL.contains(&kind) {
                 let message = format!("actuator `<{kind}>` is not supported");
                 cx.error(&place(node, cx), message, |d| d.help(OTHER_INPUTS));
@@ -109,7 +109,7 @@ impl<'a> Reader<'a> {
         };
         drive(on.scaled(force.gain), DriveLaw::Input(unit));
         let [constant, stiffness, damping] = force.bias;
-        // What is at a point has the length zero.
+        // The length of an actuator on a site is zero.
         let stiffness = if matches!(on, DriveOn::Wrench(_)) { 0.0 } else { stiffness };
         if stiffness != 0.0 {
             drive(on.clone(), DriveLaw::Spring { stiffness: -stiffness, free: constant / -stiffness });
@@ -121,7 +121,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What an actuator acts on, with its gear ratio, and whether that turns.
+    /// Returns what an actuator acts on, scaled by the gear ratio, and whether its force is a torque.
     fn transmission(
         &self,
         element: &Element<'a>,
@@ -169,8 +169,8 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Adds the rotor and the viscous losses of an actuator, which the joint or the tendon has even while
-    /// nothing drives it.
+    /// Adds the rotor inertia and the viscous damping of an actuator. They act on the joint or tendon even if
+    /// the actuator is not used.
     fn add_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let damping = element.linear("damping", OTHER_INPUTS, cx).filter(|_| self.dampers);
         let rotor = element.nonzero("armature", cx);
@@ -197,7 +197,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Adds the largest force of an actuator to those of the joints that it acts on.
+    /// Adds the maximum force of an actuator to the maximum efforts of the joints that it acts on.
     fn add_effort(
         &mut self,
         element: &Element<'a>,
@@ -249,7 +249,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Names of the joints that carry what a length or a wrench is between.
+    /// Returns the names of all joints between the ground and the bodies that a length or a wrench refers to.
     fn joints_below(&self, on: &DriveOn) -> Vec<String> {
         let ends = match on {
             DriveOn::Sum(_) => Vec::new(),
@@ -270,7 +270,7 @@ impl<'a> Reader<'a> {
         found
     }
 
-    /// Bounds what acts on joints by what their actuators exert together.
+    /// Limits the effort of each joint to the sum of its actuators' maximum forces.
     fn bound_efforts(&mut self, mut efforts: Efforts) {
         if self.options.limits == LimitOption::Ignore {
             return;
@@ -285,7 +285,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The unit of an input.
+/// Returns the unit of an input.
 fn unit(kind: &str, turns: bool, force: &Force) -> &'static str {
     match (kind, turns) {
         ("motor", true) => "N·m",
@@ -294,7 +294,7 @@ fn unit(kind: &str, turns: bool, force: &Force) -> &'static str {
         ("position", false) => "m",
         ("velocity", true) => "rad/s",
         ("velocity", false) => "m/s",
-        // A servo's input is what it goes to.
+        // The input of a servo is its set-point.
         (_, true) if force.gain == -force.bias[1] => "rad",
         (_, false) if force.gain == -force.bias[1] => "m",
         _ => "any",

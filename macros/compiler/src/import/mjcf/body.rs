@@ -13,34 +13,34 @@ use crate::import::pose::{Pose, about, add, apply, product, scale};
 use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
-/// MuJoCo's name of what does not move.
+/// MuJoCo's name of the fixed body.
 pub(super) const WORLD: &str = "world";
 
 const WRITTEN_OUT: &str = "MuJoCo writes what it makes of a file: `mj_saveLastXML`, or its program `compile`";
 
-/// A body that is still to be read.
+/// Body that remains to be read.
 struct Open<'a> {
     node: Node<'a>,
-    /// The link that carries it.
+    /// Parent link.
     parent: Name,
-    /// The pose of the frames around it.
+    /// Pose of the surrounding `<frame>` elements relative to the parent.
     outer: Pose,
-    /// The pose of the parent in the world, as the file has it.
+    /// Pose of the parent relative to the world, in the configuration of the file.
     world: Pose,
     class: usize,
 }
 
-/// A shape or a site, and the pose of the frames in the body that it stands in.
+/// Shape or site, with the pose of its surrounding `<frame>` elements relative to the body.
 pub(super) type Shaped<'a> = (Element<'a>, Pose);
 
-/// What stands in a body, the frames in it opened.
+/// Contents of a body, including the contents of its `<frame>` elements.
 #[derive(Default)]
 struct Inside<'a> {
     bodies: Vec<(Node<'a>, Pose, usize)>,
     shapes: Vec<Shaped<'a>>,
     sites: Vec<Shaped<'a>>,
     inertial: Option<(Node<'a>, Pose)>,
-    /// Joints, each with the pose in the body of the frame that contains it, and its class.
+    /// Joints, each with the pose of its surrounding `<frame>` elements relative to the body, and its class.
     jointed: Vec<(Node<'a>, Pose, usize)>,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Reader<'a> {
     pub(super) fn read_world(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Option<()> {
         let world = Name { text: GROUND.to_string(), place: place(root, cx) };
         self.robot.links.push(bare_link(world.clone()));
-        // Names that the file gives are not for what has none.
+        // Generated names must differ from the names in the file.
         let named = |kind: fn(Node<'_>) -> bool| {
             let nodes = root.descendants().filter(move |node| node.is_element() && kind(*node));
             nodes.filter_map(|node| node.attribute("name")).map(str::to_string)
@@ -83,7 +83,7 @@ impl<'a> Reader<'a> {
             }));
         }
         self.free_base(&open, cx);
-        // With a stack of its own: a chain may be as long as the file allows.
+        // With an explicit stack, because chains may be long.
         while let Some(next) = open.pop() {
             if self.robot.links.len() > MAX_ELEMENTS {
                 cx.error(&place(next.node, cx), format!("more than {MAX_ELEMENTS} bodies"), |d| d);
@@ -96,7 +96,7 @@ impl<'a> Reader<'a> {
         Some(())
     }
 
-    /// `base = free` is for files that leave open how their body is held.
+    /// Reports `base = free` unless the file has one outermost body without joints.
     fn free_base(&self, open: &[Open<'a>], cx: &mut Cx<'_>) {
         if self.options.base != Base::Free {
             return;
@@ -190,7 +190,7 @@ impl<'a> Reader<'a> {
         body
     }
 
-    /// The elements in a body, with the poses of the frames that they stand in.
+    /// Collects the elements in a body, each with the pose of its surrounding `<frame>` elements.
     fn inside(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) -> Inside<'a> {
         let mut found = Inside::default();
         self.gather(node, &Pose::ZERO, class, &mut found, cx);
@@ -234,14 +234,14 @@ impl<'a> Reader<'a> {
                     let message = format!("{} is not supported", tag(child));
                     cx.error(&place(child, cx), message, |d| d.help(WRITTEN_OUT));
                 }
-                // Elements that MJCF does not have are reported elsewhere.
+                // Unknown elements are reported by the schema check.
                 _ => {}
             }
         }
     }
 
-    /// Reports a free joint that moves the axes of its body into the principal ones, where coordinates would
-    /// be others.
+    /// Reports a free joint that aligns the axes of its body with the principal axes. Its coordinates would
+    /// differ from those of the unaligned body.
     fn refuse_alignment(&self, inside: &Inside<'a>, cx: &mut Cx<'_>) {
         for (joint, ..) in &inside.jointed {
             let aligned = joint.tag_name().name() == "freejoint"
@@ -262,7 +262,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The joints between a body and its parent: one after the other, with massless links between them.
+    /// Adds the joints between a body and its parent as a chain, with massless links between them.
     fn chain(&mut self, parent: &Name, body: &Name, pose: &Pose, joints: Vec<BodyJoint>, cx: &mut Cx<'_>) {
         let number = joints.len();
         let free = joints.iter().find(|joint| joint.kind == JointKind::Free);
@@ -284,7 +284,7 @@ impl<'a> Reader<'a> {
         for (k, joint) in joints.into_iter().enumerate() {
             let child = if k + 1 == number { body.clone() } else { self.between(body, &joint) };
             let outer = match (k, joint.kind) {
-                // Its coordinates are its pose in the world.
+                // The coordinates of a free joint are the pose of the body in the world.
                 (_, JointKind::Free) => Pose::ZERO,
                 (0, _) => *pose,
                 _ => Pose::ZERO,
@@ -298,7 +298,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A massless link between two joints of a body.
+    /// Adds a massless link between two joints of a body and returns its name.
     fn between(&mut self, body: &Name, joint: &BodyJoint) -> Name {
         let text =
             unused(&format!("{}_{}", body.text, joint.name.text), |name| self.link_names.contains(name));
@@ -309,7 +309,8 @@ impl<'a> Reader<'a> {
         name
     }
 
-    /// Damping of all velocities of a ball or a free body: Rayleigh's function `½ d (v·v + ω·ω)`.
+    /// Adds isotropic damping of a ball joint or a free body: the Rayleigh dissipation function `½ d (v·v +
+    /// ω·ω)`.
     fn spread(&mut self, joint: &BodyJoint, damping: &Placed<f64>, carrier: &Name, child: &Name) {
         let at = &damping.place;
         let named = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
@@ -347,7 +348,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Sites with names are frames.
+    /// Collects the sites of a body. Sites with names become frames.
     fn add_sites(&mut self, inside: &Inside<'a>, body: &str, cx: &mut Cx<'_>) {
         for (site, outer) in &inside.sites {
             let named = site.node.has_attribute("name").then(|| name(site.node, "name", cx)).flatten();
@@ -383,12 +384,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Where the mass properties of a body are said.
+/// Returns the source position of the mass properties of a body.
 fn mass_place(inside: &Inside<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
     place(inside.inertial.map_or(node, |(node, _)| node), cx)
 }
 
-/// A joint that holds.
+/// Returns a fixed joint.
 fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
     let place = name.place.clone();
     FileJoint {
@@ -409,7 +410,8 @@ fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
     }
 }
 
-/// A joint at its place: in the pose of the file its coordinate is not zero, but its reference.
+/// Returns the joint with its endpoints. In the configuration of the file, its coordinate equals its
+/// reference instead of zero.
 fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJoint {
     let axis = joint.axis.value;
     let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };

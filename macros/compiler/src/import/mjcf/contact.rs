@@ -1,4 +1,4 @@
-//! Geometry for contact → shapes that contacts name, and contacts with the planes of the world.
+//! Collision geometry → shapes that contacts refer to, and contacts with the planes of the world.
 
 use super::body::Shaped;
 use super::defaults::Element;
@@ -13,7 +13,8 @@ use crate::syntax::contact::TOUCHES;
 use std::collections::BTreeSet;
 
 impl<'a> Reader<'a> {
-    /// Adds those shapes of a link that touch others, if contacts name any.
+    /// Adds the collision shapes of a link, if the options request them. Shapes with zero masks are only
+    /// counted.
     pub(super) fn add_collisions(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         if !self.options.collisions {
             self.count("geometry of bodies", shapes.len());
@@ -33,7 +34,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Notes what touches the planes of the world; forms without points that are known are counted.
+    /// Records a shape for contacts with the planes of the world. Meshes have no known contact points and are
+    /// only counted.
     fn add_touching(&mut self, link: usize, shape: &Element<'a>, kind: Shape, cx: &mut Cx<'_>) {
         if !self.options.contacts {
             return;
@@ -48,7 +50,7 @@ impl<'a> Reader<'a> {
         self.touching.push(Touching { link, number, name, law, place });
     }
 
-    /// The planes of the world that bodies may touch; other shapes there are counted.
+    /// Adds the planes of the world for contacts. Other shapes of the world are only counted.
     pub(super) fn add_planes(&mut self, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         for (shape, outer) in shapes {
             if !self.options.contacts || shape.text("type") != Some("plane") {
@@ -67,7 +69,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Declares the contacts of all shapes with all planes that their masks let them touch.
+    /// Declares a contact for each pair of a shape and a plane whose masks permit contact.
     pub(super) fn touch_planes(&mut self, cx: &mut Cx<'_>) {
         if !self.options.contacts {
             return;
@@ -97,7 +99,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The form of a shape, and its pose in the frames around it.
+    /// Returns a collision shape and its pose relative to the surrounding `<frame>` elements.
     pub(super) fn collision(
         &self,
         shape: &super::defaults::Element<'a>,

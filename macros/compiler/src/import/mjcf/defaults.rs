@@ -1,4 +1,4 @@
-//! `<default>` classes: what an element has that does not say it itself.
+//! `<default>` classes: default values of attributes.
 
 use super::super::context::{Cx, position, quote};
 use super::super::element::{Node, check_attributes, elements, name, number, numbers, place};
@@ -6,27 +6,27 @@ use crate::import::imported::Placed;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
 
-/// The class of what has no other.
+/// Name of the outermost class.
 const MAIN: &str = "main";
 
-/// A class: the elements that it gives defaults for, and the class that it is made from.
+/// Class of defaults: the elements with default values, and the parent class.
 #[derive(Default)]
 struct Class<'a> {
     parent: Option<usize>,
     elements: Vec<Node<'a>>,
 }
 
-/// All classes of a file. The first is that of what has no other.
+/// All classes of a file. The first is the outermost class.
 pub(super) struct Defaults<'a> {
     classes: Vec<Class<'a>>,
     names: BTreeMap<&'a str, usize>,
 }
 
-/// An element with its defaults: what it says itself comes first, then what its class says, then what that is
-/// made from.
+/// Element with its defaults. The values of the element itself have priority, then those of its class, then
+/// those of the parent classes.
 #[derive(Clone)]
 pub(super) struct Element<'a> {
-    /// The element.
+    /// XML element.
     pub(super) node: Node<'a>,
     layers: Vec<Node<'a>>,
 }
@@ -38,7 +38,7 @@ impl<'a> Defaults<'a> {
         for node in elements(root).filter(|node| node.tag_name().name() == "default") {
             match node.attribute("class") {
                 Some(class) if class != MAIN => {
-                    // The outermost class may have any name, but there is one.
+                    // The outermost class may have any name. Several `<default>` elements share it.
                     all.names.insert(class, 0);
                 }
                 _ => {}
@@ -50,7 +50,7 @@ impl<'a> Defaults<'a> {
     }
 
     fn read_class(&mut self, node: Node<'a>, class: usize, cx: &mut Cx<'_>) {
-        // The classes within, with a list of what is to be done: they may be nested as deep as the file.
+        // An explicit stack replaces recursion, because classes may be nested deeply.
         let mut open = vec![(node, class)];
         while let Some((node, class)) = open.pop() {
             check_attributes(node, &[], &["class"], cx);
@@ -80,7 +80,8 @@ impl<'a> Defaults<'a> {
         }
     }
 
-    /// The class that an attribute names, or else `inherited`.
+    /// Returns the index of the class that an attribute names. Without the attribute, or if the class is
+    /// unknown, returns `inherited`.
     pub(super) fn class(&self, node: Node<'_>, attribute: &str, inherited: usize, cx: &mut Cx<'_>) -> usize {
         let Some(Name { text, place }) = name(node, attribute, cx) else { return inherited };
         match self.names.get(text.as_str()) {
@@ -94,8 +95,8 @@ impl<'a> Defaults<'a> {
         }
     }
 
-    /// An element with the defaults of its class, `inherited` unless it names one, that are written for any
-    /// of `tags`.
+    /// Returns an element with the defaults of its class for any of `tags`. The class is `inherited` unless
+    /// the element names one.
     pub(super) fn element(
         &self,
         node: Node<'a>,
@@ -108,8 +109,8 @@ impl<'a> Defaults<'a> {
         Element { node, layers: std::iter::once(node).chain(defaults).collect() }
     }
 
-    /// The defaults written for any of `tags` that apply to an element, of each class that its own is made
-    /// from, the outermost first.
+    /// Returns the defaults for any of `tags` that apply to an element, one list for each class from the
+    /// outermost class to the element's own.
     pub(super) fn by_class(
         &self,
         node: Node<'_>,
@@ -130,38 +131,38 @@ impl<'a> Defaults<'a> {
 }
 
 impl<'a> Element<'a> {
-    /// The node that says `attribute`: the element or a default.
+    /// Returns the node with the effective value of `attribute`: the element itself or a default.
     pub(super) fn with(&self, attribute: &str) -> Option<Node<'a>> {
         self.with_any(&[attribute])
     }
 
-    /// The first that says one of these.
+    /// Returns the first node with one of these attributes.
     pub(super) fn with_any(&self, attributes: &[&str]) -> Option<Node<'a>> {
         self.layers.iter().copied().find(|node| attributes.iter().any(|name| node.has_attribute(*name)))
     }
 
-    /// The word that an attribute is.
+    /// Returns the trimmed text of an attribute.
     pub(super) fn text(&self, attribute: &str) -> Option<&'a str> {
         self.with(attribute).and_then(|node| node.attribute(attribute)).map(str::trim)
     }
 
-    /// The word that an attribute is, with its place.
+    /// Returns the text of an attribute with its source position.
     pub(super) fn name(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
         name(self.with(attribute)?, attribute, cx)
     }
 
-    /// A finite number.
+    /// Returns a finite number.
     pub(super) fn number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
         number(self.with(attribute)?, attribute, cx)
     }
 
-    /// A number that is not zero.
+    /// Returns a finite number, or `None` if it is zero.
     pub(super) fn nonzero(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
         self.number(attribute, cx).filter(|found| found.value != 0.0)
     }
 
-    /// The linear coefficient of a force that newer versions of the format give as a polynomial: reports
-    /// others.
+    /// Returns the linear coefficient of a force. Newer versions of the format give a polynomial; nonzero
+    /// coefficients of higher order are reported.
     pub(super) fn linear(&self, attribute: &str, help: &'static str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
         let Placed { value: [linear, square, cube], place } = self.some(attribute, [0.0; 3], cx)?;
         if square != 0.0 || cube != 0.0 {
@@ -171,7 +172,7 @@ impl<'a> Element<'a> {
         (linear != 0.0).then_some(Placed { value: linear, place })
     }
 
-    /// As many finite numbers.
+    /// Returns exactly `N` finite numbers.
     pub(super) fn numbers<const N: usize>(
         &self,
         attribute: &str,
@@ -180,8 +181,8 @@ impl<'a> Element<'a> {
         numbers(self.with(attribute)?, attribute, cx)
     }
 
-    /// Up to `N` finite numbers: the first ones of the element, then further ones of its defaults, then
-    /// those that are given.
+    /// Returns up to `N` finite numbers. Entries that the element does not specify come from its defaults,
+    /// then from `rest`.
     pub(super) fn some<const N: usize>(
         &self,
         attribute: &str,
@@ -197,19 +198,19 @@ impl<'a> Element<'a> {
         found
     }
 
-    /// `true`, `false` or `auto`; the last is `None`.
+    /// Returns the value of a `true`/`false` attribute; `None` for `auto`.
     pub(super) fn choice(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
         choice(self.with(attribute)?, attribute, cx)
     }
 
-    /// The place of an attribute's value, or else of the element.
+    /// Returns the source position of an attribute's value, or of the element if the attribute is missing.
     pub(super) fn place(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
         let found = self.with(attribute).and_then(|node| node.attribute_node(attribute));
         found.map_or_else(|| place(self.node, cx), |found| cx.place(found.range_value().start))
     }
 }
 
-/// Up to `N` finite numbers; those that are not written are as given.
+/// Returns up to `N` finite numbers. Missing entries are taken from `rest`.
 pub(super) fn some<const N: usize>(
     node: Node<'_>,
     attribute: &str,
@@ -219,7 +220,7 @@ pub(super) fn some<const N: usize>(
     let text = node.attribute(attribute)?;
     let count = text.split_ascii_whitespace().count();
     let place = cx.place(node.attribute_node(attribute)?.range_value().start);
-    // One function for each length keeps the message about the number of numbers in one place.
+    // One instance of `numbers` per length, so that only `numbers` reports a wrong count.
     macro_rules! of_length {
         ($($n:literal)*) => {
             match count {
@@ -235,7 +236,7 @@ pub(super) fn some<const N: usize>(
     of_length!(1 2 3 4 5 6 7 8 9 10)
 }
 
-/// `true`, `false` or `auto`; the last is `None`, as is what is not there.
+/// Returns the value of a `true`/`false` attribute; `None` for `auto` or a missing attribute.
 pub(super) fn choice(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<bool> {
     let found = node.attribute_node(attribute)?;
     match found.value().trim() {

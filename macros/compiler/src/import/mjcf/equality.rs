@@ -1,4 +1,4 @@
-//! `<equality>`: joints that follow others, conditions on coordinates, and loops that are closed.
+//! `<equality>` → joints that follow others, constraints on coordinates, and loop-closing joints.
 
 use super::defaults::Element;
 use super::reader::{Reader, origin};
@@ -14,7 +14,7 @@ use crate::syntax::{
 const LEAVE_OUT: &str = "to leave `<equality>` out, write `#[mechanism(…, mimic = independent)]`";
 
 impl<'a> Reader<'a> {
-    /// Reads all couplings.
+    /// Reads all elements of `<equality>`.
     pub(super) fn equalities(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let groups = elements(root).filter(|node| node.tag_name().name() == "equality");
         let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
@@ -43,7 +43,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// `y − y₀ = a₀ + a₁ (x − x₀)`, where the zeros are the pose of the file.
+    /// Couples two joints: `y − y₀ = a₀ + a₁ (x − x₀) + …`. The coordinates `x₀` and `y₀` are those in the
+    /// configuration of the file. A linear relation becomes a `mimic`, any other a constraint.
     fn couple(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) {
         let Some(first) =
             name(element.node, "joint1", cx).filter(|joint| self.check_joint(joint, "follow", cx))
@@ -73,7 +74,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The same of the lengths of fixed tendons. Of one with two joints, the second follows the first.
+    /// Couples the lengths of fixed tendons. If a single tendon of two joints is constrained, the second
+    /// joint follows the first.
     fn couple_tendons(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
         let Some(first) = terms_of("tendon1", element, tendons, cx) else { return };
         let has_second = element.node.has_attribute("tendon2");
@@ -95,8 +97,8 @@ impl<'a> Reader<'a> {
         self.constrain(element, &first, second.as_deref(), polynomial, cx);
     }
 
-    /// `Σ (y − y₀) = a₀ + a₁ d + … + a₄ d⁴` with `d = Σ (x − x₀)` as a condition on coordinates, the sums
-    /// weighted.
+    /// Adds the constraint `Σ (y − y₀) = a₀ + a₁ d + … + a₄ d⁴` with `d = Σ (x − x₀)`. The sums are weighted
+    /// with the coefficients of the tendons.
     fn constrain(
         &mut self,
         element: &Element<'a>,
@@ -150,7 +152,7 @@ impl<'a> Reader<'a> {
         self.robot.constraints.push(constraint);
     }
 
-    /// A loop that a ball joint or a weld closes.
+    /// Closes a loop with a ball joint or a weld.
     fn close(&mut self, element: &Element<'a>, kind: JointKind, cx: &mut Cx<'_>) {
         let Some([first, second]) = self.ends(element, kind, cx) else { return };
         for (body, _) in [&first, &second] {
@@ -180,7 +182,7 @@ impl<'a> Reader<'a> {
         self.robot.closing.push(bare_joint(named, kind, parent, child));
     }
 
-    /// What a loop is closed between, and where on it.
+    /// Returns the bodies and the poses of the two ends of a loop-closing joint.
     fn ends(&self, element: &Element<'a>, kind: JointKind, cx: &mut Cx<'_>) -> Option<[(Name, Pose); 2]> {
         if element.node.has_attribute("site1") {
             let mut end = |attribute: &str| {
@@ -200,7 +202,7 @@ impl<'a> Reader<'a> {
                 return Some((Name { text: GROUND.to_string(), ..body }, Pose::ZERO));
             }
             if body.text == GROUND {
-                // It has another name here.
+                // The body `ground` of the file was renamed.
                 let renamed = self.poses.keys().find(|known| known.starts_with("ground_link"));
                 body.text = renamed.cloned().unwrap_or(body.text);
             }
@@ -213,7 +215,7 @@ impl<'a> Reader<'a> {
             Some((body, *pose))
         };
         let [(first, outer), (second, inner)] = [end("body1")?, end("body2")?];
-        // The first body in the axes of the second, in the pose of the file.
+        // Pose of the first body relative to the second, in the configuration of the file.
         let between = inner.back().then(&outer);
         let anchor = element.numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
         if kind == JointKind::Ball {
@@ -221,8 +223,8 @@ impl<'a> Reader<'a> {
             return Some([(first, at), (second, Pose { at: between.then(&at).at, ..Pose::ZERO })]);
         }
         let said = element.numbers::<7>("relpose", cx).map(|said| said.value);
-        // A pose in the first body is that of the anchor on the second; without one they are as in the pose
-        // of the file.
+        // `relpose` is the pose of the second body's anchor relative to the first body. Without it, the
+        // relative pose is that in the configuration of the file.
         let (pose, own) = match said.filter(|[_, _, _, quat @ ..]| *quat != [0.0; 4]) {
             Some([x, y, z, quat @ ..]) => {
                 let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -235,13 +237,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// `polycoef`; what is not written is zero, but for the default as a whole.
+/// Returns `polycoef`. Without the attribute it is the identity; missing entries come from the defaults.
 fn coefficients(element: &Element<'_>, cx: &mut Cx<'_>) -> [f64; 5] {
     let usual = [0.0, 1.0, 0.0, 0.0, 0.0];
     element.some("polycoef", usual, cx).map_or(usual, |found| found.value)
 }
 
-/// The joints of a fixed tendon that a coupling names.
+/// Returns the joints and weights of the fixed tendon that a coupling names.
 fn terms_of(
     attribute: &str,
     element: &Element<'_>,

@@ -10,16 +10,16 @@ use crate::import::pose::{
     IDENTITY, Matrix, Pose, about, add, cross, dot, length, of_quaternion, of_z, product, scale,
 };
 
-/// The ways to say an orientation.
+/// Attributes that specify an orientation. An element may have at most one of them.
 pub(super) const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
-/// The pose that an element says.
+/// Returns the pose of an element.
 pub(super) fn read_pose(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Pose {
     let at = element.numbers("pos", cx).map_or([0.0; 3], |at| at.value);
     Pose { at, axes: read_axes(element, settings, cx) }
 }
 
-/// The orientation that an element says.
+/// Returns the orientation of an element.
 pub(super) fn read_axes(element: &Element<'_>, settings: &Settings, cx: &mut Cx<'_>) -> Matrix {
     let Some(node) = element.with_any(&ORIENTATIONS) else { return IDENTITY };
     let said: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| node.has_attribute(*name)).collect();
@@ -57,7 +57,8 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
                     _ => [0.0, 0.0, 1.0],
                 };
                 let turn = about(unit, settings.angle(angle));
-                // About carried axes one turn stands behind the other, about fixed ones before it.
+                // Rotations about moving axes are multiplied from the right, those about fixed axes from the
+                // left.
                 if axis.is_ascii_lowercase() { product(&whole, &turn) } else { product(&turn, &whole) }
             }))
         }
@@ -91,7 +92,7 @@ fn check_turns(angles: &[f64], place: &Place, settings: &Settings, cx: &mut Cx<'
 
 const RADIANS: &str = "`angle=\"radian\"` makes angles of the file radians: write the angle that is meant, or `angle=\"degree\"`";
 
-/// Reports what has no direction.
+/// Reports vectors whose length is zero or not finite.
 fn check_length<const N: usize>(
     size: f64,
     what: &str,

@@ -1,4 +1,4 @@
-//! Mass properties of a body: those that it says, or those of its geometry.
+//! Mass properties of a body from its `<inertial>` or from its geometry.
 
 use super::defaults::{Defaults, Element};
 use super::frame::read_pose;
@@ -9,27 +9,28 @@ use crate::import::element::{Node, check_attributes, numbers, place, tag};
 use crate::import::pose::{IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, scale, turned};
 use std::f64::consts::PI;
 
-/// Mass properties in body axes.
+/// Mass properties of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mass {
     /// Mass, kg.
     pub(super) mass: f64,
-    /// Centre of mass, m.
+    /// Centre of mass in body axes, m.
     pub(super) com: Vector,
-    /// Inertia about it, kg·m².
+    /// Inertia about the centre of mass in body axes, kg·m².
     pub(super) inertia: Matrix,
 }
 
-/// Masses below this are none.
+/// Masses below this value (kg) are treated as zero.
 const NOTHING: f64 = 1e-15;
 
 const DENSITY: f64 = 1000.0;
 
-/// Shapes without a volume.
+/// Shapes without volume.
 const FLAT: [&str; 2] = ["plane", "hfield"];
 
 impl Mass {
-    /// The same seen from the frame that this one has `pose` in.
+    /// Transforms the mass properties from a frame to its reference frame. `pose` is the pose of the frame
+    /// relative to the reference frame.
     pub(super) fn placed(&self, pose: &Pose) -> Mass {
         Mass {
             com: add(pose.at, crate::import::pose::apply(&pose.axes, self.com)),
@@ -39,7 +40,7 @@ impl Mass {
     }
 }
 
-/// Adds masses that are fixed to each other.
+/// Returns the mass properties of the rigid union of several bodies; `None` for zero mass.
 pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
     if let [one] = parts {
         return Some(*one);
@@ -63,7 +64,8 @@ pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
     Some(Mass { mass, com, inertia })
 }
 
-/// Mass properties of a body, by `<inertial>` or by its geometry with the poses of that in the body.
+/// Returns the mass properties of a body from `<inertial>` or from its shapes. Each comes with the pose of
+/// its surrounding `<frame>` elements relative to the body.
 pub(super) fn of_body<'a>(
     inertial: &Option<(Node<'a>, Pose)>,
     shapes: &[(Element<'a>, Pose)],
@@ -89,13 +91,13 @@ pub(super) fn of_body<'a>(
     bounded(found, pose, settings)
 }
 
-/// Mass and principal moments are at least what the file wants, and those of bodies that there can be, if it
-/// wants that.
+/// Raises mass and principal moments to the minimum values of the file. With `balance`, principal moments
+/// that violate the triangle inequality are replaced by their mean.
 fn bounded(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass> {
     if settings.least_mass == 0.0 && settings.least_inertia == 0.0 && !settings.balance {
         return found;
     }
-    // MuJoCo puts the mass of a body that has none where its parent has the body itself.
+    // For a body without mass, MuJoCo puts this mass at the body's position relative to its parent.
     let zero = Mass { mass: 0.0, com: pose.at, inertia: [[0.0; 3]; 3] };
     let found = found.unwrap_or(zero);
     let (moments, axes) = principal(&found.inertia);
@@ -145,7 +147,7 @@ fn read_inertial(
     Some(Mass { mass, com, inertia: turned(&axes, &diagonal(moments)) })
 }
 
-/// Mass properties of a shape in its body's axes; nothing of one without mass.
+/// Returns the mass properties of a shape in body axes; `None` for a shape without mass.
 fn of_shape<'a>(
     shape: &Element<'a>,
     meshes: &mut Meshes<'a>,
@@ -180,8 +182,8 @@ fn of_shape<'a>(
     Some(Mass { mass, com: [0.0; 3], inertia }.placed(&pose))
 }
 
-/// Where a shape is, and its half lengths, those that it has: a radius stands first, the half of its length
-/// last.
+/// Returns pose and half lengths of a shape. The first entry is the radius of a round shape and the last
+/// entry its half length; unused entries are ignored.
 pub(super) fn dimensions(
     kind: &str,
     shape: &Element<'_>,
@@ -191,10 +193,10 @@ pub(super) fn dimensions(
     let (pose, half) = extent(shape, settings, cx)?;
     let size = shape.some("size", [0.0; 3], cx);
     let [x, y, z] = size.as_ref().map_or([0.0; 3], |size| size.value);
-    // Between two points, what is not round is square.
+    // The cross section of a box between two points is a square.
     let y = if half.is_some() { x } else { y };
     let z = match kind {
-        // The half length stands second where a shape is round.
+        // The half length of a capsule or a cylinder is the second entry of `size`.
         "capsule" | "cylinder" => half.unwrap_or(y),
         _ => half.unwrap_or(z),
     };
@@ -220,7 +222,7 @@ pub(super) fn dimensions(
     Some((pose, [x, y, z]))
 }
 
-/// Where a shape is, and its half length, if both are said by two points.
+/// Returns pose and half length of a shape. The half length is known only if `fromto` gives two end points.
 pub(super) fn extent(
     shape: &Element<'_>,
     settings: &Settings,
@@ -250,7 +252,7 @@ pub(super) fn extent(
     Some((Pose { at, axes: of_z(scale(along, 1.0 / size)) }, Some(size / 2.0)))
 }
 
-/// Volume, and moments of inertia of the unit mass, of a solid with these half lengths.
+/// Returns the volume and the moments of inertia per unit mass of a solid with these half lengths.
 fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
     let round = |xx: f64, zz: f64| [xx, xx, zz];
     match kind {
@@ -279,7 +281,7 @@ fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
     }
 }
 
-/// Reports a shape whose mass properties are not computed.
+/// Reports a shape whose mass properties cannot be computed.
 fn refuse(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
     let message = format!("the mass properties of {what} are not computed");
     cx.error(&place(shape.node, cx), message, |d| d.help(NEEDS_INERTIAL));

@@ -1,7 +1,8 @@
-//! `<include file="…"/>` → one text, of pieces that know from which file they are.
+//! Expands `<include file="…"/>` elements. The result is one text composed of pieces, each with its file of
+//! origin.
 //!
-//! Each file is parsed on its own first, so that what is wrong with one is told at its own place; and each
-//! stands once, so that the whole is never longer than all files together.
+//! Each file is first parsed separately, so that errors are reported at their positions in that file. A file
+//! may be included only once, so the composed text is not longer than all files together.
 
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, position, quote};
@@ -12,17 +13,17 @@ use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
 use std::path::Path;
 
-/// What is still to be copied, last first.
+/// Step of the expansion. The list of steps is a stack: the last step is executed first.
 enum Step {
-    /// Bytes of a file.
+    /// Copy of bytes of a file with this index.
     Copy { file: usize, from: usize, to: usize },
-    /// What another file has inside its root, and how deep it is included.
+    /// Contents of the root of an included file, with the nesting depth.
     Include { by: usize, at: Name, depth: usize },
-    /// The file is through: what includes it again does so twice, not in a circle.
+    /// End of an included file. A later `<include>` of the same file is a repetition, not a cycle.
     Leave,
 }
 
-/// Reads a file with all that it includes.
+/// Reads a file with all included files.
 pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnostics) -> Option<Whole> {
     let mut whole = Whole::new(text, path, name);
     let mut places = vec![name.clone()];
@@ -74,7 +75,8 @@ fn report_again(
         .help(format!("the first time is at {first}; MJCF takes a file once: copy it under another name"));
 }
 
-/// The pieces of a file, last first: the whole of it, or what its root holds.
+/// Returns the steps that expand a file, last first: the whole file if `entire`, otherwise the contents of
+/// its root.
 fn scan(
     files: &[Read],
     file: usize,
@@ -116,7 +118,8 @@ fn is_include(node: Node<'_>) -> bool {
     node.is_element() && node.tag_name().name() == "include"
 }
 
-/// Reads an included file: beside the one that the user names, or else beside the one that includes it.
+/// Finds and reads an included file: in the folder of the user's file, or else in the folder of the including
+/// file.
 fn find(files: &[Read], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<Read> {
     let beside = |file: usize| {
         let read = files.get(file)?;

@@ -1,4 +1,4 @@
-//! `<joint>` and `<freejoint>` → what one degree of freedom, or a ball, or a free body does.
+//! `<joint>` and `<freejoint>` → joints with one degree of freedom, ball joints and free joints.
 
 use super::defaults::Element;
 use super::reader::Reader;
@@ -9,7 +9,7 @@ use crate::import::pose::{Pose, Vector, add, apply, length, scale};
 use crate::import::robot::{FileLimits, unused};
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, JointKind, LimitOption, Name};
 
-/// MJCF's words for the joints.
+/// MJCF's names of the joint types.
 const TYPES: [(&str, JointKind); 4] = [
     ("hinge", JointKind::Pin),
     ("slide", JointKind::Sleeve),
@@ -20,26 +20,27 @@ const TYPES: [(&str, JointKind); 4] = [
 pub(super) const IGNORE_PASSIVE: &str =
     "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
 
-/// A joint of a body.
+/// Joint of a body.
 pub(super) struct BodyJoint {
     pub(super) name: Name,
     pub(super) kind: JointKind,
     pub(super) word: &'static str,
-    /// Its place in the body.
+    /// Position relative to the body, m.
     pub(super) anchor: Placed<Vector>,
-    /// Its axis in the body, of unit length.
+    /// Unit vector of the axis in body axes.
     pub(super) axis: Placed<Vector>,
-    /// Its coordinate in the pose of the file.
+    /// Coordinate in the configuration of the file.
     pub(super) reference: f64,
     pub(super) limits: FileLimits,
     pub(super) damping: Option<Expr>,
     pub(super) friction: Option<Expr>,
-    /// Damping of a joint without a coordinate of its own.
+    /// Isotropic damping of a ball or free joint.
     pub(super) spread: Option<Placed<f64>>,
 }
 
 impl<'a> Reader<'a> {
-    /// Reads a joint of a body, with the pose in the body of the frames around it.
+    /// Reads a joint of a body. `outer` is the pose of the surrounding `<frame>` elements relative to the
+    /// body.
     pub(super) fn read_joint(
         &mut self,
         (node, outer, class): (Node<'a>, &Pose, usize),
@@ -108,7 +109,7 @@ impl<'a> Reader<'a> {
         Some(joint)
     }
 
-    /// The name of a joint; one that has none is called after its body and what it is.
+    /// Returns the name of a joint. The default is composed of the names of the body and the joint type.
     fn joint_name(&mut self, node: Node<'_>, word: &str, body: &Name, cx: &mut Cx<'_>) -> Name {
         let found = node.attribute("name").and_then(|_| name(node, "name", cx));
         let name = found.unwrap_or_else(|| Name {
@@ -137,7 +138,7 @@ impl<'a> Reader<'a> {
         limits
     }
 
-    /// The ends of a range, if it holds.
+    /// Returns the ends of a range, if it is active.
     pub(super) fn range(
         &self,
         element: &Element<'a>,
@@ -265,7 +266,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Reports a spring that yields.
+/// Reports a nonzero `springyield`.
 pub(super) fn refuse_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
     if let Some(found) = element.nonzero("springyield", cx) {
         let message = "`springyield` is not supported: a spring that yields has a state of its own";
@@ -273,7 +274,7 @@ pub(super) fn refuse_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
     }
 }
 
-/// True for elements that are joints.
+/// Returns true for `<joint>` and `<freejoint>` elements.
 pub(super) fn is_joint(node: Node<'_>) -> bool {
     matches!(node.tag_name().name(), "joint" | "freejoint")
 }

@@ -1,16 +1,16 @@
-//! The words of an actuator and of its defaults → gain and bias.
+//! Attributes of an actuator and of its defaults → gain and bias.
 //!
-//! A class of defaults has one record of an actuator's law, which its elements write in the order of the
-//! file (MuJoCo 4.0, *Modeling*, "Shortcuts"). A shortcut begins with its own usual values, or with those of
-//! the nearest class whose record it can read as its own: one that the same shortcut has written last, or
-//! `<general>` with a constant gain. `<general>` changes the record of its class.
+//! Each class of defaults stores one record of actuator parameters, which its elements modify in the order of
+//! the file (MuJoCo 4.0, *Modeling*, "Shortcuts"). A shortcut starts with its own default values or with
+//! those of the nearest class whose record it can interpret: a record last written by the same shortcut, or
+//! by `<general>` with a constant gain. `<general>` modifies the record of its class.
 
 use super::defaults::{Element, some};
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, number};
 use crate::import::imported::Placed;
 
-/// What an actuator does: `gain · u + bias · (1, length, rate)`.
+/// Force of an actuator: `gain · u + bias · (1, length, rate)`.
 pub(super) struct Force {
     pub(super) gain: f64,
     pub(super) bias: [f64; 3],
@@ -19,7 +19,7 @@ pub(super) struct Force {
 pub(super) const OTHER_INPUTS: &str =
     "to leave the actuators of the file out, write `#[mechanism(…, inputs = joints)]`, or `none`";
 
-/// What an actuator that says nothing does.
+/// Parameters of an actuator without attributes.
 const PLAIN: Record<'static> = Record {
     written: "general",
     dynamics: "none",
@@ -29,10 +29,10 @@ const PLAIN: Record<'static> = Record {
     bias: [0.0; 10],
 };
 
-/// The law of an actuator, as far as it is said.
+/// Parameters of an actuator as MuJoCo stores them.
 #[derive(Clone, Copy)]
 struct Record<'a> {
-    /// The element that has written it last.
+    /// Name of the element that wrote the record last.
     written: &'a str,
     dynamics: &'a str,
     gain_kind: &'a str,
@@ -41,8 +41,9 @@ struct Record<'a> {
     bias: [f64; 10],
 }
 
-/// Gain and bias of an actuator with its defaults, which `classes` has from the outermost class on; nothing
-/// if they are more than that.
+/// Returns gain and bias of an actuator with its defaults. `classes` contains the defaults from the outermost
+/// class to the actuator's own. Reports actuators that are not affine in input, length and rate, and returns
+/// `None` for them.
 pub(super) fn read_force<'a>(
     actuator: &Element<'a>,
     classes: &[Vec<Node<'a>>],
@@ -94,8 +95,8 @@ pub(super) fn read_force<'a>(
     good.then_some(Force { gain: g0, bias: if affine { [b0, b1, b2] } else { [0.0; 3] } })
 }
 
-/// Writes what an actuator or a default says into the last record; those before it are the records of the
-/// classes around it.
+/// Writes the attributes of an actuator or of its defaults to the last record. The preceding records belong
+/// to the parent classes.
 fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
     let kind = node.tag_name().name();
     let readable = |record: &&Record<'a>| {

@@ -1,9 +1,10 @@
-//! The density and the viscosity of a medium that bodies move through → Rayleigh's functions.
+//! Drag of a fluid with density and viscosity → Rayleigh dissipation functions.
 //!
-//! MuJoCo's model by boxes of the inertia (*Computation*, "Passive forces", "Inertia model"): a body is the
-//! box with its mass and principal moments, and each side of it is braked by itself. With the edges `a`, `b`,
-//! `c` and their mean `d`, the density `ρ` and the viscosity `β`, forces are `−½ ρ b c |v| v − 3π d β v`
-//! along the edge `a`, torques `−ρ a (b⁴ + c⁴) |ω| ω / 64 − π d³ β ω`.
+//! The model is MuJoCo's inertia box model (*Computation*, "Passive forces", "Inertia model"): each body is
+//! replaced by the box with its mass and principal moments, and the drag acts on each side of the box
+//! separately. With the edges `a`, `b`, `c`, their mean `d`, the density `ρ` and the viscosity `β`, the force
+//! along the edge `a` is `−½ ρ b c |v| v − 3π d β v` and the torque about it is `−ρ a (b⁴ + c⁴) |ω| ω / 64 −
+//! π d³ β ω`.
 
 use super::geometry::Mass;
 use super::joint::IGNORE_PASSIVE;
@@ -17,7 +18,7 @@ use crate::syntax::{BinaryOp, Expr, ExprKind, GROUND, Name};
 use std::f64::consts::PI;
 
 impl Reader<'_> {
-    /// Lets a medium brake all bodies, if the file has one.
+    /// Adds the drag of the fluid to all bodies, if the file has a fluid.
     pub(super) fn drag(&mut self, cx: &mut Cx<'_>) {
         if !self.passive || self.settings.medium.is_empty() {
             return;
@@ -59,7 +60,7 @@ impl Reader<'_> {
         self.robot.dissipations.extend(functions);
     }
 
-    /// Notes a shape whose own form a medium would brake.
+    /// Records a shape with an individual fluid model, which is not supported.
     pub(super) fn note_shaped(&mut self, shape: &super::defaults::Element<'_>, cx: &Cx<'_>) {
         if shape.text("fluidshape").is_some_and(|word| word != "none") {
             self.shaped.get_or_insert(place(shape.node, cx));
@@ -67,7 +68,8 @@ impl Reader<'_> {
     }
 }
 
-/// Half of the power that a medium takes from a body, a third of the part with squares of speeds.
+/// Returns the Rayleigh dissipation function of the drag on a body: half of the dissipated power of linear
+/// terms plus a third of that of quadratic terms.
 fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
     let (moments, axes) = principal(&mass.inertia);
     let sum: f64 = moments.iter().sum();

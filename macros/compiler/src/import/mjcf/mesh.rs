@@ -1,8 +1,9 @@
-//! Meshes → volume and mass properties, as MuJoCo computes them where no other way is asked for.
+//! Volume and mass properties of meshes, computed as MuJoCo does by default.
 //!
-//! A mesh is the sum of pyramids from a point inside to its triangles (MuJoCo, `mjCMesh::ComputeInertia`):
-//! the centroid of the surface for the centre of mass, that for the inertia. By `inertia="legacy"`, the
-//! default, each of them counts as positive.
+//! A mesh is the sum of the pyramids from an interior point to its triangles (MuJoCo,
+//! `mjCMesh::ComputeInertia`). The interior point is the centroid of the surface for the centre of mass, and
+//! the centre of mass for the inertia. With `inertia="legacy"`, the default, the volume of each pyramid
+//! counts as positive.
 
 use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
@@ -16,28 +17,28 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Largest mesh that is read, in bytes.
+/// Largest size of a mesh file, bytes.
 const LARGEST: u64 = 64 << 20;
 
-/// Areas and volumes below this are none.
+/// Areas and volumes below this value are treated as zero.
 const NOTHING: f64 = 1e-15;
 
 type Triangle = [Vector; 3];
 
-/// The meshes of a file: those whose mass is asked for are read.
+/// Meshes of a file. A mesh is read only if its mass properties are needed.
 pub(super) struct Meshes<'a> {
     folder: PathBuf,
-    /// Whether folders in the names of files are left out.
+    /// Whether the folders in file names are ignored.
     strips: bool,
     known: BTreeMap<String, Element<'a>>,
-    /// What was read: mass properties of density 1, by mesh.
+    /// Mass properties at density 1 of the meshes that were read.
     read: BTreeMap<String, Option<Mass>>,
-    /// The files that were read.
+    /// Paths of the files that were read.
     pub(super) files: Vec<PathBuf>,
 }
 
 impl<'a> Meshes<'a> {
-    /// Lists the meshes of the root; paths begin in `folder`.
+    /// Lists the meshes of the root element. Paths are relative to `folder`.
     pub(super) fn list(
         root: Node<'a>,
         folder: &Path,
@@ -63,7 +64,7 @@ impl<'a> Meshes<'a> {
         Meshes { folder, strips, known, read: BTreeMap::new(), files: Vec::new() }
     }
 
-    /// Mass properties of a shape that is a mesh, of density 1, in the axes of its file.
+    /// Returns the mass properties at density 1 of a mesh shape, in the axes of the mesh file.
     pub(super) fn of_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
         let Some(mesh) = shape.name("mesh", cx) else {
             cx.error(&place(shape.node, cx), "a shape of type `mesh` without `mesh`", |d| d);
@@ -84,7 +85,8 @@ impl<'a> Meshes<'a> {
         found
     }
 
-    /// What is drawn of a shape that is a mesh, in the axes of its file; nothing of one with axes of its own.
+    /// Returns the mesh to draw for a shape, in the axes of the mesh file; `None` for a mesh with reference
+    /// axes of its own.
     pub(super) fn drawn(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mesh> {
         let element = self.known.get(shape.text("mesh")?)?;
         if element.with_any(&["refpos", "refquat"]).is_some() {
@@ -125,7 +127,7 @@ impl<'a> Meshes<'a> {
         found
     }
 
-    /// `refpos`, `refquat` and `scale`, in this order.
+    /// Applies `refpos`, `refquat` and `scale`, in this order.
     fn transform(&self, element: &Element<'a>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
         let from = element.numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
         let factors = element.numbers("scale", cx).map_or([1.0; 3], |found| found.value);
@@ -136,14 +138,14 @@ impl<'a> Meshes<'a> {
             let turned = apply(&axes, add(*corner, scale(from, -1.0)));
             *corner = std::array::from_fn(|k| turned[k] * factors[k]);
         }
-        // A mirror image turns inside out.
+        // A reflection reverses the orientation of the triangles.
         if factors.iter().product::<f64>() < 0.0 {
             triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
         }
     }
 }
 
-/// Mass properties of density 1; nothing of what has no volume.
+/// Returns the mass properties at density 1 of a triangulated solid; `None` if its volume is zero.
 fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
     let count = |volume: f64| if exact { volume } else { volume.abs() };
     let (mut area, mut middle) = (0.0, [0.0; 3]);
@@ -176,7 +178,7 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
         let sum = add(add(a, b), c);
         for (i, row) in products.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
-                // ∫ xᵢ xⱼ over a pyramid from the origin.
+                // ∫ xᵢ xⱼ over a pyramid whose apex is the origin.
                 let corners: f64 = corners.iter().map(|corner| corner[i] * corner[j]).sum();
                 *entry += one / 20.0 * (sum[i] * sum[j] + corners);
             }
@@ -190,13 +192,13 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
 }
 
 impl Mass {
-    /// The same body with another mass.
+    /// Rescales the body to another mass.
     pub(super) fn of_mass(&self, mass: f64) -> Mass {
         Mass { mass, com: self.com, inertia: self.inertia.map(|row| scale(row, mass / self.mass)) }
     }
 }
 
-/// Reads a mesh; tells what is wrong with it at its name.
+/// Reads a mesh. Errors are reported at the name of the mesh.
 fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
     let shown = quote(&name.text);
     let found =
@@ -243,7 +245,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// Three numbers of single precision, least byte first.
+/// Returns three little-endian single-precision numbers.
 fn vector(bytes: &[u8], at: usize) -> Option<Vector> {
     let number = |k: usize| {
         let word = bytes.get(at + 4 * k..at + 4 * k + 4)?;
@@ -257,8 +259,8 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     usize::try_from(i32::from_le_bytes(word.try_into().ok()?)).ok()
 }
 
-/// Binary STL: a header of 80 bytes, the number of triangles, and of each a normal, three corners and two
-/// bytes.
+/// Reads binary STL: a header of 80 bytes, the number of triangles, and for each triangle a normal, three
+/// corners and two more bytes.
 fn stl(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let count = word(bytes, 80)?;
     if bytes.len() != 84 + 50 * count {
@@ -272,8 +274,8 @@ fn stl(bytes: &[u8]) -> Option<Vec<Triangle>> {
         .collect()
 }
 
-/// MuJoCo's own format: the numbers of vertices, normals, texture coordinates and triangles, then all of
-/// these.
+/// Reads MuJoCo's own format: the numbers of vertices, normals, texture coordinates and triangles, followed
+/// by these data.
 fn msh(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let [vertices, normals, coordinates, faces] =
         [word(bytes, 0)?, word(bytes, 4)?, word(bytes, 8)?, word(bytes, 12)?];
@@ -288,8 +290,7 @@ fn msh(bytes: &[u8]) -> Option<Vec<Triangle>> {
     (0..faces).map(|face| Some([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?])).collect()
 }
 
-/// Wavefront OBJ: lines `v x y z` and `f a/b/c …` with numbers from one, or from the end if they are
-/// negative.
+/// Reads Wavefront OBJ: lines `v x y z` and `f a/b/c …`. Indices count from one, or from the end if negative.
 fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
     let text = std::str::from_utf8(bytes).ok()?;
     let (mut vertices, mut triangles): (Vec<Vector>, Vec<Triangle>) = (Vec::new(), Vec::new());
@@ -315,7 +316,7 @@ fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
     (!triangles.is_empty()).then_some(triangles)
 }
 
-/// Divides a face: one with four corners along its shorter diagonal, others from the first corner.
+/// Triangulates a face: a quadrilateral along its shorter diagonal, any other face from its first corner.
 fn add_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
     match corners {
         [a, b, c, d] => {
@@ -338,7 +339,7 @@ fn add_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
 mod tests {
     use super::*;
 
-    /// A box of edges 2, 4 and 6 with a corner at (1, 1, 1), by its six faces.
+    /// Box with edges 2, 4 and 6 and a corner at (1, 1, 1), as six faces.
     const BOX: &str = "v 1 1 1\nv 3 1 1\nv 3 5 1\nv 1 5 1\nv 1 1 7\nv 3 1 7\nv 3 5 7\nv 1 5 7\n\
         f 4 3 2 1\nf 5/1 6/2 7/3 8/4\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf -8 -4 -1 -5\n";
 

@@ -1,7 +1,7 @@
 //! `<mujoco>` → bodies and joints in coordinate order.
 //!
-//! What would change the equations of motion without contact is taken over, or is a mistake at its place;
-//! what would not is left out, and the generated documentation lists it.
+//! Contents of the file that affect the equations of motion without contacts are imported or reported as
+//! errors. Other contents are skipped and listed in the generated documentation.
 
 use super::context::{Cx, quote};
 use super::element::{Node, elements, place, tag};
@@ -39,7 +39,7 @@ mod tendon;
 mod touch;
 mod visual;
 
-/// Sections that the motion does not depend on, and what they hold.
+/// Sections without influence on the motion, with the text that the generated documentation lists for each.
 const ASIDE: [(&str, &str); 3] =
     [("contact", "pairs and exceptions of contact"), ("sensor", "sensors"), ("keyframe", "keyframes")];
 
@@ -89,7 +89,7 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
     finish(reader, options, cx)
 }
 
-/// Puts together what was read.
+/// Assembles the mechanism from the contents of the file.
 fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
     let mut robot = reader.robot;
     robot::check_locks(&robot.joints, &options.lock, cx);
@@ -117,7 +117,7 @@ fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
     (!cx.failed()).then_some(imported)
 }
 
-/// Reports what overflows: products of numbers that are each fine.
+/// Reports overflow of products whose factors are finite.
 fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
     let literals = |e: &Expr| e.parts().into_iter().filter_map(Expr::literal).all(f64::is_finite);
     for link in &robot.links {
@@ -171,7 +171,7 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
     }
 }
 
-/// Names of the links that nothing lets move.
+/// Returns the names of the links that are fixed to the ground.
 fn standing(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
     let mut standing = BTreeSet::from([GROUND]);
     for joint in &robot.joints {
@@ -184,7 +184,7 @@ fn standing(robot: &robot::Robot, options: &FileOptions) -> Vec<String> {
     standing.into_iter().map(str::to_string).collect()
 }
 
-/// True if the file is one of MuJoCo's.
+/// Returns true if the root element is `<mujoco>`; otherwise reports an error.
 fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     let name = node.tag_name().name();
     if name == "mujoco" {
@@ -200,7 +200,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     false
 }
 
-/// What the generated documentation lists.
+/// Returns the contents of the file that the mechanism does not represent, for the generated documentation.
 fn left_out(reader: &Reader<'_>) -> Vec<String> {
     let mut lines: Vec<String> = reader
         .counts

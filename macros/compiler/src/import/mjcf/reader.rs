@@ -1,4 +1,4 @@
-//! What is read of a file, while it is read.
+//! State of the reader of an MJCF file.
 
 use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
@@ -12,53 +12,54 @@ use crate::import::robot::{Origin, Robot};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is read of a file.
+/// State of the reader of an MJCF file.
 pub(super) struct Reader<'a> {
     pub(super) options: &'a FileOptions,
     pub(super) settings: Settings,
     pub(super) defaults: Defaults<'a>,
-    /// Its meshes.
+    /// Meshes of the file.
     pub(super) meshes: Meshes<'a>,
-    /// Whether forces of a medium are taken over.
+    /// Whether forces of a fluid are imported.
     pub(super) passive: bool,
-    /// Whether springs of joints and tendons are taken over.
+    /// Whether springs of joints and tendons are imported.
     pub(super) springs: bool,
-    /// Whether dampers of joints, tendons and actuators are taken over.
+    /// Whether dampers of joints, tendons and actuators are imported.
     pub(super) dampers: bool,
-    /// Whether dry friction is taken over.
+    /// Whether dry friction is imported.
     pub(super) friction: bool,
     pub(super) robot: Robot,
     pub(super) joint_names: BTreeSet<String>,
     pub(super) link_names: BTreeSet<String>,
-    /// Where each joint stands in the pose of the file.
+    /// Coordinate of each joint in the configuration of the file.
     pub(super) references: BTreeMap<String, f64>,
-    /// Where the spring of each joint is free.
+    /// Coordinate at which the spring of each joint is relaxed.
     pub(super) rests: BTreeMap<String, f64>,
     pub(super) left_out: Vec<String>,
     pub(super) counts: BTreeMap<&'static str, usize>,
-    /// Where each body is in the world, in the pose of the file.
+    /// Pose of each body relative to the world, in the configuration of the file.
     pub(super) poses: BTreeMap<String, Pose>,
-    /// The body of each site, and where on it the site is.
+    /// Body of each site, and pose of the site relative to the body.
     pub(super) poses_of_sites: BTreeMap<String, (String, Pose)>,
-    /// The shapes with names: the body of each, and the pose of the frames in it that the shape stands in.
+    /// Named shapes, each with its body and the pose of its surrounding `<frame>` elements relative to the
+    /// body.
     pub(super) named_shapes: BTreeMap<String, (String, Element<'a>, Pose)>,
-    /// The first shape whose own form a medium would brake.
+    /// Source position of the first shape with an individual fluid model.
     pub(super) shaped: Option<Place>,
-    /// Bodies that programs move.
+    /// Mocap bodies, whose poses programs prescribe.
     pub(super) mocap: BTreeSet<String>,
-    /// Mass properties by link.
+    /// Mass properties of each link.
     pub(super) masses: Vec<Option<Mass>>,
-    /// Bodies so far: that is the number which MuJoCo gives the last one.
+    /// Number of bodies read so far, which is MuJoCo's index of the last one.
     pub(super) bodies: usize,
     pub(super) sites: Vec<(Name, String, Pose)>,
     /// Planes of the world.
     pub(super) planes: Vec<Plane>,
-    /// Shapes of bodies that touch.
+    /// Collision shapes of bodies.
     pub(super) touching: Vec<Touching>,
 }
 
 impl<'a> Reader<'a> {
-    /// Nothing is read yet.
+    /// Creates a reader without contents.
     pub(super) fn new(
         options: &'a FileOptions,
         settings: Settings,
@@ -97,12 +98,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Counts what is left out.
+    /// Adds `more` to the count of skipped contents of this kind.
     pub(super) fn count(&mut self, what: &'static str, more: usize) {
         *self.counts.entry(what).or_default() += more;
     }
 
-    /// `settotalmass`: all masses in the same proportion.
+    /// Scales all masses by a common factor to the value of `settotalmass`.
     pub(super) fn scale_masses(&mut self) {
         let Some(wanted) = self.settings.total_mass else { return };
         let total: f64 = self.masses.iter().flatten().map(|mass| mass.mass).sum();
@@ -120,13 +121,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Gives a link its mass properties.
+/// Sets the mass properties of a link.
 pub(super) fn give(link: &mut Body, mass: &Mass, place: &Place) {
     link.mass = Some(Expr::number(mass.mass, place));
     link.com = (mass.com != [0.0; 3]).then(|| Expr::vector(mass.com, place));
     let rows: Vec<Expr> = (0..3)
         .map(|i| {
-            // Rounding of products leaves the two halves different.
+            // The two triangles of the matrix may differ by rounding errors.
             let entry = |j: usize| if i <= j { mass.inertia[i][j] } else { mass.inertia[j][i] };
             Expr::vector(std::array::from_fn(entry), place)
         })
@@ -135,7 +136,7 @@ pub(super) fn give(link: &mut Body, mass: &Mass, place: &Place) {
     link.inertia = (!zero).then(|| Expr { kind: ExprKind::Array(rows), place: place.clone() });
 }
 
-/// A frame in the words of all formats.
+/// Converts a pose to an [`Origin`].
 pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
     let at = |value| Placed { value, place: place.clone() };
     Origin { xyz: at(pose.at.map(|x| x + 0.0)), rpy: at(roll_pitch_yaw(&pose.axes)) }

@@ -1,4 +1,5 @@
-//! Where bodies are while the springs of all joints are free, which is where those of tendons are.
+//! Poses of bodies in the configuration in which the springs of all joints are relaxed. By default the
+//! springs of tendons are relaxed in it, too.
 
 use super::reader::Reader;
 use super::spatial::Poses;
@@ -7,11 +8,11 @@ use crate::import::robot::Origin;
 use crate::syntax::{GROUND, JointKind};
 
 impl Reader<'_> {
-    /// Poses of bodies in the world with each joint where its spring is free; ball and free joints as in the
-    /// file.
+    /// Returns the pose of each body relative to the world with all joint springs relaxed. Ball and free
+    /// joints are as in the configuration of the file.
     pub(super) fn poses_at_rest(&self) -> Poses {
         let mut poses = Poses::from([(GROUND.to_string(), Pose::ZERO)]);
-        // A joint stands behind the one that carries its parent.
+        // The joint of the parent precedes each joint.
         for joint in &self.robot.joints {
             let rest = self.rests.get(&joint.name.text).copied().unwrap_or(0.0);
             let axis = joint.axis.value;

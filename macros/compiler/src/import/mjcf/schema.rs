@@ -1,4 +1,4 @@
-//! The elements and attributes of MJCF, and files that have others.
+//! Schema of the elements and attributes of MJCF, and the check of files against it.
 
 use super::super::context::{Cx, quote};
 use super::super::element::{Node, elements, name, place, tag};
@@ -141,7 +141,7 @@ keyframe: |
 keyframe/key: | act ctrl mpos mquat name plastic qpos qvel time
 ";
 
-/// Elements that are refused or left out with all that they contain.
+/// Elements that are rejected or skipped with all their contents.
 const WHOLE: [&str; 10] = [
     "composite",
     "flexcomp",
@@ -164,7 +164,8 @@ pub(in crate::import) struct Attributes {
     pub(in crate::import) idle: Vec<&'static str>,
 }
 
-/// Attributes of every element, by `parent/element`; those of the root's children by their names.
+/// Returns the attributes of every element. Keys are `parent/element`, or only the name for children of the
+/// root.
 pub(in crate::import) fn read() -> BTreeMap<String, Attributes> {
     let mut lists: BTreeMap<&str, Vec<&'static str>> = BTreeMap::new();
     let mut all = BTreeMap::new();
@@ -189,7 +190,7 @@ pub(in crate::import) fn read() -> BTreeMap<String, Attributes> {
     all
 }
 
-/// Reports elements and attributes that MJCF does not have, and names that are taken.
+/// Reports unknown elements and attributes, and repeated names.
 pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
     check_names(root, cx);
     let schema = read();
@@ -212,10 +213,11 @@ pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
     }
 }
 
-/// Kinds of elements whose names are looked at here; those of bodies and joints are once all have one.
+/// Kinds of elements whose names are checked here. Names of bodies and joints are checked after the unnamed
+/// ones have received generated names.
 const NAMED: [&str; 6] = ["site", "geom", "tendon", "equality", "actuator", "sensor"];
 
-/// Reports names that elements of one kind share.
+/// Reports repeated names of elements of one kind.
 fn check_names(root: Node<'_>, cx: &mut Cx<'_>) {
     for kind in NAMED {
         let is_kind = |node: &Node<'_>| {
@@ -243,7 +245,7 @@ fn key(parent: Node<'_>, name: &str) -> String {
     format!("{parent}/{name}")
 }
 
-/// Attributes that name one element, which defaults do not have.
+/// Attributes that refer to individual elements and therefore do not occur in defaults.
 const OWN: [&str; 10] = [
     "name",
     "class",

@@ -1,71 +1,71 @@
-//! `<compiler>` and `<option>`: how the rest of the file is to be read.
+//! `<compiler>` and `<option>`: settings for the interpretation of the file.
 
 use super::defaults::{choice, some};
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, number, numbers, place};
 use crate::import::imported::Placed;
 
-/// Where mass properties come from.
+/// Source of mass properties.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
-    /// From `<inertial>`, and from the geometry of bodies without.
+    /// `<inertial>`, or the geometry for bodies without it.
     Auto,
-    /// From the geometry.
+    /// Geometry.
     Geometry,
-    /// From `<inertial>`.
+    /// `<inertial>`.
     Inertial,
 }
 
-/// What holds for the whole file.
+/// Settings of a file.
 pub(super) struct Settings {
-    /// Angles are in degrees.
+    /// Whether angles are in degrees.
     pub(super) degrees: bool,
-    /// Order of Euler angles: axes, capital if fixed.
+    /// Axes of the Euler angles in order; capital letters for fixed axes.
     pub(super) euler: [char; 3],
-    /// What has a range is limited.
+    /// Whether the presence of a range activates the limit.
     pub(super) autolimits: bool,
-    /// Where mass properties come from.
+    /// Source of mass properties.
     pub(super) source: Source,
-    /// Groups of geometry that have mass.
+    /// First and last geometry group with mass.
     pub(super) groups: [f64; 2],
-    /// Inertias that no body can have become those of balls.
+    /// Whether inertias that violate the triangle inequality are replaced by that of a ball.
     pub(super) balance: bool,
-    /// Least mass of a body.
+    /// Minimum mass of a body, kg.
     pub(super) least_mass: f64,
-    /// Least principal moment of a body.
+    /// Minimum principal moment of inertia of a body, kg·m².
     pub(super) least_inertia: f64,
-    /// Mass of all bodies together.
+    /// Total mass of all bodies, kg.
     pub(super) total_mass: Option<f64>,
     /// Folder of meshes.
     pub(super) meshes: String,
-    /// Gravity.
+    /// Gravitational acceleration, m/s².
     pub(super) gravity: Placed<[f64; 3]>,
     gravitates: bool,
-    /// What pushes bodies through a medium: its density, viscosity and wind.
+    /// Nonzero properties of the fluid: density, viscosity and wind.
     pub(super) medium: Vec<(&'static str, Placed<[f64; 3]>)>,
-    /// Whether springs of joints and tendons act.
+    /// Whether springs of joints and tendons are enabled.
     pub(super) springs: bool,
-    /// Whether dampers of joints and tendons act.
+    /// Whether dampers of joints and tendons are enabled.
     pub(super) dampers: bool,
-    /// Whether constraints of all kinds act.
+    /// Whether constraints of all kinds are enabled.
     constraints: bool,
-    /// Whether dry friction acts.
+    /// Whether dry friction is enabled.
     friction: bool,
-    /// Whether couplings and loops act.
+    /// Whether couplings and loop constraints are enabled.
     equality: bool,
-    /// Whether ranges of joints and tendons act.
+    /// Whether ranges of joints and tendons are enabled.
     limits: bool,
-    /// Whether bodies touch.
+    /// Whether contacts are enabled.
     contacts: bool,
-    /// Whether actuators act.
+    /// Whether actuators are enabled.
     pub(super) actuation: bool,
-    /// Whether inputs are kept in their ranges.
+    /// Whether inputs are clamped to their ranges.
     pub(super) clamped: bool,
-    /// Groups of actuators that do not act.
+    /// Groups of actuators that are disabled.
     pub(super) disabled_groups: Vec<f64>,
-    /// Whether free bodies are described in their principal axes unless they say otherwise.
+    /// Whether the axes of free bodies are aligned with their principal axes by default.
     pub(super) align_free: bool,
-    /// Whether folders in the names of files are left out.
+    /// Whether the folders in file names are ignored.
     pub(super) strip_paths: bool,
 }
 
@@ -109,7 +109,7 @@ impl Settings {
         if !all.gravitates {
             all.gravity.value = [0.0; 3];
         }
-        // Wind does nothing without a medium.
+        // Wind has no effect without density and viscosity.
         if all.medium.iter().all(|(which, _)| *which == "wind") {
             all.medium.clear();
         }
@@ -211,7 +211,7 @@ impl Settings {
 
     fn read_flag(&mut self, flag: Node<'_>, cx: &mut Cx<'_>) {
         let mut set = |attribute: &str, to: &mut bool| *to = choice(flag, attribute, cx).unwrap_or(*to);
-        // Older versions have one flag for both.
+        // Older versions have one flag for springs and dampers.
         let mut passive = true;
         set("passive", &mut passive);
         (self.springs, self.dampers) = (self.springs && passive, self.dampers && passive);
@@ -227,7 +227,8 @@ impl Settings {
         set("gravity", &mut self.gravitates);
     }
 
-    /// Whether forces act that no constraint exerts: those of a medium, and with them gravity compensation.
+    /// Whether passive forces that are not constraint forces act: those of the fluid, and gravity
+    /// compensation.
     pub(super) fn passive(&self) -> bool {
         self.springs || self.dampers
     }
@@ -237,7 +238,7 @@ impl Settings {
         self.constraints && self.friction
     }
 
-    /// Whether couplings and loops act.
+    /// Whether couplings and loop constraints act.
     pub(super) fn equality(&self) -> bool {
         self.constraints && self.equality
     }
@@ -247,12 +248,12 @@ impl Settings {
         self.constraints && self.limits
     }
 
-    /// Whether bodies touch.
+    /// Whether contacts act.
     pub(super) fn contacts(&self) -> bool {
         self.constraints && self.contacts
     }
 
-    /// An angle of the file, rad.
+    /// Converts an angle of the file to radians.
     pub(super) fn angle(&self, angle: f64) -> f64 {
         if self.degrees { angle.to_radians() } else { angle }
     }

@@ -1,5 +1,5 @@
-//! Actuators on sites: a force and a torque in the axes of a site, or in those of another one that feels the
-//! reaction.
+//! Actuators on sites: a force and a torque in the axes of the site, or in the axes of a reference site,
+//! which receives the reaction.
 
 use super::defaults::Element;
 use super::law::OTHER_INPUTS;
@@ -10,8 +10,8 @@ use crate::import::pose::{Vector, apply};
 use crate::syntax::{BinaryOp, DriveOn, Expr, ExprKind, GROUND, Name, Wrench};
 
 impl<'a> Reader<'a> {
-    /// What an actuator on a site acts on, and whether that turns. Its length is zero without another site
-    /// (MuJoCo, *Modeling*, "general/refsite").
+    /// Returns what an actuator on a site acts on, and whether its force is a torque. Without a reference
+    /// site, the length of the actuator is zero (MuJoCo, *Modeling*, "general/refsite").
     pub(super) fn site_transmission(
         &self,
         site: &Name,
@@ -57,7 +57,7 @@ impl<'a> Reader<'a> {
         Some((DriveOn::Wrench(Wrench { on: spot.expression(at), force, torque, against }), turns))
     }
 
-    /// True if a body carries another one, or is it.
+    /// Returns true if the bodies are equal or `carrier` is an ancestor of `carried`.
     fn carries(&self, carrier: &str, carried: &str) -> bool {
         let mut at = carried;
         while at != carrier {
@@ -71,7 +71,7 @@ impl<'a> Reader<'a> {
 }
 
 impl Spot {
-    /// A vector that is given in the axes of the body.
+    /// Returns the expression of a vector whose components are given in the axes of the body.
     pub(super) fn along(&self, vector: Vector, at: &crate::diag::Place) -> Expr {
         let axis = |k: usize| {
             let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };

@@ -1,9 +1,9 @@
-//! `<spatial>`: the path of a cable from site to site, around balls and cylinders → a length in the words of
-//! the language.
+//! `<spatial>`: the path of a cable between sites, around spheres and cylinders → an expression of its
+//! length.
 //!
-//! The path is MuJoCo's (*Modeling*, "spatial"), which is that of a taut cable. A cable around a cylinder
-//! with a `sidesite` runs about its axis in the direction in which the path by way of that site does in the
-//! pose of the file, as in MuJoCo 4.0.
+//! The path is MuJoCo's (*Modeling*, "spatial"): that of a taut cable. Around a cylinder with a `sidesite`,
+//! the cable has the direction of rotation of the path through that site in the configuration of the file, as
+//! in MuJoCo 4.0.
 
 use super::defaults::Element;
 use super::geometry::dimensions;
@@ -16,57 +16,59 @@ use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// A frame on a body.
+/// Frame fixed to a body.
 #[derive(Clone)]
 pub(super) struct Spot {
     pub(super) body: String,
     pub(super) pose: Pose,
 }
 
-/// The way in which a cable runs around something.
+/// Path of a cable around a surface.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
-    /// Around a ball: the shorter way.
+    /// Shortest path around a sphere.
     Ball,
-    /// Around a cylinder: the shorter way.
+    /// Shortest path around a cylinder.
     Shorter,
-    /// Around a cylinder: about its axis or against it, from the first end to the second.
+    /// Path around a cylinder with given direction of rotation about its axis: positive or negative from the
+    /// first end to the second.
     Turning(f64),
 }
 
-/// What a part of a path runs around.
+/// Surface that a segment of a path wraps around.
 struct Around {
     frame: Spot,
     radius: f64,
     way: Way,
 }
 
-/// A part of a path between two sites.
+/// Segment of a path between two sites.
 struct Piece {
     ends: [Spot; 2],
     around: Option<Around>,
-    /// What it counts for: less behind a pulley.
+    /// Factor of the segment's length: the inverse of the divisor of a preceding pulley, or one.
     share: f64,
 }
 
-/// What of a path is not taken over.
+/// Error for an unsupported path. It is reported only if something acts on the tendon.
 #[derive(Clone)]
 pub(super) struct Refusal {
     pub(super) place: Place,
     pub(super) message: String,
 }
 
-/// The path of a cable.
+/// Path of a cable.
 pub(super) struct Path {
     pieces: Vec<Piece>,
     place: Place,
 }
 
-/// Where bodies are in the world.
+/// Pose of each body relative to the world.
 pub(super) type Poses = BTreeMap<String, Pose>;
 
 impl<'a> Reader<'a> {
-    /// Reads the path of a tendon; nothing after a mistake in the file.
+    /// Reads the path of a tendon. The outer `None` means an error in the file, the inner `Err` an
+    /// unsupported path.
     pub(super) fn read_path(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Path, Refusal>> {
         let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<Spot>, None, 1.0);
         let mut refused = None;
@@ -120,7 +122,7 @@ impl<'a> Reader<'a> {
         Some(refused.map_or(Ok(path), Err))
     }
 
-    /// A site by its name.
+    /// Finds a site by its name, or reports that it is unknown.
     pub(super) fn find_site(&self, site: &Name, cx: &mut Cx<'_>) -> Option<Spot> {
         let found = self.poses_of_sites.get(&site.text);
         if found.is_none() {
@@ -131,8 +133,9 @@ impl<'a> Reader<'a> {
         found.map(|(body, pose)| Spot { body: body.clone(), pose: *pose })
     }
 
-    /// The surface that a part of a path runs around. On which side of it is chosen later; until then a
-    /// cylinder with a side has the direction to that side.
+    /// Returns the surface that a segment of a path wraps around. For a cylinder with a `sidesite`,
+    /// `Way::Turning` temporarily contains the polar angle of that site; `choose_side` replaces it by the
+    /// direction.
     fn surface(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Around, Refusal>> {
         let said = name(node, "geom", cx)?;
         let Some((body, shape, outer)) = self.named_shapes.get(&said.text) else {
@@ -163,17 +166,17 @@ impl<'a> Reader<'a> {
         if length([x, y, z]) < radius {
             return refusal(format!("a tendon that runs inside of the cylinder {}", quote(&said.text)));
         }
-        // The angle of the side, until the ends are known.
+        // Polar angle of the side, until the ends of the segment are known.
         Some(Ok(Around { frame, radius, way: Way::Turning(y.atan2(x)) }))
     }
 
-    /// Where a spot is seen from a frame, in the pose of the file.
+    /// Returns the position of a spot relative to a frame, in the configuration of the file.
     fn seen_from(&self, frame: &Spot, spot: &Spot) -> Vector {
         seen(&self.poses, frame, spot)
     }
 
-    /// Says in which direction a part passes a cylinder with a side: the one in which the path by way of the
-    /// side runs about the axis.
+    /// Determines the direction in which a segment passes a cylinder with a `sidesite`: the direction of
+    /// rotation of the path through that site.
     fn choose_side(&self, piece: &mut Piece, place: &Place) -> Option<Refusal> {
         let Some(Around { frame, radius, way: Way::Turning(side) }) = &mut piece.around else { return None };
         let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));
@@ -189,7 +192,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Notes the shapes of a body that have names, or are more than boxes to a medium.
+    /// Records the named shapes of a body, and shapes with an individual fluid model.
     pub(super) fn note_shapes(&mut self, body: &str, shapes: &[(Element<'a>, Pose)], cx: &Cx<'_>) {
         for (shape, outer) in shapes {
             self.note_shaped(shape, cx);
@@ -200,13 +203,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Where a spot is seen from a frame.
+/// Returns the position of a spot relative to a frame for given poses of the bodies.
 fn seen(poses: &Poses, frame: &Spot, spot: &Spot) -> Vector {
     let world = |spot: &Spot| poses.get(&spot.body).map_or(spot.pose, |body| body.then(&spot.pose));
     world(frame).back().then(&world(spot)).at
 }
 
-/// Reports a path with a surface that is not between two sites.
+/// Reports a surface in a path that is not between two sites.
 fn unfinished<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
     cx.error(&place(node, cx), "a tendon runs around a shape between two sites", |d| {
         d.help("write `<site/>`, `<geom/>`, `<site/>`")
@@ -215,12 +218,12 @@ fn unfinished<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
 }
 
 impl Path {
-    /// The length while bodies have these poses.
+    /// Returns the length of the path for given poses of the bodies.
     pub(super) fn length(&self, poses: &Poses) -> f64 {
         self.pieces.iter().map(|piece| piece.share * piece.length(poses)).sum()
     }
 
-    /// The length in the words of the language.
+    /// Returns the expression of the path's length.
     pub(super) fn expression(&self) -> Expr {
         let at = &self.place;
         let sum = self.pieces.iter().map(|piece| {
@@ -264,7 +267,8 @@ impl Piece {
 }
 
 impl Around {
-    /// The length of a taut cable between two points that are given in this frame: `Scope::cable` in numbers.
+    /// Returns the length of a taut cable between two points in the axes of this frame. The numeric
+    /// counterpart of `Scope::cable`.
     fn length(&self, [a, b]: [Vector; 2]) -> f64 {
         let flat = |[x, y, _]: Vector| [x, y, 0.0];
         let round = |a: Vector, b: Vector, angle: f64| {
@@ -286,7 +290,7 @@ impl Around {
 }
 
 impl Spot {
-    /// `body.at(vector)`.
+    /// Returns the expression `body.at(vector)`.
     pub(super) fn expression(&self, at: &Place) -> Expr {
         let body = Expr { kind: ExprKind::Name(self.body.clone()), place: at.clone() };
         if self.pose.at == [0.0; 3] {

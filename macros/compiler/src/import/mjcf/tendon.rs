@@ -1,4 +1,4 @@
-//! `<tendon>`: fixed ones are weighted sums of coordinates, those through space are lengths.
+//! `<tendon>`: fixed tendons are weighted sums of coordinates, spatial tendons are lengths.
 
 use super::defaults::{Element, some};
 use super::joint::{IGNORE_PASSIVE, refuse_yield};
@@ -10,7 +10,7 @@ use crate::import::robot::has_coordinate;
 use crate::syntax::{Drive, DriveLaw, DriveOn, Name};
 use std::collections::BTreeSet;
 
-/// A tendon. What of one through space is not taken over matters where something acts on it.
+/// Tendon. An unsupported spatial tendon is an error only if something acts on it.
 pub(super) struct Tendon {
     pub(super) name: Name,
     path: Result<DriveOn, Refusal>,
@@ -27,7 +27,8 @@ impl Tendon {
         found
     }
 
-    /// The joints, with their weights, of a tendon that is coupled: none of those through space.
+    /// Returns the joints and weights of a coupled tendon. Reports a spatial tendon, for which couplings are
+    /// not supported.
     pub(super) fn terms_of(
         name: &Name,
         tendons: &[Tendon],
@@ -45,7 +46,7 @@ impl Tendon {
         }
     }
 
-    /// What acts on a tendon acts on this.
+    /// Returns the coordinate or length that forces on a tendon act on.
     pub(super) fn on(
         name: &Name,
         tendons: &[Tendon],
@@ -56,7 +57,7 @@ impl Tendon {
     }
 }
 
-/// What acts on a tendon acts on this; reports one that is not taken over.
+/// Returns the coordinate or length that forces on a tendon act on, or reports an unsupported path.
 fn taken_over<'t>(
     path: &'t Result<DriveOn, Refusal>,
     help: &'static str,
@@ -72,7 +73,7 @@ fn taken_over<'t>(
 }
 
 impl<'a> Reader<'a> {
-    /// Reads all tendons, with their springs and dampers.
+    /// Reads all tendons with their springs and dampers.
     pub(super) fn tendons(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Vec<Tendon> {
         let groups = elements(root).filter(|node| node.tag_name().name() == "tendon");
         let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
@@ -83,7 +84,7 @@ impl<'a> Reader<'a> {
         let fixed = match node.tag_name().name() {
             "fixed" => true,
             "spatial" => false,
-            // Elements that MJCF does not have are reported elsewhere.
+            // Unknown elements are reported by the schema check.
             _ => return None,
         };
         let element = self.defaults.element(node, &["tendon"], 0, cx);
@@ -156,7 +157,7 @@ impl<'a> Reader<'a> {
         terms
     }
 
-    /// True for a joint with one coordinate; reports others.
+    /// Returns true for a joint with one coordinate; reports other and unknown joints.
     pub(super) fn check_joint(&self, joint: &Name, verb: &str, cx: &mut Cx<'_>) -> bool {
         let Some(found) = self.robot.joints.iter().find(|known| known.name.text == joint.text) else {
             let known = self.robot.joints.iter().filter(|joint| has_coordinate(joint.kind));
@@ -178,12 +179,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Reads the spring of a tendon. Its free length is given by the tendon, either as a range or as one length
-/// other than −1, which means that none is given. Otherwise the spring is free while all joints are at the
-/// free positions of their own springs.
+/// Reads the spring of a tendon. The attribute `springlength` specifies its free length or a range of free
+/// lengths; −1 means that neither is specified. In this case the free length is that in the configuration in
+/// which all joint springs are relaxed.
 fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
     const NONE: f64 = -1.0;
-    // One length means two equal ones, also if the defaults have two.
+    // A single length is the range of two equal ones, even if the defaults have two different ones.
     let found = element.with("springlength").and_then(|node| some(node, "springlength", [f64::NAN; 2], cx));
     let [low, high] = found.as_ref().map_or([NONE; 2], |found| found.value);
     let high = if high.is_nan() { low } else { high };

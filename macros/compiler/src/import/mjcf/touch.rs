@@ -1,4 +1,4 @@
-//! What shapes say of their contacts → contacts with planes.
+//! Contact parameters of shapes → contacts with planes.
 
 use super::defaults::Element;
 use crate::diag::Place;
@@ -7,28 +7,29 @@ use crate::import::pose::{Pose, apply};
 use crate::syntax::{Contact, Expr, ExprKind, GROUND, Name};
 use std::cmp::Ordering;
 
-/// What a shape says of its contacts.
+/// Contact parameters of a shape.
 pub(super) struct Law {
-    /// `contype` and `conaffinity`.
+    /// Bit masks `contype` and `conaffinity`.
     bits: [u32; 2],
     priority: f64,
-    /// One without friction, three with that of slip, more with those of spin and rolling.
+    /// Dimension of the contact: 1 without friction, 3 with sliding friction, 4 with torsional friction, 6
+    /// with rolling friction.
     dimensions: f64,
-    /// Of slip, spin and rolling.
+    /// Coefficients of sliding, torsional and rolling friction.
     friction: [f64; 3],
 }
 
-/// A plane of the world.
+/// Plane of the world.
 pub(super) struct Plane {
     pub(super) name: String,
     pub(super) pose: Pose,
     pub(super) law: Law,
 }
 
-/// A shape of a body.
+/// Collision shape of a body.
 pub(super) struct Touching {
     pub(super) link: usize,
-    /// Which of the body's shapes it is.
+    /// Index among the shapes of the body.
     pub(super) number: usize,
     pub(super) name: Option<String>,
     pub(super) law: Law,
@@ -36,7 +37,8 @@ pub(super) struct Touching {
 }
 
 impl Law {
-    /// Reads what a shape says, with its defaults; reports forces of contacts that are not taken over.
+    /// Reads the contact parameters of a shape with their defaults. Reports contact forces that are not
+    /// supported.
     pub(super) fn read(shape: &Element<'_>, cx: &mut Cx<'_>) -> Law {
         for which in ["adhesion", "surfacevel"] {
             let found = shape.some(which, [0.0; 6], cx);
@@ -58,18 +60,19 @@ impl Law {
         Law { bits, priority, dimensions, friction }
     }
 
-    /// True if its masks let nothing touch it.
+    /// Returns true if the masks permit no contacts.
     pub(super) fn touches_nothing(&self) -> bool {
         self.bits == [0; 2]
     }
 
-    /// True if the masks of two shapes let them touch.
+    /// Returns true if the masks of two shapes permit contact.
     pub(super) fn meets(&self, other: &Law) -> bool {
         self.bits[0] & other.bits[1] != 0 || other.bits[0] & self.bits[1] != 0
     }
 
-    /// The larger coefficients in the larger number of dimensions, or those of what comes first (MuJoCo,
-    /// *Computation*, "Contact"): of slip, spin and rolling.
+    /// Returns the coefficients of sliding, torsional and rolling friction between two shapes (MuJoCo,
+    /// *Computation*, "Contact"). They are those of the shape with higher priority. With equal priority they
+    /// are the larger coefficients, and the dimension is the larger dimension.
     fn friction_with(&self, other: &Law) -> [f64; 3] {
         let (dimensions, friction) = match self.priority.total_cmp(&other.priority) {
             Ordering::Greater => (self.dimensions, self.friction),
@@ -85,7 +88,7 @@ impl Law {
 }
 
 impl Touching {
-    /// Its contact with a plane.
+    /// Returns the contact of the shape with a plane.
     pub(super) fn contact(&self, name: String, link: &str, plane: &Plane) -> Contact {
         let at = &self.place;
         let named = |text: &str| Name { text: text.to_string(), place: at.clone() };

@@ -1,4 +1,4 @@
-//! Geometry → shapes that are drawn. Nothing that is drawn enters an equation: what has no form is left out.
+//! Geometry → shapes to draw. They appear in no equation, so unsupported shapes are skipped without an error.
 
 use super::body::Shaped;
 use super::defaults::Element;
@@ -10,8 +10,8 @@ use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Shape};
 
 impl<'a> Reader<'a> {
-    /// Adds the shapes of a link that are to be seen: those that touch nothing, which files have for this, or
-    /// else all.
+    /// Adds the shapes of a link that are drawn: shapes without contact, which files contain for this
+    /// purpose, or else all shapes.
     pub(super) fn add_visuals(&mut self, link: usize, shapes: &[Shaped<'a>], cx: &mut Cx<'_>) {
         if !self.options.visuals {
             return;

@@ -142,7 +142,7 @@ pub(in crate::import) fn joint_of(given: FileJoint) -> Joint {
     let mut joint = bare_joint(given.name, given.kind, parent, child);
     let axis = Expr::vector(given.axis.value, &given.axis.place);
     match given.kind {
-        // // A planar joint moves in the plane perpendicular to its axis.
+        // A planar joint moves in the plane perpendicular to its axis.
         JointKind::Pin | JointKind::Planar | JointKind::Screw => joint.about.push(axis),
         JointKind::Sleeve => joint.along.push(axis),
         _ => {}

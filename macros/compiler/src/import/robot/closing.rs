@@ -16,7 +16,7 @@ pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
     let (mut tree, mut closing) = (Vec::new(), Vec::new());
     for joint in std::mem::take(&mut robot.joints) {
         let is_first = carried.insert(joint.child.text.clone());
-        // // Unknown links are reported by another check.
+        // Unknown links are reported by another check.
         let known = [&joint.parent, &joint.child].into_iter().all(|end| links.contains(end.text.as_str()));
         match is_first || !known || joint.parent.text == joint.child.text {
             true => tree.push(joint),

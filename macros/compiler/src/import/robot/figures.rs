@@ -79,7 +79,7 @@ fn of_joints(
     cx: &mut Cx<'_>,
 ) {
     let word = figures.word.text.as_str();
-    // // The joint between ground and root is not in the file.
+    // The joint between ground and root is not in the file.
     let of_file = |joint: &Joint| joint.parent.body.text != crate::syntax::GROUND || joint.child.at.is_some();
     let fits = |joint: &Joint| match word {
         PLACEMENT => of_file(joint),

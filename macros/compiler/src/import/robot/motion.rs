@@ -45,7 +45,7 @@ pub(in crate::import) fn resolve_motions(
         .map(|k| if locked[k] { None } else { find_leader(&joints[k], joints, &index, cx) })
         .collect();
     report_circles(joints, &leaders, cx);
-    // // Following the leaders terminates only if there are no cycles.
+    // Following the leaders terminates only if there are no cycles.
     if cx.failed() {
         return None;
     }
@@ -93,7 +93,7 @@ fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'
         let walk = std::iter::successors(leaders[start], |k| leaders[*k]);
         let circle: Vec<usize> = walk.take(joints.len()).take_while(|k| *k != start).collect();
         let back = circle.last().map_or(leaders[start], |last| leaders[*last]);
-        // // A walk that starts outside the cycle never returns. Of the joints in the cycle only the first
+        // A walk that starts outside the cycle never returns. Of the joints in the cycle only the first
         // reports it.
         if back != Some(start) || circle.iter().any(|k| *k < start) {
             continue;

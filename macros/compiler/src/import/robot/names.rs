@@ -86,7 +86,7 @@ pub(in crate::import) fn check_ends(robot: &Robot, cx: &mut Cx<'_>) {
             let message = format!("joint {} joins a link to itself", quote(&joint.name.text));
             cx.error(&joint.child.place, message, |d| d);
         } else if let Some(first) = parents.get(joint.child.text.as_str()) {
-            // // Repeated joint names are reported by `check_names`.
+            // Repeated joint names are reported by `check_names`.
             if first.name.text == joint.name.text {
                 continue;
             }

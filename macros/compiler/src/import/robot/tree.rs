@@ -50,7 +50,7 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
 
 /// Reports every cycle of joints once.
 fn report_cycles(robot: &Robot, ends: &[(usize, usize)], above: &[Option<usize>], cx: &mut Cx<'_>) {
-    // // Each upward walk marks its links with its own number. It ends at the root, at an earlier walk or at
+    // Each upward walk marks its links with its own number. It ends at the root, at an earlier walk or at
     // itself.
     let mut walks = vec![None; above.len()];
     for start in 0..above.len() {
@@ -91,7 +91,7 @@ fn depth_first(robot: &Robot, root: usize, ends: &[(usize, usize)]) -> Vec<(usiz
         below[*parent].push((joint, *child));
     }
     for joints in &mut below {
-        // // In reverse order, because the stack is popped from its end.
+        // In reverse order, because the stack is popped from its end.
         joints.sort_by(|a, b| robot.joints[b.0].name.text.cmp(&robot.joints[a.0].name.text));
     }
     let mut order = Vec::with_capacity(ends.len());

@@ -95,7 +95,7 @@ fn scan(
     let declared = OnceCell::new();
     let document = xml::parse(&read.text, &declared, FileFormat::Sdf, cx)?;
     version::check(document.root_element(), cx);
-    // // Declarations of undeclared prefixes shift the bytes of the text, so pieces of it cannot be copied.
+    // Declarations of undeclared prefixes shift the bytes of the text, so pieces of it cannot be copied.
     if declared.get().is_some() {
         return match include {
             None => plain_copy(&document, file, read, cx),
@@ -128,7 +128,7 @@ fn scan(
         } else if node.tag_name().name() == "include" {
             match read_include(node, files, file, depth, cx) {
                 Some(found) => Some(Step::Include(Box::new(found))),
-                // // A world may include missing models, which are skipped.
+                // A world may include missing models, which are skipped.
                 None => continue,
             }
         } else {
@@ -183,7 +183,7 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
         None => steps.extend(model.attribute_node("name").map(|name| Step::Copy(file, name.range_value()))),
     }
     steps.push(put("\""));
-    // // The version of the included file determines the interpretation of its elements.
+    // The version of the included file determines the interpretation of its elements.
     if let Some(version) = model.document().root_element().attribute_node("version") {
         steps.push(put(&format!(" {}=\"", version::OF_INCLUDED)));
         steps.push(Step::Copy(file, version.range_value()));

@@ -63,7 +63,7 @@ pub(super) fn read_joint(
     let (parent, child) = (end(node, "parent", scope, cx)?, end(node, "child", scope, cx)?);
     let (word, kind, axes) = read_type(node, cx)?;
     let at = frames.resolve(joint, cx)?;
-    // // The ends of a joint may be frames that are attached to links.
+    // The ends of a joint may be frames that are attached to links.
     let (parent, child) = (frames.carrier(&parent, cx)?, frames.carrier(&child, cx)?);
     let (outer, inner) = (frames.resolve(&parent, cx)?, frames.resolve(&child, cx)?);
     let anchor = inner.back().then(&at).at;
@@ -296,7 +296,7 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
     };
     let [lower, upper, velocity, effort] = found.map(&mut number);
     let end = |end: Option<Placed<f64>>| end.filter(|_| !continuous);
-    // // Negative limits mean that there is no limit.
+    // Negative limits mean that there is no limit.
     let size = |size: Option<Placed<f64>>| size.filter(|size| size.value >= 0.0);
     let limits =
         FileLimits { lower: end(lower), upper: end(upper), velocity: size(velocity), effort: size(effort) };

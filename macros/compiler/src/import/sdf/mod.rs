@@ -145,7 +145,7 @@ fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Opti
     let order = robot::order_joints(&robot, cx)?;
     let motions = robot::resolve_motions(&robot.joints, &options.lock, cx)?;
     let root = robot.links.get(order.root)?.name.clone();
-    // // If the root is a frame of the file, its pose relative to the world is known.
+    // If the root is a frame of the file, its pose relative to the world is known.
     if reader.frames.known.contains_key(&root.text) {
         robot.root = Some(origin(&reader.frames.resolve(&root, cx)?, &root.place));
     }
@@ -196,7 +196,7 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     };
     let mut found = named(root, "model");
     found.extend(named(root, "world").into_iter().flat_map(|world| named(world, "model")));
-    // // If another model moves, static models of a world are not part of the mechanism.
+    // If another model moves, static models of a world are not part of the mechanism.
     let mut fixed = Vec::new();
     if found.len() > 1 {
         (fixed, found) = found.into_iter().partition(|model| is_static(*model));
@@ -350,7 +350,7 @@ impl<'a> Reader<'a> {
         };
         part.text = scope.name_of_part(&part.text);
         let base = match kind {
-            // // The pose of a joint is relative to its child by default.
+            // The pose of a joint is relative to its child by default.
             "joint" => joint::end(node, "child", scope, cx).map_or(scope.frame(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
                 Some(to) => scope.whole_name(to),
@@ -390,7 +390,7 @@ impl<'a> Reader<'a> {
         let hangs_from_world = robot.joints.iter().any(|joint| joint.parent.text == WORLD);
         for mark in &self.marks {
             let carrier = self.frames.carrier(mark, cx)?;
-            // // Without joints that start at the world, the world is not a link, and nothing can be welded
+            // Without joints that start at the world, the world is not a link, and nothing can be welded
             // to it.
             if carrier.text == WORLD && !hangs_from_world {
                 continue;
@@ -433,7 +433,7 @@ fn standing(robot: &Robot, root: &str, options: &FileOptions) -> Vec<String> {
     let mut standing = BTreeSet::from([GROUND, root]);
     let joints: BTreeMap<&str, &robot::FileJoint> =
         robot.joints.iter().map(|joint| (joint.child.text.as_str(), joint)).collect();
-    // // Repeated until no link is added.
+    // Repeated until no link is added.
     loop {
         let before = standing.len();
         for (child, joint) in &joints {

@@ -31,7 +31,7 @@ impl World {
     /// Collects the names of the world `node`, if there is one, whose `models` have these prefixes.
     pub(super) fn new(node: Option<Node<'_>>, models: &[(Node<'_>, String)]) -> World {
         let name = |node: &Node<'_>| node.attribute("name").map(str::to_string);
-        // // Elements of a model without a prefix keep their names; equal names of the world get a prefix
+        // Elements of a model without a prefix keep their names; equal names of the world get a prefix
         // instead.
         let bare = models.iter().filter(|(_, prefix)| prefix.is_empty());
         let taken: BTreeSet<String> =

@@ -1,4 +1,4 @@
-//! MJCF: actuators, and what binds joints.
+//! MJCF: actuators, and couplings of joints.
 
 use super::mjcf::{check_model, mjcf};
 use super::*;
@@ -91,7 +91,7 @@ fn sums_and_polynomials_are_conditions() {
             start("")
         ),
     );
-    // Two conditions on one joint.
+    // Two constraints on one joint.
     check_model(
         &model("<joint joint1='k' joint2='j'/><tendon tendon1='s'/>"),
         &format!("{}\ntendon_coupling: ((-10 + (2 * j)) + (4 * k)) = 0", start(" = 1 j + 1")),
@@ -111,9 +111,9 @@ fn sums_and_polynomials_are_conditions() {
     }
 }
 
-/// Gains and biases by MuJoCo 4.0.0 (`actuator_gainprm`, `actuator_biasprm`): a shortcut reads the defaults
-/// of the same shortcut or of `<general>` with a constant gain in the nearest class that has them, and never
-/// the constant force of a bias.
+/// Gains and biases as in MuJoCo 4.0.0 (`actuator_gainprm`, `actuator_biasprm`). A shortcut takes the
+/// defaults of the same shortcut, or of `<general>` with a constant gain, in the nearest class that has them.
+/// It never takes the constant force of a bias.
 #[test]
 fn defaults_of_actuators_are_one_record() {
     for (defaults, actuator, expected) in [
@@ -253,8 +253,8 @@ fn loops_are_closed() {
     );
 }
 
-/// Rotors and viscous losses of actuators count with the square of the gear ratio, even where actuators are
-/// left out.
+/// The rotor inertia and viscous damping of an actuator are multiplied by the square of the gear ratio. They
+/// act even if actuators are not imported.
 #[test]
 fn rotors_of_actuators() {
     let model = "<worldbody><body name='b'><joint name='j'/></body></worldbody>
@@ -280,8 +280,8 @@ fn rotors_of_actuators() {
     );
 }
 
-/// The largest effort of a joint: the sum of those of its actuators, nothing if one of them has no limit,
-/// and at most the largest one of the joint itself.
+/// The maximum effort of a joint is the sum over its actuators, or unlimited if one of them is. It is at most
+/// the joint's own limit.
 #[test]
 fn efforts_of_several_actuators() {
     let site = "<motor site='s' gear='0 0 1' ctrlrange='-1 1'/>";
@@ -344,8 +344,8 @@ fn actuators_that_do_not_act() {
     );
 }
 
-/// The spring of a fixed tendon: lengths by MuJoCo 4.0.0 (`tendon_lengthspring`), with the joint's own
-/// spring free at 17°.
+/// Free lengths of fixed tendons are those of MuJoCo 4.0.0 (`tendon_lengthspring`). The spring of the joint
+/// is relaxed at 17°.
 #[test]
 fn springs_of_tendons_are_free_where_they_say() {
     let rest = 2.0 * 17.0_f64.to_radians();
@@ -370,7 +370,7 @@ fn springs_of_tendons_are_free_where_they_say() {
     }
 }
 
-/// The anchor of the second body stands where the pose says in the first one.
+/// `relpose` is the pose of the second body's anchor relative to the first body.
 #[test]
 fn a_weld_with_anchor_and_pose() {
     let model = |said: &str| {
@@ -395,7 +395,8 @@ fn a_weld_with_anchor_and_pose() {
     }
 }
 
-/// The coupling that contradicts others is the one reported; one that joints at rest satisfy is left out.
+/// A coupling that contradicts earlier ones is reported. A coupling of fixed joints that is satisfied is
+/// dropped.
 #[test]
 fn couplings_of_joints_that_stand_still() {
     let model = |last: &str| {

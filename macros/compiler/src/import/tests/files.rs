@@ -6,7 +6,7 @@ use crate::import::{FileOptions, read_file};
 use std::fs;
 use std::path::PathBuf;
 
-/// A directory of this test's own, removed at the end.
+/// Temporary directory of one test, which is removed at the end.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -20,7 +20,7 @@ impl Folder {
         fs::write(self.0.join(file), bytes).expect("a temporary file");
     }
 
-    /// The text of a file or the mistakes, the directory's own name left out.
+    /// Returns the text of a file, or the errors without the name of the directory.
     fn read(&self, file: &str) -> String {
         let mut cx = Diagnostics::new();
         let options = FileOptions { path: name(file), ..defaults() };

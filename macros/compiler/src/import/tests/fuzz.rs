@@ -1,4 +1,4 @@
-//! Random damage to a small file: an answer or mistakes, never a panic.
+//! Random damage to a small file causes a result or errors, but never a panic.
 
 use super::*;
 
@@ -13,7 +13,7 @@ const FILE: &str = r#"<?xml version="1.0"?>
     <mimic joint="j" multiplier="2" offset="1"/></joint>
 </robot>"#;
 
-/// xorshift64.
+/// Returns a pseudorandom number (xorshift64).
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -48,7 +48,7 @@ fn damage_never_panics() {
     damage_gets_an_answer(&options, FILE, "root_joint");
 }
 
-/// Damages a file in many ways; `sign` is what the answers have that are no mistakes.
+/// Imports randomly damaged versions of a file. `sign` is a text that occurs in results but not in errors.
 pub(super) fn damage_gets_an_answer(options: &FileOptions, file: &str, sign: &str) {
     let mut state = 0x9E37_79B9_7F4A_7C15;
     let mut good = 0;

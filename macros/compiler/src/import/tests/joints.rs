@@ -1,4 +1,4 @@
-//! Joints: types, frames, axes, passive elements, followers, locks.
+//! Joints: types, frames, axes, damping and friction, `mimic` and locks.
 
 use super::*;
 
@@ -258,7 +258,7 @@ fn what_follows_a_locked_joint_stands_at_its_offset() {
 
 #[test]
 fn a_locked_slide_moves_along_the_turned_axis() {
-    // Yaw 1, then pitch 2, then roll 3, about carried axes: the third column of R_z(1) R_y(2) R_x(3).
+    // Yaw 1, pitch 2 and roll 3 about successive axes: the third column of R_z(1) R_y(2) R_x(3).
     let inside = "<origin rpy='3 2 1'/><axis xyz='0 0 1'/><mimic joint='j2' offset='1'/>";
     let text = chain(&[("prismatic", inside), ("revolute", "")]);
     let imported = import_text(&text, &locked(&["j2"]), &mut Diagnostics::new());
@@ -309,7 +309,7 @@ fn a_joint_says_what_it_joins_and_how() {
     );
 }
 
-/// An axis or an origin that is written in another way is not taken for the default.
+/// An axis or origin in wrong notation is an error and not replaced by the default.
 #[test]
 fn parts_of_joints_are_attributes_of_their_elements() {
     let elements = "= help: a joint has elements: `<parent link=\"…\"/>`, `<child link=\"…\"/>`, `<origin xyz=\"…\" rpy=\"…\"/>`, `<axis xyz=\"…\"/>`";

@@ -54,7 +54,7 @@ fn a_mass_that_the_model_refuses_comes_with_its_place() {
     assert_eq!(at.map(|at| (at.file.to_string(), at.line, at.column)), Some(("r.urdf".to_string(), 2, 25)));
 }
 
-/// Where nothing needs inertia, mistakes in it are none.
+/// If mass properties are not needed, errors in them are ignored.
 #[test]
 fn inertia_may_be_left_out() {
     let options = FileOptions { inertias: Inertias::None, ..defaults() };
@@ -184,7 +184,7 @@ fn long_nonsense_is_shortened() {
     check_inertial(&format!("<mass value='{}'/>{INERTIA}", "x".repeat(5000)), &expected.replace("`…", "…`"));
 }
 
-/// What stands on the ground enters no equation, whatever the file says of its mass.
+/// Links that are fixed to the ground need no valid mass properties, because these appear in no equation.
 #[test]
 fn links_on_the_ground_need_no_inertia() {
     let bad = |name: &str| format!("<link name='{name}'><inertial><mass value='1'/></inertial></link>");
@@ -208,7 +208,7 @@ fn links_on_the_ground_need_no_inertia() {
     );
 }
 
-/// Mass properties and places that are written in another way are not lost without a word.
+/// Mass properties and poses in wrong notation are errors instead of being ignored silently.
 #[test]
 fn parts_of_links_are_attributes_of_their_elements() {
     let parts = "= help: expected `<origin>`, `<mass>` and `<inertia>`";
@@ -264,7 +264,8 @@ fn parts_of_links_are_attributes_of_their_elements() {
     );
 }
 
-/// Blanks that keyboards and spreadsheets write are blanks; columns stay those of the file.
+/// Unicode whitespace from keyboards and spreadsheets is accepted; columns in messages remain those of the
+/// file.
 #[test]
 fn strange_blanks_are_blanks() {
     let text = |blank: &str| {

@@ -28,8 +28,8 @@ fn malformed_xml_has_a_place() {
     }
 }
 
-/// What bears the prefix of a simulator is skipped, declared or not; all else keeps its place, and its
-/// mistakes.
+/// Elements and attributes with prefixes of simulators are skipped, whether the prefix is declared or not.
+/// Other contents keep their source positions and errors.
 #[test]
 fn prefixes_need_no_declaration() {
     let extensions = "<drake:joint x='1'/><gazebo xsi:y='2'>\n<sensor:camera><ö:b/></sensor:camera></gazebo>";
@@ -54,12 +54,12 @@ fn prefixes_need_no_declaration() {
     ] {
         check(&robot(inside), expected);
     }
-    // Some are declared where others use them without.
+    // Prefixes that are declared in some elements and used without declaration in others.
     check(
         "<robot xmlns:s ='s'><p:x xmlns:p='u'/><p:y s:a='1'/><q:z xmlns:r='r' r:a='1' t:a='1'/><link name='a'/></robot>",
         "body a\nWeld root_joint: ground -> a",
     );
-    // On the line of the root, where the declarations were put, and before them.
+    // Errors on the line of the root, where the declarations are inserted, and before them.
     check(
         "<robot><d:x/><link name='a'/><link name='b' name='c'/></robot>",
         "r.urdf:1:45: malformed XML: attribute `name` is given twice",
@@ -162,7 +162,7 @@ fn deep_nesting_is_refused() {
     let expected = "r.urdf:1:193: more than 64 elements inside one another";
     check(&deep, expected);
     check(&(deep + &"</a>".repeat(100_000)), expected);
-    // What looks like markup in comments, instructions, character data and attributes is none.
+    // Markup inside comments, instructions, character data and attributes is ignored.
     let quiet =
         [("<!-- ", "-->"), ("<?p ", "?>"), ("<![CDATA[", "]]>"), ("<a b='", "'/>"), ("<a b=\"", "\"/>")];
     let inside: String =
@@ -172,7 +172,7 @@ fn deep_nesting_is_refused() {
     let markup = "<a>".repeat(100);
     let text = format!("<robot><link name='a'/><!--{markup}--><![CDATA[{markup}]]><?p {markup}?></robot>");
     check(&text, "body a\nWeld root_joint: ground -> a");
-    // What ends them too early hides nothing.
+    // Comments and instructions that end early do not hide the markup after them.
     for hide in ["<!---->", "<?p ?>", "<![CDATA[]]>", "<a b='>'/>", "<a b='\">'/>"] {
         check(
             &format!("<r>{hide}{markup}"),
@@ -202,7 +202,7 @@ fn places_count_characters() {
     check(&format!("\u{feff}<robot>\n{before}<link/></robot>"), expected);
 }
 
-/// Other readers of URDF take what XML does not allow around the file.
+/// Like other readers of URDF, the importer accepts leading empty lines and trailing zero bytes.
 #[test]
 fn a_declaration_may_come_late_and_zeros_may_follow() {
     let link = "<robot><link name='a'/>";

@@ -1,4 +1,4 @@
-//! MJCF: what is made of it, and what is said of files with mistakes.
+//! MJCF: results of valid files and errors of invalid ones.
 
 use super::*;
 
@@ -11,12 +11,12 @@ pub(super) fn mjcf() -> FileOptions {
     }
 }
 
-/// What a file with these elements gives; the second line begins with them.
+/// Compares the result of a file with these elements. The elements begin on the second line.
 pub(super) fn check_model(inside: &str, expected: &str) {
     check_with(&mjcf(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
 }
 
-/// What a body of a file gives.
+/// Compares the result of a body with these elements.
 fn check_body(inside: &str, expected: &str) {
     check_model(&format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"), expected);
 }
@@ -78,7 +78,7 @@ fn classes_are_handed_down() {
     );
 }
 
-/// Attributes that would change the motion are not ignored.
+/// Unsupported attributes that affect the motion are reported.
 #[test]
 fn what_is_not_supported_is_said() {
     for (inside, at, message, help) in [
@@ -382,7 +382,7 @@ fn every_beginning_of_a_file_gets_an_answer() {
     assert!(run(&mjcf(), FILE).contains("the root is"));
 }
 
-/// Flags of `<option>` switch off what they name; constraints of all kinds are couplings, limits and dry
+/// Flags of `<option>` disable what they name. The flag `constraint` disables couplings, limits and dry
 /// friction.
 #[test]
 fn flags() {
@@ -425,7 +425,7 @@ fn flags() {
     );
 }
 
-/// Joints and mass properties in a `<frame>`: places and axes by MuJoCo 4.0.0 (`jnt_pos`, `jnt_axis`,
+/// Joints and mass properties in a `<frame>`: positions and axes as in MuJoCo 4.0.0 (`jnt_pos`, `jnt_axis`,
 /// `body_ipos`).
 #[test]
 fn what_stands_in_a_frame_is_placed_by_it() {
@@ -437,7 +437,7 @@ fn what_stands_in_a_frame_is_placed_by_it() {
     );
 }
 
-/// The axes of a site between two points: z from the second to the first, as MuJoCo 4.0.0 has it
+/// Axes of a site between two points: z points from the second to the first point, as in MuJoCo 4.0.0
 /// (`site_xmat`).
 #[test]
 fn sites_between_two_points_have_their_axes() {
@@ -466,7 +466,7 @@ fn sites_between_two_points_have_their_axes() {
     }
 }
 
-/// Numbers that an element does not write are those of its defaults: sizes by MuJoCo 4.0.0 (`geom_size`).
+/// Missing entries of an attribute are taken from the defaults: sizes as in MuJoCo 4.0.0 (`geom_size`).
 #[test]
 fn lists_are_completed_by_defaults() {
     check_model(
@@ -478,7 +478,7 @@ fn lists_are_completed_by_defaults() {
     );
 }
 
-/// Input that MuJoCo refuses is refused, with one error for each fault.
+/// Input that MuJoCo rejects is rejected, with one error for each fault.
 #[test]
 fn what_mujoco_refuses() {
     let body =

@@ -1,4 +1,4 @@
-//! Text of a file in, text of the description or of the mistakes out.
+//! Tests of the importers: compare the description, or the errors, as text.
 
 use super::{FileOptions, Imported, import};
 use crate::diag::Diagnostics;
@@ -27,7 +27,7 @@ fn name(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }
 }
 
-/// A folder of files for one test.
+/// Temporary folder of files for one test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -51,12 +51,12 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What is left in the folder for temporary files harms nobody.
+        // Files that remain in the folder for temporary files do no harm.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
 
-/// The options that the attribute has when nothing is said.
+/// Returns the default options of the attribute.
 fn defaults() -> FileOptions {
     FileOptions {
         format: FileFormat::Urdf,
@@ -80,7 +80,7 @@ fn locked(joints: &[&str]) -> FileOptions {
     FileOptions { lock: joints.iter().map(|joint| name(joint)).collect(), ..defaults() }
 }
 
-/// Compares what `text` gives with `expected`, the indentation of lines and empty lines apart.
+/// Compares the result for `text` with `expected`. Indentation and empty lines are ignored.
 fn check_with(options: &FileOptions, text: &str, expected: &str) {
     let trim = |text: &str| -> String {
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
@@ -94,17 +94,17 @@ fn check(text: &str, expected: &str) {
     check_with(&defaults(), text, expected);
 }
 
-/// Compares what the elements inside `<robot>` give, which begin on the second line.
+/// Compares the result for elements inside `<robot>`. The elements begin on the second line.
 fn check_robot(inside: &str, expected: &str) {
     check(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
 }
 
-/// What a text holds that stands alone.
+/// Imports a text that refers to no other files.
 fn import_text(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
     import(text, Path::new(""), options, cx)
 }
 
-/// The description, or the mistakes.
+/// Returns the description as text, or the errors.
 fn run(options: &FileOptions, text: &str) -> String {
     let mut cx = Diagnostics::new();
     let imported = import_text(text, options, &mut cx);
@@ -232,12 +232,12 @@ fn render_expr(expr: &Expr) -> String {
     }
 }
 
-/// A link without mass.
+/// Returns a link without mass properties.
 fn link(name: &str) -> String {
     format!("<link name=\"{name}\"/>")
 }
 
-/// A joint with further elements inside.
+/// Returns a joint with further elements inside.
 fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> String {
     format!(
         "<joint name=\"{name}\" type=\"{kind}\">\
@@ -245,7 +245,7 @@ fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> Str
     )
 }
 
-/// A chain of links `l0`, `l1`, … with the joints `j1`, … of the given types, and what is inside each.
+/// Returns a chain of links `l0`, `l1`, … with joints `j1`, … of these types and contents.
 fn chain(joints: &[(&str, &str)]) -> String {
     let mut text = link("l0");
     for (k, (kind, inside)) in joints.iter().enumerate() {
@@ -256,7 +256,7 @@ fn chain(joints: &[(&str, &str)]) -> String {
     format!("<robot name=\"r\">{text}</robot>")
 }
 
-/// The lines that `chain` gives for the links and the root.
+/// Returns the lines of the result of `chain` for the links and the root.
 fn chain_bodies(joints: usize) -> String {
     let bodies: String = (0..=joints).map(|k| format!("body l{k}\n")).collect();
     bodies + "Weld root_joint: ground -> l0\n"

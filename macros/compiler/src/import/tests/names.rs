@@ -1,4 +1,4 @@
-//! Names, the tree of the links and the order of the coordinates.
+//! Names, the kinematic tree and the order of the coordinates.
 
 use super::*;
 
@@ -120,7 +120,7 @@ fn joints_join_links_that_are_there() {
     check("<robot/>", "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`");
 }
 
-/// Files that hang a robot from `world` need not declare it.
+/// Files with joints from `world` need not declare this link.
 #[test]
 fn the_world_is_known() {
     let links = link("a") + &link("b");

@@ -1,5 +1,5 @@
-//! Attributes of MJCF: each attribute that may change a motion changes the imported description or is
-//! refused.
+//! Attributes of MJCF: each attribute that may affect the motion changes the imported description or is
+//! rejected.
 
 use super::mjcf::mjcf;
 use super::*;
@@ -17,7 +17,7 @@ const BODIES: &str = "<worldbody><site name='o'/><body name='b' euler='10 20 30'
     <tendon><fixed name='t'><joint joint='j' coef='2'/></fixed><fixed name='u'><joint joint='n' coef='3'/></fixed></tendon>\
     <equality><joint joint1='n' joint2='k'/></equality><actuator><motor joint='j' group='2'/></actuator>";
 
-/// A class with values of its own.
+/// Class of defaults with distinctive values.
 const CLASS: &str = "<default><default class='c'><joint stiffness='7'/><geom density='7'/><site pos='7 7 7'/><motor gear='9'/>\
     <tendon stiffness='7'/><equality active='false'/></default></default>";
 
@@ -36,7 +36,7 @@ const LISTS: [(&str, &str); 4] = [
     ("*target", "joint=k; jointinparent=k; site=s; slidersite=s; cranksite=s; tendon=t"),
 ];
 
-/// Elements that are refused with all their attributes.
+/// Elements that are rejected with all their attributes.
 const REFUSED: [&str; 8] =
     ["intvelocity", "damper", "cylinder", "muscle", "adhesion", "orientation", "pid", "dcmotor"];
 
@@ -49,7 +49,8 @@ fn answer(text: &str) -> String {
     }
 }
 
-/// The answers to a file with an attribute and without it, all else at the same places.
+/// Returns the results of a file with and without an attribute. Spaces replace the attribute, so that source
+/// positions are equal.
 fn answers(file: &str, attribute: &str, value: &str) -> [String; 2] {
     let said = format!("{attribute}=\"{value}\"");
     let file = file.replace('$', CLASS).replace('#', BODIES);

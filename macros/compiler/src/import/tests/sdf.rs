@@ -1,4 +1,4 @@
-//! SDF: what is said of files with mistakes.
+//! SDF: results of valid files and errors of invalid ones.
 
 use super::*;
 
@@ -6,7 +6,7 @@ fn sdf() -> FileOptions {
     FileOptions { format: FileFormat::Sdf, path: name("r.sdf"), ..defaults() }
 }
 
-/// Compares what the elements of a model give, which stand on the second line.
+/// Compares the result for the elements of a model. The elements begin on the second line.
 fn check_model(inside: &str, expected: &str) {
     check_with(&sdf(), &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"), expected);
 }
@@ -201,8 +201,8 @@ fn every_beginning_of_a_file_gets_an_answer() {
     assert!(run(&sdf(), FILE).contains("root_joint"));
 }
 
-/// A model stands in the place of the `<include>` that names it, as often as it is named, with its name and
-/// its pose; it moves as if it were written there.
+/// The model of an included file replaces the `<include>`, with the name and pose of the `<include>`. The
+/// result equals that of a file which contains the model.
 #[test]
 fn included_models_stand_in_the_place_of_their_elements() {
     let wheel = "<sdf version='1.9'>\n<model name='wheel'><pose>9 9 9 0 0 0</pose><link name='rim'><pose>0 0 1 0 0 0</pose></link></model></sdf>";
@@ -235,7 +235,7 @@ fn included_models_stand_in_the_place_of_their_elements() {
     let expected = folder.answer(&sdf(), &model(&whole)).replace("0 files", "2 files");
     assert_eq!(answer, expected);
     assert!(answer.contains("Pin i: hull.at([1, 0, 1]) -> left::rim"), "{answer}");
-    // Includes of included files, and of the world, which need not all be there.
+    // Nested includes, and includes in a world, which may refer to missing files.
     let world = "<sdf><world name='w'><include><uri>model://ground_plane</uri></include><include><uri>two.sdf</uri></include></world></sdf>";
     let answer = folder.answer(&sdf(), world);
     assert!(answer.contains("body wheel::rim") && answer.contains("not beside the file: 1"), "{answer}");
@@ -260,7 +260,7 @@ fn included_models_stand_in_the_place_of_their_elements() {
 
 const ONE: &str = "mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
 
-/// The child is turned by a right angle about z: x of the model is −y of the child, and of the joint.
+/// The child is rotated by a right angle about z: x of the model is −y of the child and of the joint.
 #[test]
 fn axes_of_old_versions_are_in_the_model() {
     let text = |version: &str, axis: &str| {
@@ -298,7 +298,7 @@ fn axes_of_old_versions_are_in_the_model() {
     );
 }
 
-/// The version of an included file is its own.
+/// Included files are interpreted in their own version.
 #[test]
 fn included_files_are_read_in_their_own_version() {
     let arm = |version: &str| {
@@ -319,8 +319,8 @@ fn included_files_are_read_in_their_own_version() {
     }
 }
 
-/// Poses of versions 1.5 and 1.6 name frames by `frame`, in inertial frames too, and links have frames of
-/// their own.
+/// Poses of versions 1.5 and 1.6 name their reference frame in the attribute `frame`, in inertial frames too,
+/// and links may declare frames.
 #[test]
 fn poses_of_old_versions_name_frames() {
     let text = |version: &str, pose: &str, inertial: &str| {
@@ -354,7 +354,7 @@ fn poses_of_old_versions_name_frames() {
     assert!(answer.contains("the pose of an `<inertial>` is relative to its link"), "{answer}");
 }
 
-/// Joints and frames of the world: names in it begin with those of its models.
+/// Joints and frames of the world: names in them begin with the name of a model.
 #[test]
 fn joints_of_the_world_hold_models() {
     let world = |inside: &str| {
@@ -375,7 +375,7 @@ fn joints_of_the_world_hold_models() {
                 "body world\nbody a {ONE}\nWeld root_joint: ground -> world\nSleeve world::a: world.at([1, 0, 1]) -> a along [1, 0, 0]"
             ),
         ),
-        // A frame of the world stands still, and a static model is one of its parts.
+        // A frame of the world is fixed, and a static model belongs to the world.
         (
             format!(
                 "<frame name='f'><pose>0 2 0 0 0 0</pose></frame>{}",
@@ -396,12 +396,12 @@ fn joints_of_the_world_hold_models() {
                  Sleeve world::a: world.at([0, 5, 0]) -> a.at([-1, 5, -1]) along [1, 0, 0]\nleft out static models of the world: 1"
             ),
         ),
-        // A frame that no joint needs does not become a link.
+        // A frame that no joint refers to does not become a link.
         (
             "<frame name='a'/>".to_string(),
             format!("body a {ONE}\nWeld root_joint: ground.at([1, 0, 1]) -> a"),
         ),
-        // Joints of the world make several models one mechanism.
+        // Joints of the world connect several models to one mechanism.
         (
             format!(
                 "<model name='n'><link name='a'/></model>{}",
@@ -414,7 +414,7 @@ fn joints_of_the_world_hold_models() {
     ] {
         let trim = |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_string()).collect() };
         let (mut found, mut expected) = (trim(&run(&sdf(), &world(&inside))), trim(&expected));
-        // The order of bodies follows the names of the joints.
+        // The order of bodies depends on the names of the joints.
         found.sort();
         expected.sort();
         assert_eq!(found, expected);
@@ -428,7 +428,7 @@ fn joints_of_the_world_hold_models() {
     );
 }
 
-/// The thread of the older word is left-handed where it is positive, in rad/m.
+/// A positive `<thread_pitch>`, in rad/m, describes a left-handed thread.
 #[test]
 fn screws_of_old_versions_advance_by_their_thread() {
     let text = |pitch: &str| {
@@ -457,7 +457,7 @@ fn versions_are_numbers() {
     }
     let answer = run(&sdf(), &format!("<gazebo version='1.2'>{model}</gazebo>"));
     assert!(answer.contains("files of versions 1.0 and 1.2 begin so"), "{answer}");
-    // Values that are written as attributes, as in version 1.0 or in URDF, are not taken for the default.
+    // Values that are written as attributes, as in version 1.0 or in URDF, are not replaced by defaults.
     for (inside, expected) in [
         ("<link name='a'><pose xyz='0 0 1'/></link>", "unknown attribute `xyz` of `<pose>`"),
         ("<link name='a'><inertial mass='2'/></link>", "unknown attribute `mass` of `<inertial>`"),

@@ -1,9 +1,9 @@
-//! Cables through space and actuators on sites.
+//! Spatial tendons and actuators on sites.
 
 use super::mjcf::mjcf;
 use super::*;
 
-/// Two bodies with sites, a ball and a cylinder.
+/// Returns a file with a body, sites, a sphere, a cylinder and these tendons and actuators.
 fn model(tendon: &str, actuator: &str) -> String {
     format!(
         "<mujoco><compiler angle='radian'/><worldbody><site name='w' pos='0 0 1'/><body name='b' pos='0 0 2'>\
@@ -14,14 +14,14 @@ fn model(tendon: &str, actuator: &str) -> String {
     )
 }
 
-/// The lines about forces, or the mistakes.
+/// Returns the lines of the result that describe forces, or the errors.
 fn drives(tendon: &str, actuator: &str) -> Vec<String> {
     let text = run(&mjcf(), &model(tendon, actuator));
     let kept = |line: &&str| line.contains(" on ") || line.contains("r.xml") || line.contains("help");
     text.lines().filter(kept).map(|line| line.trim().to_string()).collect()
 }
 
-/// A cable from the wall to `s` that the motor pulls.
+/// Returns the forces of a motor that pulls a cable from the wall to the site `s`.
 fn cable(around: &str) -> Vec<String> {
     let tendon = format!("<spatial name='t'><site site='w'/>{around}<site site='s'/></spatial>");
     drives(&tendon, "<motor tendon='t' name='m'/>")
@@ -37,11 +37,11 @@ fn paths_are_lengths_of_cables() {
         cable("<geom geom='drum'/>"),
         [format!("m: input in N on min({}, {})", round(""), round("-"))]
     );
-    // Seen along y, from below the drum to its right: over the side above, with the hands of a clock.
+    // Viewed along y, the cable runs clockwise from below the drum over its upper side to the right.
     assert_eq!(cable("<geom geom='drum' sidesite='side'/>"), [format!("m: input in N on {}", round(""))]);
 }
 
-/// Behind a pulley less of a length counts, and a gear multiplies all.
+/// A pulley divides the length after it by its divisor; a gear ratio multiplies the whole length.
 #[test]
 fn pulleys_and_gears_are_factors() {
     let tendon = "<spatial name='t'><site site='w'/><site site='s'/><pulley divisor='4'/><site site='w'/><site site='side'/></spatial>";
@@ -52,8 +52,7 @@ fn pulleys_and_gears_are_factors() {
     );
 }
 
-/// The free length is that of the pose in which the springs of joints are free: here `s` is turned by 1 about
-/// y.
+/// The free length is the length with all joint springs relaxed: here `s` is rotated by 1 rad about y.
 #[test]
 fn springs_are_free_at_rest() {
     let spring = |more: &str| {
@@ -87,7 +86,7 @@ fn sites_are_pushed_and_turned() {
         site("refsite='w' gear='0 0 0 0 1 0'"),
         ["m: input in N·m on b.at([3, 0, 0]) by 0 0 0, 0 1 0 against ground.at([0, 0, 1])"]
     );
-    // The length of a site alone is zero: what is left of a servo's spring is its constant force.
+    // The length of an actuator on a single site is zero: a servo's spring reduces to its constant force.
     assert_eq!(
         drives("", "<general name='m' site='s' biastype='affine' biasprm='4 -5 -6'/>"),
         [
@@ -98,7 +97,7 @@ fn sites_are_pushed_and_turned() {
     );
 }
 
-/// What nothing acts on may be anything that MuJoCo knows.
+/// Unsupported paths are accepted if nothing acts on the tendon.
 #[test]
 fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
     let side =

@@ -1,8 +1,8 @@
-//! Degrees where a format takes radians.
+//! Angles in degrees in formats that use radians.
 
 use super::*;
 
-/// What is left of 90 rad within a full turn.
+/// 90 rad modulo a full revolution, rad.
 const SAME_TURN: f64 = 2.0354056994857928;
 
 #[test]
@@ -11,8 +11,8 @@ fn what_is_left_within_a_turn_turns_as_far() {
     assert!((SAME_TURN.sin() - sin).abs() < 1e-14 && (SAME_TURN.cos() - cos).abs() < 1e-14);
 }
 
-/// What is said of each text with the angle 90 in the place of `…`, and that a rounded full turn and one and
-/// a half are none of it.
+/// Compares the error for `text` with the angle 90 instead of `…`. A rounded full revolution and one and a
+/// half revolutions must not be reported.
 fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
     let degrees = text.replace('…', "90");
     let said = format!(

@@ -47,7 +47,7 @@ pub(super) fn read_joint(
     let origin = read_origin(origin, node, cx);
     let parent = read_end(parent, node, "parent", cx);
     let child = read_end(child, node, "child", cx);
-    // // Exporters write an axis of zeros and damping into fixed joints.
+    // Exporters write an axis of zeros and damping into fixed joints.
     let (word, kind) = kind.unwrap_or(("fixed", JointKind::Weld));
     let moves = kind != JointKind::Weld;
     let axis = read_axis(axis.filter(|_| has_axis(kind)), node, cx);
@@ -104,7 +104,7 @@ fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<
     let Some(axis) = axis else {
         return default(place(node, cx));
     };
-    // // Some exporters add an identity orientation to the axis.
+    // Some exporters add an identity orientation to the axis.
     let has_rpy =
         axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
     check_only(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);

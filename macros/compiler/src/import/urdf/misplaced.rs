@@ -51,7 +51,7 @@ const WORDS: [&str; 38] = [
 /// meaning elsewhere in the file. Text between links is accepted as a comment.
 pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
     for child in elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
-        // // Misspelt names of elements in `own` are reported by other functions.
+        // Misspelt names of elements in `own` are reported by other functions.
         if nearest(child.tag_name().name(), own).is_none() && !is_neutral(child) {
             let message = format!("unexpected {} in {}", tag(child), tag(node));
             cx.error(&place(child, cx), message, |d| d.help(help));

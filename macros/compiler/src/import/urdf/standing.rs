@@ -29,7 +29,7 @@ pub(super) fn links<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a 
     let links = elements(robot).filter(|node| node.tag_name().name() == "link");
     let mut open: Vec<&str> = links.filter_map(|link| link.attribute("name")).collect();
     open.retain(|link| !carried.contains(link));
-    // // Links that are used as a parent but not declared are roots, too.
+    // Links that are used as a parent but not declared are roots, too.
     open.extend(below.keys().filter(|link| !carried.contains(*link)));
     while let Some(link) = open.pop() {
         if standing.insert(link) {
