@@ -1,6 +1,6 @@
-//! The straight-line body of a function: values with one use stand where they are used, the others are
-//! constants of their own. All arguments are read before the first result is written, so that results may go
-//! where arguments came from.
+//! The straight-line body of a function. Values with a single use are inlined, all others are local
+//! constants. All arguments are read before the first result is written, so that results may overwrite
+//! arguments.
 
 use super::pieces::{Piece, Statement};
 use super::scalar::constant;
@@ -11,21 +11,21 @@ use crate::lower::{Angles, Op, Operand, Program};
 use crate::mechanism::Quantity;
 use std::fmt::Write;
 
-/// Longest expression that is not bound.
+/// Maximum length of an expression that is inlined, in characters.
 const LINE: usize = 72;
-/// How many angles are evaluated side by side.
+/// Number of angles whose sines and cosines are evaluated together.
 const TOGETHER: usize = 4;
 
-/// Where results go: the place of each, nothing for those that go nowhere.
+/// Map from the index of an output to its assignment target; `None` for outputs that are not stored.
 pub type Places<'a> = &'a dyn Fn(usize) -> Option<String>;
 
-/// What a body may name.
+/// Names that a body may use.
 pub struct Scope<'a> {
-    /// The arguments, and what is called before.
+    /// Arguments of the function, and results of functions that it calls first.
     pub arguments: &'a [Argument],
-    /// The members of the struct of parameters.
+    /// Members of the parameter struct.
     pub parameters: &'a [String],
-    /// Those of them that are tables.
+    /// Members of the parameter struct that are tables.
     pub tables: &'a [String],
 }
 
@@ -33,13 +33,13 @@ struct Writer<'a> {
     program: &'a Program,
     scope: &'a Scope<'a>,
     statements: Vec<Statement>,
-    /// By value: its text if it is not bound.
+    /// Expression of each instruction that is inlined; `None` for the other instructions.
     pieces: Vec<Option<Piece>>,
     support: &'a mut Support,
 }
 
-/// Writes a program: what it reads, its values, and its results to their places. The text of the first result
-/// comes back, for functions that return it.
+/// Writes a program: input values, statements, and assignments of the results. Returns the expression of the
+/// first result, for functions that return it.
 pub fn write_program(
     out: &mut String,
     program: &Program,
@@ -56,7 +56,7 @@ pub fn write_program(
     outputs.into_iter().next().unwrap_or_default().text
 }
 
-/// Arguments and parameters that are used, as numbers with names.
+/// Writes local constants for the arguments and parameters that the program uses.
 fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
     for quantity in program.symbols().into_iter().map(Quantity::of) {
         match (quantity, named(quantity, scope)) {
@@ -79,7 +79,7 @@ fn member<'a>(scope: &'a Scope<'_>, k: usize) -> &'a str {
     scope.parameters.get(k).map_or("missing", String::as_str)
 }
 
-/// The name of the number that a quantity is read into.
+/// Returns the name of the local constant of a quantity.
 fn named(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
     match quantity {
         Quantity::Time => Some("t".to_string()),
@@ -112,7 +112,8 @@ impl Writer<'_> {
         }
     }
 
-    /// The sines and cosines of all angles that are known from the start, four at a time.
+    /// Writes the evaluation of the sines and cosines of all angles that depend only on inputs, four at a
+    /// time.
     fn write_angles(&mut self, angles: &Angles) {
         let count = angles.list.len();
         if count == 0 {
@@ -153,7 +154,7 @@ impl Writer<'_> {
             Operand::Symbol(s) => {
                 Piece::plain(named(Quantity::of(s), self.scope).unwrap_or_else(|| "missing".to_string()))
             }
-            // Programs without lanes have neither.
+            // Programs without lanes contain neither tuples nor gathers.
             Operand::Tuple(_) | Operand::Gather(_) => Piece::plain("missing".to_string()),
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
@@ -185,7 +186,7 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Min, a, b) => self.call("fmin", &[a, b]),
             Op::Extreme(Extreme::Max, a, b) => self.call("fmax", &[a, b]),
             Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c]),
-            // Refused before.
+            // Rejected by `check`.
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::plain("missing".to_string()),
         }
     }
@@ -231,7 +232,7 @@ impl Writer<'_> {
     }
 }
 
-/// The statements, with every result right after the last one that it needs.
+/// Writes the statements. Each result is assigned right after the last statement that it depends on.
 fn write_statements(out: &mut String, statements: &[Statement], outputs: &[Piece], places: Places<'_>) {
     let size = statements.iter().flat_map(|s| &s.names).max().map_or(0, |m| m + 1);
     let mut bound_by = vec![0; size];

@@ -1,10 +1,10 @@
-//! Functions in the shape that CasADi loads (`casadi.external`) and acados takes: a further source file,
-//! which calls those of the mechanism.
+//! Functions with the interface that CasADi loads (`casadi.external`) and acados accepts: an additional
+//! source file, which calls the functions of the mechanism.
 //!
-//! A function `f` has `f_n_in`, `f_sparsity_in`, `f_work` and so on beside it; `jac_f` has its Jacobians,
-//! with the blocks of all results by all arguments. Those are there where they are known exactly: for plain
-//! coordinates, without time, and where all parameters are fixed. Matrices are dense, or have no entries
-//! where they are always zero.
+//! Each function `f` comes with `f_n_in`, `f_sparsity_in`, `f_work` and so on; `jac_f` returns its Jacobians,
+//! as blocks of all results with respect to all arguments. Jacobians exist if they are exact: for plain
+//! coordinates, without time, and with all parameters fixed. Matrices are dense, or have an empty sparsity
+//! pattern if they are always zero.
 
 use super::docs;
 use super::function::{Outline, results, spoken};
@@ -13,36 +13,36 @@ use crate::catalogue::{Argument, Id, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
-/// What the file is made of.
+/// Contents of the CasADi source file.
 pub struct Shapes<'a> {
-    /// Sizes and names.
+    /// Sizes and names of the mechanism.
     pub o: &'a Outline<'a>,
-    /// The functions for others.
+    /// Public functions.
     pub public: &'a [&'a Function],
     /// Names of the frames.
     pub frames: &'a [String],
-    /// By parameter: its value if it is fixed.
+    /// Value of each fixed parameter; `None` for a parameter that is an argument.
     pub fixed: &'a [Option<f64>],
-    /// All coordinates are plain numbers.
+    /// Whether all coordinates are plain numbers.
     pub is_plain: bool,
-    /// Forces depend on accelerations.
+    /// Whether forces depend on accelerations.
     pub is_accelerating: bool,
-    /// There are steps, and steps with their Jacobians.
+    /// Whether the mechanism has integration steps, and whether these have Jacobians.
     pub steps: [bool; 2],
 }
 
-/// A matrix that goes in or out: name, rows, columns, and whether it has entries.
+/// Matrix argument or result: name, rows, columns, and whether the sparsity pattern is nonempty.
 type Entry = (String, usize, usize, bool);
 
-/// A function of the file.
+/// Function of the CasADi source file.
 struct External {
     name: String,
     inputs: Vec<Entry>,
     outputs: Vec<Entry>,
     body: String,
-    /// Numbers of work space behind those of the results.
+    /// Number of workspace entries in addition to those of the results.
     work: usize,
-    /// Where the parameters are that are arguments.
+    /// C expression of the parameters that are arguments, or `0`.
     parameters: &'static str,
 }
 
@@ -51,7 +51,7 @@ fn dense(name: &str, rows: usize, columns: usize) -> Entry {
 }
 
 impl Shapes<'_> {
-    /// The text of the file.
+    /// Returns the text of the file.
     pub fn text(&self) -> String {
         let p = &self.o.prefix;
         let mut text = format!(
@@ -87,23 +87,23 @@ impl Shapes<'_> {
         lines.iter().map(|line| format!("\n *\n{}", docs::wrapped(line, " * ", " * ").trim_end())).collect()
     }
 
-    /// Jacobians by all arguments are known.
+    /// Returns true if the Jacobians with respect to all arguments are known.
     fn is_exact(&self) -> bool {
         self.is_plain && !self.o.time && self.free().is_empty()
     }
 
-    /// States are vectors that derivatives are taken by.
+    /// Returns true if the state is a vector with respect to which derivatives are taken.
     fn has_states(&self) -> bool {
         self.is_plain && !self.o.time && self.steps[1]
     }
 
-    /// The parameters that are arguments.
+    /// Returns the names of the parameters that are arguments.
     fn free(&self) -> Vec<&String> {
         let all = self.o.parameters.iter().zip(self.fixed);
         all.filter(|(_, value)| value.is_none()).map(|(name, _)| name).collect()
     }
 
-    /// The struct of parameters from those that are fixed and those that are given.
+    /// Writes the function that fills the parameter struct from fixed values and arguments.
     fn own(&self, text: &mut String) {
         let p = &self.o.prefix;
         if !self.o.has_own() {
@@ -166,7 +166,7 @@ impl Shapes<'_> {
         all
     }
 
-    /// A function with the parameters that are arguments.
+    /// Creates a function, with the free parameters as its last argument.
     fn external(&self, name: String, mut inputs: Vec<Entry>, outputs: Vec<Entry>, body: String) -> External {
         let free = self.free().len();
         if free > 0 {
@@ -182,7 +182,7 @@ impl Shapes<'_> {
         }
     }
 
-    /// A call of a function with all its arguments.
+    /// Returns the call of a function of the mechanism with all its arguments.
     fn called(&self, name: &str, inputs: &[Entry], outputs: usize, returns: bool) -> String {
         let own = if self.o.has_own() { vec!["&self".to_string()] } else { Vec::new() };
         let given = inputs
@@ -198,7 +198,7 @@ impl Shapes<'_> {
         vec![dense("q", self.o.nq, 1), dense("v", self.o.nv, 1)]
     }
 
-    /// The Jacobians of a function of the dynamics.
+    /// Returns the Jacobians of forward or inverse dynamics, if they are exact.
     fn jacobian_of(&self, id: Id) -> Option<External> {
         let n = self.o.nv;
         let has = |id: Id| self.public.iter().any(|f| f.id == id);
@@ -232,7 +232,7 @@ impl Shapes<'_> {
         Some(self.external(format!("jac_casadi_{name}"), inputs, outputs, body.collect()))
     }
 
-    /// A step and its Jacobians.
+    /// Returns a step of an integration method, with its Jacobians if they are known.
     fn step(&self, method: &str) -> Vec<External> {
         let (n, m) = (self.o.nv, self.o.nu);
         if !self.steps[0] {
@@ -288,7 +288,7 @@ impl Shapes<'_> {
         all
     }
 
-    /// Positions of frames, and their Jacobians.
+    /// Returns the functions for positions of frames, with their Jacobians.
     fn positions(&self) -> Vec<External> {
         let (n, p) = (self.o.nv, &self.o.prefix);
         let upper = p.to_ascii_uppercase();
@@ -318,7 +318,7 @@ impl Shapes<'_> {
         all
     }
 
-    /// What acados takes: `x` is configuration and velocity.
+    /// Returns the functions for acados, whose state `x` consists of configuration and velocity.
     fn states(&self) -> Vec<External> {
         let (n, m, p) = (self.o.nv, self.o.nu, &self.o.prefix);
         let x = 2 * n;
@@ -393,7 +393,7 @@ impl Shapes<'_> {
         ]
     }
 
-    /// The forces of the inputs in a state `x`.
+    /// Returns the call that computes the generalized forces of the inputs in a state `x`.
     fn forces(&self) -> String {
         let f = self.public.iter().find(|f| f.id == Id::GeneralizedForces).filter(|_| self.o.nu > 0);
         let own = if self.o.has_own() { vec!["&self"] } else { Vec::new() };
@@ -413,7 +413,7 @@ impl Shapes<'_> {
     }
 
     fn write(&self, text: &mut String, f: &External) {
-        // CasADi looks for the Jacobian of `f` under the name `jac_f`.
+        // CasADi expects the Jacobian of `f` under the name `jac_f`.
         let name = match f.name.strip_prefix("jac_") {
             Some(rest) => format!("jac_{}_{rest}", self.o.prefix),
             None => format!("{}_{}", self.o.prefix, f.name),
@@ -447,7 +447,7 @@ impl Shapes<'_> {
         let list = |entries: &[Entry]| -> [String; 2] {
             let names: Vec<String> = entries.iter().map(|(name, ..)| format!("\"{name}\"")).collect();
             let shapes: Vec<String> = entries.iter().map(sparsity).collect();
-            // An array has an element at least.
+            // Arrays in C have at least one element.
             let joined = |all: Vec<String>| if all.is_empty() { "0".to_string() } else { all.join(", ") };
             [joined(names), joined(shapes)]
         };
@@ -463,13 +463,13 @@ impl Shapes<'_> {
     }
 }
 
-/// The name of a matrix's pattern.
+/// Returns the name of a matrix's sparsity pattern.
 fn sparsity((_, rows, columns, has_entries): &Entry) -> String {
     format!("{}_{rows}_by_{columns}", if *has_entries { "dense" } else { "zero" })
 }
 
-/// The patterns, each once: rows, columns, and 1 where all entries are there, or where none is the beginnings
-/// of the columns.
+/// Writes each sparsity pattern once: rows, columns, and 1 for a dense matrix or the column offsets of an
+/// empty one.
 fn write_sparsities(text: &mut String, externals: &[External]) {
     let all = externals.iter().flat_map(|f| f.inputs.iter().chain(&f.outputs));
     let mut shapes: Vec<(usize, usize, bool)> = all.map(|(_, r, c, has)| (*r, *c, *has)).collect();

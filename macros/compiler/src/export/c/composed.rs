@@ -1,4 +1,4 @@
-//! Results of several matrices, and what is composed of them at run time by loops.
+//! Results that consist of several matrices, and results that loops compose at run time.
 
 use super::body::{Scope, write_program};
 use super::function::{Outline, is_zero, place};
@@ -7,7 +7,7 @@ use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
-/// Writes a body.
+/// Writes the body of a function.
 pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>, support: &mut Support) {
     match f.shape {
         Shape::Inverse(n) => {
@@ -21,7 +21,7 @@ pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>
             let parts = Parts::of(f, n, 2 * n * n);
             parts.declare(body);
             let forces = [("by_q", n, n), ("by_v", n, n)];
-            // Behind these come the accelerations, which are not given back.
+            // The accelerations, which are the last outputs, are not returned.
             let mut program = f.program.clone();
             program.outputs.truncate(3 * n * n + parts.count());
             program.sweep();
@@ -50,12 +50,12 @@ pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>
     }
 }
 
-/// An array has a number at least.
+/// Returns the size of an array, which is at least one in C.
 fn at_least_one(n: usize) -> usize {
     n.max(1)
 }
 
-/// The inverse of a mass matrix among the outputs after the first so many.
+/// Representation of the inverse mass matrix by program outputs, beginning with output `first`.
 struct Parts<'a> {
     form: &'a InverseForm,
     n: usize,
@@ -74,7 +74,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// How many outputs stand beside the columns.
+    /// Returns the number of outputs after the columns of the inverse.
     fn count(&self) -> usize {
         self.n * self.trunk().len()
     }
@@ -98,7 +98,8 @@ impl<'a> Parts<'a> {
         let _ = writeln!(body, "    double beside[{}];", self.count());
     }
 
-    /// Where an output goes: into what stands before, the inverse, or beside it.
+    /// Returns the array element for an output: in the results before the inverse, the inverse or its
+    /// additional values.
     fn place(&self, k: usize, inverse: &str, before: &[(&'static str, usize, usize)]) -> Option<String> {
         if k < self.first {
             return place(before, k);
@@ -107,7 +108,7 @@ impl<'a> Parts<'a> {
         Some(if k < square { format!("{inverse}[{k}]") } else { format!("beside[{}]", k - square) })
     }
 
-    /// Makes the inverse of its parts.
+    /// Writes the statements that complete the inverse from its representation.
     fn finish(&self, body: &mut String, inverse: &str, support: &mut Support) {
         let (n, width) = (self.n, self.trunk().len());
         let _ = match self.form {
@@ -139,7 +140,7 @@ fn accelerated(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, sup
     }
 }
 
-/// Minus the products of the inverse with factors of so many columns, in their places.
+/// Writes the product of the negative inverse with each factor, which the product overwrites.
 fn products(body: &mut String, n: usize, inverse: &str, factors: &[(&str, usize)], support: &mut Support) {
     for (factor, columns) in factors.iter().filter(|(_, columns)| *columns > 0) {
         support.products = true;
@@ -147,7 +148,8 @@ fn products(body: &mut String, n: usize, inverse: &str, factors: &[(&str, usize)
     }
 }
 
-/// Derivatives of the accelerations in the place of those of the forces, but for the columns that are known.
+/// Writes the conversion from force derivatives to acceleration derivatives; columns in `known` are already
+/// converted.
 fn solved(body: &mut String, f: &Function, n: usize, support: &mut Support) {
     for (matrix, known) in ["by_q", "by_v"].into_iter().zip(&f.structure.known) {
         let mut first = 0;
@@ -184,7 +186,8 @@ fn called_forward(
     write_program(body, &f.program, scope, &place, support);
 }
 
-/// Where the derivatives by the inputs go, and after them what turns displacements.
+/// Returns the array element for an output: derivatives with respect to inputs, then the block for
+/// displacements.
 fn assembled_place(n: usize, m: usize, k: usize) -> Option<String> {
     Some(match k < n * m {
         true => format!("by_input[{}]", k / n * 2 * n + n + k % n),
@@ -192,7 +195,7 @@ fn assembled_place(n: usize, m: usize, k: usize) -> Option<String> {
     })
 }
 
-/// Puts the system's matrices together: what the program left in them stays.
+/// Writes the composition of the system matrices. Values that the program has already stored are preserved.
 fn assemble(body: &mut String, n: usize, m: usize, support: &mut Support) {
     if n == 0 {
         return;
@@ -231,7 +234,7 @@ fn assemble(body: &mut String, n: usize, m: usize, support: &mut Support) {
     }
 }
 
-/// The linear system by a call for the derivatives of forward dynamics.
+/// Writes the linear system with a call of the function for the derivatives of forward dynamics.
 fn called_linear(
     body: &mut String,
     f: &Function,

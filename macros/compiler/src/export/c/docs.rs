@@ -1,18 +1,18 @@
-//! Comments of the header.
+//! Comments in the header.
 
 use super::function::{Given, Outline};
 use crate::catalogue::Argument;
 
-/// Width of lines.
+/// Maximum width of lines, in characters.
 const WIDTH: usize = 100;
 
-/// Text that may stand in a comment: no end of it, no trigraphs, no control characters.
+/// Returns a text that is valid inside a comment: without comment marks, trigraphs and control characters.
 pub fn safe(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     plain.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
 }
 
-/// Text without rustdoc's links, of which the words stay. Brackets in code stay as they are.
+/// Replaces rustdoc's links by their text. Brackets in code do not change.
 pub fn without_links(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
@@ -29,7 +29,7 @@ pub fn without_links(text: &str) -> String {
     out + rest
 }
 
-/// The words of the link that a text begins with, and what stands behind it.
+/// Returns the text of the link at the start of `text`, and the remainder after the link.
 fn link(text: &str) -> Option<(&str, &str)> {
     let is_code = text.starts_with("[`");
     let end = if is_code { text.find("`]")? + 1 } else { text.find(']')? };
@@ -40,7 +40,7 @@ fn link(text: &str) -> Option<(&str, &str)> {
     }
 }
 
-/// A paragraph in lines that begin with so many characters.
+/// Wraps a paragraph to lines that begin with `first` and `others`.
 pub fn wrapped(text: &str, first: &str, others: &str) -> String {
     let mut out = String::new();
     let mut line = first.to_string();
@@ -63,7 +63,7 @@ pub fn wrapped(text: &str, first: &str, others: &str) -> String {
     out
 }
 
-/// What an argument is.
+/// Returns the description of an argument.
 fn argument(a: Argument) -> &'static str {
     match a {
         Argument::T => "time, s",
@@ -83,7 +83,7 @@ fn numbers(n: usize) -> String {
     if n == 1 { "1 number".to_string() } else { format!("{n} numbers") }
 }
 
-/// The comment of a function: what it gives, then its arguments and results with their sizes.
+/// Returns the comment of a function: its documentation, then its arguments and results with their sizes.
 pub fn function(docs: &[String], arguments: &[Argument], results: &[Given], o: &Outline<'_>) -> String {
     let mut text = String::new();
     for (k, paragraph) in docs.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Frames: placements, velocities, accelerations and Jacobians of all of them by number. Links are gone
-//! through from the ground outwards, each by its own step.
+//! Frames: placements, velocities, accelerations and Jacobians of all frames by index. Links are traversed
+//! from the ground outwards, with one step per link.
 
 use super::body::{Scope, write_program};
 use super::docs;
@@ -12,7 +12,7 @@ use std::fmt::Write;
 
 const PLACED: Argument = Argument::Given("p", 0, 12);
 
-/// A function of frames: its name, arguments, result and documentation.
+/// Function of frames: name, arguments, result and documentation.
 struct Access {
     name: &'static str,
     arguments: &'static [Argument],
@@ -49,13 +49,13 @@ const ACCESSES: [Access; 4] = [
 
 fn signature(o: &Outline<'_>, access: &Access) -> String {
     let spelled = o.spelled("int", access.name, &o.timed(access.arguments), &["result"]);
-    // The frame comes first, but for the parameters.
+    // The index of the frame is the first argument after the parameters.
     let open = spelled.find('(').map_or(0, |at| at + 1);
     let at = if !o.has_own() { open } else { spelled.find(", ").map_or(open, |at| at + 2) };
     format!("{}int frame, {}", &spelled[..at], &spelled[at..])
 }
 
-/// Declarations with the numbers of the frames.
+/// Returns the declarations and the indices of the frames.
 pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     let mut text = String::new();
     if frames.is_empty() {
@@ -77,7 +77,7 @@ pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     text
 }
 
-/// Definitions.
+/// Returns the definitions.
 pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String {
     let (links, frames) = (&output.links, &output.frames);
     if frames.is_empty() {
@@ -98,7 +98,7 @@ pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String
     text
 }
 
-/// What leads to each link and frame.
+/// Writes the tables of parent links, and the function for the path from the ground to a frame.
 fn write_tables(text: &mut String, links: &[LinkSteps], frames: &[FrameSteps]) {
     let number = |link: Option<usize>| link.map_or("-1".to_string(), |k| k.to_string());
     let parents: Vec<String> = links.iter().map(|link| number(link.parent)).collect();
@@ -120,7 +120,7 @@ static int lw_path_to(int frame, int *path) {{
     );
 }
 
-/// A step: a switch over links or frames.
+/// Step of the recursion: a switch over links or frames.
 struct Step<'a> {
     name: &'static str,
     arguments: Vec<Argument>,
@@ -141,7 +141,7 @@ fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut
     }
     let unused = o.unused(&body, &step.arguments, &["result"]);
     let spelled = o.spelled("static void", step.name, &step.arguments, &["result"]);
-    // An argument may be named as the type.
+    // An argument may have the same name as the type.
     let spelled = spelled.replacen(
         &format!("(const {} *self", o.prefix),
         &format!("(const struct {} *self", o.prefix),
@@ -185,7 +185,7 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
         },
     ];
     steps.iter().for_each(|step| write_step(text, step, o, support));
-    // Several coordinates that follow one another share a column.
+    // Coordinates of joints that follow one another share a column.
     let columns: Vec<&usize> = links.iter().flat_map(|link| &link.velocities).collect();
     let mut firsts = Vec::new();
     let mut next = 0;
@@ -217,18 +217,19 @@ fn write_frame_steps(text: &mut String, frames: &[FrameSteps], o: &Outline<'_>, 
     steps.iter().for_each(|step| write_step(text, step, o, support));
 }
 
-/// The body of an access, with the most columns of a link, if there are any links.
+/// Returns the body of a frame function. `most` is the maximum number of columns of a link, if there are
+/// links.
 fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String {
     let has_links = most.is_some();
     let frames = format!("{}_FRAMES", o.prefix.to_ascii_uppercase());
     let own = if o.has_own() { "self, " } else { "" };
     let time = if o.time { "t, " } else { "" };
     let mut body = format!("    if (frame < 0 || frame >= {frames}) {{\n        return 1;\n    }}\n");
-    // Placement, twist and acceleration, one after another.
+    // Placement, twist and acceleration, in this order.
     body.push_str("    double p[24] = {0.0};\n    p[0] = p[4] = p[8] = 1.0;\n");
     let is_jacobian = access.name == "frame_jacobian";
     let (twist, acceleration) = (access.name == "frame_velocity", access.name == "frame_acceleration");
-    // Steps are in the velocities of the joints.
+    // The steps take joint velocities.
     let (v, a) = if o.speeds { ("rates", "changes") } else { ("v", "a") };
     if o.speeds && (twist || acceleration) {
         let call = o.timeless_call("rates_of_speeds", &["q", "v", "rates"]);
@@ -274,7 +275,7 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
         write_jacobian(&mut body, o, most);
     } else {
         let _ = match access.name {
-            // Steps have rotations row by row.
+            // The steps store rotation matrices by rows.
             "frame_placement" => writeln!(
                 body,
                 "    double placed[12];
@@ -292,8 +293,8 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
     body
 }
 
-/// What sums the columns of the links on the way to a frame into its Jacobian, in declared speeds where there
-/// are some.
+/// Writes the sum of the columns of the links on the path to a frame into its Jacobian. With declared
+/// generalized speeds, the Jacobian is with respect to them.
 fn write_jacobian(body: &mut String, o: &Outline<'_>, most: Option<usize>) {
     let own = if o.has_own() { "self, " } else { "" };
     let time = if o.time { "t, " } else { "" };

@@ -1,4 +1,4 @@
-//! Functions: their signatures, and where the outputs of their programs go.
+//! Functions: their signatures, and the assignment of program outputs to results.
 
 use super::body::{Scope, write_program};
 use super::composed;
@@ -11,34 +11,34 @@ use crate::lower::Operand;
 use crate::mechanism::Quantity;
 use std::fmt::Write;
 
-/// Sizes and names that functions share.
+/// Sizes and names that all functions share.
 pub struct Outline<'a> {
-    /// Before every name.
+    /// Prefix of all names.
     pub prefix: String,
-    /// The members of the struct of parameters, none if there are no parameters.
+    /// Members of the parameter struct; empty if there are no parameters.
     pub parameters: &'a [String],
-    /// The members that are tables.
+    /// Members of the parameter struct that are tables.
     pub tables: &'a [String],
-    /// `NQ`.
+    /// Number of configuration coordinates, `NQ`.
     pub nq: usize,
-    /// `NV`.
+    /// Number of velocities, `NV`.
     pub nv: usize,
-    /// `NU`.
+    /// Number of inputs, `NU`.
     pub nu: usize,
-    /// Functions take time first.
+    /// Whether functions take time as their first argument.
     pub time: bool,
-    /// How many passive forces others call for, and how many derivatives of them.
+    /// Number of passive forces that other functions call, and number of their derivatives.
     pub passive: [usize; 2],
-    /// There are derivatives of the dynamics.
+    /// Whether derivatives of the dynamics exist.
     pub derivatives: bool,
-    /// Velocities are speeds that were declared.
+    /// Whether velocities are declared generalized speeds.
     pub speeds: bool,
 }
 
-/// A result: its name, rows and columns.
+/// Result array: name, rows and columns.
 pub type Given = (&'static str, usize, usize);
 
-/// The arrays that a function's results go into; none for one that returns a number.
+/// Returns the arrays that receive the results of a function; empty for a function that returns a number.
 pub fn results(shape: Shape) -> Vec<Given> {
     match shape {
         Shape::Record(Record::InputDerivatives(n, m)) => {
@@ -70,17 +70,17 @@ pub fn results(shape: Shape) -> Vec<Given> {
 }
 
 impl Outline<'_> {
-    /// Functions take a struct of parameters first.
+    /// Returns true if functions take the parameter struct as their first argument.
     pub fn has_own(&self) -> bool {
         !(self.parameters.is_empty() && self.tables.is_empty())
     }
 
-    /// Time, if functions take it, and further arguments.
+    /// Returns the arguments, preceded by time if functions take it.
     pub fn timed(&self, arguments: &[Argument]) -> Vec<Argument> {
         self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }
 
-    /// How many numbers an argument has.
+    /// Returns the number of entries of an argument.
     pub fn length(&self, argument: Argument) -> usize {
         match argument {
             Argument::T => 1,
@@ -95,14 +95,14 @@ impl Outline<'_> {
         }
     }
 
-    /// A function's name with its type and what it takes.
+    /// Returns the signature of a function with the results of a shape.
     pub fn signature(&self, name: &str, arguments: &[Argument], shape: Shape) -> String {
         let kind = if shape == Shape::Scalar { "double" } else { "void" };
         let given: Vec<&str> = results(shape).iter().map(|(name, ..)| *name).collect();
         self.spelled(kind, name, arguments, &given)
     }
 
-    /// The same with any results.
+    /// Returns the signature of a function with any results.
     pub fn spelled(&self, kind: &str, name: &str, arguments: &[Argument], given: &[&str]) -> String {
         let mut list: Vec<String> = Vec::new();
         if self.has_own() {
@@ -117,7 +117,8 @@ impl Outline<'_> {
         format!("{kind} {}_{name}({list})", self.prefix)
     }
 
-    /// A call of a function with the arguments by name, and what stands behind them.
+    /// Returns a call of a function. Parameters and time are added to the arguments; `given` are the result
+    /// arrays.
     pub fn call(&self, name: &str, arguments: &[&str], given: &[&str]) -> String {
         let own = self.has_own().then_some("self");
         let time = self.time.then_some("t");
@@ -130,14 +131,14 @@ impl Outline<'_> {
         format!("{}_{name}({})", self.prefix, list.join(", "))
     }
 
-    /// A call of a function that takes no time.
+    /// Returns a call of a function without time.
     pub fn timeless_call(&self, name: &str, arguments: &[&str]) -> String {
         let own = self.has_own().then_some("self");
         let list: Vec<&str> = own.into_iter().chain(arguments.iter().copied()).collect();
         format!("{}_{name}({})", self.prefix, list.join(", "))
     }
 
-    /// Lines that keep compilers from saying that an argument, or an array for results, is not used.
+    /// Returns statements that suppress compiler warnings on unused arguments and result arrays.
     pub fn unused(&self, body: &str, arguments: &[Argument], given: &[&str]) -> String {
         let own = self.has_own().then_some("self");
         let passed = arguments.iter().filter(|a| is_passed(a)).map(|a| a.name());
@@ -150,7 +151,7 @@ fn is_passed(argument: &Argument) -> bool {
     !matches!(argument, Argument::Into(..) | Argument::Called(_))
 }
 
-/// True where a word stands in a text.
+/// Returns true if a text contains a word as a whole.
 pub fn mentions(text: &str, word: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.match_indices(word).any(|(at, _)| {
@@ -160,20 +161,20 @@ pub fn mentions(text: &str, word: &str) -> bool {
     })
 }
 
-/// The name without what marks functions that only others call, in letters of C.
+/// Returns the identifier of a function without the underscore that marks internal functions.
 pub fn plain(name: &str) -> String {
     letters(name.trim_start_matches('_'))
 }
 
-/// What the function of [`Id::InputDerivatives`] gives.
+/// Documentation of the function of [`Id::InputDerivatives`].
 const INPUT_DERIVATIVES: &str = "`(∂τ/∂q, ∂τ/∂v, ∂τ/∂u)` of the inputs' `generalized_forces`. Column `i` of a derivative by `q` is along `q ⊕ ε eᵢ` (see `integrate`).";
 
-/// The name of a function for others.
+/// Returns the public name of a function.
 pub fn spoken(f: &Function) -> String {
     if f.id == Id::InputDerivatives { "generalized_forces_derivatives".to_string() } else { plain(&f.name) }
 }
 
-/// A definition, with its documentation if it is for others.
+/// Returns a definition, with its documentation if the function is public.
 pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
     let mut body = String::new();
     let scope_arguments: Vec<Argument> =
@@ -195,7 +196,7 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
         | Shape::CalledLinear(..) => composed::write(&mut body, f, &scope, o, support),
         _ => {
             let mut results = results(f.shape);
-            // The forces themselves have a function of their own.
+            // Another function computes the forces themselves.
             if f.id == Id::InputDerivatives {
                 results.insert(0, ("forces", o.nv, 1));
                 let _ = writeln!(body, "    double forces[{}];", o.nv.max(1));
@@ -213,7 +214,7 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
     format!("{hidden}{signature} {{\n{unused}{body}}}\n")
 }
 
-/// A declaration with its documentation.
+/// Returns a declaration with its documentation.
 pub fn declare(f: &Function, o: &Outline<'_>) -> String {
     let results = results(f.shape);
     let own = [INPUT_DERIVATIVES.to_string()];
@@ -222,7 +223,7 @@ pub fn declare(f: &Function, o: &Outline<'_>) -> String {
     format!("{docs}{};\n", o.signature(&spoken(f), &f.arguments, f.shape))
 }
 
-/// Where an output stands among results that follow one another.
+/// Returns the array element for an output; the arrays `results` follow one another.
 pub fn place(results: &[Given], mut k: usize) -> Option<String> {
     for (name, rows, columns) in results {
         if k < rows * columns {
@@ -233,7 +234,7 @@ pub fn place(results: &[Given], mut k: usize) -> Option<String> {
     None
 }
 
-/// Calls a function whose results a program begins with, if it names any.
+/// Writes the call of a function whose results are inputs of the program, if the program uses them.
 fn write_call(body: &mut String, f: &Function, called: Called, o: &Outline<'_>) {
     let argument = Argument::Called(called);
     if !f.program.symbols().iter().any(|s| argument.index(Quantity::of(*s)).is_some()) {
@@ -248,7 +249,7 @@ fn write_call(body: &mut String, f: &Function, called: Called, o: &Outline<'_>) 
     );
 }
 
-/// True for an output that is always zero.
+/// Returns true if an output is always zero.
 pub fn is_zero(f: &Function, k: usize) -> bool {
     f.program.outputs.get(k).is_none_or(|o| *o == Operand::Const(0.0))
 }

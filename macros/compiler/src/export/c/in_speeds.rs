@@ -1,5 +1,5 @@
-//! The configuration space in declared speeds: its functions in terms of hidden ones for the velocities of
-//! the joints, as in Rust.
+//! Functions of the configuration manifold in declared generalized speeds. They call internal functions of
+//! joint velocities, as in Rust.
 
 use super::docs;
 use super::function::Outline;
@@ -8,7 +8,7 @@ use super::support::Support;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
-/// Name, arguments, results and documentation of a function.
+/// Function of the configuration manifold: name, arguments, results and documentation.
 struct Space {
     name: &'static str,
     arguments: &'static [&'static str],
@@ -64,7 +64,7 @@ fn signature(o: &Outline<'_>, of: &Space) -> String {
     format!("void {}_{}({}{})", o.prefix, of.name, own(o), list.join(", "))
 }
 
-/// Declarations.
+/// Returns the declarations.
 pub fn declare(o: &Outline<'_>) -> String {
     let mut text = String::new();
     for of in all(o) {
@@ -74,7 +74,7 @@ pub fn declare(o: &Outline<'_>) -> String {
     text
 }
 
-/// Definitions.
+/// Writes the definitions.
 pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     if o.derivatives {
         support.sums = true;

@@ -1,4 +1,4 @@
-//! The configuration space: motions of configurations, differences of them, and their derivatives.
+//! Functions of the configuration manifold: `integrate`, `difference`, `tangent_rate` and their derivatives.
 
 use super::docs;
 use super::function::Outline;
@@ -7,7 +7,7 @@ use super::support::Support;
 use crate::mechanism::Chart;
 use std::fmt::Write;
 
-/// `integrate`, `difference` and `tangent_rate`: name, arguments, and what the result is made of.
+/// Names, arguments and documentation of `integrate`, `difference` and `tangent_rate`.
 const MANIFOLD: [(&str, [&str; 2], &str); 3] = [
     (
         "integrate",
@@ -31,8 +31,8 @@ fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
-/// Definitions. With declared speeds those of the joints are hidden, and what the outside sees is made of
-/// them.
+/// Writes the definitions. With declared generalized speeds, the functions of joint velocities are internal,
+/// and the public functions call them.
 pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     for (name, [a, b], _) in MANIFOLD {
         let mut body = String::new();
@@ -73,13 +73,13 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
     }
 }
 
-/// Definitions of the derivatives.
+/// Writes the definitions of the derivatives.
 pub fn define_all_derivatives(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     TO_FIRST_ORDER.iter().for_each(|of| define_derivatives(out, of, charts, o, support));
 }
 
-/// A function's derivatives: its name, what they take, their names, and the value of the first one for plain
-/// coordinates.
+/// Derivatives of a function of the configuration manifold: its name, further arguments, names of the
+/// results, and the first derivative for plain coordinates.
 struct ToFirstOrder {
     name: &'static str,
     arguments: &'static [&'static str],
@@ -145,8 +145,8 @@ fn define_derivatives(
     let _ = writeln!(out, "{hidden}{} {{\n{unused}{body}}}\n", derivatives_signature(o, of));
 }
 
-/// The kind of a joint whose displacements are not added, its place among velocities, and how many it has;
-/// what is needed for its derivatives is asked for.
+/// Returns the type of a joint with a curved configuration space, the index of its first velocity, and the
+/// number of its velocities. Registers the helpers for its derivatives.
 pub fn block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize, usize)> {
     match chart {
         Chart::Plain(..) => None,
@@ -161,12 +161,13 @@ pub fn block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize
     }
 }
 
-/// The name of a function of the configuration space in the velocities of joints, where speeds were declared.
+/// Returns the internal name of a function of joint velocities in a mechanism with declared generalized
+/// speeds.
 fn of_joints(name: &str) -> String {
     format!("joints_{name}")
 }
 
-/// Declarations.
+/// Returns the declarations.
 pub fn declare(o: &Outline<'_>) -> String {
     let mut text = String::new();
     if o.speeds {

@@ -1,7 +1,7 @@
-//! C99: a source file and a header of a mechanism, which need nothing but the mathematical library.
+//! Export to C99: a source file and a header of a mechanism, which need only the mathematical library.
 //!
-//! Vectors are plain arrays, matrices stand column by column. Functions keep nothing between calls and
-//! allocate nothing, so that any number of threads may call them.
+//! Vectors are plain arrays, and matrices are stored by columns. The functions are reentrant: they store
+//! nothing between calls and allocate no memory.
 
 mod body;
 mod casadi;

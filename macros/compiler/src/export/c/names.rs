@@ -1,6 +1,6 @@
-//! Names in C: what a user wrote, as far as C has it.
+//! Conversion of the user's names to identifiers of C.
 
-/// Words that are no names in C or C++, and macros of headers and compilers.
+/// Keywords of C and C++, and macros of headers and compilers.
 const RESERVED: &[&str] = &[
     "alignas",
     "alignof",
@@ -105,7 +105,7 @@ const RESERVED: &[&str] = &[
     "math_errhandling",
 ];
 
-/// Functions and macros of the headers that sources include, beyond those that are called.
+/// Functions and macros of the included headers, except those that the code calls.
 const OF_HEADERS: &[&str] = &[
     "abs",
     "acosh",
@@ -239,8 +239,8 @@ const OF_HEADERS: &[&str] = &[
     "yn",
 ];
 
-/// What may stand behind other letters in a name: signs of ASCII become underscores, letters of other
-/// alphabets their numbers.
+/// Replaces characters that are invalid in identifiers: ASCII punctuation by underscores, other characters by
+/// their Unicode numbers.
 pub fn letters(name: &str) -> String {
     let mut text = String::new();
     for c in name.trim_start_matches("r#").chars() {
@@ -253,8 +253,8 @@ pub fn letters(name: &str) -> String {
     text
 }
 
-/// A name as an identifier: words of the language and names in capitals (most macros are) get an underscore
-/// behind them, and what begins with a digit or an underscore a letter before it.
+/// Converts a name to an identifier. Keywords and names in capitals (most macros are) get a trailing
+/// underscore; names that begin with a digit or an underscore get a leading letter.
 pub fn identifier(name: &str) -> String {
     let mut text = letters(name);
     if text.starts_with(|c: char| !c.is_ascii_alphabetic()) {
@@ -267,15 +267,15 @@ pub fn identifier(name: &str) -> String {
     text
 }
 
-/// Returns the prefix of all names of a mechanism, which is the name of a type as well: no name of a header,
-/// and none that makes a name of the mechanism begin as those of helpers do, with `lw_`.
+/// Returns the prefix of all names of a mechanism, which is also the name of a type. The prefix differs from
+/// all names in headers, and no name of the mechanism begins with `lw_`, the prefix of helpers.
 pub fn prefix_identifier(name: &str) -> String {
     let mut text = identifier(name);
     if text == "lw" || text.starts_with("lw_") {
         text.insert(0, 'x');
     }
     let is_of_header = |name: &str| OF_HEADERS.contains(&name) || super::scalar::FUNCTIONS.contains(&name);
-    // The mathematical library has each function in three precisions, and names of types end so.
+    // The mathematical library has each function in three precisions, and type names have these endings.
     let plain = text.strip_suffix(['f', 'l']).unwrap_or(&text);
     if is_of_header(&text) || is_of_header(plain) || text.ends_with("_t") || text.ends_with("_l") {
         text.push('_');
@@ -283,12 +283,12 @@ pub fn prefix_identifier(name: &str) -> String {
     text
 }
 
-/// Identifiers for several names that share a scope, all different.
+/// Returns unique identifiers for several names in one scope.
 pub fn identifiers<S: AsRef<str>>(names: &[S]) -> Vec<String> {
     different(names.iter().map(|name| identifier(name.as_ref())))
 }
 
-/// Names of the preprocessor for several names that share a prefix, all different.
+/// Returns unique preprocessor names for several names with a common prefix.
 pub fn capitals<S: AsRef<str>>(names: &[S]) -> Vec<String> {
     different(names.iter().map(|name| letters(name.as_ref()).to_ascii_uppercase()))
 }
@@ -307,7 +307,7 @@ fn different(all: impl Iterator<Item = String>) -> Vec<String> {
     found
 }
 
-/// A type's name in small letters, with underscores between its words.
+/// Converts a type name to lower case with underscores between words.
 pub fn prefix(name: &str) -> String {
     let mut text = String::new();
     let mut before: Option<char> = None;

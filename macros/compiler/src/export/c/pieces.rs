@@ -1,32 +1,32 @@
-//! Texts that a body is made of.
+//! Expressions and statements of a function body, as text.
 
-/// A value as text.
+/// Text of an expression.
 #[derive(Clone, Default)]
 pub struct Piece {
-    /// The expression.
+    /// Text of the expression in C.
     pub text: String,
-    /// Values that it names.
+    /// Indices of the instructions whose values the expression refers to.
     pub needs: Vec<usize>,
-    /// 1 for a sum, 2 for a product, 3 for what needs no parentheses.
+    /// Precedence: 1 for a sum, 2 for a product, 3 for an expression that never needs parentheses.
     pub level: u8,
 }
 
 impl Piece {
-    /// What names no values and needs no parentheses.
+    /// Creates an expression that refers to no values and needs no parentheses.
     pub fn plain(text: String) -> Piece {
         Piece { text, needs: Vec::new(), level: 3 }
     }
 
-    /// The text, in parentheses if it binds less than this.
+    /// Returns the text, in parentheses if the precedence is below `level`.
     pub fn wrapped(&self, level: u8) -> String {
         if self.level < level { format!("({})", self.text) } else { self.text.clone() }
     }
 }
 
-/// Lines that bind values.
+/// Statement that defines values.
 pub struct Statement {
-    /// The values that they bind.
+    /// Indices of the instructions whose values the statement defines.
     pub names: Vec<usize>,
-    /// The lines.
+    /// Lines of the statement.
     pub text: String,
 }

@@ -1,12 +1,13 @@
-//! Numbers: everything is written for `double`, and turned into `float` word by word where that is asked for.
+//! Scalar type of the code. All code is written for `double` and converted to `float` on request, token by
+//! token.
 
-/// Functions of `math.h` that are used.
+/// Functions of `math.h` that the code uses.
 pub const FUNCTIONS: &[&str] = &[
     "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
     "fabs", "copysign", "pow", "fmin", "fmax", "fma",
 ];
 
-/// Other words that differ.
+/// Other tokens that differ between `double` and `float`.
 const WORDS: &[(&str, &str)] = &[
     ("double", "float"),
     ("FP_FAST_FMA", "FP_FAST_FMAF"),
@@ -14,12 +15,12 @@ const WORDS: &[(&str, &str)] = &[
     ("HUGE_VAL", "HUGE_VALF"),
 ];
 
-/// A number as C reads it.
+/// Returns a numeric literal.
 pub fn constant(c: f64) -> String {
     format!("{c:?}")
 }
 
-/// Code for `double` as code for `float`. Comments stay.
+/// Converts code for `double` to `float`. Comments do not change.
 pub fn in_single_precision(code: &str) -> String {
     let mut out = String::with_capacity(code.len());
     let mut rest = code;
@@ -61,7 +62,7 @@ fn number_length(text: &str) -> usize {
     .unwrap_or(text.len())
 }
 
-/// A whole number as it is; another in single precision.
+/// Converts a numeric literal to single precision; integers do not change.
 fn number(text: &str) -> String {
     let is_whole = !text.contains(['.', 'e', 'E']) || text.starts_with("0x");
     match text.parse::<f64>() {

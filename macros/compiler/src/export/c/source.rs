@@ -1,4 +1,4 @@
-//! The two files.
+//! Source file and header of a mechanism.
 
 use super::casadi::Shapes;
 use super::docs;
@@ -12,49 +12,49 @@ use crate::lower::{Op, Program};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
-/// What is written.
+/// Options of the export.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Before every name; the mechanism's in small letters if empty.
+    /// Prefix of all names. If it is empty, the mechanism's name in lower case is used.
     pub prefix: String,
-    /// Numbers have single precision.
+    /// Whether numbers have single precision.
     pub single: bool,
-    /// A third file has the functions in the shape of CasADi, with these parameters fixed.
+    /// Parameters to fix in an additional source file with CasADi's interface; `None` for no such file.
     pub casadi: Option<Vec<(String, f64)>>,
 }
 
-/// The text of the files, and what is not in them.
+/// Texts of the files, and functions that they do not contain.
 #[derive(Clone, Debug)]
 pub struct Files {
-    /// What names and files begin with.
+    /// Prefix of names and files.
     pub prefix: String,
-    /// `PREFIX.h`
+    /// Header `PREFIX.h`.
     pub header: String,
-    /// `PREFIX.c`
+    /// Source file `PREFIX.c`.
     pub source: String,
-    /// `PREFIX_casadi.c`, if it was asked for.
+    /// Source file `PREFIX_casadi.c`, if the options request it.
     pub casadi: Option<String>,
-    /// Functions of the mechanism in Rust that are not there in C, with reasons.
+    /// Functions of the mechanism that exist in Rust but not in C, with reasons.
     pub left_out: Vec<String>,
 }
 
-/// Why a mechanism cannot be written in C.
+/// Reason why a mechanism cannot be exported to C.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unfit {
-    /// Velocities are speeds that were declared, and CasADi's functions take those of joints.
+    /// The mechanism declares generalized speeds, but CasADi's functions take joint velocities.
     CasadiSpeeds,
-    /// A program has lanes: it was derived with them.
+    /// The named program contains vector lanes.
     Lanes(String),
-    /// What is to be fixed is no parameter.
+    /// The parameter to be fixed does not exist.
     NoParameter(String),
-    /// CasADi has numbers of double precision alone.
+    /// CasADi supports only double precision.
     SingleCasadi,
 }
 
-/// Writes a mechanism whose programs have no lanes, with the names of its tables.
+/// Exports a mechanism whose programs have no vector lanes; `tables` are the names of its tables.
 ///
 /// # Errors
-/// What its programs contain that C does not have here.
+/// The mechanism or the options are not supported in C, for the reason in [`Unfit`].
 pub fn write(
     model: &Model<'_>,
     output: &Output,
@@ -140,7 +140,7 @@ pub fn write(
     })
 }
 
-/// The functions in the shape of CasADi.
+/// Returns the text of the source file with CasADi's interface.
 fn write_casadi(
     model: &Model<'_>,
     chosen: &Chosen<'_>,
@@ -167,7 +167,7 @@ fn write_casadi(
     Ok(shapes.text())
 }
 
-/// Refuses what has no form in C.
+/// Rejects programs with vector lanes.
 fn check(output: &Output) -> Result<(), Unfit> {
     let has = |program: &Program, wanted: fn(&Op) -> bool| program.instructions.iter().any(wanted);
     let steps = output.links.iter().flat_map(|l| [&l.placement, &l.twist, &l.acceleration, &l.columns]);
@@ -182,10 +182,10 @@ fn check(output: &Output) -> Result<(), Unfit> {
     Ok(())
 }
 
-/// The functions by what becomes of them.
+/// Functions of the mechanism by their use in C.
 struct Chosen<'a> {
     public: Vec<&'a Function>,
-    /// What others call, before these.
+    /// Functions that others call, in the order of their definitions.
     hidden: Vec<&'a Function>,
     reactions: Vec<&'a Function>,
     limits: Option<&'a Function>,
@@ -220,7 +220,7 @@ impl<'a> Chosen<'a> {
                 }
                 Id::Reaction if has_dynamics => chosen.reactions.push(f),
                 Id::Limits => chosen.limits = Some(f),
-                // Variants for given matrices: here all are.
+                // Variants that write to matrices of the caller. In C all functions do so.
                 Id::InverseDynamicsDerivativesInto
                 | Id::ForwardDynamicsDerivativesInto
                 | Id::MassMatrixInto => {}
@@ -254,7 +254,7 @@ impl<'a> Chosen<'a> {
                 _ => chosen.public.push(f),
             }
         }
-        // A static function must stand before what calls it, and be called.
+        // A static function must precede its callers, and must have one.
         chosen.hidden.sort_by_key(|f| f.id == Id::AccelerationsAndInverse);
         if !output.functions.iter().any(|f| matches!(f.shape, Shape::CalledForward(_))) {
             chosen.hidden.retain(|f| f.id != Id::AccelerationsAndInverse);
@@ -263,14 +263,14 @@ impl<'a> Chosen<'a> {
     }
 }
 
-/// Arguments of what a reaction's output takes.
+/// Returns the arguments of the outputs that reactions provide.
 fn reaction_arguments(model: &Model<'_>) -> Vec<Argument> {
     let time = model.time.then_some(Argument::T);
     let inputs = (model.nu() > 0).then_some(Argument::U);
     time.into_iter().chain([Argument::Q, Argument::V]).chain(inputs).collect()
 }
 
-/// A reaction of the motion that state and inputs determine.
+/// Writes the function for a reaction of the motion that state and inputs determine.
 fn reaction(out: &mut String, f: &Function, model: &Model<'_>, o: &Outline<'_>, support: &mut Support) {
     let Some(name) = f.name.strip_prefix(REACTION) else { return };
     let name = names::letters(name);
@@ -305,7 +305,7 @@ fn reaction(out: &mut String, f: &Function, model: &Model<'_>, o: &Outline<'_>, 
 
 const LIMITS: [&str; 4] = ["lower", "upper", "speed", "effort"];
 
-/// The bounds of coordinates, their rates and forces.
+/// Writes the function for the bounds of coordinates, velocities and forces.
 fn write_limits(f: &Function, model: &Model<'_>, o: &Outline<'_>, support: &mut Support) -> String {
     let mut places = Vec::new();
     for limit in &model.limits {
@@ -327,7 +327,7 @@ fn write_limits(f: &Function, model: &Model<'_>, o: &Outline<'_>, support: &mut 
     format!("{} {{\n{}{body}}}\n\n", o.spelled("void", "limits", &[], &LIMITS), o.unused(&body, &[], &[]))
 }
 
-/// A line for every entry of a list: index, name, unit.
+/// Writes one line per entry of a list: index, name and unit.
 fn entries(text: &mut String, title: &str, names: &[String], units: &[String]) {
     if names.is_empty() {
         return;

@@ -1,9 +1,10 @@
-//! Discrete steps of a tree mechanism under inputs that are held, and their Jacobians: what filters, iLQR and
-//! multiple shooting are made of. Derivatives are carried forwards through the stages, as the runtime does it
-//! (`linkwork::discrete`).
+//! Discrete steps of a tree mechanism with constant inputs, and their Jacobians, for filters, iLQR and
+//! multiple shooting. Derivatives are propagated forwards through the stages of a step, as in
+//! `linkwork::discrete`.
 //!
-//! What changes with the start of a step stands in one array: the value, then its derivatives by `q`, `v`,
-//! `u` and, where time is not in the equations, by the length of the step; `NV` numbers each.
+//! Quantities that depend on the state at the start of a step are stored in one array: the value, followed by
+//! its derivatives with respect to `q`, `v`, `u` and, unless the equations depend on time, the step size.
+//! Each part has `NV` entries.
 
 use super::docs;
 use super::function::Outline;
@@ -14,7 +15,7 @@ use crate::derive::Output;
 use crate::mechanism::{Chart, Model};
 use std::fmt::Write;
 
-/// Names of the methods with what they are.
+/// Names of the methods, with descriptions for the documentation.
 const METHODS: [(&str, &str); 2] = [
     (
         "semi_implicit_euler",
@@ -29,21 +30,21 @@ const PUT_INPUTS: &str = "        for (int j = 0; j < @M@; ++j) {\n            b
 const STATE: [Argument; 3] = [Argument::Q, Argument::V, Argument::U];
 const NEXT: [&str; 2] = ["next_q", "next_v"];
 
-/// Which steps a mechanism has.
+/// Available steps of a mechanism.
 pub struct Steps<'a> {
     charts: &'a [Chart],
-    /// None for a mechanism with constraints or contacts, whose steps need more than C has here.
+    /// False for mechanisms with constraints or contacts, whose steps are not supported in C.
     pub has_steps: bool,
-    /// Steps have Jacobians.
+    /// Whether steps have Jacobians.
     pub has_transitions: bool,
-    /// Arguments of the inputs' forces, none without inputs.
+    /// Arguments of the function for the inputs' forces; `None` without inputs.
     inputs: Option<&'static [&'static str]>,
-    /// The blocks of the derivatives of the inputs' forces that are not zero: by `q` and by `v`.
+    /// Whether the derivatives of the inputs' forces with respect to `q` and to `v` are nonzero.
     changing: [bool; 2],
 }
 
 impl<'a> Steps<'a> {
-    /// Those of a mechanism.
+    /// Determines the available steps of a mechanism.
     pub fn of(model: &Model<'_>, output: &'a Output) -> Steps<'a> {
         let find = |id: Id| output.functions.iter().find(|f| f.id == id);
         let taken = output.functions.iter().any(|f| {
@@ -73,7 +74,7 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// Declarations.
+    /// Returns the declarations.
     pub fn declare(&self, o: &Outline<'_>) -> String {
         let mut text = String::new();
         for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
@@ -99,7 +100,7 @@ impl<'a> Steps<'a> {
         text
     }
 
-    /// Definitions.
+    /// Writes the definitions.
     pub fn define(&self, out: &mut String, o: &Outline<'_>, support: &mut Support) {
         if !self.has_steps {
             return;
@@ -111,7 +112,7 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// A template with the mechanism's sizes, names and calls.
+    /// Fills the placeholders of a template with the sizes, names and calls of the mechanism.
     fn filled(&self, template: &str, o: &Outline<'_>, support: &mut Support) -> String {
         let own = if o.has_own() { "self, " } else { "" };
         let own_declared = if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() };
@@ -168,7 +169,7 @@ impl<'a> Steps<'a> {
         text
     }
 
-    /// The generalized forces of the inputs into `tau`.
+    /// Returns the statement that computes the generalized forces of the inputs in `tau`.
     fn forces(&self, o: &Outline<'_>) -> String {
         match self.inputs {
             Some(inputs) => format!("{};", o.call("generalized_forces", inputs, &["tau"])),
@@ -179,7 +180,7 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// The derivatives of the accelerations under inputs.
+    /// Returns the statements that compute the derivatives of the accelerations for given inputs.
     fn linear(&self, o: &Outline<'_>) -> String {
         let call = o.call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "by_tau"]);
         let mut text = format!("    {call};\n");
@@ -210,7 +211,7 @@ impl<'a> Steps<'a> {
         text
     }
 
-    /// Plain coordinates move as themselves, and with their displacement.
+    /// Returns the derivatives of plain coordinates after a displacement: the identity.
     fn plain(&self, o: &Outline<'_>) -> String {
         let all = self.charts.iter().filter_map(|chart| match chart {
             Chart::Plain(_, v) => Some(format!("    motion[(1 + {v}) * {} + {v}] += 1.0;\n", o.nv)),
@@ -219,7 +220,8 @@ impl<'a> Steps<'a> {
         all.collect()
     }
 
-    /// What joints whose displacements are not added do to columns.
+    /// Returns the statements for joints with a curved configuration space, which transform columns of
+    /// derivatives.
     fn blocks(&self, o: &Outline<'_>, function: &str, support: &mut Support) -> String {
         let mut text = String::new();
         for chart in self.charts {
@@ -244,7 +246,7 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// The call for the rate of a displacement.
+/// Returns the call that computes the rate of a displacement.
 fn rate_of_way(o: &Outline<'_>) -> String {
     match o.speeds {
         true => o.timeless_call("displacement_rate", &["q", "dv", "w", "rate"]),
@@ -256,13 +258,13 @@ fn next(o: &Outline<'_>) -> Vec<(&'static str, usize, usize)> {
     vec![(NEXT[0], o.nq, 1), (NEXT[1], o.nv, 1)]
 }
 
-/// The results of a step with its Jacobians.
+/// Returns the names of the results of a step with its Jacobians.
 fn transition(o: &Outline<'_>) -> Vec<&'static str> {
     let by_h = (!o.time).then_some("by_h");
     NEXT.into_iter().chain(["by_state", "by_input"]).chain(by_h).collect()
 }
 
-/// A signature with the length of the step after the inputs.
+/// Returns a signature with the step size after the inputs.
 fn signature(o: &Outline<'_>, name: &str, given: &[&str]) -> String {
     let spelled = o.spelled("void", name, &o.timed(&STATE), given);
     spelled.replacen("const double *u, ", "const double *u, double h, ", 1)

@@ -1,33 +1,33 @@
-//! Helpers: functions that bodies call in addition to those of the mathematical library, each written where
-//! something calls it. Their names begin with `lw_`, which no name of a mechanism does
+//! Helper functions that bodies call in addition to those of the mathematical library. Each is written only
+//! if it is called. Their names begin with `lw_`, which no name of a mechanism does
 //! (`names::prefix_identifier`).
 
-/// What a file needs.
+/// Helper functions that a file needs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Support {
-    /// Numbers have single precision.
+    /// Whether numbers have single precision.
     single: bool,
     one_angle: bool,
     four_angles: bool,
     signum: bool,
     atmosphere: [bool; 3],
-    /// Products with the inverse of the mass matrix.
+    /// Whether products with the inverse of the mass matrix are needed.
     pub products: bool,
-    /// Its completion.
+    /// Whether the low-rank update of the inverse is needed.
     pub completed: bool,
-    /// Its inversion in parts.
+    /// Whether the blockwise inversion of a mass matrix is needed.
     pub inverted: bool,
-    /// What such an inverse solves.
+    /// Whether the solution of linear systems with such an inverse is needed.
     pub solved: bool,
-    /// Ball joints.
+    /// Whether functions of ball joints are needed.
     pub balls: bool,
-    /// Free joints.
+    /// Whether functions of free joints are needed.
     pub motions: bool,
-    /// Tables.
+    /// Whether tables are needed.
     pub tabulated: bool,
-    /// Derivatives on the configuration space, of ball joints and of free ones.
+    /// Whether derivatives on the configuration space are needed: of ball joints, of free joints.
     pub jacobians: [bool; 2],
-    /// Products of matrices with what changes in a step, of so many columns.
+    /// Whether products of matrices with derivatives of a step are needed.
     pub sums: bool,
 }
 
@@ -39,25 +39,25 @@ impl Support {
     /// `c - a * b`
     pub const NEG_MUL_ADD: &'static str = "lw_neg_mul_add";
 
-    /// Nothing yet.
+    /// Creates an empty set of helpers.
     pub fn new(single: bool) -> Support {
         Support { single, ..Support::default() }
     }
 
-    /// The function for sines and cosines of so many angles.
+    /// Returns the function for sines and cosines of one or four angles.
     pub fn angles(&mut self, count: usize) -> &'static str {
         self.one_angle = true;
         self.four_angles |= count > 1;
         if count > 1 { "lw_sin_cos_4" } else { "lw_sin_cos" }
     }
 
-    /// The one for signs.
+    /// Returns the function for signs.
     pub fn signum(&mut self) -> String {
         self.signum = true;
         "lw_signum".to_string()
     }
 
-    /// The one for a quantity of the standard atmosphere.
+    /// Returns the function for a quantity of the standard atmosphere.
     pub fn atmosphere(&mut self, name: &str) -> String {
         if let Some(at) = QUANTITIES.iter().position(|(known, _)| *known == name) {
             self.atmosphere[at] = true;
@@ -65,7 +65,7 @@ impl Support {
         format!("lw_{name}")
     }
 
-    /// Headers beside `math.h`.
+    /// Returns the required headers in addition to `math.h`.
     pub fn includes(self) -> &'static [&'static str] {
         let exact = self.one_angle && !self.single;
         match (exact, self.balls || self.motions || exact) {
@@ -75,7 +75,7 @@ impl Support {
         }
     }
 
-    /// The definitions, for a mechanism of so many velocities whose names begin with this.
+    /// Returns the definitions for a mechanism with `nv` velocities and this prefix of names.
     pub fn text(self, nv: usize, prefix: &str) -> String {
         let angles = match self.single {
             true => {
@@ -116,6 +116,6 @@ impl Support {
     }
 }
 
-/// Functions of the standard atmosphere, and what each takes of it.
+/// Functions of the standard atmosphere, with the name of the helper's part that computes each.
 const QUANTITIES: [(&str, &str); 3] =
     [("isa_temperature", "temperature"), ("isa_lapse_rate", "rate"), ("isa_pressure", "pressure")];

@@ -1,10 +1,10 @@
-//! Tables: functions that are parameters, as members of the struct of parameters.
+//! Tables: functions of up to three variables, as members of the parameter struct.
 
 use super::docs;
 use super::function::Outline;
 use std::fmt::Write;
 
-/// The type of tables, if there are any.
+/// Returns the definition of the table type, if there are tables.
 pub fn kind(o: &Outline<'_>) -> String {
     if o.tables.is_empty() {
         return String::new();
@@ -13,7 +13,7 @@ pub fn kind(o: &Outline<'_>) -> String {
     text.replace("@PREFIX@", &o.prefix)
 }
 
-/// The members, with the units of each table: of its variables, then of its value.
+/// Returns the declarations of the table members, with the units of the variables and of the value.
 pub fn members(o: &Outline<'_>, units: &[Vec<String>]) -> String {
     let mut text = String::new();
     for (k, member) in o.tables.iter().enumerate() {
