@@ -1,8 +1,8 @@
-//! What stands above the attribute: a `#[derive(…)]` there has seen the struct with its elements. Neither the
-//! struct nor the compiler tells, so the source file is asked.
+//! Detection of a `#[derive(…)]` above the attribute: it has already seen the struct with its elements. The
+//! attribute cannot detect this from its tokens, so the source file is searched.
 
-/// True if an attribute that begins at a line and column, counted from one, stands below a `#[derive(…)]` of
-/// the same item.
+/// Returns true if an attribute that begins at a line and column, counted from one, comes after a
+/// `#[derive(…)]` of the same item.
 pub fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
     let lines: Vec<&str> = text.lines().take(line).collect();
     let Some((own, above)) = lines.split_last() else { return false };
@@ -11,7 +11,7 @@ pub fn stands_below_a_derive(text: &str, line: usize, column: usize) -> bool {
         if line.starts_with("#[derive(") {
             return true;
         }
-        // The end of something else.
+        // End of another item.
         let code = line.split("//").next().unwrap_or_default().trim_end();
         if [";", "}", "{", "*/"].iter().any(|end| code.ends_with(end)) {
             return false;

@@ -1,12 +1,12 @@
-//! The attribute macro of Linkwork. Use it through the crate `linkwork`, which re-exports it and holds what
-//! the generated code calls.
+//! The attribute macro of Linkwork. Use it through the crate `linkwork`, which re-exports it and contains the
+//! functions that the generated code calls.
 
 mod above;
 
 use proc_macro::{Span, TokenStream};
 use std::path::PathBuf;
 
-/// Compiles a mechanism: derives the equations of motion of the struct below and implements them for it.
+/// Derives the equations of motion of the mechanism that the struct describes, and implements them for it.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -29,26 +29,26 @@ use std::path::PathBuf;
 /// let pendulum = Pendulum { g: 9.81, mass: 2.0, length: 1.5 };
 /// let (q, v, u) = ([0.5].into(), [0.0].into(), [0.0].into());
 ///
-/// // A method that every mechanism has …
+/// // A method of every mechanism …
 /// let a = pendulum.forward_dynamics(&q, &v, &u);
 /// assert!((a[0] + 1.5 * 9.81 / 1.5 * 0.5_f64.sin()).abs() < 1e-12);
 ///
-/// // … and one that `derivatives` asks for: ẋ = A x + B u.
+/// // … and one that `derivatives` adds: ẋ = A x + B u.
 /// let (by_state, _by_input) = pendulum.linearize(&q, &v, &u);
 /// assert!((by_state[(1, 0)] + 1.5 * 9.81 / 1.5 * 0.5_f64.cos()).abs() < 1e-12);
 /// ```
 ///
-/// The struct's fields are parameters (`f64`, `f32` or the struct's own type parameter), which stay, and
-/// elements (`linkwork::elements`), which say what the mechanism is made of and leave no trace in memory. The
-/// generated methods, their shapes, units and conventions are those of the trait `linkwork::Mechanism`
-/// (`linkwork::Rheonomic` if something depends on time) and stand in the rustdoc of the struct. The guide,
-/// `linkwork::guide`, explains everything from the beginning.
+/// A field of the struct is a parameter (`f64`, `f32` or the struct's own type parameter) or an element
+/// (`linkwork::elements`). Parameters remain fields. Elements define the bodies, joints and forces of the
+/// mechanism and are removed from the struct. The trait `linkwork::Mechanism` (`linkwork::Rheonomic` if the
+/// mechanism depends on time) documents the generated methods with their shapes, units and conventions; the
+/// rustdoc of the struct lists them. The guide, `linkwork::guide`, is an introduction from the beginning.
 ///
-/// **Order.** `#[mechanism]` stands above `#[derive(…)]`, so that the derives see the struct without its
-/// elements. The other order is an error that says so.
+/// **Order.** `#[mechanism]` must be above `#[derive(…)]`, so that the derives see the struct without its
+/// elements. The other order is reported as an error.
 ///
-/// **Mistakes** are compile errors at the token, all of them at once; those of a file carry its line and
-/// column.
+/// **Errors** are compile errors at the affected tokens. All errors are reported together; an error in an
+/// imported file includes its line and column.
 ///
 /// # A robot from a file
 ///
@@ -64,65 +64,64 @@ use std::path::PathBuf;
 ///
 /// # Arguments
 ///
-/// | argument | says |
+/// | argument | meaning |
 /// | --- | --- |
-/// | `gravity = -9.81 * y` | uniform gravity, a vector in ground axes, m/s²; none if not given, −9.81 z with a file |
-/// | `scalar = f64` or `f32` | the scalar type of a mechanism without parameters |
-/// | `friction_speed = 0.01` | speed at which dry friction of a file's joints is regularised, m/s or rad/s |
+/// | `gravity = -9.81 * y` | uniform gravitational acceleration, a vector in ground axes, m/s²; the default is zero, or −9.81 z with a file |
+/// | `scalar = f64` or `f32` | scalar type of a mechanism without parameters |
+/// | `friction_speed = 0.01` | speed below which the dry friction of a file's joints is regularised, m/s or rad/s |
 /// | `derivatives` | adds first derivatives of inverse and forward dynamics, and `linearize` |
-/// | `momentum_derivatives` | adds derivatives of momenta and of their rates, which steps of implicit methods have in their Jacobians, and what `derivatives` adds |
-/// | `second_derivatives` | adds second derivatives of inverse and forward dynamics and of the inputs' forces, contracted with factors, and what `derivatives` adds |
+/// | `momentum_derivatives` | adds derivatives of the generalized momenta and of their rates, for the Jacobians of implicit integration methods; includes `derivatives` |
+/// | `second_derivatives` | adds second derivatives of inverse and forward dynamics and of the inputs' generalized forces, contracted with a vector of factors; includes `derivatives` |
 /// | `centroidal` | adds the centroidal momentum matrix and its bias |
 /// | `hamilton` | adds the Hamiltonian and the canonical equations as functions of configuration and momentum |
-/// | `routh` | adds the Routhian and motion without cyclic coordinates, as functions of their momenta |
-/// | `conserved` | adds what keeps its value in every motion without inputs: energy, Jacobi's integral, momenta |
+/// | `routh` | adds the Routhian and the equations of motion without the cyclic coordinates, as functions of the cyclic momenta |
+/// | `conserved` | adds the quantities that are conserved in every motion without inputs: energy, Jacobi's integral, momenta |
 /// | `regressor` | adds the joint torque regressor, and base parameters, for identification |
-/// | `sensitivities` | adds derivatives of the dynamics by the struct's parameters |
-/// | `packed` | adds the mass matrix without entries that are always zero, and into a matrix of the caller |
-/// | `prepare` | adds `prepare()`, which computes once what depends on the parameters alone |
-/// | `batch` | adds a twin of every function of the state for several states at once |
-/// | `drawing` | adds what the mechanism looks like as data (`DRAWING`, `linkwork::drawing`), for programs that draw it |
-/// | `equations = lagrange`, `hamilton`, `kane`, `routh` or `structure` | which equations `EQUATIONS` and the documentation have: Lagrange's also where they are long, the canonical ones, those in independent speeds without multipliers, those without cyclic coordinates, or no terms at all. If not given, Lagrange's where they are short enough to be read |
-/// | `formulation = multipliers` or `speeds` | how constraints are solved: with Lagrange multipliers, or in independent speeds (Kane); multipliers if not given |
-/// | `independent = (velocity, …)` | the independent speeds, of `formulation = speeds`; chosen if not given. Speeds of your own are elements: `#[speed(…)] name: Speed` |
-/// | `processor = detect` or `target` | whether large functions use AVX2 and FMA (products of large matrices AVX-512) where the processor has them, though the target does not promise them (x86-64, release builds, feature `std`); detect if not given |
-/// | `skip_passes = [pass, …]` | passes over the model that are left out, of `frames` (link frames moved to where placements are sparse), `regroup` (mass properties moved towards the base), `parallel` (links on parallel axes described in common ones) and `limbs` (alike limbs, and joints of one path, as SIMD lanes); none if not given. The functions are the same to rounding, and cost more |
-/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; when it changes, the crate is compiled again |
-/// | `mjcf = "path"` | an MJCF file (MuJoCo) with the files that it includes, in the same way |
-/// | `sdf = "path"` | an SDF file of one model, in the same way |
-/// | `base = fixed` or `free` | how the file's root link is held; fixed if not given. MJCF files say that themselves: `free` is for those with one outermost body and no joint on it |
-/// | `passive = honour` or `ignore` | damping, friction and springs of the file's joints and tendons; honour if not given |
-/// | `mimic = follow` or `independent` | joints with a `mimic` tag, and `<equality>` of MJCF; follow if not given |
-/// | `contacts = file` or `ignore` | of an MJCF file, contacts of its bodies with the planes of its world; ignore if not given |
-/// | `limits = honour` or `ignore` | limits of the file's joints, which the trait `linkwork::Limits` gives; honour if not given |
-/// | `inertia = check`, `trust` or `none` | whether an inertia that no body can have is an error, or whether there are no masses and inertias at all: kinematics alone; check if not given |
-/// | `inputs = joints`, `actuators` or `none` | whether every moving joint with one degree of freedom is an input, or every actuator of an MJCF file; joints if not given, and actuators for MJCF |
-/// | `lock = ["joint", …]` | joints frozen at zero |
-/// | `parameters = inertial`, `[inertial("link", …), placement, damping, friction]` | figures of the file that are fields of the struct, of all links or joints or of those named |
-/// | `snap = 1e-4` | angles, positions and axes of joints that are no more than this (rad, m) off right angles, zero and coordinate axes are taken for those; the docs of the struct list them |
-/// | `crate = path::to::linkwork` | where generated code finds this crate, if `Cargo.toml` gives it another name (`crate = name`) or another crate re-exports it (`crate = other::linkwork`) |
+/// | `sensitivities` | adds derivatives of the dynamics with respect to the struct's parameters |
+/// | `packed` | adds the mass matrix without entries that are always zero, and a function that writes the mass matrix to a matrix of the caller |
+/// | `prepare` | adds `prepare()`, which precomputes all values that depend only on the parameters |
+/// | `batch` | adds a variant of every function of the state that evaluates several states at once |
+/// | `drawing` | adds the geometry of the mechanism as data (`DRAWING`, `linkwork::drawing`), for programs that draw it |
+/// | `equations = lagrange`, `hamilton`, `kane`, `routh` or `structure` | form of the equations in `EQUATIONS` and in the documentation: Lagrange's equations of any length, Hamilton's canonical equations, Kane's equations in independent speeds without multipliers, Routh's equations without cyclic coordinates, or only their structure. The default is Lagrange's equations if they are short enough to be readable |
+/// | `formulation = multipliers` or `speeds` | formulation of constraints: Lagrange multipliers (default), or independent speeds (Kane) |
+/// | `independent = (velocity, …)` | independent speeds of `formulation = speeds`; chosen automatically by default. User-defined generalized speeds are elements: `#[speed(…)] name: Speed` |
+/// | `processor = detect` or `target` | `detect` (default): large functions use AVX2 and FMA, and products of large matrices AVX-512, if the processor supports them, even if the compilation target does not include them (x86-64, release builds, feature `std`). `target`: only the instructions of the target are used |
+/// | `skip_passes = [pass, …]` | optimisation passes to skip: `frames` (moves link frames to sparse placements), `regroup` (moves mass properties towards the base), `parallel` (expresses links on parallel axes in common axes) and `limbs` (evaluates identical limbs, and joints of one path, in SIMD lanes); none by default. The results are equal up to rounding; skipping a pass makes the functions slower |
+/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; the crate is recompiled when the file changes |
+/// | `mjcf = "path"` | an MJCF file (MuJoCo) with the files that it includes; path as for `urdf` |
+/// | `sdf = "path"` | an SDF file of one model; path as for `urdf` |
+/// | `base = fixed` or `free` | whether the file's root link is fixed to the ground (default) or a floating base. MJCF files specify this themselves; `free` is valid only for files with one outermost body without a joint |
+/// | `passive = honour` or `ignore` | whether damping, friction and springs of the file's joints and tendons are imported (default) or ignored |
+/// | `mimic = follow` or `independent` | whether joints with `mimic`, and joints and bodies in MJCF's `<equality>`, are coupled (default) or independent |
+/// | `contacts = file` or `ignore` | whether contacts between the bodies of an MJCF file and the planes of its world are imported; the default is ignore |
+/// | `limits = honour` or `ignore` | whether limits of the file's joints are imported (default), for the trait `linkwork::Limits` |
+/// | `inertia = check`, `trust` or `none` | `check` (default): physically impossible inertias are errors. `trust`: inertias are not checked. `none`: masses and inertias are not imported, for kinematics alone |
+/// | `inputs = joints`, `actuators` or `none` | whether every moving joint with one degree of freedom is an input, every actuator of an MJCF file, or nothing; the default is actuators for MJCF files and joints for others |
+/// | `lock = ["joint", …]` | joints that are locked at coordinate zero |
+/// | `parameters = inertial`, `[inertial("link", …), placement, damping, friction]` | values of the file that become fields of the struct, of all links or joints or of the named ones |
+/// | `snap = 1e-4` | tolerance (rad, m) within which angles, positions and axes of joints are rounded to right angles, zero and coordinate axes; the documentation of the struct lists the rounded values |
+/// | `crate = path::to::linkwork` | path of the crate `linkwork` in generated code, if `Cargo.toml` renames it (`crate = name`) or another crate re-exports it (`crate = other::linkwork`) |
 ///
-/// With `inertia = none` nothing needs a mass: frames with their velocities, accelerations and Jacobians, the
-/// configuration space (`neutral`, `integrate`, `difference`, `tangent_rate`), residuals and Jacobians of
-/// constraints, `assemble`, outputs and `generalized_forces` are generated, the dynamics and the trait
-/// `Mechanism` are not. Files that describe shapes and joints alone are read so; what such a file says of
-/// masses is skipped.
+/// With `inertia = none`, no body needs a mass. The generated functions are frames with their velocities,
+/// accelerations and Jacobians, the configuration manifold (`neutral`, `integrate`, `difference`,
+/// `tangent_rate`), residuals and Jacobians of constraints, `assemble`, outputs and `generalized_forces`.
+/// The dynamics and the trait `Mechanism` are not generated. Use this option for files that describe only
+/// shapes and joints; mass properties in the file are ignored.
 ///
-/// A mechanism has 128 degrees of freedom at most, and 1024 bodies: everything is written out for each of
-/// them. Masses, moments and lengths that are given by numbers must leave room for products of theirs to be
-/// finite.
+/// A mechanism has at most 128 degrees of freedom and 1024 bodies, because the generated code is expanded for
+/// each of them. Products of numeric masses, moments and lengths must be finite.
 ///
-/// `ground` is the fixed frame; a link of this name that does not stand there is called `ground_link`. A
-/// fixed root of this name is the ground, and one of the frames. A link `world` that joints name and the file
-/// does not declare is its root. What fixed joints hold to a fixed root enters no equation: its mass
-/// properties are not checked.
+/// `ground` is the fixed frame; any other link of this name is renamed to `ground_link`. A fixed root with
+/// the name `ground` is the ground itself, and remains one of the frames. A link `world` that joints refer to
+/// but the file does not declare is its root. Links that are connected to a fixed root by fixed joints appear
+/// in no equation, so their mass properties are not checked.
 ///
 /// # A closed loop in independent speeds
 ///
 /// ```
 /// use linkwork::prelude::*;
 ///
-/// /// A four-bar linkage, solved in the speed of its crank.
+/// /// A four-bar linkage, formulated in the speed of its crank.
 /// #[mechanism(gravity = -9.81 * y, formulation = speeds, independent = (first))]
 /// pub struct FourBar {
 ///     #[body(mass = 1, com = 0.4 * x, inertia = rod(1, 0.8, x))]

@@ -1,4 +1,4 @@
-//! What the attribute takes and what it does not: arguments in, messages or code out.
+//! Tests of the attribute's options: valid and invalid arguments, and the resulting messages or code.
 
 use linkwork_compiler::{check, expand};
 use std::path::Path;
@@ -40,7 +40,7 @@ fn the_runtime_may_have_another_name() {
         for arguments in [format!("crate = {path}, {words}"), format!("{words}, crate = {path}")] {
             let renamed = code(&arguments, &fields);
             assert!(renamed.contains(&format!("{spelt}__linkwork_of_S;")), "{path}");
-            // The user's own words stay.
+            // Text of the user does not change.
             assert!(renamed.contains("\"`::linkwork::`\""));
             let of_the_user = "\"`::linkwork::`\"";
             let back = renamed.replace("__linkwork_of_S::", "::linkwork::");
@@ -52,7 +52,7 @@ fn the_runtime_may_have_another_name() {
             assert!(!renamed.replace(of_the_user, "").contains("::linkwork::"), "{path}");
         }
     }
-    // Of a struct that is generic, with a mistake too.
+    // A generic struct, without and with an error.
     let generic = |fields: &str| {
         let item = format!("struct S<T> {{ m: T, {} {fields} }}", CART.replace("mass = 1", "mass = m"));
         let emitted = expand("crate = lw, prepare".parse().unwrap(), item.parse().unwrap(), Path::new(""));
@@ -118,7 +118,7 @@ fn functions_say_what_determines_the_motion() {
     assert!(text.contains(expected), "{expected}\n{text}");
 }
 
-/// The figures of a file are constants, unless the struct is generic.
+/// The mechanism of a file is a constant, unless the struct is generic.
 #[test]
 fn a_mechanism_of_a_file_is_a_constant() {
     let of = |item: &str| {
@@ -159,7 +159,7 @@ fn what_has_no_equations_says_why() {
     );
 }
 
-/// After a mistake it is not known which frames there are.
+/// After an error the set of frames is unknown, so every frame name is accepted.
 #[test]
 fn a_mistake_leaves_every_frame() {
     let any = "None=>::core::option::Option::Some(0)";

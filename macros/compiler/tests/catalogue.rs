@@ -1,4 +1,5 @@
-//! What is generated is what the catalogue says, and a program that does not fit its row is no code.
+//! Comparison of the generated functions with the catalogue. A program whose size differs from its row is an
+//! internal error.
 
 mod generated;
 mod mechanisms;
@@ -18,7 +19,7 @@ fn tokens((attribute, name, fields): (&str, &str, &str)) -> (TokenStream, TokenS
     (attribute.parse().unwrap(), format!("pub struct {name} {{ {fields} }}").parse().unwrap())
 }
 
-/// Calls `f` with what a mechanism compiles to.
+/// Calls `f` with the compiled mechanism.
 fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, Output) -> T) -> T {
     let (attribute, item) = tokens(mechanism);
     let mut cx = Diagnostics::new();
@@ -30,8 +31,8 @@ fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, 
     f(&model, Facts::of(&model, source.mechanism.requests), output)
 }
 
-/// The public functions of the inherent implementations of a type, without those that only say what is
-/// missing.
+/// Returns the public functions in the inherent implementations of a type, without functions that only report
+/// that they are absent.
 fn public(text: &str, name: &str) -> BTreeSet<String> {
     let file = syn::parse_file(text).unwrap();
     let mut found = BTreeSet::new();
@@ -58,7 +59,7 @@ fn public(text: &str, name: &str) -> BTreeSet<String> {
     found
 }
 
-/// What the catalogue says that such a mechanism has, its outputs included.
+/// Returns the functions that the catalogue declares for such a mechanism, with those of its outputs.
 fn expected(facts: &Facts, outputs: &[String]) -> BTreeSet<String> {
     let rows = catalogue::rows().filter(|row| row.lacks(facts).is_none() && !row.is_hidden());
     let mut names: BTreeSet<String> = BTreeSet::new();
@@ -100,7 +101,7 @@ fn every_function_is_a_row_and_every_row_a_function() {
     assert_eq!(never, Vec::<&str>::new(), "no mechanism here has these");
 }
 
-/// What is missing is named, each name once and with one reason.
+/// Each absent function is listed once, with one reason.
 #[test]
 fn what_is_not_there_has_a_reason() {
     for mechanism in MECHANISMS {
@@ -124,8 +125,7 @@ fn what_is_not_there_has_a_reason() {
     }
 }
 
-/// A number too many or too few in the program of any function, of a link or of a frame does not go
-/// unnoticed.
+/// A missing or additional value in the program of a function, a link or a frame is detected.
 #[test]
 fn a_program_that_does_not_fit_is_found() {
     let mut in_lanes = 0;

@@ -1,9 +1,10 @@
-//! Large functions have bodies of their own for debug builds, where calls and lanes would cost the most.
+//! Separate bodies of large functions for debug builds, in which calls and lanes are most expensive.
 
 use linkwork_compiler::expand;
 use std::path::Path;
 
-/// The generated code of a floating body with arms of six joints, with words of the attribute.
+/// Returns the generated code of a floating body with arms of six joints, with these options of the
+/// attribute.
 fn code(words: &str, names: &[&str]) -> String {
     let mut item = "struct S {\n#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,"
         .to_string();
@@ -23,7 +24,7 @@ fn code(words: &str, names: &[&str]) -> String {
     format!("{}{}", emitted.tokens, emitted.text)
 }
 
-/// The bodies for debug builds, and those for all others.
+/// Returns pairs of bodies: for debug builds, and for all other builds.
 fn bodies(code: &str) -> Vec<(&str, &str)> {
     let both = code.split("#[cfg(debug_assertions)]").skip(1);
     both.map(|text| text.split_once("#[cfg(not(debug_assertions))]").expect("one of either")).collect()
@@ -44,7 +45,7 @@ fn debug_builds_have_operators_for_calls() {
     }
 }
 
-/// Lanes of states would each take their place on the stack.
+/// In debug builds, batch functions evaluate one state at a time, because lanes would take too much stack.
 #[test]
 fn debug_builds_compute_one_state_after_another() {
     let code = code("batch, derivatives", &["one"]);
@@ -59,8 +60,8 @@ fn debug_builds_compute_one_state_after_another() {
     }
 }
 
-/// Derivatives of outputs have names; of second derivatives by configuration, velocities and inputs there are
-/// six.
+/// Batched derivatives of outputs have names in debug builds, too. Second derivatives with respect to
+/// configuration, velocities and inputs have six blocks.
 #[test]
 fn debug_builds_have_all_derivatives_of_each_state() {
     let mut item = "struct S {".to_string();

@@ -1,11 +1,11 @@
-//! How much rustc has to read: its time and memory grow with calls, bindings and statements, whatever they
-//! become.
+//! Size of the generated code. rustc's time and memory grow with the number of calls, bindings and
+//! statements, independently of the machine code.
 
 use linkwork_compiler::expand;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The generated code of a chain of pins.
+/// Returns the generated code of a chain of pins.
 fn chain(n: usize) -> String {
     let (mut item, mut parent) = ("struct Chain {".to_string(), "ground".to_string());
     for k in 1..=n {
@@ -27,11 +27,11 @@ fn chain(n: usize) -> String {
 fn a_long_chain_is_read_once() {
     let (short, long) = (chain(16), chain(32));
 
-    // Jacobians of frames: twice as many for twice the links, not four times.
+    // Jacobians of frames grow linearly with the number of links.
     let jacobians = |code: &str| code.matches("_columns(").count();
     assert!(jacobians(&long) < 3 * jacobians(&short), "{} and {}", jacobians(&short), jacobians(&long));
 
-    // A number times lanes is one call, and values leave a block without a tuple.
+    // The product of a number and lanes is one call, and blocks assign values instead of returning tuples.
     for code in [&short, &long] {
         assert!(code.contains("scale_add8(") && !code.contains("(splat8("), "numbers are not spread first");
         let bodies = code.replace("const _: () = {\n", "");
@@ -39,7 +39,7 @@ fn a_long_chain_is_read_once() {
     }
     assert!(long.contains("\n{\n"), "large bodies have blocks");
 
-    // Lanes of one vector go into a column, or side by side into columns, by one call.
+    // The lanes of a vector are stored to a column, or to adjacent columns, by one call.
     let each = long.matches("Ops::store_two").count();
     let together = long.matches("Ops::store_rows").count() + long.matches("Ops::store_columns").count();
     assert!(together > 4 * each, "{each} pairs and {together} vectors are stored");

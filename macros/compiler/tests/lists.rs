@@ -1,9 +1,9 @@
-//! Lists of elements: what is written with them compiles to what is written without.
+//! Lists of elements: a mechanism with lists compiles to the same code as the mechanism with single elements.
 
 use linkwork_compiler::{check, expand};
 use std::path::Path;
 
-/// The generated code.
+/// Returns the generated code.
 fn code(arguments: &str, fields: &str) -> String {
     let item = format!("pub struct S {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
@@ -15,7 +15,7 @@ fn messages(arguments: &str, fields: &str) -> Vec<String> {
     check(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""))
 }
 
-/// Both compile, to one and the same.
+/// Checks that both mechanisms compile to the same code.
 fn alike(arguments: [&str; 2], fields: [&str; 2]) {
     for (arguments, fields) in arguments.iter().zip(fields) {
         assert_eq!(messages(arguments, fields), [""; 0]);

@@ -1,5 +1,5 @@
-//! Mistakes as people make them who come from other tools or from a textbook: each gets one error, whose help
-//! points at the word that was meant. A table has what is written, the first line of what is said, and a part
+//! Typical errors of users who know other tools or a textbook. Each causes one error, whose help names the
+//! correct expression. Each row of a table contains the source text, the first line of the message and a part
 //! of the help.
 
 use linkwork_compiler::check;
@@ -44,20 +44,20 @@ mod speeds;
 #[path = "mistakes/tables.rs"]
 mod tables;
 
-/// What is written, the first line of what is said, and a part of the help.
+/// Source text, first line of the message and part of the help.
 type Row = (&'static str, &'static str, &'static str);
 
-/// The arguments of the attribute and the fields that a mistake stands among.
+/// Function that inserts a source text into the arguments of the attribute or the fields.
 type Setting = fn(&str) -> (String, String);
 
-/// An arm on a hinge.
+/// Arm on a hinge.
 const ARM: &str = "#[body(mass = 1, com = -y, inertia = sphere(1, 0.1))] arm: Body,
     #[joint(ground -> arm, about = z)] hinge: Pin,";
 
-/// A cart on a rail.
+/// Cart on a rail.
 const CART: &str = "#[body(mass = 1)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
 
-/// The messages about fields.
+/// Returns the messages of a mechanism.
 fn messages(attribute: &str, fields: &str) -> Vec<String> {
     let struct_ = format!("struct Machine {{ {fields} }}");
     match (attribute.parse(), struct_.parse()) {
@@ -66,7 +66,7 @@ fn messages(attribute: &str, fields: &str) -> Vec<String> {
     }
 }
 
-/// Every row gets its answer, and nothing else.
+/// Checks that each row causes exactly the expected error.
 fn answers(setting: Setting, rows: &[Row]) {
     let mut wrong = Vec::new();
     for (said, message, help) in rows {
@@ -87,7 +87,7 @@ fn answers(setting: Setting, rows: &[Row]) {
     assert!(wrong.is_empty(), "{} of {}:\n\n{}", wrong.len(), rows.len(), wrong.join("\n\n"));
 }
 
-/// As many errors as there are mistakes.
+/// Checks the number of errors of each row.
 fn counts(rows: &[(&str, &str, usize)]) {
     for (attribute, fields, count) in rows {
         let found = messages(attribute, fields);

@@ -1,6 +1,6 @@
-//! Slips of the hand in the gallery: one token of a mechanism is lost, doubled, exchanged with its neighbour
-//! or taken for another one. Whatever comes of it, it is said in few words, each with what to do about it.
-//! Seeded, so that a failure comes again; `MUTATIONS=20000` tries more than the usual number, `SEED=2`
+//! Random typing errors in the mechanisms of the gallery: one token is removed, repeated, exchanged with its
+//! neighbour, misspelt or replaced by another one. Each must cause few errors, each with help. The random
+//! numbers are seeded, so failures are reproducible; `MUTATIONS=20000` tries more cases, and `SEED=2` tries
 //! others.
 
 use linkwork_compiler::diag::Diagnostics;
@@ -13,25 +13,25 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Cases that are tried.
+/// Number of cases.
 const CASES: u64 = 600;
-/// What they begin with.
+/// Seed of the random numbers.
 const SEED: u64 = 20;
-/// Most errors that one slip leads to.
+/// Maximum number of errors that one mutation may cause.
 const MAX_ERRORS: usize = 3;
-/// Most tokens of a mechanism that is tried: larger ones take long, and their words are the same.
+/// Maximum number of tokens of a mechanism. Larger mechanisms take long and have no other kinds of elements.
 const LARGEST: usize = 1500;
-/// Longest time for one case in a debug build, on a busy machine.
+/// Maximum time for one case in a debug build, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A mechanism of the gallery.
+/// Mechanism of the gallery.
 struct Subject {
     name: String,
     arguments: TokenStream,
     item: TokenStream,
 }
 
-/// The mechanisms of the gallery.
+/// Returns the mechanisms of the gallery.
 fn gallery() -> Vec<Subject> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/src");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -57,7 +57,7 @@ fn gallery() -> Vec<Subject> {
     all
 }
 
-/// All tokens, groups and what is in them.
+/// Returns the number of tokens, including groups and their contents.
 fn count(tokens: &TokenStream) -> usize {
     let inner = |token: TokenTree| match token {
         TokenTree::Group(group) => 1 + count(&group.stream()),
@@ -66,7 +66,7 @@ fn count(tokens: &TokenStream) -> usize {
     tokens.clone().into_iter().map(inner).sum()
 }
 
-/// A generator of numbers (splitmix64).
+/// Random number generator (splitmix64).
 struct Random(u64);
 
 impl Random {
@@ -79,21 +79,21 @@ impl Random {
     }
 }
 
-/// What is done to one token.
+/// Mutation of one token.
 #[derive(Clone, Copy, Debug)]
 enum Slip {
     Lost,
     Doubled,
     Exchanged,
-    /// One letter of a word is another one, or a number has another digit.
+    /// One character of an identifier or a number is replaced.
     Misspelt,
-    /// It is taken for another token of the mechanism.
+    /// The token is replaced by another token of the mechanism.
     Mistaken,
 }
 
 const SLIPS: [Slip; 5] = [Slip::Lost, Slip::Doubled, Slip::Exchanged, Slip::Misspelt, Slip::Mistaken];
 
-/// All leaves.
+/// Collects all tokens that are not groups.
 fn leaves(tokens: &TokenStream, found: &mut Vec<TokenTree>) {
     for token in tokens.clone() {
         match &token {
@@ -103,7 +103,7 @@ fn leaves(tokens: &TokenStream, found: &mut Vec<TokenTree>) {
     }
 }
 
-/// The tokens with a slip at one of them, counted from the outside in.
+/// Applies a mutation to the token with index `at`, counted in depth-first order.
 fn slip(
     tokens: TokenStream,
     at: &mut usize,
@@ -156,7 +156,7 @@ fn misspelt(token: TokenTree, random: &mut Random) -> TokenTree {
     text.parse::<TokenStream>().ok().and_then(|t| t.into_iter().next()).unwrap_or(token)
 }
 
-/// The messages of syntax and model.
+/// Returns the messages of the parser and the model.
 fn messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
     if let Some(source) = read(arguments.clone(), item, Path::new(""), &mut cx) {
@@ -168,7 +168,7 @@ fn messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     cx.messages()
 }
 
-/// The first line with its names left out: the class of a message.
+/// Returns the first line of a message without its names: the class of the message.
 fn class(message: &str) -> String {
     let first = message.lines().next().unwrap_or_default();
     first.split('`').step_by(2).collect::<Vec<_>>().join("`…`")
@@ -189,7 +189,7 @@ fn slips_of_the_hand_are_answered_in_few_words() {
         let kind = SLIPS[random.below(SLIPS.len())];
         let mut at = random.below(count(&subject.item));
         let item = slip(subject.item.clone(), &mut at, kind, &others, &mut random);
-        // What is no struct to Rust is told by Rust.
+        // rustc itself reports items that are no structs.
         if syn::parse2::<syn::ItemStruct>(item.clone()).is_err() {
             continue;
         }
@@ -220,15 +220,14 @@ fn slips_of_the_hand_are_answered_in_few_words() {
     assert!(list.is_empty(), "{} classes:\n{}", list.len(), list.join("\n\n"));
 }
 
-/// What the grammar alone has to say.
+/// Returns the messages of the parser alone.
 fn messages_of_grammar(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
     read(arguments.clone(), item, Path::new(""), &mut cx);
     cx.messages()
 }
 
-/// The item with a mistake of grammar in one field: an argument that nothing has, or a type that no parameter
-/// has.
+/// Returns the item with a syntax error in one field: an unknown argument, or an invalid type of a parameter.
 fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
     let mut item: syn::ItemStruct = syn::parse2(item.clone()).unwrap();
     let field = item.fields.iter_mut().nth(at)?;

@@ -1,4 +1,4 @@
-//! An output cannot have the name of another function of the mechanism, and every such function is known.
+//! Names of outputs: an output cannot have the name of another function of the mechanism.
 
 use linkwork_compiler::{check, expand};
 use std::collections::BTreeSet;
@@ -15,7 +15,7 @@ fn mechanism(name: &str) -> String {
     )
 }
 
-/// Names of the functions in generated code.
+/// Returns the names of the functions in generated code.
 fn functions(code: &str) -> BTreeSet<String> {
     let names = code.split("fn ").skip(1).map(|rest| {
         rest.chars().skip_while(|c| *c == ' ').take_while(|c| c.is_alphanumeric() || *c == '_').collect()
@@ -30,12 +30,12 @@ fn names_of_functions_are_taken() {
     assert_eq!(check(empty(), item("place"), Path::new("")), Vec::<String>::new());
     let emitted = expand(empty(), item("place"), Path::new(""));
     let code = format!("{}{}", emitted.tokens, emitted.text);
-    // What the mechanism does not have takes no name: it is seen only where nothing else is.
+    // Absent functions reserve no names, because they are visible only if no other function matches.
     let is_there = |part: &&str| !part.contains("::__private::absent::");
     let code: String = code.split("#[automatically_derived]").filter(is_there).collect();
     let names = functions(&code);
     assert!(names.contains("mass_matrix") && names.contains("place_jacobian"), "{names:?}");
-    // Methods of the traits that carry frames and parameters are not the mechanism's own.
+    // Methods of the traits for frames and parameters are not functions of the mechanism.
     let by_name = ["placement", "twist", "acceleration", "jacobian"];
     let by_number = ["placement_of", "velocity_of", "acceleration_of", "jacobian_of"];
     let of_others = [&["place", "place_jacobian", "outputs"][..], &by_name, &by_number].concat();
@@ -46,11 +46,11 @@ fn names_of_functions_are_taken() {
     for name in ["linearize", "prepare", "joint_torque_regressor", "mass_matrix_lanes", "assemble_jacobian"] {
         assert_eq!(check(empty(), item(name), Path::new("")), Vec::<String>::new(), "{name}");
     }
-    // The Jacobian of such an output would be another one's function.
+    // The Jacobian of such an output would have the name of another function.
     assert!(!check(empty(), item("frame"), Path::new("")).is_empty());
 }
 
-/// Passes divide plain numbers with another sign, which are numbers all the same.
+/// Passes of the program may divide constants with another sign, whose result is finite.
 #[test]
 fn accelerations_are_outputs_whatever_the_figures() {
     let item = "struct Drone {

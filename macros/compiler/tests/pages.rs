@@ -1,11 +1,11 @@
-//! What pages for readers and lists of tests name is what the compiler has: joints, words that ask for
-//! functions, passes of programs.
+//! Completeness of documentation pages and test lists: they name all joints, elements and options of the
+//! compiler, and all passes of programs.
 
 use linkwork_compiler::lower::pipeline::{DRAFT, FINISH};
 use linkwork_compiler::syntax::{ElementKind, Word, element_kind, joint_kind};
 use std::path::Path;
 
-/// Files, by their paths in the repository, and how `NAME` stands in each.
+/// Files by their paths in the repository, each with the form in which `NAME` appears.
 type Places = &'static [(&'static str, &'static str)];
 
 /// Fails with the files in which names are missing.
@@ -20,8 +20,8 @@ fn check(names: &[String], places: Places) {
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
 
-/// The page of the language, the runtime's tables, the book's joints, what is said to the word `Joint`, and
-/// the lists that random mechanisms are made from.
+/// Joints are listed in the guide, the runtime's tables, the book, the error for the type `Joint`, and the
+/// lists for random mechanisms.
 #[test]
 fn joints_are_listed() {
     let names: Vec<String> = joint_kind::names().map(ToString::to_string).collect();
@@ -42,7 +42,8 @@ fn joints_are_listed() {
     );
 }
 
-/// The guide, the runtime's tables and types, and for force elements the random mechanisms of the oracle.
+/// Elements are listed in the guide, the runtime's tables and types; force elements also in the random
+/// mechanisms of the oracle.
 #[test]
 fn elements_are_listed() {
     let names: Vec<String> = element_kind::names().map(ToString::to_string).collect();
@@ -56,7 +57,7 @@ fn elements_are_listed() {
     );
     let forces =
         names.into_iter().filter(|name| matches!(ElementKind::of_name(name), Some(ElementKind::Force(_))));
-    // These two are tried against their closed forms alone.
+    // These two are compared only with closed-form solutions.
     let forces: Vec<String> = forces.filter(|name| name != "Friction" && name != "Gravity").collect();
     check(
         &forces,
@@ -64,8 +65,8 @@ fn elements_are_listed() {
     );
 }
 
-/// A word as it is written, from the trait that says that it is missing: `AsksForSecondDerivatives` of
-/// `second_derivatives`.
+/// Returns the spelling of an option, from the trait that reports its absence: `AsksForSecondDerivatives`
+/// becomes `second_derivatives`.
 fn written(word: Word) -> String {
     let name = word.reason().trim_start_matches("AsksFor");
     let lower = |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
@@ -84,7 +85,7 @@ fn words_are_listed() {
             ("macros/compiler/tests/mechanisms/mod.rs", "NAME"),
         ],
     );
-    // This one is refused where no coordinate is cyclic.
+    // This option is rejected if no coordinate is cyclic.
     let any: Vec<String> = names.into_iter().filter(|name| name != "routh").collect();
     check(
         &any,

@@ -1,10 +1,10 @@
-//! What makes generated code quick to read for rustc.
+//! Properties of generated code that reduce rustc's compile time.
 
 use linkwork_compiler::expand;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The generated code of a chain of so many pins, with its derivatives.
+/// Returns the generated code of a chain of pins with its derivatives.
 fn chain(pins: usize) -> String {
     let mut item = "struct S {\n".to_string();
     let mut parent = "ground".to_string();
@@ -23,12 +23,12 @@ fn chain(pins: usize) -> String {
     format!("{}{}", emitted.tokens, emitted.text)
 }
 
-/// The names that a text consists of.
+/// Returns the identifiers in a text.
 fn names(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|name| !name.is_empty())
 }
 
-/// rustc looks through all definitions of a crate for every variable that nothing reads.
+/// rustc searches all definitions of a crate for each unused variable.
 #[test]
 fn no_input_is_bound_that_nothing_reads() {
     let code = chain(6);
@@ -46,7 +46,7 @@ fn no_input_is_bound_that_nothing_reads() {
     assert!(bound > 50, "{bound}");
 }
 
-/// Derivatives into given matrices and derivatives that are returned are the same statements.
+/// Derivatives that fill matrices of the caller and derivatives that are returned share their statements.
 #[test]
 fn a_long_function_is_written_once() {
     let head = "fn inverse_dynamics_derivatives(";

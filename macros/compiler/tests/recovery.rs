@@ -1,5 +1,5 @@
-//! A mechanism with a mistake has every name that it would have without: nothing that uses it is told of a
-//! second mistake. What a mechanism does not have on purpose stands under a bound that says why.
+//! Recovery from errors. A mechanism with an error declares the same names as without it, so that its users
+//! cause no further errors. Functions that a mechanism lacks on purpose have a bound that names the reason.
 
 mod generated;
 
@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{ImplItem, Item, ItemImpl, Type};
 
-/// A mistake that belongs to no other field.
+/// Error that affects no other field.
 const MISTAKE: &str = "#[output(unknown)] mistake: Scalar,";
 
 const WORDS: &str = "derivatives, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, regressor, sensitivities, packed, prepare, batch, drawing";
@@ -67,15 +67,15 @@ const MECHANISMS: [(&str, &str); 5] = [
     ("Bouncing", BOUNCING),
 ];
 
-/// By name, the arguments and the result; nothing for constants.
+/// Map from the name to arguments and result; `None` for constants.
 type Names = BTreeMap<String, Option<String>>;
 
 struct Generated {
-    /// What can be called, of all structs.
+    /// Available names of all structs.
     present: Names,
-    /// What cannot, with the bounds that say why.
+    /// Absent names, with the bound that names the reason.
     absent: BTreeMap<String, String>,
-    /// The traits that are implemented.
+    /// Implemented traits.
     traits: BTreeSet<String>,
 }
 
@@ -92,8 +92,8 @@ fn code(arguments: &str, name: &str, fields: &str) -> Generated {
     all
 }
 
-/// How names of functions begin whose sizes a mistake may hide: how many constraints, contacts and conserved
-/// quantities there are, only the equations tell.
+/// Prefixes of names whose sizes an error may hide: only the equations determine the numbers of constraints,
+/// contacts and conserved quantities.
 const UNSIZED: [&str; 12] = [
     "base_",
     "conserved",
@@ -111,7 +111,7 @@ const UNSIZED: [&str; 12] = [
 
 fn signature(f: &syn::ImplItemFn) -> String {
     let (name, inputs, output) = (f.sig.ident.to_string(), &f.sig.inputs, &f.sig.output);
-    // After a mistake it is not known which frames there are.
+    // After an error the set of frames is unknown.
     let mut text = quote::quote!((#inputs) #output).to_string();
     if let Some(start) = text.find("impl :: linkwork :: FrameName <") {
         let end = text[start..].find('>').map_or(text.len(), |end| start + end + 1);
@@ -125,7 +125,7 @@ fn signature(f: &syn::ImplItemFn) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Outputs of one function of the language each, in a mechanism that has something of every kind.
+/// Outputs with one function of the language each, in a mechanism with elements of every kind.
 const MEASURES: [(&str, &str, &str); 57] = [
     ("atan2", "atan2(sin(hinge), 2)", "Scalar"),
     ("degrees", "hinge + degrees(30)", "Scalar"),
@@ -198,7 +198,7 @@ const MEASURED: &str = "command: Input,
     #[contact(wing.sphere(1), ground.plane(z), friction = 0.3, torsional = 0.1)] floor: Contact,
     #[define(v(wing / ground / ground))] wind: Vector,";
 
-/// An error elsewhere changes the arguments of no output, for every function of the language.
+/// An error elsewhere does not change the arguments of outputs, for every function of the language.
 #[test]
 fn an_error_keeps_the_arguments_of_every_measure() {
     let listed = include_str!("../src/resolve/functions.rs").lines();
@@ -219,7 +219,7 @@ fn an_error_keeps_the_arguments_of_every_measure() {
     }
 }
 
-/// The bound of what is absent: the only one over a lifetime.
+/// Returns the bound of an absent function, which is the only bound over a lifetime.
 fn reason(block: &ItemImpl) -> Option<String> {
     let bounds = block.generics.where_clause.as_ref()?.predicates.iter();
     let reasons = bounds.filter_map(|predicate| match predicate {
@@ -260,7 +260,7 @@ impl Generated {
     }
 }
 
-/// Functions that only generated code calls are hidden from documentation, that of binaries included.
+/// Functions that only generated code calls are hidden from the documentation, also from that of binaries.
 #[test]
 fn internals_are_hidden() {
     for (name, fields) in MECHANISMS {
@@ -312,15 +312,15 @@ fn every_word_is_named_by_what_needs_it() {
     let of = |name: &str| name.split_once("::").unwrap().1.to_string();
     for (name, fields) in MECHANISMS {
         let (bare, all) = (code("", name, fields), code(WORDS, name, fields));
-        // Whatever all words together give, without them either is there or says why it is not.
+        // A function that all options together add is present without them, or reports why it is absent.
         for function in all.present.keys().filter(|function| function.starts_with(name)) {
             let known = bare.present.contains_key(function) || bare.absent.contains_key(function);
-            // Two words together give these: the first names itself, then the other.
+            // A `_lanes` function may require two options: that of its scalar function, and `batch`.
             let of_two = function.ends_with("_lanes")
                 && !bare.present.contains_key(function.trim_end_matches("_lanes"));
             assert!(known || of_two, "{function}");
         }
-        // Without one of the words, what it gives is told to need it.
+        // Without one of the options, its functions report that they require it.
         let one_less = WORDS.split(", ").filter(|_| ["CartPole", "FourBar"].contains(&name));
         for word in one_less {
             let others: Vec<&str> = WORDS.split(", ").filter(|other| *other != word).collect();
@@ -383,27 +383,27 @@ const SPED: &str = "
     #[speed(rate(plane.x) + rate(plane.y))] both: Speed,
     #[speed(rate(plane.x) - rate(plane.y))] apart: Speed,";
 
-/// A contact of one rate.
+/// Contact with one contact velocity.
 const SMOOTH: &str = "
     #[particle(mass = 1)] bead: Particle,
     #[joint(ground -> bead, along = z)] rod: Sleeve,
     #[contact(bead, ground.plane(z))] floor: Contact,";
 
-/// A contact beside a constraint.
+/// Contact and a constraint.
 const HELD: &str = "
     #[particle(mass = 1)] bead: Particle,
     #[joint(ground -> bead, along = (x, z))] plane: Stage,
     #[constraint(plane.x * plane.x + plane.y * plane.y = 1)] ring: Holonomic,
     #[contact(bead, ground.plane(z))] floor: Contact,";
 
-/// Rolling contact that presses by another contact, and a limit on one side.
+/// Rolling contact whose normal force depends on another contact, and a one-sided limit.
 const PRESSED: &str = "
     #[body(mass = 1, inertia = sphere(1, 1))] ball: Body,
     #[joint(ground -> ball, about = z)] pose: Planar,
     #[contact(ball.sphere(1), ground.plane(y), friction = 0.3, rolling = 0.01)] floor: Contact,
     #[limit(on = pose.angle, from = -1)] stop: Limit,";
 
-/// A state of first order beside a constraint.
+/// State of first order and a constraint.
 const LAGGED: &str = "command: Input, lag: f64,
     #[particle(mass = 1)] bead: Particle,
     #[joint(ground -> bead, along = (x, z))] plane: Stage,
@@ -414,8 +414,8 @@ const LAGGED: &str = "command: Input, lag: f64,
 
 const WELDED: &str = "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] base: Weld,";
 
-/// Names of functions and constants, those for the runtime alone too: what is there, and by reason what is
-/// not. Beside them the traits that are implemented, those of frames and of bodies of functions left out.
+/// Returns the names of functions and constants, including those for the runtime alone: available names, and
+/// absent names by reason. Also returns the implemented traits, without those of frames and function bodies.
 fn names(arguments: &str, name: &str, fields: &str) -> String {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
@@ -448,7 +448,7 @@ fn names(arguments: &str, name: &str, fields: &str) -> String {
     format!("== {name}, {arguments}\n{}\n", lists.collect::<String>())
 }
 
-/// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test recovery` writes the file anew; read the
+/// `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test recovery` regenerates the file; review the
 /// difference.
 #[test]
 fn names_are_those_of_the_table() {

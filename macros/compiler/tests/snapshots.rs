@@ -1,6 +1,6 @@
-//! Generated code of small mechanisms, as a reviewer of a change of the compiler reads it. A difference is no
-//! mistake by itself: look at it, and write the files anew with
-//! `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test snapshots`.
+//! Generated code of small mechanisms, for reviewing changes of the compiler. A difference is not an error in
+//! itself: review it, and regenerate the files with `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test
+//! snapshots`.
 
 mod generated;
 
@@ -21,7 +21,7 @@ const CART_POLE: &str = "
     #[joint(cart -> pole, about = z)] hinge: Pin,
     #[acts(on = rail)] push: Force,";
 
-/// Joints of every chart, a limit, a contact, and outputs that follow from the motion.
+/// Joints of every chart, a limit, a contact, and outputs that depend on the motion.
 const BUOY: &str = "k: f64,
     #[body(mass = 2, inertia = sphere(2, 0.3))] hull: Body,
     #[body(mass = 1, inertia = sphere(1, 0.2))] eye: Body,
@@ -35,14 +35,14 @@ const BUOY: &str = "k: f64,
     #[output(contact_force(floor))] push: Vector,
     #[output(hull, resolved_in = ground)] diagram: FreeBody,";
 
-/// A rod whose end slips on the ground.
+/// Rod whose end slides on the ground.
 const SLIDING: &str = "friction: f64,
     #[body(mass = 2, inertia = rod(2, 1, x))] rod: Body,
     #[joint(ground -> rod, about = z)] pose: Planar,
     #[constraint(slips(rod.at(-0.5 * x).sphere(0.01), ground.plane(y)), friction = friction, speed = 0.001)]
     floor: Slipping,";
 
-/// Forces of time, and nothing that commands it.
+/// Forces that depend on time, without inputs.
 const DRIVEN: &str = "#[body(mass = 2, inertia = sphere(2, 0.3))] ball: Body,
     #[joint(ground -> ball, about = z)] pose: Planar,
     #[acts(on = ball, value = sin(t) * ground.x)] wind: Force,
@@ -53,7 +53,7 @@ const DRIVEN: &str = "#[body(mass = 2, inertia = sphere(2, 0.3))] ball: Body,
     #[output(contact_force(floor))] push: Vector,
     #[output(ball, resolved_in = ground)] diagram: FreeBody,";
 
-/// A sleigh whose motor's force depends on its velocity.
+/// Sleigh with a motor force that depends on its velocity.
 const GOVERNED: &str = "command: Input,
     #[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] sleigh: Body,
     #[joint(ground -> sleigh, about = z)] pose: Planar,
@@ -73,7 +73,7 @@ const MEASURED: &str = "command: Input, lag: f64,
     #[output(rotation(ball / ground))] turn: Matrix,
     #[output(dot(a(ball / ground / ground), ground.x))] felt: Scalar,";
 
-/// Declared speeds beside a ball joint.
+/// Declared generalized speeds and a ball joint.
 const SPEEDS: &str = "
     #[body(mass = 2)] cart: Body,
     #[body(mass = 1, com = x, inertia = rod(1, 2, x))] arm: Body,
@@ -84,8 +84,8 @@ const SPEEDS: &str = "
     #[speed(rate(rail) * cos(hinge) + 0.3 * rate(hinge))] along: Speed,
     #[speed(1.5 * rate(hinge) - rate(rail) * sin(hinge))] turn: Speed,";
 
-/// Name, arguments of the attribute, fields, and what is shown: functions with their bodies, or with traits
-/// (`Trait::*`), of which what is a call of the function of the same name is left out.
+/// Name, arguments of the attribute, fields, and the functions to show: with their bodies, or of traits
+/// (`Trait::*`). Trait functions that only call the function of the same name are omitted.
 const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
     (
         "pendulum",
@@ -253,20 +253,20 @@ const MECHANISMS: [(&str, &str, &str, &[&str]); 15] = [
     (
         "f32",
         "gravity = -9.81 * y, scalar = f32",
-        // What follows from the figures is no normal number any more.
+        // Values that follow from these coefficients are subnormal or zero in `f32`.
         "#[particle(mass = 1e-20)] bob: Particle,
         #[joint(ground -> bob.at(-1e-10 * y), about = z)] hinge: Pin,",
         &["mass_matrix", "kinetic_energy"],
     ),
 ];
 
-/// True for the function of a trait that calls the one of its name.
+/// Returns true for the function of a trait that only calls the inherent function of the same name.
 fn is_passed_on(function: &syn::ImplItemFn) -> bool {
     let body = function.block.to_token_stream().to_string();
     body.starts_with(&format!("{{ Self :: {} (", function.sig.ident))
 }
 
-/// The code without documentation, without what only says what is missing, and without frames.
+/// Returns the code without documentation, frames and functions that only report their absence.
 fn shown(text: &str, functions: &[&str]) -> String {
     let mut file = syn::parse_file(text).unwrap();
     file.items = generated::items(file.clone());
@@ -307,7 +307,7 @@ fn shown(text: &str, functions: &[&str]) -> String {
         .replace("::linkwork::__private::", "private::")
 }
 
-/// Compares a text with a file of this folder, or writes it there. What differs first.
+/// Compares a text with a file of this folder, or writes the file. Returns the first difference.
 fn difference(name: &str, text: &str) -> Option<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots").join(format!("{name}.txt"));
     if std::env::var_os("LINKWORK_WRITE").is_some() {
@@ -321,7 +321,7 @@ fn difference(name: &str, text: &str) -> Option<String> {
     Some(format!("{name}.txt, line {}:\n  before: {before}\n  now:    {now}", k + 1))
 }
 
-/// A test for each mechanism, of its name.
+/// Defines one test for each mechanism, with its name.
 macro_rules! snapshots {
     ($($name:ident)+) => {
         const TESTS: &[&str] = &[$(stringify!($name)),+];
@@ -353,7 +353,7 @@ fn every_mechanism_has_a_test() {
     assert!(MECHANISMS.iter().map(|(name, ..)| *name).eq(TESTS.iter().copied()));
 }
 
-/// Mechanisms whose structs' documentation has, between them, every part.
+/// Mechanisms whose documentation comments cover all sections together.
 const DOCUMENTED: [(&str, &str); 7] = [
     ("gravity = -9.81 * y", "#[body(mass = 1)] arm: Body, #[joint(ground -> arm)] held: Weld,"),
     ("gravity = -9.81 * y", DRIVEN),
@@ -382,14 +382,14 @@ fn documentation_of_structs() {
             _ => None,
         });
         text += &format!("##### {attribute}\n");
-        // Everywhere, or `cfg_attr(doc, doc = …)`: on pages, in editors.
+        // Always present, or `cfg_attr(doc, doc = …)` on documentation pages, or in editors.
         for attribute in attributes.unwrap() {
             let tokens = attribute.meta.to_token_stream().into_iter().flat_map(|token| match token {
                 TokenTree::Group(group) => group.stream().into_iter().collect(),
                 token => vec![token],
             });
             let literals = tokens.filter_map(|token| syn::parse2::<syn::LitStr>(token.into()).ok());
-            // Typeset equations are seen on pages.
+            // Typeset equations appear only on documentation pages.
             let lines = literals.map(|line| line.value()).filter(|line| !line.contains("<math>"));
             lines.for_each(|line| text += &format!("{line}\n"));
         }

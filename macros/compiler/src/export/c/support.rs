@@ -116,6 +116,6 @@ impl Support {
     }
 }
 
-/// Functions of the standard atmosphere, with the name of the helper's part that computes each.
+/// Functions of the standard atmosphere, with the variable of the helper `lw_atmosphere` that each returns.
 const QUANTITIES: [(&str, &str); 3] =
     [("isa_temperature", "temperature"), ("isa_lapse_rate", "rate"), ("isa_pressure", "pressure")];
