@@ -1,27 +1,27 @@
-//! The files of the crate and which of them need which: what `use` and paths in the code name, followed
-//! through re-exports to the file that defines it. A file that only declares modules and passes names on
-//! needs nothing.
+//! Dependencies between the files of the crate. Names in `use` declarations and paths are resolved through
+//! re-exports to the file that defines them. A file that only declares modules and re-exports names has no
+//! dependencies.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The path of a module from the crate's root.
+/// Path of a module from the crate's root.
 type Module = Vec<String>;
 
-/// A source file.
+/// Source file.
 struct File {
     path: PathBuf,
     module: Module,
-    /// Words and signs of its code, without comments, strings, unit tests and imports.
+    /// Tokens of the code, without comments, strings, unit tests and imports.
     tokens: Vec<String>,
-    /// What it defines.
+    /// Names that the file defines.
     items: BTreeSet<String>,
-    /// What it imports: name here (`*` for all names), path as written, whether it is passed on.
+    /// Imports: local name (`*` for all names), path as written, and whether the name is re-exported.
     imports: Vec<(String, Vec<String>, bool)>,
 }
 
-/// The files of the crate with what each needs.
+/// Files of the crate with their dependencies.
 pub struct Imports {
     files: Vec<File>,
     by_module: BTreeMap<Module, usize>,
@@ -47,12 +47,12 @@ impl Imports {
         Imports { files, by_module }
     }
 
-    /// A file's path below the folder.
+    /// Returns a file's path below the folder.
     pub fn name(&self, file: usize) -> String {
         self.files[file].path.to_string_lossy().into_owned()
     }
 
-    /// By file, the files that it needs.
+    /// Returns the files that each file depends on.
     pub fn graph(&self) -> Vec<BTreeSet<usize>> {
         (0..self.files.len()).map(|k| self.needs(k)).collect()
     }
@@ -77,8 +77,8 @@ impl Imports {
         found
     }
 
-    /// The file that defines what a path in a module means; none for modules themselves and for what is not
-    /// of this crate.
+    /// Returns the file that defines a path in a module. Returns `None` for modules and for names of other
+    /// crates.
     fn defining(&self, from: &[String], path: &[String], depth: usize) -> Option<usize> {
         let mut module = from.to_vec();
         let mut rest = path;
@@ -122,7 +122,7 @@ impl Imports {
     }
 }
 
-/// The circles of a graph: files that need each other, directly or by way of others, the largest first.
+/// Returns the cycles of a graph, the largest first: files that depend on each other directly or indirectly.
 pub fn circles(graph: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
     let reached: Vec<BTreeSet<usize>> = (0..graph.len())
         .map(|k| {
@@ -164,7 +164,7 @@ impl File {
         file
     }
 
-    /// Takes the text of a file apart.
+    /// Parses the text of a file.
     fn parse(text: &str) -> File {
         let all = words(text.split("#[cfg(test)]\nmod tests {").next().unwrap());
         let mut file = File {
@@ -200,7 +200,7 @@ impl File {
     }
 }
 
-/// The leaves of an import: name here, path.
+/// Collects the leaves of an import: local name and path.
 fn tree(tokens: &[String], at: &mut usize, before: &[String], list: &mut Vec<(String, Vec<String>)>) {
     let mut path = before.to_vec();
     while let Some(token) = tokens.get(*at) {
@@ -242,7 +242,7 @@ fn tree(tokens: &[String], at: &mut usize, before: &[String], list: &mut Vec<(St
     }
 }
 
-/// The path that begins at a word: its words.
+/// Returns the path that begins at a token.
 fn path_at(tokens: &[String], mut at: usize) -> Vec<String> {
     let is_word =
         |t: Option<&String>| t.is_some_and(|t| t.starts_with(|c: char| c.is_alphabetic() || c == '_'));
@@ -257,7 +257,7 @@ fn path_at(tokens: &[String], mut at: usize) -> Vec<String> {
     path
 }
 
-/// Words and signs of code; `::` is one sign. Comments, strings and characters are left out.
+/// Splits code into tokens; `::` is one token. Comments, strings and characters are omitted.
 fn words(text: &str) -> Vec<String> {
     let c: Vec<char> = text.chars().collect();
     let (mut at, mut found) = (0, Vec::new());

@@ -1,4 +1,4 @@
-//! Data flows one way: what a stage imports is what the README says.
+//! Dependencies between modules: each stage imports only the modules that the README permits.
 
 mod imports;
 
@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 const INVARIANT: &str = "- Architecture invariant: ";
 
-/// By module, the modules that it may use, from the README's lines "`a` uses `b` and `c`; `d` uses `e`."
+/// Returns the permitted modules of each module, from the README's lines "`a` uses `b` and `c`; `d` uses
+/// `e`."
 fn invariants() -> BTreeMap<String, Vec<String>> {
     let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
     let clauses =
@@ -24,8 +25,8 @@ fn invariants() -> BTreeMap<String, Vec<String>> {
     found
 }
 
-/// The source files of the crate with the module that each belongs to; the pipeline itself may use all of
-/// them.
+/// Returns all source files of the crate, each with its module. The pipeline, in the files of the crate's
+/// root, may use all modules.
 fn sources() -> Vec<(String, PathBuf)> {
     let source = Path::new(ROOT).join("src");
     let mut files = Vec::new();
@@ -48,7 +49,7 @@ fn sources() -> Vec<(String, PathBuf)> {
     files.into_iter().map(|path| (module(&path), path)).collect()
 }
 
-/// Code without comments and without the unit tests, which may use what they test with.
+/// Returns the code without comments and unit tests. Unit tests may use any module.
 fn code(path: &Path) -> String {
     let is_test = path.components().any(|c| c.as_os_str() == "tests") || path.ends_with("tests.rs");
     let text = if is_test { String::new() } else { fs::read_to_string(path).unwrap() };
@@ -56,7 +57,7 @@ fn code(path: &Path) -> String {
     text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
 
-/// The modules that a piece of code names: `crate::a::…`, `crate::{a, b::…}`.
+/// Returns the modules that a piece of code names: `crate::a::…`, `crate::{a, b::…}`.
 fn modules(code: &str) -> Vec<String> {
     let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
     let mut found = Vec::new();
@@ -105,7 +106,7 @@ fn a_stage_imports_only_what_stands_before_it() {
     assert!(violations.is_empty(), "{}", violations.join("\n"));
 }
 
-/// The stages in the order of the README's table.
+/// Returns the stages in the order of the README's table.
 fn stages() -> Vec<String> {
     let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
     let table = readme.lines().skip_while(|line| !line.starts_with("| stage |")).skip(2);
@@ -124,7 +125,7 @@ fn a_stage_uses_what_stands_above_it() {
     }
 }
 
-/// Most files that may need each other.
+/// Maximum number of files in an import cycle.
 const MOST_IN_A_CIRCLE: usize = 3;
 
 #[test]

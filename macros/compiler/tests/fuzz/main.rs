@@ -1,5 +1,5 @@
-//! Mistreated mechanisms: whatever the tokens are, the compiler does not panic, its output is Rust, and
-//! neither time nor stack are without bound. Seeded, so that a failure comes again.
+//! Randomly modified mechanisms. For any tokens, the compiler does not panic, its output is valid Rust, and
+//! its time and stack are bounded. The random numbers are seeded, so failures are reproducible.
 
 mod sizes;
 
@@ -10,10 +10,10 @@ use sizes::with_mass;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Longest time that one expansion may take in a debug build, on a busy machine.
+/// Maximum time of one expansion in a debug build, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Mechanisms to begin with: the whole language, and what is yet to come.
+/// Initial mechanisms, which cover the whole language and planned extensions.
 const MECHANISMS: [&str; 12] = [
     "gravity = -g * y; pub struct DoublePendulum {
         pub g: f64, pub m1: f64, pub m2: f64, pub l1: f64, pub l2: f64,
@@ -107,7 +107,7 @@ const MECHANISMS: [&str; 12] = [
     }",
 ];
 
-/// Words to put where they do not belong.
+/// Tokens to insert at random places.
 const WORDS: &str = "f64 f32 T self crate super Self ground x y z t pi q v 0 1 2 1e999 1e-999 -1 0.5 99999999999999999999 \
     1u8 2.5f32 'a' \"text\" b\"x\" Body Particle Pin Sleeve Screw Collar Slot Universal Ball Planar Stage Free Weld Spring \
     Dashpot Force Torque Inerter Coordinate Vec mass com inertia about along on at rotated pitch lead damping stiffness \
@@ -115,7 +115,7 @@ const WORDS: &str = "f64 f32 T self crate super Self ground x y z t pi q v 0 1 2
     r#type größe sin cos sqrt ln acos pow atan2 dot cross norm unit rod sphere diagonal box pub struct enum fn where impl dyn for \
     if match loop _ __link0 () [] {} (x) [1,2,3] {a}";
 
-/// SplitMix64.
+/// Random number generator (SplitMix64).
 struct Random(u64);
 
 impl Random {
@@ -132,17 +132,17 @@ impl Random {
     }
 }
 
-/// Arguments and item of a mechanism of the list.
+/// Returns the arguments and the item of a mechanism in the list.
 fn split(text: &str) -> (TokenStream, TokenStream) {
     let (arguments, item) = text.split_once(';').unwrap();
     (arguments.parse().unwrap(), item.parse().unwrap())
 }
 
-/// One small change somewhere in a stream.
+/// Applies one random change to a token stream.
 fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> TokenStream {
     let mut list: Vec<TokenTree> = tokens.into_iter().collect();
     let groups: Vec<usize> = (0..list.len()).filter(|k| matches!(list[*k], TokenTree::Group(_))).collect();
-    // Most of the words are inside groups.
+    // Most of the tokens are inside groups.
     if !groups.is_empty() && random.below(5) > 0 {
         let at = groups[random.below(groups.len())];
         if let TokenTree::Group(group) = &list[at] {
@@ -177,7 +177,7 @@ fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> Toke
     list.into_iter().collect()
 }
 
-/// Expands and looks at the output. The text is what a failure is reported with.
+/// Expands a mechanism and checks the output. `text` is shown in failures.
 fn try_expand(arguments: TokenStream, item: TokenStream, text: &str) {
     let start = Instant::now();
     let output = expand(arguments, item, Path::new("../../tests/ui"));
@@ -193,7 +193,7 @@ fn try_expand(arguments: TokenStream, item: TokenStream, text: &str) {
     }
 }
 
-/// Runs on a thread that has as much stack as the compiler may use.
+/// Runs on a thread with the maximum stack that the compiler may use.
 fn with_little_stack(run: impl FnOnce() + Send + 'static) {
     let thread = std::thread::Builder::new().stack_size(MAX_STACK).spawn(run).unwrap();
     if let Err(panic) = thread.join() {

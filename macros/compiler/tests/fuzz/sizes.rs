@@ -1,4 +1,4 @@
-//! Great numbers of things, deep nests and figures near the end of their range.
+//! Mechanisms with many elements, deep nesting and coefficients near the limits of their range.
 
 use super::{try_expand, with_little_stack};
 use linkwork_compiler::expand;
@@ -6,7 +6,7 @@ use proc_macro2::TokenStream;
 use std::path::Path;
 use std::time::Instant;
 
-/// Fields for a chain of bodies on pins.
+/// Returns the fields of a chain of bodies with pins.
 fn chain(n: usize, kind: &str) -> String {
     let mut text = String::new();
     for k in 0..n {
@@ -27,7 +27,7 @@ fn list(n: usize, item: impl Fn(usize) -> String) -> String {
     (0..n).map(item).collect()
 }
 
-/// A planar chain of pins that is tied to the ground by others, so many of each.
+/// Returns the fields of a planar chain of `pins` pins with `ties` further pins to the ground.
 fn tied_chain(pins: usize, ties: usize) -> String {
     let bodies = list(pins, |k| {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(x)", k - 1) };
@@ -42,7 +42,7 @@ fn tied_chain(pins: usize, ties: usize) -> String {
     format!("struct S {{ {bodies} {ends} }}")
 }
 
-/// A mechanism with an expression somewhere.
+/// Returns a mechanism with an expression as mass.
 pub fn with_mass(e: &str) -> String {
     format!("struct S {{ m: f64, #[body(mass = {e})] b: Body, #[joint(ground -> b, along = x)] j: Sleeve }}")
 }
@@ -156,7 +156,8 @@ fn too_many_loops_are_refused_with_a_reason() {
     }
 }
 
-/// A mass through so many definitions, each of which names the one before twice.
+/// Returns a mechanism whose mass depends on `n` nested definitions, each of which refers to the previous one
+/// twice.
 fn definitions(start: &str, n: usize) -> String {
     let chain = (0..n).fold(format!("#[define({start})] d0: Scalar,"), |text, k| {
         format!("{text} #[define(sin(d{k}) * cos(d{k}))] d{}: Scalar,", k + 1)
@@ -166,8 +167,8 @@ fn definitions(start: &str, n: usize) -> String {
     )
 }
 
-/// Alike carts, driven by so many functions one in another of their own places; the first two are tied to
-/// each other.
+/// Returns a mechanism with identical carts, each driven by a chain of `n` definitions of its own coordinate.
+/// The first two carts are coupled.
 fn carts(n: usize) -> String {
     let cart = |name: &str| {
         let laws =
@@ -221,7 +222,7 @@ fn sharing_does_not_explode() {
     run_cases(cases);
 }
 
-/// A mass that is a sum of sums of parameters.
+/// Returns a mechanism whose mass is a sum of sums of parameters.
 fn sum_of_parameters(sums: usize, terms: usize) -> String {
     let name = |k: usize, i: usize| format!("m{k}_{i}");
     let sum = |k: usize| (0..terms).map(|i| name(k, i)).collect::<Vec<_>>().join(" + ");
@@ -232,17 +233,17 @@ fn sum_of_parameters(sums: usize, terms: usize) -> String {
     with_mass(&all).replace("m: f64, ", &fields)
 }
 
-/// A field whose type is given.
+/// Returns a struct with a field of this type.
 fn with_type(text: &str) -> String {
     format!("struct S {{ a: {text} }}")
 }
 
-/// An expression that is nested `n` times in another.
+/// Returns an expression with `n` levels of nesting.
 fn nested(n: usize, before: &str, inside: &str, after: &str) -> String {
     before.repeat(n) + inside + &after.repeat(n)
 }
 
-/// Input that nests without brackets, or needs much stack for each level, is refused or fits the stack.
+/// Input that nests without brackets, or needs much stack per level, is rejected or fits the stack.
 #[test]
 fn nesting_of_every_kind_fits_the_stack() {
     let mut cases: Vec<(String, String)> = Vec::new();
@@ -273,7 +274,7 @@ fn nesting_of_every_kind_fits_the_stack() {
             ("1 / (1 + m * (2 - ", "))"),
             ("dot(transpose([[1, 2, 3], [4, 5, 6], [7, 8, ", "]]) * x, y)"),
         ] {
-            // Brackets of one step count each.
+            // Each bracket of a level counts.
             let brackets = before.matches(['(', '[']).count();
             add(before, with_mass(&nested(n.min(10_000) / brackets, before, "m", after)));
         }

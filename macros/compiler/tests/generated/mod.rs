@@ -1,8 +1,8 @@
-//! Generated code as items.
+//! Parsing of generated code.
 
 use syn::{Expr, Item, Stmt};
 
-/// The items of generated code, those in `const _: () = { … };` in its place.
+/// Returns the items of generated code. Blocks `const _: () = { … };` are replaced by their items.
 pub fn items(file: syn::File) -> Vec<Item> {
     let inner = |item: Item| match item {
         Item::Const(block) if block.ident == "_" => match *block.expr {

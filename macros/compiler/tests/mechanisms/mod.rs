@@ -1,4 +1,4 @@
-//! Mechanisms that have every function between them.
+//! Mechanisms that cover all generated functions together.
 
 /// Attribute, name and fields.
 pub const MECHANISMS: [(&str, &str, &str); 11] = [

@@ -68,7 +68,7 @@ fn degrees_are_asked_for() {
     );
 }
 
-/// What is meant as it stands.
+/// Angles that are accepted as written.
 #[test]
 fn angles_that_are_meant_pass() {
     for angle in [
@@ -94,7 +94,7 @@ fn angles_that_are_meant_pass() {
     }
 }
 
-/// Right angles in degrees are those of the kernel: the generated code is the same to the letter.
+/// Right angles in degrees are exact: the generated code is identical to that with radians.
 #[test]
 fn right_angles_are_exact() {
     let code = |angle: &str| {

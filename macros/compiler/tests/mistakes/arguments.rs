@@ -1,8 +1,8 @@
-//! Names of arguments, in the words of other tools.
+//! Names of arguments in the terminology of other tools.
 
 use super::{ARM, CART, Row, answers};
 
-/// What a body is.
+/// Arguments of bodies.
 const BODIES: &[Row] = &[
     ("m = 1", "a Body has no argument `m`", "did you mean `mass`?"),
     ("weight = 1", "a Body has no argument `weight`", "did you mean `mass`?"),
@@ -41,7 +41,7 @@ fn bodies() {
     );
 }
 
-/// What acts on a hinge.
+/// Elements that act on a hinge.
 const ACTIONS: &[Row] = &[
     ("#[acts(on = hinge, k = 1)] coil: Spring", "a Spring has no argument `k`", "did you mean `stiffness`?"),
     (

@@ -1,4 +1,4 @@
-//! Attributes of fields, in the words of other tools.
+//! Attributes of fields in the terminology of other tools.
 
 use super::{ARM, Row, answers};
 

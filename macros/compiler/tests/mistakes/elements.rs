@@ -1,8 +1,8 @@
-//! Types of fields, in the words of other tools.
+//! Types of fields in the terminology of other tools.
 
 use super::{ARM, CART, Row, answers};
 
-/// Types with the element that is meant.
+/// Types with the corresponding element.
 const ONE: &[(&str, &str)] = &[
     ("RevoluteJoint", "Pin"),
     ("Revolute", "Pin"),
@@ -69,7 +69,7 @@ fn words_of_other_tools_are_understood() {
     }
 }
 
-/// Things that are said in another way.
+/// Types without a corresponding element, which are expressed in another way.
 const OTHERS: &[Row] = &[
     ("Mass", "unknown element type `Mass`", "`Body` if it has a size or turns, `Particle` if it is a point"),
     ("Joint", "unknown element type `Joint`", "`Pin`, `Sleeve`"),

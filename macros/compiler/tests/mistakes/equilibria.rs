@@ -1,8 +1,8 @@
-//! Declared equilibria that are none, and those without linear equations.
+//! Declared equilibria that are invalid or have no linear equations.
 
 use super::{Row, answers, messages};
 
-/// A pendulum with a motor, and one equilibrium.
+/// Returns a pendulum with a motor and one equilibrium.
 fn pendulum(said: &str) -> (String, String) {
     let fields = "m: f64, l: f64,
         #[body(mass = m, com = -l * y, inertia = sphere(m, l))] arm: Body,
@@ -39,7 +39,7 @@ fn what_is_no_equilibrium_is_said() {
     answers(pendulum, ROWS);
 }
 
-/// A carriage on a rail.
+/// Returns a carriage on a rail.
 fn carriage(said: &str) -> (String, String) {
     let fields = "m: f64, k: f64,
         #[body(mass = m, inertia = sphere(m, 1))] cart: Body,

@@ -1,4 +1,4 @@
-//! Expressions: functions, names and numbers, in the words of other tools.
+//! Expressions: functions, names and numbers in the terminology of other tools.
 
 use super::{ARM, Row, answers};
 
@@ -233,7 +233,7 @@ fn vectors() {
     );
 }
 
-/// Inertias of a body of mass `m` and length `l`.
+/// Inertias of a body with mass `m` and length `l`.
 const INERTIAS: &[Row] = &[
     ("[1, 1, 1]", "expected a 3×3 matrix, found three numbers", "write `diagonal(1, 1, 1)`"),
     ("[m, l, m]", "expected a 3×3 matrix, found three numbers", "write `diagonal(m, l, m)`"),

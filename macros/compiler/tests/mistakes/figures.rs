@@ -1,4 +1,4 @@
-//! Figures that no computation survives.
+//! Coefficients that are outside the range of computations.
 
 use super::{Row, answers, messages};
 
@@ -30,7 +30,7 @@ fn figures_leave_room() {
     );
 }
 
-/// Functions in which they do not occur are finite.
+/// Functions that do not contain these coefficients are finite.
 #[test]
 fn products_of_figures_leave_room() {
     const ROWS: &[Row] = &[(
@@ -65,7 +65,7 @@ fn figures_leave_room_in_single_precision() {
     );
 }
 
-/// What the sky and small machines need passes.
+/// Coefficients of planets and of small machines are accepted.
 #[test]
 fn figures_of_planets_and_of_small_machines_pass() {
     for (scalar, mass, length) in [

@@ -1,10 +1,11 @@
-//! Robots in files: one habit is one mistake, and a file that is not there is the only one.
+//! Robots in files: an error that occurs in many places is reported once, and a missing file causes no
+//! further error.
 
 use super::messages;
 use std::fs;
 use std::path::Path;
 
-/// The messages about a robot with these joints' origins and axes.
+/// Returns the messages of a robot whose joints have these origins and axes.
 fn robot(name: &str, xyz: &str, axis: &str) -> Vec<String> {
     let inertial = |com: &str| {
         format!(
@@ -50,7 +51,7 @@ fn a_wrong_path_is_one_mistake() {
     assert!(good, "{found:#?}");
 }
 
-/// A robot on a pedestal whose second link has no mass properties and whose last joint is fixed.
+/// Robot on a pedestal. The second link has no mass properties, and the last joint is fixed.
 const ROBOT: &str = r#"<robot name="r">
 <link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <link name="bare"/>
@@ -59,7 +60,7 @@ const ROBOT: &str = r#"<robot name="r">
 <joint name="mount" type="fixed"><parent link="bare"/><child link="hand"/></joint>
 </robot>"#;
 
-/// What is written for `parameters`, the first line of what is said, and a part of the help.
+/// Value of the option `parameters`, first line of the message and part of the help.
 const PARAMETERS: &[(&str, &str, &str)] = &[
     ("inertial(\"hnad\")", "unknown link `hnad` in `parameters`", "did you mean `hand`?"),
     ("placement(\"tunr\")", "unknown joint `tunr` in `parameters`", "did you mean `turn`?"),

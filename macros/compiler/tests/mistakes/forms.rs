@@ -1,8 +1,8 @@
-//! Forms of the equations that a mechanism has none of.
+//! Forms of the equations that do not exist for a mechanism.
 
 use super::{Row, answers};
 
-/// What is said of the attribute stands before `|`, further fields behind it.
+/// Inserts the text before `|` into the attribute and the text after it into the fields.
 fn setting(said: &str) -> (String, String) {
     let (words, fields) = said.split_once('|').unwrap_or((said, ""));
     let own =
@@ -61,7 +61,7 @@ fn mechanisms_without_a_form_say_which_they_have() {
     answers(setting, ROWS);
 }
 
-/// Four cyclic coordinates that are coupled.
+/// Four coupled cyclic coordinates.
 #[test]
 fn equations_of_routh_that_are_too_long_are_not_printed() {
     fn setting(words: &str) -> (String, String) {
@@ -84,7 +84,7 @@ fn equations_of_routh_that_are_too_long_are_not_printed() {
     answers(setting, ROWS);
 }
 
-/// What slips holds its normal force, which no independent speeds eliminate.
+/// A sliding contact has a normal force, which independent speeds do not eliminate.
 #[test]
 fn contacts_that_slip_have_no_equations_of_kane() {
     fn setting(words: &str) -> (String, String) {
@@ -101,7 +101,7 @@ fn contacts_that_slip_have_no_equations_of_kane() {
     answers(setting, ROWS);
 }
 
-/// Pins about skew axes, with a blade at their end.
+/// Pins about skew axes, with a nonholonomic constraint on the last link.
 #[test]
 fn equations_of_kane_that_are_too_long_are_not_printed() {
     fn pins(words: &str) -> (String, String) {
@@ -125,8 +125,8 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
     answers(pins, ROWS);
 }
 
-/// A plate on three cranks that stay parallel: one is redundant wherever they are, and none of them may be
-/// left out where they part.
+/// A plate on three cranks that remain parallel. One constraint is redundant in every parallel configuration,
+/// but none may be dropped where the cranks are not parallel.
 #[test]
 fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
     fn cranks(words: &str) -> (String, String) {
@@ -152,7 +152,7 @@ fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
     answers(cranks, ROWS);
 }
 
-/// Momenta leave forces out that depend on accelerations.
+/// The canonical equations are not defined for forces that depend on accelerations.
 #[test]
 fn forces_of_accelerations_leave_no_momenta() {
     fn own(words: &str) -> (String, String) {
@@ -176,7 +176,7 @@ fn forces_of_accelerations_leave_no_momenta() {
     answers(own, ROWS);
 }
 
-/// Carts on rails of their own, with so many forces.
+/// Returns `count` carts on separate rails, with forces on the first `forces` of them.
 fn carts(count: usize, forces: usize) -> String {
     let cart = |k: usize| {
         format!(

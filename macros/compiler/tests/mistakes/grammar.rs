@@ -1,4 +1,4 @@
-//! Slips of grammar in attributes and in the struct.
+//! Syntax errors in attributes and in the struct.
 
 use super::{ARM, Row, answers};
 

@@ -1,4 +1,4 @@
-//! Constraints that restrict nothing in any of their components.
+//! Constraints whose components restrict nothing.
 
 use super::{answers, counts};
 
@@ -22,7 +22,7 @@ fn what_restricts_nothing_is_refused() {
                 "this restricts no coordinate",
                 "an expression of coordinates stays zero",
             ),
-            // Not zero, and not to be made zero by any motion.
+            // Nonzero, and no motion makes it zero.
             (
                 "#[constraint(r(first / ground) = r(second / ground))] same: Holonomic",
                 "this restricts no coordinate",
@@ -43,8 +43,8 @@ fn what_restricts_some_components_is_not() {
     }
 }
 
-/// A product that is zero wherever the bodies are, which no simplification sees: rounding is all that is left
-/// of its row.
+/// A product that is zero in every configuration but not simplified to zero. Its row contains only rounding
+/// errors.
 #[test]
 fn what_is_nothing_but_rounding_is_dropped() {
     let fields = "#[body(mass = 2, com = x, inertia = rod(2, 1, x))] arm: Body,

@@ -1,4 +1,4 @@
-//! Joints: what they join, and their axes.
+//! Joints: their endpoints and axes.
 
 use super::{Row, answers};
 

@@ -1,8 +1,9 @@
-//! Points that a motion singles out, curves, cables and fields: what is missing, unknown or not there.
+//! Instant centres, curves, cables and vector fields: missing, unknown or nonexistent quantities.
 
 use super::{ARM, Row, answers, messages};
 
-/// Vectors of an output, beside an arm on a hinge, a bead on a curve of `s` and a free stone.
+/// Vectors as outputs, in a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a
+/// free stone.
 const VECTORS: &[Row] = &[
     ("instant_center(arm)", "`instant_center` takes a body and a frame", "`instant_center(body / frame)`"),
     ("instant_center(arm / ground / ground)", "`instant_center` takes a body and a frame", "(body / frame)"),
@@ -70,7 +71,7 @@ const VECTORS: &[Row] = &[
     ("r(arm.at(rate(s) * x) / ground)", "the rate of `s` cannot stand here", "coordinates and time"),
 ];
 
-/// Scalars of an output, beside the same things.
+/// Scalars as outputs of the same mechanism.
 const SCALARS: &[Row] = &[
     ("curvature(wire)", "`curvature` takes a curve and the coordinate along it", "`curvature(curve, s)`"),
     ("curvature(wire, u)", "`curvature` takes a coordinate, along which the curve is run through", ""),
@@ -123,7 +124,7 @@ fn points_of_motions() {
     answers(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), SCALARS);
 }
 
-/// Matrices of an output, beside the same things.
+/// Matrices as outputs of the same mechanism.
 const MATRICES: &[Row] = &[
     ("r(arm / ground)", "expected a matrix, found a vector", "`projector(n)`"),
     ("2 * s", "expected a matrix, found a scalar", "`inertia(body / point)`"),
@@ -174,7 +175,7 @@ fn matrices() {
     answers(|said| (String::new(), format!("{ARM} {MORE} {said}")), fields);
 }
 
-/// Fields beside them.
+/// Further fields of the same mechanism.
 const FIELDS: &[Row] = &[
     ("#[frame(ground, frenet(line, s))] f: Frame", "this curve is straight, and has no normal", "unit"),
     (
@@ -240,7 +241,7 @@ fn frames_elements_and_inertias() {
     answers(|said| (String::new(), format!("{ARM} {MORE} {said}")), FIELDS);
 }
 
-/// Units of what follows from curves and lengths, by what stands beside them.
+/// Units of curvature and of cable lengths are inferred from the expressions around them.
 #[test]
 fn units_are_inferred() {
     let fits = |fields: &str| {

@@ -1,4 +1,4 @@
-//! Arguments of `#[mechanism]`.
+//! Options of `#[mechanism]`.
 
 use super::{ARM, Row, answers};
 

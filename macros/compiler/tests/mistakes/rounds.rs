@@ -1,9 +1,9 @@
-//! A mistake of grammar and one of the mechanism: both are told in one round, where the first leaves the
-//! second true.
+//! A syntax error and an error in another element are reported in the same compilation, if the second does
+//! not depend on the first.
 
 use super::{ARM, counts, messages};
 
-/// An arm with a tool, by its parts.
+/// Fields of an arm with a tool.
 const PARTS: [&str; 12] = [
     "k: f64",
     "l: f64",
@@ -19,7 +19,7 @@ const PARTS: [&str; 12] = [
     "#[output(s * v(tip / ground / ground))] seen: Vector",
 ];
 
-/// The parts with others in the place of some.
+/// Returns the fields, some of them replaced.
 fn with(changed: &[(usize, &str)]) -> String {
     let part = |k: usize| changed.iter().find(|(at, _)| *at == k).map_or(PARTS[k], |(_, text)| text);
     (0..PARTS.len()).map(part).collect::<Vec<_>>().join(", ")
@@ -28,7 +28,7 @@ fn with(changed: &[(usize, &str)]) -> String {
 #[test]
 fn both_are_told() {
     let rows: Vec<(String, usize)> = vec![
-        // Grammar of a force element; a name in another.
+        // A syntax error in a force element; an unknown name in another element.
         (
             with(&[
                 (7, "#[acts(on = wrist, stifness = k)] coil: Spring"),
@@ -36,7 +36,7 @@ fn both_are_told() {
             ]),
             2,
         ),
-        // A body that cannot be read is a body all the same.
+        // A body with a syntax error is still known as a body.
         (
             with(&[
                 (3, "#[body(mass = 0.5 com = x)] tool: Body"),
@@ -51,7 +51,7 @@ fn both_are_told() {
             ]),
             2,
         ),
-        // Without a joint the tree is not known; what is said of others is.
+        // Without a joint the kinematic tree is unknown, but other errors are reported.
         (
             with(&[
                 (4, "#[joint(ground, arm, about = z)] hinge: Pin"),
@@ -66,11 +66,11 @@ fn both_are_told() {
             ]),
             2,
         ),
-        // An output; a definition.
+        // An output and a definition.
         (with(&[(11, "#[output(s +)] seen: Vector"), (10, "#[define(sine(hinge))] s: Scalar")]), 2),
-        // A name that stands twice, and an axis.
+        // A repeated name, and an axis.
         (with(&[(0, "tip: f64, k: f64"), (4, "#[joint(ground -> arm, about = l * z)] hinge: Pin")]), 2),
-        // A type that is not known, and one mistake in each of two elements that have nothing to do with it.
+        // An unknown type, and one error in each of two independent elements.
         (
             with(&[
                 (8, "#[acts(on = hinge)] motor: Engine"),
@@ -82,16 +82,16 @@ fn both_are_told() {
     ];
     let rows: Vec<(&str, &str, usize)> = rows.iter().map(|(fields, n)| ("", fields.as_str(), *n)).collect();
     counts(&rows);
-    // An argument of the attribute.
+    // An option of the attribute.
     counts(&[("gravty = -9.81 * y", &format!("{ARM} #[acts(on = hinges)] motor: Torque"), 2)]);
-    // What the attribute's argument may have meant decides on the others.
+    // A misspelt option may affect the other elements, so they are not checked.
     counts(&[
         ("inertias = none", "#[body(mass = 1)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin", 1),
         ("urfd = \"robot.urdf\"", "#[acts(on = elbow)] motor: Torque", 1),
     ]);
 }
 
-/// Whichever part has a mistake of grammar, nothing is said of the others, which have none.
+/// A syntax error in one field causes no errors in the other, valid fields.
 #[test]
 fn nothing_follows_from_a_mistake_of_grammar() {
     for (k, part) in PARTS.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Several mistakes at once: each of them is said, and nothing that follows from another.
+//! Several errors at once: each is reported, and no error that only follows from another one is.
 
 use super::{ARM, counts, messages};
 
@@ -8,14 +8,14 @@ const TOOL: &str = "#[body(mass = 1, inertia = sphere(1, 1))] tool: Body,";
 fn independent_mistakes_are_said_at_once() {
     let arm = format!("{ARM} {TOOL}");
     let rows: Vec<(String, usize)> = vec![
-        // An axis, a mass, a spring on another joint, an output.
+        // An axis, a mass, a spring on an unknown joint, an output.
         (
             "#[body(mass = mas)] arm: Body, #[joint(ground -> arm, about = up)] hinge: Pin,
             #[acts(on = hinge, stiffness = k)] coil: Spring, #[output(sine(hinge))] seen: Scalar"
                 .to_string(),
             4,
         ),
-        // Everything on the arm of a joint with a wrong end is read.
+        // Elements on the child of a joint with an invalid endpoint are still checked.
         (
             format!(
                 "{arm} #[joint(arm.at(l * x) -> tool, about = z)] wrist: Pin,
@@ -24,7 +24,7 @@ fn independent_mistakes_are_said_at_once() {
             ),
             4,
         ),
-        // A spring between points whose places are not known, and nothing else.
+        // A spring between points of unknown position causes no further error.
         (
             format!(
                 "{arm} #[joint(arm -> tool, about = z)] wrist: Pin, #[point(on = tool, at = l * x)] tip: Point,
@@ -33,7 +33,7 @@ fn independent_mistakes_are_said_at_once() {
             ),
             1,
         ),
-        // A definition that is used everywhere is wrong once.
+        // An error in a definition with many uses is reported once.
         (
             format!(
                 "{ARM} #[define(sine(hinge))] s: Scalar, #[output(s)] first: Scalar, #[output(2 * s)] second: Scalar,
@@ -41,7 +41,7 @@ fn independent_mistakes_are_said_at_once() {
             ),
             1,
         ),
-        // A particle that cannot be placed moves all the same.
+        // A particle with an invalid position still has a motion.
         (
             format!(
                 "{ARM} theta: Coordinate, #[particle(mass = 1, at = l * cos(theta) * x)] bead: Particle,
@@ -49,14 +49,14 @@ fn independent_mistakes_are_said_at_once() {
             ),
             1,
         ),
-        // A frame that cannot be turned has axes all the same.
+        // A frame with an invalid rotation still has axes.
         (
             format!("{ARM} #[frame(ground, z(omega0 * t))] turned: Frame, #[output(dot(arm.x, turned.x))] seen: Scalar"),
             1,
         ),
-        // Two mistakes of grammar.
+        // Two syntax errors.
         (format!("#[body(mass = 1 com = x)] tool: Body, {ARM} #[acts(hinge)] motor: Torque"), 2),
-        // A unit that is wrong in two places, and another mistake of units.
+        // An error of a unit that appears in two places, and another error of units.
         (
             "l: f64, m: f64, n: f64, #[body(mass = l, com = l * x)] arm: Body,
             #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -70,7 +70,7 @@ fn independent_mistakes_are_said_at_once() {
     counts(&rows);
 }
 
-/// The other place of a conflict is a note of the one error.
+/// The second position of a conflict is a note of one error.
 #[test]
 fn conflicts_are_one_error_with_a_note() {
     for (fields, note) in [

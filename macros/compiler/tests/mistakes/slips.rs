@@ -1,10 +1,10 @@
-//! Slips of those who know Rust, other tools or mechanics, and not yet the language: each gets one error,
-//! which says what to do.
+//! Errors of users who know Rust, other tools or mechanics, but not yet the language. Each causes one error
+//! with help.
 
 use super::{ARM, Row, messages};
 use std::path::Path;
 
-/// Arguments of the attribute, and fields beside those of an arm on a hinge.
+/// Arguments of the attribute, and fields in addition to those of an arm on a hinge.
 const SLIPS: &[(&str, &str)] = &[
     ("", "#[acts(on = hinge, stiffness = 3, damping = 1)] k: Spring"),
     ("", "#[acts(on = hinge, k = 3)] k: Spring"),
@@ -115,7 +115,8 @@ fn each_is_one_error_with_help() {
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), SLIPS.len(), wrong.join("\n\n"));
 }
 
-/// Fields beside those of an arm on a hinge, with the first line of what is said, and a part of the help.
+/// Fields in addition to those of an arm on a hinge, with the first line of the message and a part of the
+/// help.
 const POINTERS: &[Row] = &[
     (
         "#[acts(on = hinge, value = 3 * hinge_ddot)] k: Torque",
@@ -146,7 +147,7 @@ fn each_points_at_what_was_meant() {
     super::answers(|fields| (String::new(), format!("{ARM} {fields}")), POINTERS);
 }
 
-/// Arguments of a robot's file.
+/// Options for a robot's file.
 const OPTIONS: &[Row] = &[
     ("lock = [hand_joint]", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
     ("lock = \"hand_joint\"", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),

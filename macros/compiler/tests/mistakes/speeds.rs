@@ -1,4 +1,4 @@
-//! Generalized speeds that are none.
+//! Invalid generalized speeds.
 
 use super::{Row, answers};
 

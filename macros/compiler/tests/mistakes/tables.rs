@@ -1,9 +1,9 @@
-//! Mistakes one by one, in the files of `tables`: what is written, the tokens that the message points at
-//! between `‹` and `›`, and the message. `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test mistakes`
-//! writes the files anew; read the difference.
+//! Individual errors, in the files of the folder `tables`. Each row contains the source text, in which `‹`
+//! and `›` enclose the tokens that the message points at, and the message. `LINKWORK_WRITE=1 cargo test -p
+//! linkwork-compiler --test mistakes` regenerates the files; review the difference.
 //!
-//! A section begins with `== mechanism(arguments)` and the fields that its rows stand among; rows of
-//! `== items` are whole items. Several messages about a row are in the order of their tokens.
+//! A section begins with `== mechanism(arguments)` and fields, which are common to its rows. Rows of `==
+//! items` are complete items. Several messages of a row are in the order of their tokens.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -12,22 +12,22 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Around the tokens that a message points at.
+/// Marks around the tokens that a message points at.
 const MARKS: [char; 2] = ['‹', '›'];
 
-/// Where the tables and the robots' files are.
+/// Returns the folder of the tables and of the robots' files.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mistakes")
 }
 
-/// A message, with the part of the source that it is about; the attribute as a whole is an empty part.
+/// Message with its byte range in the source. The range is empty for the attribute as a whole.
 struct Said {
     from: usize,
     to: usize,
     text: String,
 }
 
-/// The messages about `#[mechanism(…)] item`, in the order of their places.
+/// Returns the messages of `#[mechanism(…)] item`, in the order of their positions.
 fn said(source: &str) -> Vec<Said> {
     let mut tokens = source.parse::<TokenStream>().expect("these are tokens").into_iter().skip(1);
     let Some(TokenTree::Group(attribute)) = tokens.next() else { panic!("{source} has no attribute") };
@@ -40,8 +40,8 @@ fn said(source: &str) -> Vec<Said> {
         compile(&source, &Graph::new(), &mut cx);
     }
     let texts = cx.messages();
-    // Each is `::core::compile_error! { "…" }`: eight tokens, the first and the last of which have the
-    // places.
+    // Each error is `::core::compile_error! { "…" }`: eight tokens, of which the first and the last have the
+    // spans of the error.
     let errors: Vec<Span> = cx.into_tokens().into_iter().map(|token| token.span()).collect();
     let mut found: Vec<Said> = errors
         .chunks((errors.len() / texts.len().max(1)).max(1))
@@ -56,7 +56,7 @@ fn said(source: &str) -> Vec<Said> {
     found
 }
 
-/// A row as it stands in its table: the source with marks, and below it the messages.
+/// Returns a row of a table: the source with marks, followed by the messages.
 fn row(before: &str, row: &str, after: &str) -> String {
     let source = format!("{before}{row}{after}");
     let found = said(&source);
@@ -87,7 +87,7 @@ fn row(before: &str, row: &str, after: &str) -> String {
     marked
 }
 
-/// A table as it should be: every row with what is said of it now.
+/// Returns a table with the current messages of all rows.
 fn table(text: &str) -> String {
     let (mut before, mut after) = (String::new(), "");
     let mut blocks = Vec::new();

@@ -1,4 +1,4 @@
-//! Text of a mechanism in; what the model says of it, or the mistakes, out.
+//! Tests of the model: compare the model of a mechanism, or the errors, as text.
 
 mod solids;
 
@@ -11,12 +11,12 @@ use linkwork_compiler::syntax::{Base, FileFormat, FileOptions, Inertias, InputOp
 use linkwork_compiler::{import, read};
 use std::path::Path;
 
-/// Fields of a mechanism, and what comes of them; indentation does not matter.
+/// Compares the model of a mechanism with these fields; indentation is ignored.
 fn check(fields: &str, expected: &str) {
     compare(&facts(fields, None), expected);
 }
 
-/// The same of a file's contents inside `<robot>`.
+/// Compares the model of a URDF file with these contents of `<robot>`; indentation is ignored.
 fn check_urdf(inside: &str, expected: &str) {
     compare(&facts("", Some(&format!("<robot name=\"r\">{inside}</robot>"))), expected);
 }
@@ -123,7 +123,7 @@ fn motion(link: &Link<'_>, model: &Model<'_>) -> String {
     text
 }
 
-/// Position and axes, as far as they differ from none.
+/// Returns position and axes as text, without identity parts.
 fn pose(pose: &Pose<'_>) -> String {
     let mut text = String::new();
     if !pose.translation.is_zero() {
@@ -135,7 +135,7 @@ fn pose(pose: &Pose<'_>) -> String {
     text
 }
 
-/// The values of the parameters are 2, 3, 4, …
+/// Evaluates an expression. The parameters have the values 2, 3, 4, …
 fn value(e: Expr<'_>) -> f64 {
     eval_one(e, &|symbol| match Quantity::of(symbol) {
         Quantity::Parameter(k) => k as f64 + 2.0,
@@ -182,7 +182,7 @@ fn coordinates_are_named_after_their_joints_in_the_order_of_declaration() {
         let names: Vec<&str> = found.lines().take(expected.len()).map(str::trim).collect();
         assert_eq!(names, expected.iter().map(|line| line.trim()).collect::<Vec<_>>(), "{kind}: {found}");
     }
-    // The joints come in their order, the links from the ground outwards.
+    // Joints are in the order of their declaration, links from the ground outwards.
     check(
         "#[body(mass = 1)] b: Body, #[body(mass = 1)] a: Body,
         #[joint(a -> b, along = y)] second: Sleeve,
@@ -219,7 +219,7 @@ fn welded_bodies_become_one_link() {
 
 #[test]
 fn ends_are_placed_and_rotated() {
-    // The joint's frame is that of both ends: the body is where its own end comes to lie on the other.
+    // Both ends of the joint have the same frame, so the body's end coincides with the other end.
     check(
         "l: f64,
         #[body(mass = 1)] b: Body,
@@ -235,7 +235,7 @@ fn ends_are_placed_and_rotated() {
         link 0 on ground turns about [0, 0, 1] by pin; mass 1, moment [0, -1, 0], inertia [[1, 0, 0], [0, 0, 0], [0, 0, 1]]
         frame b on 0 rotated [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]",
     );
-    // Rotations in order about carried axes; a direction turned by an angle; a matrix by rows.
+    // Rotations about successive axes in order; a rotation about a direction by an angle; a matrix by rows.
     for rotations in [
         "x(pi / 2), z(pi / 2)",
         "eigenaxis(x, pi / 2), eigenaxis(z, pi / 2)",
@@ -252,7 +252,7 @@ fn ends_are_placed_and_rotated() {
 
 #[test]
 fn turning_axes_of_numbers_are_brought_onto_coordinate_axes() {
-    // The frame of the body is not moved by that: what the link's frame is rotated by is taken back.
+    // The frame of the body does not change: the rotation of the link's frame is compensated.
     check(
         "#[body(mass = 1, com = x)] b: Body, #[joint(ground -> b, about = [0.6, 0, 0.8])] pin: Pin,",
         "q: pin
@@ -265,7 +265,7 @@ fn turning_axes_of_numbers_are_brought_onto_coordinate_axes() {
         link 0 on ground turns about [0, 0, -1] by pin; mass 1, moment [1, 0, 0], inertia [[0, 0, 0], [0, 1, 0], [0, 0, 1]]
         frame b on 0",
     );
-    // One that depends on parameters stays as it is, and so does a sliding one.
+    // An axis that depends on parameters is not transformed, and neither is the axis of a sliding joint.
     check(
         "a: f64, #[body(mass = 1, com = z)] b: Body, #[joint(ground -> b, about = cos(a) * x + sin(a) * y)] pin: Pin,",
         "q: pin
@@ -355,12 +355,12 @@ fn a_link_with_inertia_has_mass() {
          = help: no real body has that: give it a mass, or an inertia of zero
          = help: mend the file, or write `#[mechanism(urdf = \"…\", inertia = trust)]` to take it as it is",
     );
-    // What is fixed to the ground enters no equation.
+    // Bodies that are fixed to the ground appear in no equation.
     let fixed = format!("<robot>{}</robot>", robot("fixed"));
     assert!(!facts("", Some(&fixed)).contains("no mass"));
 }
 
-/// Exporters leave such figures where there are none; a body with mass is not as small as they say.
+/// Exporters write such values for bodies without inertia. They are too small for a body with mass.
 #[test]
 fn noise_is_no_inertia() {
     let link = |mass: &str, moment: &str| {
@@ -386,7 +386,7 @@ fn noise_is_no_inertia() {
             true => assert!(facts("", Some(&format!("<robot>{moving}</robot>"))).starts_with("q: j\n")),
             false => check_urdf(&moving, &mistake(moment)),
         }
-        // What is fixed to the ground enters no equation.
+        // Bodies that are fixed to the ground appear in no equation.
         check_urdf(&text.replace("JOINT", "fixed"), "q:\nframe b on ground\nframe a on ground");
     }
 }
@@ -409,7 +409,7 @@ fn mistakes_are_reported_together_and_once() {
         this coordinate is an angle
         = help: what acts on it is a Torque",
     );
-    // A body that failed to parse is not unknown where it is joined.
+    // A body with a syntax error is still known to its joints.
     check(
         "#[body(mass = )] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,",
         "`mass` has no value\n= help: write `mass = …`",

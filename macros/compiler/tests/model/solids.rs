@@ -1,4 +1,4 @@
-//! Inertias of solids against quadrature, their sums and rotations.
+//! Inertias of solids compared with quadrature, and sums and rotations of inertias.
 
 use super::value;
 use linkwork_compiler::diag::Diagnostics;
@@ -7,7 +7,7 @@ use linkwork_compiler::read;
 use linkwork_compiler::resolve::build_model;
 use std::path::Path;
 
-/// The inertia of a solid as the model has it.
+/// Returns the inertia of a solid in the model.
 fn inertia(solid: &str) -> [[f64; 3]; 3] {
     let mut cx = Diagnostics::new();
     let item =
@@ -31,7 +31,8 @@ fn diagonal(d: [f64; 3]) -> [[f64; 3]; 3] {
     [[d[0], 0.0, 0.0], [0.0, d[1], 0.0], [0.0, 0.0, d[2]]]
 }
 
-/// Mass 3 between two radii along z: axial moment, and transverse moment about the centre of mass, by slices.
+/// Returns the axial moment, and the transverse moment about the centre of mass, of a solid of revolution
+/// with mass 3 between two radii along z. Computed from slices.
 fn of_revolution(from: f64, to: f64, outer: impl Fn(f64) -> f64, inner: impl Fn(f64) -> f64) -> (f64, f64) {
     const SLICES: usize = 40_000;
     let (mut mass, mut first, mut axial, mut transverse) = (0.0, 0.0, 0.0, 0.0);
@@ -73,7 +74,7 @@ fn solids_of_revolution_agree_with_quadrature() {
         if solid.contains("z)") {
             assert_near(&solid.replace("z)", "x)"), diagonal([axial, transverse, transverse]), tolerance);
             assert_near(&solid.replace("z)", "-y)"), diagonal([transverse, axial, transverse]), tolerance);
-            // Moment `a` about n, `t` about its normals: t 1 + (a − t) n nᵀ.
+            // Moments `a` about n and `t` about its normals: t 1 + (a − t) n nᵀ.
             let n = [1.0 / 3.0, 2.0 / 3.0, -2.0 / 3.0];
             let tensor = std::array::from_fn(|i| {
                 std::array::from_fn(|j| {
@@ -87,7 +88,7 @@ fn solids_of_revolution_agree_with_quadrature() {
 
 #[test]
 fn solids_of_three_lengths_agree_with_quadrature() {
-    // Moments of second order of a box by the rule of two points, which is exact for them.
+    // Second moments of a box by the two-point rule, which is exact for them.
     let second = |a: f64| (a / 2.0 / 3.0_f64.sqrt()).powi(2);
     let from_second =
         |m: f64, s: [f64; 3]| diagonal([m * (s[1] + s[2]), m * (s[0] + s[2]), m * (s[0] + s[1])]);
@@ -95,7 +96,7 @@ fn solids_of_three_lengths_agree_with_quadrature() {
     assert_near("cuboid(3, 0.5, 1, 2)", cuboid, 1e-12);
     assert_near("box(3, 0.5, 1, 2)", cuboid, 1e-12);
     assert_near("plate(3, 0.5, 1)", from_second(3.0, [second(0.5), second(1.0), 0.0]), 1e-12);
-    // A ball of radius one has I = 2 ∫ z² dm about every axis; lengths stretch each second moment alone.
+    // A ball of radius one has I = 2 ∫ z² dm about every axis. Each length scales only its own second moment.
     let (moment, _) = of_revolution(-1.0, 1.0, |z| (1.0 - z * z).max(0.0).sqrt(), |_| 0.0);
     let second = [0.5_f64, 1.0, 2.0].map(|a| a * a * moment / 2.0 / 3.0);
     assert_near("ellipsoid(3, 0.5, 1, 2)", from_second(3.0, second), 1e-8);

@@ -8,12 +8,12 @@ use linkwork_compiler::lower::{Op, Program};
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 
-/// The programs of some functions.
+/// Returns the programs of these functions.
 fn programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
     programs_and_nodes(arguments, item, functions).0
 }
 
-/// The programs of some functions, and how many expressions were made on the way.
+/// Returns the programs of these functions, and the number of expressions in the graph.
 fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<Program>, usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let tokens = |text: &str| text.parse().expect("the source is Rust");
@@ -61,20 +61,19 @@ fn totals(arguments: &str, item: &str) -> [usize; 4] {
     std::array::from_fn(|k| all[k].counts.total())
 }
 
-/// Nothing is dearer than its bound.
+/// Checks that no count exceeds its bound.
 fn at_most(found: &[usize], bounds: &[usize], what: &str) {
     assert!(found.iter().zip(bounds).all(|(n, most)| n <= most), "{what}: {found:?}, at most {bounds:?}");
 }
 
-/// Instructions where products are fused into sums, without sines and cosines.
+/// Returns the number of instructions after fusion of products and sums, without sines and cosines.
 fn instructions(program: &Program) -> usize {
     let operations = program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..) | Op::Join(..)));
     operations.count() - program.counts.calls
 }
 
-/// Multiplications, additions and divisions of the main functions of a robot together, sines and cosines
-/// apart, and the instructions that are left of them when products are fused into sums; of lanes if its limbs
-/// are alike and `lanes` says so.
+/// Returns the operations of the main functions of a robot, without sines and cosines, and the number of
+/// instructions after fusion. With `lanes`, the programs with lanes for identical limbs are counted.
 fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
     let arguments = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
     let all = programs(&arguments, "pub struct Robot;", &MAIN);
@@ -116,8 +115,8 @@ fn robots() {
     }
 }
 
-/// Contacts of four legs, whose rates are lanes as the legs are: instructions of what a step with held
-/// contacts needs of them.
+/// Instructions of contact functions for four legs. Contact velocities of the legs are evaluated in lanes. A
+/// step with fixed contact modes calls these functions.
 #[test]
 fn contacts_of_legs() {
     let item = "pub struct Robot {
@@ -138,7 +137,7 @@ fn contacts_of_legs() {
 }
 
 /// Chains of pins about alternating axes, with numbers and with parameters. Inverse and forward dynamics grow
-/// with the number of joints, the mass matrix with its square.
+/// linearly with the number of joints, the mass matrix grows quadratically.
 #[test]
 fn chains() {
     let mut before: Option<[usize; 4]> = None;
@@ -154,8 +153,8 @@ fn chains() {
         at_most(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
         let symbolic = totals("gravity = -9.81 * z", &chain(n, true));
         at_most(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
-        // The factorisation gives way to articulated bodies beyond some length, so growth shows from eight
-        // on.
+        // Beyond some length, articulated bodies replace the factorisation, so growth is tested from eight
+        // joints on.
         if let Some(before) = before.filter(|_| n >= 16) {
             for k in [0, 1] {
                 assert!(found[k] < before[k] * 5 / 2, "{} grows linearly", MAIN[k]);
@@ -170,9 +169,9 @@ fn chains() {
     }
 }
 
-/// From sixteen joints to sixty-four what inverse and forward dynamics cost is a straight line, and what the
-/// mass matrix and the derivatives cost a parabola: three lengths tell all others, up to a few operations.
-/// The expressions that the compiler makes for all functions together grow with the square at most.
+/// From sixteen to sixty-four joints, the costs of inverse and forward dynamics are linear functions, and the
+/// costs of the mass matrix and of derivatives are quadratic functions: three lengths determine all others up
+/// to a few operations. The number of expressions for all functions grows at most quadratically.
 #[test]
 fn curves_of_growth() {
     let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
@@ -199,7 +198,7 @@ fn curves_of_growth() {
     }
 }
 
-/// A planar chain of particles on rods, each placed by the angles of all rods before it.
+/// Returns a planar chain of particles on rods; the angles of all preceding rods determine each position.
 fn placed_chain(n: usize) -> String {
     let mut item = String::from("pub struct Placed {");
     let (mut x, mut z) = (Vec::new(), Vec::new());
@@ -219,8 +218,8 @@ fn placed_chain(n: usize) -> String {
     item
 }
 
-/// What particles have in common is summed once: the mass matrix takes `3/2 n²` operations, factorisation the
-/// `n³/3` that a full matrix takes, and everything else grows linearly.
+/// Common terms of the particles are summed once. The mass matrix takes `3/2 n²` operations, the
+/// factorisation takes the `n³/3` of a full matrix, and all other functions grow linearly.
 #[test]
 fn chains_placed_by_expressions() {
     let lines = [
@@ -243,8 +242,8 @@ fn chains_placed_by_expressions() {
     }
 }
 
-/// A mechanism below the size from which nothing is compared any more costs the compiler less than one twice
-/// as large.
+/// A mechanism just below the size limit for comparing candidates takes fewer expressions to compile than one
+/// of twice the size.
 #[test]
 fn comparing_stays_cheaper_than_growing() {
     let chain = |n: usize| {
@@ -264,7 +263,7 @@ fn comparing_stays_cheaper_than_growing() {
     assert!(4 * one < 3 * two, "16 spatial pins take {one} expressions, 32 take {two}");
 }
 
-/// The operations of the main functions of a prepared mechanism.
+/// Returns the operations of the main functions of a prepared mechanism.
 fn prepared(arguments: &str) -> [usize; 4] {
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
@@ -278,9 +277,9 @@ fn prepared(arguments: &str) -> [usize; 4] {
     MAIN.map(|name| functions.iter().find(|f| f.name == name).expect("it is there").program.counts.total())
 }
 
-/// Once prepared, a robot whose links' mass properties are parameters takes hardly more operations than the
-/// one with the figures of the file, where its bodies are of no symmetry. What is zero in a file saves
-/// operations only as a figure: the UR5, whose bodies are symmetric, takes twice as many.
+/// After preparation, a robot with mass properties as parameters takes hardly more operations than with the
+/// coefficients of the file, unless its bodies are symmetric. Zeros in a file save operations only as
+/// numbers: the UR5, whose bodies are symmetric, takes twice as many.
 #[test]
 fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";

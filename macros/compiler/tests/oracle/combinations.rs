@@ -1,5 +1,5 @@
-//! Mechanisms that combine loops, driven frames, prescribed bases, rolling, inerters, coordinates of their
-//! own and constraints on velocities, with the masses and elements that the oracle makes of them.
+//! Mechanisms that combine loops, moving frames, prescribed bases, rolling, inerters, user-defined
+//! coordinates and velocity constraints, with the masses and elements of the oracle's model.
 
 use crate::combined::Law::{Central, Dashpot, Growing, Inerter, Push, Spring};
 use crate::combined::Row;
@@ -7,7 +7,7 @@ use crate::combined::Row;
 const NONE: [f64; 3] = [0.0; 3];
 const DOWN: [f64; 3] = [0.3, -0.2, -9.81];
 
-/// The mechanisms.
+/// Mechanisms.
 pub const ROWS: &[Row] = &[
     Row {
         name: "a loop on a driven frame with central gravity",

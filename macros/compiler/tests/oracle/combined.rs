@@ -1,8 +1,8 @@
-//! Mechanisms that combine what is seldom combined, against d'Alembert's principle with positions alone:
-//! every body is a few particles with its mass, its centre and its inertia; their accelerations and partial
-//! velocities, and those of the lengths that elements act along, are differences of places (of sixth order)
-//! along a motion. What elements do, how velocities, accelerations, constraints and their derivatives follow
-//! from places is the compiler's part, and is not used here.
+//! Mechanisms with rare combinations of features, compared with d'Alembert's principle on positions alone.
+//! Every body is replaced by a few particles with the same mass, centre of mass and inertia. Sixth-order
+//! differences of positions along a motion give accelerations and partial velocities of the particles and of
+//! the lengths of elements. The compiler's velocities, accelerations, constraints and derivatives are not
+//! used.
 
 use crate::combinations::ROWS;
 use crate::random::Random;
@@ -16,30 +16,30 @@ use std::path::Path;
 
 /// Step of differences.
 const H: f64 = 4e-3;
-/// Largest difference beside the size of what is compared.
+/// Maximum difference, relative to the magnitude of the compared values.
 const TOLERANCE: f64 = 1e-7;
 
-/// A body or particle: its name, mass, centre of mass, moments of inertia about its own axes.
+/// Body or particle: name, mass, centre of mass, moments of inertia about its own axes.
 pub type Mass = (&'static str, f64, [f64; 3], [f64; 3]);
 
-/// What acts along a scalar expression of the language.
+/// Law of an element that acts along a scalar expression of the language.
 #[derive(Clone, Copy)]
 pub enum Law {
     Spring(f64, f64),
     Dashpot(f64),
     Inerter(f64),
     Push(f64),
-    /// The potential `−c / s`.
+    /// Potential `−c / s`.
     Central(f64),
-    /// The potential `½ k s²` times the square of time.
+    /// Potential `½ k s²` times the square of time.
     Growing(f64),
 }
 
-/// A mechanism, and what the oracle knows of it.
+/// Mechanism and its model for the oracle.
 pub struct Row {
     pub name: &'static str,
     pub gravity: [f64; 3],
-    /// One letter for each joint or coordinate: scalar, ball, free.
+    /// One letter for each joint or coordinate: `s` scalar, `b` ball, `f` free.
     pub charts: &'static str,
     pub item: &'static str,
     pub masses: &'static [Mass],
@@ -139,7 +139,7 @@ fn turned(quaternion: &[f64], u: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| u[i] + 2.0 * (w * first[i] + second[i]))
 }
 
-/// `q ⊗ exp(φ)`
+/// Rotates a quaternion: `q ⊗ exp(φ)`.
 fn turn(q: &mut [f64], phi: [f64; 3]) {
     let angle = phi.iter().map(|x| x * x).sum::<f64>().sqrt();
     let part = if angle < 1e-12 { 0.5 } else { (angle / 2.0).sin() / angle };
@@ -152,7 +152,7 @@ fn turn(q: &mut [f64], phi: [f64; 3]) {
     q[3] = d * w - a * x - b * y - c * z;
 }
 
-/// `(45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + f₃ − f₋₃) / 60 h`
+/// Returns the first derivative `(45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + f₃ − f₋₃) / 60 h`.
 fn first(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0].map(|k| f(k * H));
     let at = |i: usize| (g[i] - a[i] - 9.0 * (e[i] - b[i]) + 45.0 * (d[i] - c[i])) / (60.0 * H);
@@ -166,7 +166,7 @@ fn second(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 }
 
 impl Case<'_> {
-    /// `q ⊕ (v h + a h² / 2)`, and velocities that go with it.
+    /// Returns the state after `q ⊕ (v h + a h² / 2)`, with consistent velocities.
     fn moved(&self, s: &State, h: f64) -> State {
         let mut out = s.clone();
         let (mut q0, mut v0) = (0, 0);
@@ -197,7 +197,7 @@ impl Case<'_> {
         out
     }
 
-    /// A step along one velocity at an instant.
+    /// Returns the state after a step along one velocity at the same time.
     fn stepped(&self, s: &State, k: usize, h: f64) -> State {
         let mut unit = s.clone();
         unit.v.fill(0.0);
@@ -211,7 +211,7 @@ impl Case<'_> {
         self.output.functions.iter().any(|f| f.name == name)
     }
 
-    /// By the program and by the one in lanes, which must agree.
+    /// Returns the result of a function. The scalar program and the program with lanes must agree.
     fn run(&self, name: &str, s: &State) -> Vec<f64> {
         let f = self.output.functions.iter().find(|f| f.name == name);
         let f = f.unwrap_or_else(|| panic!("{}: no {name}", self.name));
@@ -242,7 +242,7 @@ impl Case<'_> {
         }
     }
 
-    /// Places of all particles, one after another.
+    /// Returns the positions of all particles in order.
     fn places(&self, s: &State) -> Vec<f64> {
         let mut all = Vec::new();
         for (name, _, com, moments) in self.row.masses {
@@ -268,8 +268,8 @@ impl Case<'_> {
         all
     }
 
-    /// Their masses: those beside the centre, 1 m away, may be negative, for what they have together is the
-    /// body's.
+    /// Returns the masses of all particles. Masses at a distance of 1 m from the centre may be negative; only
+    /// the sum over a body is its mass.
     fn weights(&self) -> Vec<f64> {
         let mut all = Vec::new();
         for (_, mass, _, moments) in self.row.masses {
@@ -285,7 +285,7 @@ impl Case<'_> {
         all
     }
 
-    /// `τ` by d'Alembert's principle.
+    /// Returns `τ` by d'Alembert's principle.
     fn forces(&self, s: &State) -> Vec<f64> {
         let lengths = |s: &State| -> Vec<f64> {
             (0..self.row.elements.len()).map(|k| self.run(&format!("s{k}"), s)[0]).collect()
@@ -328,7 +328,7 @@ impl Case<'_> {
         let jacobian = self.run("constraint_jacobian", s);
         let nv = s.v.len();
         let nc = jacobian.len() / nv;
-        // Rates are linear in velocities.
+        // Constraint rates are linear in the velocities.
         for k in 0..nv {
             let by = |h: f64| {
                 let mut s = s.clone();
@@ -349,7 +349,7 @@ impl Case<'_> {
         }
     }
 
-    /// `M v̇ + h = τ + Jᵀ λ` and `J v̇ + b = 0`.
+    /// Checks `M v̇ + h = τ + Jᵀ λ` and `J v̇ + b = 0`.
     fn check_accelerations(&self, s: &State) {
         let nv = s.v.len();
         let constrained = self.has("constraint_jacobian");

@@ -1,6 +1,6 @@
-//! Random mechanisms with one drive for each velocity: sums of coordinates, displacements between points, or
-//! their rates, are functions of time. Accelerations follow from the drives alone, and the multipliers are
-//! the residuals of Kane's equations.
+//! Random mechanisms with one prescribed motion for each velocity: sums of coordinates, displacements between
+//! points, or their rates, are functions of time. Accelerations follow from the prescribed motions alone, and
+//! the multipliers are the residuals of Kane's equations.
 
 use crate::kane::{self, Measure, State};
 use crate::random::Random;
@@ -13,25 +13,26 @@ use linkwork_compiler::{compile, read};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Largest difference, relative to the largest number of its kind.
+/// Maximum difference, relative to the largest entry of the same kind.
 const TOLERANCE: f64 = 1e-7;
-/// Drives whose least pivot is smaller than this, next to the largest entry, are left out.
+/// Minimum pivot, relative to the largest entry. Mechanisms with smaller pivots are skipped.
 const REGULAR: f64 = 1e-2;
 const TIME: f64 = 0.4;
 
-/// A measure that follows `c₀ + c₁ t + c₂ t²`, or whose rate follows the rate of that.
+/// Prescribed motion: the measure follows `c₀ + c₁ t + c₂ t²`, or its rate follows the rate of this
+/// polynomial.
 struct Drive {
     measure: Measure,
     path: [f64; 3],
     by_rate: bool,
 }
 
-/// Checks the mechanism of a seed; false where its drives nearly depend on each other.
+/// Checks the mechanism of a seed. Returns false if its prescribed motions are nearly dependent.
 pub fn check(seed: u64) -> bool {
     let style = Style { bodies: 4, limbs: 0, decades: 0.3, noise: None };
     let mut spec = spec(9_000_000 + seed, style);
     for body in &mut spec.bodies {
-        // No drive constrains the coordinate of a slider.
+        // No prescribed motion constrains the coordinate of a slider.
         body.slider = None;
     }
     let (nq, nv) = kane::sizes(&spec);
@@ -49,7 +50,7 @@ pub fn check(seed: u64) -> bool {
         let state = State::new(&q, &unit, &zero);
         drives.iter().map(|drive| kane::measured(&spec, &state, &drive.measure).rate().re).collect()
     };
-    // By rows.
+    // Stored by rows.
     let columns: Vec<Vec<f64>> = (0..nv).map(partial).collect();
     let jacobian: Vec<Vec<f64>> = (0..nv).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
     let state = State::new(&q, &v, &zero);
@@ -79,8 +80,8 @@ fn normalise(spec: &Spec, q: &mut [f64]) {
     }
 }
 
-/// A drive for every velocity: of the coordinates of a joint, some with others; where it has none, of points
-/// of its body.
+/// Returns a prescribed motion for every velocity: of coordinates of a joint, some in combination with
+/// others, or of points of its body if the joint has no coordinates.
 fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
     let mut drives = Vec::new();
     let mut before: Vec<(usize, usize)> = Vec::new();
@@ -109,12 +110,12 @@ fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
         }
     }
     debug_assert_eq!(drives.len(), nv);
-    // Constraints on configurations come first.
+    // Holonomic constraints precede velocity constraints.
     drives.sort_by_key(|drive| drive.by_rate);
     drives
 }
 
-/// Elimination with all pivots; `None` for a matrix that is nearly singular.
+/// Solves a linear system by elimination with complete pivoting. Returns `None` for a nearly singular matrix.
 fn solved(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     let n = rows.len();
     let largest = rows.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
@@ -188,7 +189,7 @@ fn compare(
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
         let told = cx.messages();
-        // Without samples that fulfil the constraints it is not known how speeds depend on each other.
+        // Without sample configurations that satisfy the constraints, dependent speeds cannot be determined.
         assert!(
             more.contains("speeds") && told.iter().all(|told| told.contains("do not follow")),
             "seed {seed}{more}: {}\n{item}",
@@ -217,7 +218,7 @@ fn compare(
     close(&format!("seed {seed}{more}: multipliers\n{item}"), &found[v.len()..2 * v.len()], lambda);
 }
 
-/// The value of a mass that is a parameter.
+/// Returns the value of a mass that is a parameter.
 fn mass(spec: &Spec, name: &str) -> f64 {
     let body = name.strip_prefix("mass").and_then(|k| k.parse::<usize>().ok());
     spec.bodies[body.expect("masses alone are parameters")].mass

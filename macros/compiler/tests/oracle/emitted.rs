@@ -1,17 +1,16 @@
-//! What generated bodies compute, as Rust says it, without rustc: an interpreter of straight lines on
-//! numbers, lanes, arrays and tuples. Bodies that call more than the operations of `Arithmetic` are not its
-//! own to run.
+//! Interpreter of generated function bodies, without rustc: straight-line code with numbers, lanes, arrays
+//! and tuples. Bodies with calls other than the operations of `Arithmetic` are not supported.
 
 use linkwork_compiler::expr::Function;
 use std::collections::BTreeMap;
 use syn::{Block, Expr, ExprCall, ExprField, Lit, Member, Pat, Stmt, UnOp};
 
-/// Why a body gives nothing.
+/// Reason why a body has no result.
 #[derive(Debug)]
 pub enum Stop {
-    /// It calls something else.
+    /// The body calls an unsupported function.
     Foreign,
-    /// Rustc would not take it, or it does not end with a value.
+    /// The body is invalid Rust, or it does not end with a value.
     Wrong(String),
 }
 
@@ -29,9 +28,9 @@ fn wrong<T>(what: impl Into<String>) -> Result<T> {
 pub enum Value {
     Number(f64),
     Lanes(Vec<f64>),
-    /// An array or a tuple; of a matrix its columns.
+    /// Array or tuple; for a matrix its columns.
     List(Vec<Value>),
-    /// An operation by its name, with the lanes that it makes.
+    /// Operation by its name, with the number of lanes of its result.
     Operation(String, Option<usize>),
 }
 
@@ -40,7 +39,7 @@ impl Value {
         Value::List(numbers.iter().map(|x| Value::Number(*x)).collect())
     }
 
-    /// The numbers in it one after another, of lanes that of one.
+    /// Returns all numbers of the value in order; of lanes, the number in `lane`.
     pub fn numbers(&self, lane: usize) -> Result<Vec<f64>> {
         match self {
             Value::Number(x) => Ok(vec![*x]),
@@ -61,7 +60,7 @@ impl Value {
     }
 }
 
-/// Applies an operation to numbers, or lane by lane to lanes of the same number.
+/// Applies an operation to numbers, or lane by lane.
 fn each(values: &[Value], f: &dyn Fn(&[f64]) -> f64) -> Result<Value> {
     if let [Value::Number(_), ..] = values {
         let numbers: Result<Vec<f64>> = values
@@ -85,7 +84,7 @@ fn each(values: &[Value], f: &dyn Fn(&[f64]) -> f64) -> Result<Value> {
     Ok(Value::Lanes((0..count).map(|k| f(&lanes.iter().map(|own| own[k]).collect::<Vec<_>>())).collect()))
 }
 
-/// The variables of nested blocks, and the parameters of the mechanism; how many states stand side by side.
+/// State of the interpreter: variables of nested blocks, parameters of the mechanism, and number of states.
 pub struct Machine {
     pub scopes: Vec<BTreeMap<String, Option<Value>>>,
     pub parameters: BTreeMap<String, Value>,
@@ -93,7 +92,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// The value of a body, and its variables.
+    /// Executes a body and returns its value. Its variables remain defined.
     pub fn run(&mut self, body: &Block) -> Result<Value> {
         let mut last = Value::List(Vec::new());
         for statement in &body.stmts {
@@ -229,7 +228,8 @@ impl Machine {
         Ok(Value::List(all.map(|expr| self.value(expr)).collect::<Result<_>>()?))
     }
 
-    /// `self.parameter`; of vectors, matrices and lanes what holds the numbers is the value itself.
+    /// Returns the parameter for `self.parameter`. Storage of vectors, matrices and lanes is the value
+    /// itself.
     fn field(&mut self, field: &ExprField) -> Result<Value> {
         let is_storage = |base: &Expr| match base {
             Expr::Field(inner) => matches!(&inner.member, Member::Named(name) if name == "data"),
@@ -245,7 +245,7 @@ impl Machine {
             }
             (base, Member::Named(name)) if name == "data" => self.value(base),
             (base, Member::Unnamed(at)) if at.index == 0 && is_storage(base) => {
-                // The numbers of lanes are an array.
+                // The numbers of lanes form an array.
                 match self.value(base)? {
                     Value::Lanes(lanes) => Ok(Value::list(&lanes)),
                     value => Ok(value),
@@ -259,7 +259,7 @@ impl Machine {
         }
     }
 
-    /// Puts a value where an assignment says: into a variable, or a number into an entry of a matrix.
+    /// Assigns a value to a variable, or a number to an entry of a matrix.
     fn put(&mut self, place: &Expr, more: &[usize], value: Value) -> Result<()> {
         let (mut at, mut inner) = (more.to_vec(), place);
         let name = loop {
@@ -292,7 +292,7 @@ impl Machine {
         Ok(())
     }
 
-    /// `Ops::name::<…>`, with the lanes that stand last among the types.
+    /// Returns the operation `Ops::name::<…>`; the number of lanes is its last type argument.
     fn operation(&self, path: &syn::Path) -> Result<Value> {
         let mut segments = path.segments.iter().rev();
         let (Some(last), Some(before)) = (segments.next(), segments.next()) else { return foreign() };
@@ -332,7 +332,7 @@ impl Machine {
         applied(&name, lanes, &values).unwrap_or_else(foreign)
     }
 
-    /// Lanes into rows of a matrix.
+    /// Stores lanes to rows of a matrix.
     fn store(&mut self, name: &str, last: &syn::PathSegment, call: &ExprCall) -> Result<Value> {
         let syn::PathArguments::AngleBracketed(types) = &last.arguments else { return foreign() };
         let constants = constants(types);
@@ -364,9 +364,9 @@ impl Machine {
     }
 }
 
-/// What an operation gives; nothing where it is not known.
+/// Returns the result of an operation; `None` for an unknown operation.
 fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<Value>> {
-    // A number times lanes is written without the number in each lane.
+    // In a product of a number and lanes, the number is not broadcast in the code.
     let scaled = |rest: &str| -> Option<Result<Value>> {
         let (Value::Number(x), Value::Lanes(own)) = (values.first()?, values.get(1)?) else {
             return Some(wrong(format!("{name} of {values:?}")));
@@ -424,13 +424,13 @@ fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<
     })
 }
 
-/// Sine and cosine.
+/// Returns sine and cosine.
 fn both(x: &Value) -> Result<Value> {
     let x = std::slice::from_ref(x);
     Ok(Value::List(vec![each(x, &|x| x[0].sin())?, each(x, &|x| x[0].cos())?]))
 }
 
-/// A number that stands there.
+/// Returns the value of an integer literal.
 fn index(expr: &Expr) -> Result<usize> {
     match expr {
         Expr::Lit(syn::ExprLit { lit: Lit::Int(k), .. }) => k.base10_parse().or_else(|_| foreign()),
@@ -438,7 +438,7 @@ fn index(expr: &Expr) -> Result<usize> {
     }
 }
 
-/// The numbers among generic arguments.
+/// Returns the numbers among generic arguments.
 fn constants(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
     let constant = |argument: &syn::GenericArgument| match argument {
         syn::GenericArgument::Const(expr) => index(expr).ok(),

@@ -1,6 +1,6 @@
-//! Random mechanisms of everything that the language has at once. Each compiles, or is answered as a mistake
-//! of its author's: never as one of the compiler's own, every value that generated code names is there, and
-//! what it computes agrees with itself.
+//! Random mechanisms with all features of the language. Each compiles or is rejected with an error of the
+//! user's, never with an internal error. Generated code refers only to values that it defines, and its
+//! results are consistent.
 
 mod agreement;
 mod bodies;
@@ -16,7 +16,7 @@ use linkwork_compiler::{check, compile, expand, read};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// What a function's text binds and what it names, of the values `t0`, `t1`, ….
+/// Returns the values `t0`, `t1`, … in a function's text.
 fn values(text: &str) -> BTreeSet<&str> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.split(|c| !is_word(c))
@@ -26,8 +26,8 @@ fn values(text: &str) -> BTreeSet<&str> {
         .collect()
 }
 
-/// The values that functions name and do not bind: a binding stands between `let` and `=` or `;`, or before
-/// ` = ` at the start of a line.
+/// Returns the values that functions use but do not define. A definition is between `let` and `=` or `;`, or
+/// precedes ` = ` at the start of a line.
 fn unbound(text: &str) -> Vec<String> {
     let mut missing = Vec::new();
     for function in text.split("fn ").skip(1) {
@@ -48,14 +48,14 @@ fn unbound(text: &str) -> Vec<String> {
     missing
 }
 
-/// The text of the generated code, or of the messages.
+/// Returns the generated code or the messages as text.
 fn expanded(arguments: &str, item: &str) -> String {
     let tokens = |text: &str| text.parse().expect("the source is Rust");
     let emitted = expand(tokens(arguments), tokens(item), Path::new(""));
     format!("{}{}", emitted.tokens, emitted.text)
 }
 
-/// What mechanisms of these seeds are answered, the most frequent last.
+/// Returns the messages for the mechanisms of these seeds, ordered by increasing frequency.
 fn answers(seeds: std::ops::Range<u64>) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for (arguments, item) in seeds.map(source::source) {
@@ -69,8 +69,8 @@ fn answers(seeds: std::ops::Range<u64>) -> String {
     lines.iter().map(|(n, message)| format!("{n} {message}\n")).collect()
 }
 
-/// The variable `LINKWORK_SOURCES` names a file that those which compile are written to, a module each, for
-/// rustc to read.
+/// If the variable `LINKWORK_SOURCES` names a file, the compilable mechanisms are written to it, one module
+/// each, for a check with rustc.
 #[test]
 fn combinations_compile_or_are_answered() {
     let (mut compiled, mut modules) = (0, String::new());
@@ -91,13 +91,13 @@ fn combinations_compile_or_are_answered() {
     if let Ok(path) = std::env::var("LINKWORK_SOURCES") {
         std::fs::write(path, modules).expect("the file is written");
     }
-    // Usually two in five do.
+    // Usually two of five mechanisms compile.
     let most = all.end - all.start;
     assert!(4 * compiled > most, "only {compiled} of {most} compile; others are answered\n{}", answers(all));
 }
 
-/// However many expressions there is room for, a mechanism that needs more is answered as one whose equations
-/// are too long.
+/// A mechanism that exceeds the capacity for expressions is always rejected because its equations are too
+/// long, for any capacity.
 #[test]
 fn what_is_too_long_is_answered() {
     let tokens = |text: &str| text.parse().expect("the source is Rust");
@@ -140,7 +140,7 @@ fn chosen_mechanisms_agree_with_themselves() {
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives, packed", &item, &functions, 0) > 20);
 }
 
-/// Forces of many springs are computed once, and called by all that they are in.
+/// Forces of many springs are computed by one function, which other functions call.
 #[test]
 fn long_passive_forces_agree() {
     let fields = chosen::springs(SPRINGS);
@@ -153,10 +153,10 @@ fn long_passive_forces_agree() {
     }
 }
 
-/// As many as have a function of their own.
+/// Number of springs for which the passive forces are a separate function.
 const SPRINGS: usize = 120;
 
-/// Bodies that are run: the first of two is that of debug builds.
+/// Bodies that are executed. Body 0 of two is that of debug builds.
 const BODIES: [&str; 13] = [
     "mass_matrix, body 0",
     "mass_matrix, body 1",
@@ -191,7 +191,8 @@ fn bodies_compute_what_their_programs_do() {
     assert_eq!(never, Vec::<&str>::new(), "these are not run");
 }
 
-/// Long bodies are written in blocks, before which sines and cosines stand: some are results as they are.
+/// Long bodies are divided into blocks, and sines and cosines are computed before the first block. Some of
+/// them are results themselves.
 #[test]
 fn sines_of_long_bodies_may_be_results() {
     let text = expanded(

@@ -1,5 +1,5 @@
-//! Random URDF and SDF files with joints of every type: places and rotations as the format defines them, and
-//! Kane's equations.
+//! Random URDF and SDF files with joints of every type, compared with poses computed by the definitions of
+//! the format and with Kane's equations.
 
 use crate::kane::State;
 use crate::random::Random;
@@ -52,7 +52,7 @@ fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Out
     (model.map(|model| model.configuration).unwrap_or_default(), output)
 }
 
-/// The values of a function, as one state is computed and in lanes.
+/// Returns the values of a function from the scalar program and from the program with lanes.
 fn values(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>> {
     let symbol = |symbol: Symbol| match Quantity::of(symbol) {
         Quantity::Configuration(k) => q[k],
@@ -70,7 +70,7 @@ fn assert_near(what: &str, seed: u64, found: &[f64], expected: &[f64], text: &st
     assert!(found.len() == expected.len() && off <= 1e-10 * size, "{what} of {seed}: {off}\n{text}");
 }
 
-/// What the oracle says of a motion: forces, energies, centre of mass.
+/// Reference values of a motion: generalized forces, energies, centre of mass.
 struct Truth {
     forces: Vec<f64>,
     kinetic: f64,
@@ -78,7 +78,7 @@ struct Truth {
     center: [f64; 3],
 }
 
-/// Kane's equations: what accelerates masses does work along the partial velocities of every link.
+/// Computes the reference values with Kane's equations, from the partial velocities of every link.
 fn truth(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
     let pieces = robot.pieces(&State::new(q, v, a));
     let partial = |k: usize| {
@@ -97,7 +97,7 @@ fn truth(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
     }
 }
 
-/// Files of two to seven links, of which some are locked, follow others or are written in another order.
+/// Files of two to seven links, some of which are locked, follow others or are in random order.
 #[test]
 fn random_files_move_as_the_format_says() {
     let mut kinds = [0; 7];
@@ -110,7 +110,7 @@ fn random_files_move_as_the_format_says() {
     assert!(seeds(20).end < 20 || kinds.iter().all(|count| *count >= 3), "{kinds:?}");
 }
 
-/// All versions of SDF, which place links and give axes in different frames, give the same motion.
+/// Files of all versions of SDF, which use different frames for links and axes, describe the same motion.
 #[test]
 fn random_sdf_files_move_as_their_version_says() {
     for seed in seeds(40) {

@@ -1,30 +1,30 @@
-//! Truncated Taylor series in time over complex numbers: position, velocity and acceleration of anything at
-//! once, and by way of an imaginary step its derivative by the state to rounding (Squire and Trapp, *Using
-//! complex variables to estimate derivatives of real functions*, SIAM Review 40, 1998).
+//! Truncated Taylor series in time over complex numbers. A series contains position, velocity and
+//! acceleration; an imaginary step gives derivatives with respect to the state without cancellation (Squire
+//! and Trapp, *Using complex variables to estimate derivatives of real functions*, SIAM Review 40, 1998).
 
 use num_complex::Complex;
 use std::array::from_fn;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A number with a derivative in its imaginary part.
+/// Number with a derivative in its imaginary part.
 pub type C = Complex<f64>;
 
-/// A complex number that is real.
+/// Returns a complex number without imaginary part.
 pub fn real(x: f64) -> C {
     C::new(x, 0.0)
 }
 
-/// `x₀ + x₁ t + x₂ t²`
+/// Taylor series `x₀ + x₁ t + x₂ t²`.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet(pub [C; 3]);
 
 impl Jet {
-    /// A constant.
+    /// Creates a constant series.
     pub fn constant(x: f64) -> Jet {
         Jet([real(x), real(0.0), real(0.0)])
     }
 
-    /// A square root, of something positive.
+    /// Returns the square root of a positive series.
     pub fn sqrt(self) -> Jet {
         let [a, b, c] = self.0;
         let root = a.sqrt();
@@ -32,7 +32,7 @@ impl Jet {
         Jet([root, first, (c - first * first) / (root * 2.0)])
     }
 
-    /// Sine and cosine.
+    /// Returns sine and cosine.
     pub fn sin_cos(self) -> (Jet, Jet) {
         let [a, b, c] = self.0;
         let (s, k) = (a.sin(), a.cos());
@@ -40,22 +40,22 @@ impl Jet {
         (Jet([s, k * b, k * c - s * half]), Jet([k, -s * b, -s * c - k * half]))
     }
 
-    /// The angle of the point `(cosine, sine)`, which may be of any length, between −π and π.
+    /// Returns the angle of the point `(cosine, sine)`, which need not be normalised, between −π and π.
     pub fn atan2(sine: Jet, cosine: Jet) -> Jet {
         let ([s, ds, dds], [c, dc, ddc]) = (sine.0, cosine.0);
         let square = s * s + c * c;
-        // Of an imaginary step whose square is nothing.
+        // The imaginary part is a step whose square is negligible.
         let angle = C::new(s.re.atan2(c.re), (c.re * s.im - s.re * c.im) / square.re);
         let first = (c * ds - s * dc) / square;
         Jet([angle, first, (c * dds - s * ddc - first * (c * dc + s * ds)) / square])
     }
 
-    /// First derivative by time.
+    /// Returns the first derivative with respect to time.
     pub fn rate(self) -> C {
         self.0[1]
     }
 
-    /// Second derivative by time.
+    /// Returns the second derivative with respect to time.
     pub fn second_rate(self) -> C {
         self.0[2] * 2.0
     }
@@ -90,58 +90,58 @@ impl Mul for Jet {
     }
 }
 
-/// A vector that moves.
+/// Vector as Taylor series.
 pub type Vector = [Jet; 3];
-/// An orientation that changes, row by row.
+/// Rotation matrix as Taylor series, by rows.
 pub type Matrix = [[Jet; 3]; 3];
 
-/// A vector at rest.
+/// Returns a constant vector.
 pub fn still(v: [f64; 3]) -> Vector {
     v.map(Jet::constant)
 }
 
-/// `a + b`
+/// Returns `a + b`.
 pub fn sum(a: Vector, b: Vector) -> Vector {
     from_fn(|i| a[i] + b[i])
 }
 
-/// `a − b`
+/// Returns `a − b`.
 pub fn difference(a: Vector, b: Vector) -> Vector {
     from_fn(|i| a[i] - b[i])
 }
 
-/// `s v`
+/// Returns `s v`.
 pub fn scaled(s: Jet, v: [f64; 3]) -> Vector {
     v.map(|x| s * Jet::constant(x))
 }
 
-/// `a · b`
+/// Returns `a · b`.
 pub fn dot(a: Vector, b: Vector) -> Jet {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// `R v`
+/// Returns `R v`.
 pub fn turned(r: &Matrix, v: Vector) -> Vector {
     r.map(|row| dot(row, v))
 }
 
-/// `A B`
+/// Returns `A B`.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let columns = transposed(b);
     a.map(|row| columns.map(|column| dot(row, column)))
 }
 
-/// `Aᵀ`
+/// Returns `Aᵀ`.
 pub fn transposed(a: &Matrix) -> Matrix {
     from_fn(|i| from_fn(|j| a[j][i]))
 }
 
-/// No rotation.
+/// Returns the identity matrix.
 pub fn identity() -> Matrix {
     from_fn(|i| from_fn(|j| Jet::constant(if i == j { 1.0 } else { 0.0 })))
 }
 
-/// Rotation about a fixed unit vector (Rodrigues).
+/// Returns the rotation about a fixed unit vector (Rodrigues' formula).
 pub fn rotation(axis: [f64; 3], angle: Jet) -> Matrix {
     let (s, c) = angle.sin_cos();
     let rest = Jet::constant(1.0) - c;
@@ -155,7 +155,7 @@ pub fn rotation(axis: [f64; 3], angle: Jet) -> Matrix {
     })
 }
 
-/// `a × b`
+/// Returns `a × b`.
 pub fn cross<T: Copy + Mul<Output = T> + Sub<Output = T>>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     from_fn(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }

@@ -1,8 +1,8 @@
-//! The oracle: Kane's equations of a random mechanism, in numbers. Positions are composed joint by joint in
-//! ground axes as Taylor series in time; the forces of inertia are those of Newton and Euler, body by body;
-//! generalized forces are products with partial velocities, which are the velocities themselves where one
-//! speed is one and the others zero (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 4 and
-//! 5). Nothing here is the compiler's.
+//! The oracle: numeric Kane's equations of a random mechanism. Positions are composed joint by joint in
+//! ground axes as Taylor series in time. Inertial forces follow from Newton's and Euler's equations of each
+//! body. Generalized forces are dot products with partial velocities, which are the velocities for a unit
+//! value of one generalized speed (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 4 and
+//! 5). The oracle uses no code of the compiler.
 
 use crate::jet::{
     C, Jet, Matrix, Vector, cross, difference, dot, identity, product, real, rotation, scaled, still, sum,
@@ -14,7 +14,7 @@ use crate::motion::{
 use crate::spec::{Body, Element, End, Kind, Law, Path, Place, Spec};
 use std::array::from_fn;
 
-/// A state with accelerations. Complex, so that an imaginary step gives derivatives.
+/// State with accelerations. Complex, so that an imaginary step gives derivatives.
 #[derive(Clone, Debug)]
 pub struct State {
     pub q: Vec<C>,
@@ -23,18 +23,18 @@ pub struct State {
 }
 
 impl State {
-    /// A real state.
+    /// Creates a real state.
     pub fn new(q: &[f64], v: &[f64], a: &[f64]) -> State {
         let list = |x: &[f64]| x.iter().map(|x| real(*x)).collect();
         State { q: list(q), v: list(v), a: list(a) }
     }
 }
 
-/// Everything that moves, at one state.
+/// Motion of all bodies at one state.
 struct World {
     poses: Vec<Pose>,
     pieces: Vec<Piece>,
-    /// By body: its coordinates that elements can act on.
+    /// For each body, the coordinates that elements can act on.
     coordinates: Vec<Vec<Jet>>,
 }
 
@@ -50,7 +50,7 @@ fn of_place(place: &Place) -> Pose {
     Pose { r: turns(&place.turns), p: still(place.at) }
 }
 
-/// The motion of a joint: its own pose, and the coordinates that elements act on.
+/// Returns the pose of a joint, and its coordinates that elements can act on.
 fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     let [one, two] = body.axes;
     let fixed = |r: Matrix| Pose { r, p: still([0.0; 3]) };
@@ -80,7 +80,7 @@ fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     (pose, s)
 }
 
-/// Sizes of the mechanism: configuration numbers, velocities.
+/// Returns the numbers of configuration coordinates and of velocities.
 pub fn sizes(spec: &Spec) -> (usize, usize) {
     spec.bodies.iter().fold((0, 0), |(nq, nv), body| {
         let (q, v) = body.kind.sizes();
@@ -127,7 +127,7 @@ fn world(spec: &Spec, state: &State) -> World {
     world
 }
 
-/// `R diag Rᵀ`
+/// Returns `R diag Rᵀ`.
 fn inertia(body: &Body) -> [[f64; 3]; 3] {
     let r = turns(&body.inertia_turns);
     from_fn(|i| from_fn(|j| (0..3).map(|k| r[i][k].0[0].re * body.moments[k] * r[j][k].0[0].re).sum()))
@@ -152,8 +152,8 @@ fn length(world: &World, path: &Path) -> Jet {
     }
 }
 
-/// Ends of a cable from the middle of what it may run around: across the axis, and how far one is behind the
-/// other along it.
+/// Returns the ends of a cable relative to the centre of its obstacle, projected on the plane normal to the
+/// axis, and the distance between the ends along the axis.
 fn across(
     world: &World,
     ends: &[End; 2],
@@ -169,8 +169,8 @@ fn across(
     ([level(0), level(1)], heights[1] - heights[0], Some(n))
 }
 
-/// A taut cable in the plane across the axis, or in that of its ends and the middle of a ball: on the
-/// unrolled surface it is straight.
+/// Returns the length of a taut cable. In the plane normal to the axis, or in the plane of the ends and the
+/// centre of a ball, the cable is straight on the unrolled surface.
 fn cable(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option<[f64; 3]>) -> Jet {
     let ([a, b], rise, n) = across(world, ends, around, axis);
     let normal = cross(a, b);
@@ -191,16 +191,16 @@ fn cable(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option
     if n.is_none() { level } else { (level * level + rise * rise).sqrt() }
 }
 
-/// A scalar that a drive prescribes.
+/// Scalar with a prescribed motion.
 #[derive(Clone, Debug)]
 pub enum Measure {
-    /// Coordinates by body and number, each times a factor.
+    /// Weighted sum of coordinates: factor, body and index of the coordinate.
     Coordinates(Vec<(f64, usize, usize)>),
-    /// The way between two points along an axis of the ground.
+    /// Displacement between two points along an axis of the ground.
     Way(End, End, usize),
 }
 
-/// Value of a measure in a state, with its first and second rates.
+/// Returns the value of a measure at a state, with its first and second rates.
 pub fn measured(spec: &Spec, state: &State, measure: &Measure) -> Jet {
     let world = world(spec, state);
     match measure {
@@ -211,7 +211,7 @@ pub fn measured(spec: &Spec, state: &State, measure: &Measure) -> Jet {
     }
 }
 
-/// Whether all cables have their ends outside of what they run around.
+/// Returns whether the ends of all cables are outside their obstacles.
 pub fn cables_are_outside(spec: &Spec, q: &[f64]) -> bool {
     let (_, nv) = sizes(spec);
     let world = world(spec, &State::new(q, &vec![0.0; nv], &vec![0.0; nv]));
@@ -238,7 +238,7 @@ fn tension(law: Law, length: Jet) -> C {
     }
 }
 
-/// `τ = M a + h`, by the sum over everything that has mass or acts.
+/// Returns `τ = M a + h` as the sum over all masses and forces.
 pub fn inverse_dynamics(spec: &Spec, state: &State) -> Vec<C> {
     let now = world(spec, state);
     let nv = state.v.len();
@@ -251,14 +251,14 @@ pub fn inverse_dynamics(spec: &Spec, state: &State) -> Vec<C> {
         .collect()
 }
 
-/// The power of the forces `τ` at given rates `λ`: `λᵀ τ`.
+/// Returns the power `λᵀ τ` of the forces `τ` for velocities `λ`.
 pub fn power(spec: &Spec, state: &State, lambda: &[f64]) -> C {
     let rates = lambda.iter().map(|x| real(*x)).collect();
     let partial = State { q: state.q.clone(), v: rates, a: vec![real(0.0); lambda.len()] };
     generalized(spec, &world(spec, state), &world(spec, &partial))
 }
 
-/// One of Kane's equations: of the speed by which `partial` moves.
+/// Returns the generalized force for one generalized speed; `partial` is the motion with a unit value of it.
 fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
     let mut tau = real(0.0);
     for (piece, moved) in now.pieces.iter().zip(&partial.pieces) {
@@ -285,14 +285,13 @@ fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
     tau
 }
 
-/// Mass matrix by columns, and bias forces.
+/// Returns the mass matrix by columns, and the bias forces.
 pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let nv = v.len();
     let state = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
     let zero = vec![real(0.0); nv];
     let bias = inverse_dynamics(spec, &state(v, zero.clone()));
-    // Of inertia alone, at rest: what forces add would only be taken away again, and leave its rounding
-    // behind.
+    // The mass matrix is computed without forces at rest. Subtracting forces would leave rounding errors.
     let inertial = |element: &&Element| {
         let (Element::Between(law, ..) | Element::On(law, ..) | Element::Along(law, _)) = element else {
             return false;
@@ -311,12 +310,13 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     (columns, bias)
 }
 
-/// `q ⊕ i h e`: an imaginary step along one velocity, on the configuration manifold.
+/// Returns `q ⊕ i h e`: an imaginary step along one velocity, on the configuration manifold.
 pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
     step(spec, q, k, C::new(0.0, h))
 }
 
-/// A curve from `q` on the configuration manifold at `h`, which begins along all velocities with these rates.
+/// Returns the point with parameter `h` of a curve on the configuration manifold that starts at `q` with
+/// these velocities.
 pub fn moved(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
     let along = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real(rate * h));
     let mut q = rates.iter().enumerate().fold(q.to_vec(), along);
@@ -333,7 +333,7 @@ pub fn moved(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
     q
 }
 
-/// `q ⊕ h e` for a step along one velocity whose square is nothing.
+/// Returns `q ⊕ h e` for a step along one velocity; terms of second order in `h` are neglected.
 fn step(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
     let mut stepped = q.to_vec();
     let (mut q0, mut v0) = (0, 0);
@@ -365,7 +365,7 @@ fn step_joint(kind: Kind, q: &mut [C], k: usize, h: C) {
     }
 }
 
-/// `q ⊗ (e h / 2, 1)`
+/// Rotates a quaternion: `q ⊗ (e h / 2, 1)`.
 fn turn(q: &mut [C], k: usize, h: C) {
     let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
     let rate = [[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z]][k];

@@ -1,10 +1,11 @@
-//! An oracle that shares nothing with the compiler: Kane's equations of random mechanisms in numbers, by
-//! Taylor series in time and imaginary steps, against what the generated programs compute. Trees of every
-//! joint, with every base, with springs, dashpots, inerters, attraction and dry friction between bodies and
-//! the ground, on coordinates, along ropes and cables; alike limbs; masses over many powers of ten; angles
-//! that miss those of a plain machine by rounding. Random URDF files with joints of every type, by the same
-//! motions. Random mechanisms without a degree of freedom, with as many drives as velocities. Random
-//! mechanisms of everything that the language has, which compile.
+//! Comparison of generated programs with an oracle that shares no code with the compiler: numeric Kane's
+//! equations of random mechanisms, by Taylor series in time and imaginary steps.
+//!
+//! The mechanisms are trees with every joint and every base; springs, dashpots, inerters, attraction and dry
+//! friction between bodies and the ground, on coordinates, and along ropes and cables; identical limbs;
+//! masses over many powers of ten; and angles with rounding errors. Random URDF files with joints of every
+//! type are compared with the same equations. Further tests use random mechanisms with as many prescribed
+//! motions as velocities, and random mechanisms with all features of the language.
 
 mod combinations;
 mod combined;
@@ -25,8 +26,8 @@ mod words;
 
 use spec::{Style, spec};
 
-/// Each test looks at so many mechanisms, or at as many as the variable `LINKWORK_ORACLE` says: `20000`, or
-/// `400..405`.
+/// Returns the seeds of a test. The variable `LINKWORK_ORACLE` replaces their number by `20000`, or their
+/// range by `400..405`.
 fn seeds(usual: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
     let (from, to) = asked.split_once("..").unwrap_or(("0", &asked));
@@ -57,14 +58,15 @@ fn masses_over_twelve_powers_of_ten_obey_kanes_equations() {
     }
 }
 
-/// Alike limbs whose masses and angles are not quite alike.
+/// Identical limbs with small deviations of masses and angles.
 #[test]
 fn limbs_of_all_masses_and_angles_with_noise_obey_kanes_equations() {
     for seed in seeds(20) {
         let noise = (seed % 2 == 0).then(|| 10.0_f64.powi(-16 + (seed % 14) as i32));
         let limbs = 2 + seed as usize % 4;
-        // Heavy limbs on a light trunk lie farther apart by their moments of inertia about its joint than by
-        // their masses; what is lighter than the rest by thirteen powers of ten counts as nothing.
+        // Heavy limbs on a light trunk differ more in their moments of inertia about the trunk's joint than
+        // in their masses. Masses that are smaller than the others by thirteen powers of ten are treated as
+        // zero.
         let style = Style { limbs, decades: 5.5, noise, ..PLAIN };
         programs::check(&spec(4_000_000 + seed, style), seed);
     }

@@ -1,9 +1,10 @@
-//! Rigid motions as Taylor series in time, and what masses do in them. All in ground axes.
+//! Rigid motions as Taylor series in time, and inertial forces of moving bodies. All vectors are in ground
+//! axes.
 
 use crate::jet::{C, Jet, Matrix, Vector, cross, identity, product, real, still, sum, transposed, turned};
 use std::array::from_fn;
 
-/// A rigid pose.
+/// Rigid pose.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     pub r: Matrix,
@@ -11,25 +12,25 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The ground's.
+    /// Returns the identity pose.
     pub fn identity() -> Pose {
         Pose { r: identity(), p: still([0.0; 3]) }
     }
 }
 
-/// Something with mass.
+/// Rigid body with mass.
 pub struct Piece {
     pub mass: f64,
-    /// Inertia about the centre of mass in its own axes.
+    /// Inertia about the centre of mass in body axes.
     pub inertia: [[f64; 3]; 3],
-    /// Its axes.
+    /// Body axes.
     pub r: Matrix,
-    /// Its centre of mass.
+    /// Position of the centre of mass.
     pub p: Vector,
 }
 
 impl Piece {
-    /// Its inertia times a vector.
+    /// Returns the product of the inertia in ground axes and a vector.
     fn turned_inertia(&self, x: [C; 3]) -> [C; 3] {
         let r: [[C; 3]; 3] = from_fn(|i| from_fn(|j| self.r[i][j].0[0]));
         let own: [C; 3] = from_fn(|i| (0..3).map(|j| r[j][i] * x[j]).sum());
@@ -37,7 +38,7 @@ impl Piece {
         from_fn(|i| (0..3).map(|j| r[i][j] * product[j]).sum())
     }
 
-    /// What it takes to accelerate it against gravity, along the speed by which it is `moved`.
+    /// Returns the generalized inertial force, including gravity, for the partial velocity of `moved`.
     pub fn inertial_force(&self, moved: &Piece, gravity: [f64; 3]) -> C {
         let force: [C; 3] = from_fn(|i| (self.p[i].second_rate() - gravity[i]) * self.mass);
         let (w, alpha) = spin(&self.r);
@@ -46,25 +47,25 @@ impl Piece {
         complex_dot(force, velocity(moved.p)) + complex_dot(torque, spin(&moved.r).0)
     }
 
-    /// Kinetic energy.
+    /// Returns the kinetic energy.
     pub fn kinetic_energy(&self) -> C {
         let (v, (w, _)) = (velocity(self.p), spin(&self.r));
         (complex_dot(v, v) * self.mass + complex_dot(w, self.turned_inertia(w))) * 0.5
     }
 }
 
-/// `b`, which is given in the axes of `a`.
+/// Composes two poses; `b` is relative to `a`.
 pub fn compose(a: &Pose, b: &Pose) -> Pose {
     Pose { r: product(&a.r, &b.r), p: sum(a.p, turned(&a.r, b.p)) }
 }
 
-/// The ground as `pose` sees it.
+/// Returns the inverse pose.
 pub fn inverse(pose: &Pose) -> Pose {
     let r = transposed(&pose.r);
     Pose { r, p: turned(&r, pose.p).map(|x| -x) }
 }
 
-/// The rotation matrix of a quaternion x y z w.
+/// Returns the rotation matrix of a quaternion (x, y, z, w).
 pub fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
     let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
     let two = real(2.0);
@@ -76,7 +77,8 @@ pub fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
     ]
 }
 
-/// `R (1 + [w] t + ([w'] + [w]²) t²/2)`: an orientation that turns with the body's angular velocity.
+/// Returns `R (1 + [w] t + ([w'] + [w]²) t²/2)`: an orientation that rotates with angular velocity `w` and
+/// its rate in body axes.
 pub fn turning(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
     let r0 = of_quaternion(q);
     let skew = |w: [C; 3]| {
@@ -98,7 +100,7 @@ pub fn turning(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
     })
 }
 
-/// A position that moves with a velocity in carried axes.
+/// Returns a position that moves with a velocity in body axes.
 pub fn drifting(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vector {
     let spin = cross(w, v);
     from_fn(|i| {
@@ -108,23 +110,23 @@ pub fn drifting(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vect
     })
 }
 
-/// Angular velocity and acceleration of an orientation, in ground axes: from `R' Rᵀ` and its rate.
+/// Returns angular velocity and acceleration of an orientation in ground axes, from `R' Rᵀ` and its rate.
 pub fn spin(r: &Matrix) -> ([C; 3], [C; 3]) {
     let part = |order: (usize, usize), i: usize, j: usize| -> C {
         (0..3).map(|k| r[i][k].0[order.0] * r[j][k].0[order.1]).sum()
     };
-    // The coefficient of t² is half of the second derivative.
+    // The coefficient of t² is half the second derivative.
     let w = |i: usize, j: usize| part((1, 0), i, j);
     let d = |i: usize, j: usize| part((2, 0), i, j) * 2.0 + part((1, 1), i, j);
     ([w(2, 1), w(0, 2), w(1, 0)], [d(2, 1), d(0, 2), d(1, 0)])
 }
 
-/// First derivative of a position.
+/// Returns the first derivative of a position.
 pub fn velocity(p: Vector) -> [C; 3] {
     p.map(Jet::rate)
 }
 
-/// `a · b` of complex vectors.
+/// Returns `a · b` of complex vectors, without conjugation.
 pub fn complex_dot(a: [C; 3], b: [C; 3]) -> C {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

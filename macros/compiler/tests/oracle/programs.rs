@@ -1,4 +1,4 @@
-//! What the generated programs compute, next to the oracle.
+//! Comparison of the generated programs with the oracle.
 
 use crate::jet::{C, real};
 use crate::kane::{self, State};
@@ -13,15 +13,15 @@ use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 
-/// Largest difference, relative to the terms that a result is the sum of.
+/// Maximum difference, relative to the terms whose sum a result is.
 const TOLERANCE: f64 = 1e-10;
-/// Size of the imaginary step: its square is nothing.
+/// Imaginary step, whose square is negligible.
 const STEP: f64 = 1e-40;
 
-/// Step of differences of sixth order.
+/// Step of sixth-order differences.
 const H: f64 = 3e-3;
 
-/// A state, and forces.
+/// State and forces.
 struct Point {
     q: Vec<f64>,
     v: Vec<f64>,
@@ -59,18 +59,18 @@ fn normalise(q: &mut [f64]) {
 /// Compiles a mechanism and compares every function of its dynamics with the oracle.
 pub fn check(spec: &Spec, seed: u64) {
     let point = Point::new(spec, seed);
-    // A cable that begins within the body which it runs around has no length.
+    // The length of a cable that starts inside its obstacle is undefined.
     if !kane::cables_are_outside(spec, &point.q) {
         return;
     }
-    // Second derivatives where inerters stretch cables around cylinders may be too long.
+    // With inerters on cables around cylinders, second derivatives may be too long.
     let checked = check_with(spec, ", second_derivatives", &point, seed)
         || check_with(spec, ", derivatives", &point, seed);
     assert!(checked || kane::sizes(spec).1 > 40, "seed {seed}");
 }
 
-/// Compares the functions of a mechanism that asks for derivatives by `word` with the oracle; false where
-/// they are too long.
+/// Compares the functions of a mechanism, with the derivatives of the option `word`, with the oracle. Returns
+/// false if the derivatives are too long.
 fn check_with(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
     let (arguments, item) = words::source(spec, "Random", word);
     let tokens = |text: &str| text.parse().expect("the generated source is Rust");
@@ -86,7 +86,7 @@ fn check_with(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
     let case = Case { spec, output: &output, point, name: format!("seed {seed}\n{arguments}\n{item}") };
     case.check_dynamics();
     case.check_derivatives();
-    // They take longest.
+    // Second derivatives take longest, so they are tested for fewer seeds.
     if seed.is_multiple_of(5) && word.contains("second") {
         case.check_second_derivatives();
     }
@@ -101,7 +101,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// A function's results, by its program and by the program in lanes.
+    /// Returns the results of a function, from its scalar program and from its program with lanes.
     fn run(&self, name: &str) -> Vec<Vec<f64>> {
         let function: &Function = self
             .output
@@ -118,7 +118,7 @@ impl Case<'_> {
             Quantity::Given(k) => self.point.lambda[k],
             _ => f64::NAN,
         };
-        // Functions that call others are told what those give.
+        // The results of called functions are inputs of their callers.
         let called = Called::ALL.map(|called| {
             let function = self.output.functions.iter().find(|f| f.name == called.function());
             function.map_or_else(Vec::new, |f| f.program.run(&state))
@@ -163,8 +163,8 @@ impl Case<'_> {
             .map(|(i, j)| 0.5 * v[i] * mass[j * nv + i] * v[j])
             .sum();
         self.close("kinetic_energy", &[kinetic], heavy);
-        // Accelerations are judged by the forces that they would take: of each row, next to the terms of its
-        // sum.
+        // The error of accelerations is measured by the residual force of each row, relative to the terms of
+        // its sum.
         for actual in self.run("forward_dynamics") {
             for i in 0..nv {
                 let terms: Vec<f64> = (0..nv).map(|j| mass[j * nv + i] * actual[j]).collect();
@@ -200,17 +200,17 @@ impl Case<'_> {
         self.close("inverse_dynamics_derivatives", &expected, scale);
     }
 
-    /// The product of the matrices of second derivatives with a direction, against differences along it (of
-    /// sixth order) of derivatives by imaginary steps, and the other way round.
+    /// Compares the product of second derivatives and a direction with sixth-order differences along it of
+    /// derivatives by imaginary steps. The order of differentiation is also exchanged.
     fn check_second_derivatives(&self) {
         let Point { q, v, a, lambda, along, .. } = &self.point;
         let (nv, state) = (v.len(), State::new(q, v, a));
         let expected: Vec<f64> = (0..3 * nv).map(|entry| self.mixed(&state, entry, 0.5 * H)).collect();
-        // What halving the step changes is 64 times what is left: much where points that a spring joins
-        // nearly meet.
+        // Halving the step changes the result by about 64 times the remaining error. The error is large if
+        // points connected by a spring nearly coincide.
         let doubt = (0..3 * nv).map(|entry| (self.mixed(&state, entry, H) - expected[entry]).abs());
         let doubt = doubt.fold(0.0, f64::max) / 16.0;
-        // Differences round relative to what they are differences of.
+        // The rounding error of differences is relative to the differentiated values.
         let sizes = ["mass_matrix", "bias_forces", "inverse_dynamics_derivatives"]
             .map(|name| self.run(name).concat());
         let scale = sizes.iter().flatten().chain(&expected).fold(1.0_f64, |m, x| m.max(x.abs()));
@@ -236,8 +236,9 @@ impl Case<'_> {
         }
     }
 
-    /// The second derivative of the power of the factors by one entry of configuration, velocity or
-    /// acceleration and along the direction, the mean of both orders, by differences over steps of `size`.
+    /// Returns the second derivative of the power of the factors with respect to one entry of configuration,
+    /// velocity or acceleration, and along the direction. It is the mean of both orders of differentiation,
+    /// by differences with steps of `size`.
     fn mixed(&self, state: &State, entry: usize, size: f64) -> f64 {
         let Point { lambda, along, .. } = &self.point;
         let nv = lambda.len();

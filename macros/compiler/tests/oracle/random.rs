@@ -1,15 +1,16 @@
-//! Random numbers, the same in every run.
+//! Reproducible random numbers.
 
-/// SplitMix64 (Steele, Lea and Flood, *Fast splittable pseudorandom number generators*, 2014).
+/// Random number generator SplitMix64 (Steele, Lea and Flood, *Fast splittable pseudorandom number
+/// generators*, 2014).
 pub struct Random(u64);
 
 impl Random {
-    /// Another seed is another sequence.
+    /// Creates the generator for a seed.
     pub fn new(seed: u64) -> Random {
         Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d))
     }
 
-    /// Uniform in `[-bound, bound)`.
+    /// Returns a uniformly distributed number in `[-bound, bound)`.
     pub fn uniform(&mut self, bound: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -19,17 +20,17 @@ impl Random {
         bound * ((z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
     }
 
-    /// Less than `n`.
+    /// Returns a random integer below `n`.
     pub fn below(&mut self, n: usize) -> usize {
         ((self.uniform(0.5) + 0.5) * n as f64) as usize % n.max(1)
     }
 
-    /// Between −1 and 1, with four digits: what is written to a file is read back.
+    /// Returns a number between −1 and 1 with four decimal digits, which text represents exactly.
     pub fn figure(&mut self) -> f64 {
         self.below(20_001) as f64 / 1e4 - 1.0
     }
 
-    /// Figures between −1 and 1.
+    /// Returns numbers between −1 and 1 with four decimal digits.
     pub fn figures<const N: usize>(&mut self) -> [f64; N] {
         std::array::from_fn(|_| self.figure())
     }

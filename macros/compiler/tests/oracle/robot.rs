@@ -1,4 +1,4 @@
-//! A random robot: as a file, as the order of its coordinates, and as places of its links in a motion.
+//! Random robots: as files, as the order of their coordinates, and as poses of their links in a motion.
 
 use crate::jet::{C, Jet, Matrix, identity, product, rotation, scaled, still, sum};
 use crate::kane::State;
@@ -13,12 +13,12 @@ pub const KINDS: [&str; 7] =
 pub struct Link {
     name: String,
     pub mass: f64,
-    /// In the link's axes.
+    /// Centre of mass in link axes.
     pub com: [f64; 3],
-    /// About the centre of mass, in the link's axes.
+    /// Inertia about the centre of mass in link axes.
     pub inertia: [[f64; 3]; 3],
     inertial: String,
-    /// None for the root.
+    /// Joint to the parent; `None` for the root.
     pub joint: Option<Joint>,
 }
 
@@ -30,18 +30,18 @@ pub struct Joint {
     pub rpy: [f64; 3],
     pub axis: [f64; 3],
     locked: bool,
-    /// The link whose joint leads, factor, offset.
+    /// Link whose joint is the leader, factor and offset.
     pub mimic: Option<(usize, f64, f64)>,
 }
 
 pub struct Robot {
     pub free: bool,
     pub links: Vec<Link>,
-    /// In which order links and joints are written.
+    /// Order in which links and joints are written.
     shuffle: Vec<usize>,
 }
 
-/// `R_z(yaw) R_y(pitch) R_x(roll)`.
+/// Returns `R_z(yaw) R_y(pitch) R_x(roll)`.
 pub fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
     let about = |k: usize, angle| rotation(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle));
     product(&product(&about(2, yaw), &about(1, pitch)), &about(0, roll))
@@ -49,7 +49,7 @@ pub fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
 
 impl Link {
     fn random(k: usize, random: &mut Random) -> Link {
-        // The inertia of four point masses in the axes of an inertial frame, about their centre.
+        // Inertia of four point masses in the axes of an inertial frame, about their centre.
         let points: [([f64; 3], f64); 4] = from_fn(|_| (random.figures(), 1.0 + random.figure().abs()));
         let mass: f64 = points.iter().map(|(_, m)| m).sum();
         let center: [f64; 3] = from_fn(|i| points.iter().map(|(p, m)| m * p[i]).sum::<f64>() / mass);
@@ -77,7 +77,7 @@ impl Link {
     }
 }
 
-/// Numbers with spaces between them.
+/// Returns numbers separated by spaces.
 pub fn spaced(numbers: [f64; 3]) -> String {
     numbers.map(|x| format!("{x:?}")).join(" ")
 }
@@ -86,7 +86,8 @@ impl Joint {
     fn random(child: usize, links: &[Link], kinds: &[usize], random: &mut Random) -> Joint {
         let kind = kinds[random.below(kinds.len())];
         let axis = match (KINDS[kind], random.below(3)) {
-            // Where x and y point is a convention: about a coordinate axis the other two in cyclic order.
+            // The directions of x and y are a convention: for a coordinate axis, the other two axes in cyclic
+            // order.
             ("planar", k) => from_fn(|i| if i == k { 2.0 } else { 0.0 }),
             (_, 0) => random.figures::<3>().map(|x| x + if x < 0.0 { -0.1 } else { 0.1 }),
             (_, k) => from_fn(|i| if i == k { random.figure() - 2.0 } else { 0.0 }),
@@ -108,12 +109,12 @@ impl Joint {
 }
 
 impl Link {
-    /// Its joint can be followed.
+    /// Returns true if other joints may follow the joint of this link.
     fn leads(&self) -> bool {
         self.joint.as_ref().is_some_and(|j| j.kind < 3 && !j.locked && j.mimic.is_none())
     }
 
-    /// How many entries its joint has in `q` and `v`.
+    /// Returns the numbers of entries of the link's joint in `q` and `v`.
     fn sizes(&self, free: bool) -> [usize; 2] {
         match &self.joint {
             None if free => [7, 6],
@@ -125,7 +126,7 @@ impl Link {
 }
 
 impl Robot {
-    /// A robot whose joints are of these types.
+    /// Returns a random robot whose joints have these types.
     pub fn random(kinds: &[usize], random: &mut Random) -> Robot {
         let n = 2 + random.below(6);
         let mut links = vec![Link::random(0, random)];
@@ -153,18 +154,18 @@ impl Robot {
         text + "</robot>"
     }
 
-    /// Returns a random robot whose joints are those of MJCF.
+    /// Returns a random robot with the joint types of MJCF.
     pub fn random_mjcf(random: &mut Random) -> Robot {
         let mut robot = Robot::random(&[0, 1, 2, 3, 6, 6, 6], random);
         for joint in robot.links.iter_mut().filter_map(|link| link.joint.as_mut()) {
-            // A body without a joint has none that can be locked.
+            // A body without a joint cannot be locked.
             joint.locked &= joint.kind != 3;
         }
         robot
     }
 
-    /// The robot as an MJCF file, with what `inside` writes into the body of each link and `behind` the
-    /// bodies.
+    /// Returns the robot as an MJCF file. `inside` returns additional text for the body of each link, and
+    /// `behind` is inserted after the bodies.
     pub fn mjcf(&self, inside: &dyn Fn(usize) -> String, behind: &str) -> String {
         let follows = |link: &Link| {
             let joint = link.joint.as_ref()?;
@@ -214,13 +215,13 @@ impl Robot {
         )
     }
 
-    /// Whether a link carries another one, or is it.
+    /// Returns whether a link equals another one or is its ancestor.
     pub fn carries(&self, carrier: usize, carried: usize) -> bool {
         carrier == carried
             || self.links[carried].joint.as_ref().is_some_and(|joint| self.carries(carrier, joint.parent))
     }
 
-    /// The pose of a frame in a link, `R_z R_y R_x` of its angles.
+    /// Returns the pose of a frame on a link; its orientation is `R_z R_y R_x` of the angles.
     pub fn frame(&self, link: usize, xyz: [f64; 3], rpy: [f64; 3], state: &State) -> Pose {
         compose(&self.places(state)[link], &Pose { r: fixed_axes(rpy), p: still(xyz) })
     }
@@ -249,13 +250,13 @@ impl Robot {
         self.links.iter().filter_map(|link| link.joint.as_ref()).filter(|j| j.locked).map(|j| j.name.as_str())
     }
 
-    /// Counts the types of joints that move.
+    /// Counts the types of the joints that are not locked.
     pub fn count(&self, kinds: &mut [usize; 7]) {
         let joints = self.links.iter().filter_map(|link| link.joint.as_ref()).filter(|joint| !joint.locked);
         joints.for_each(|joint| kinds[joint.kind] += 1);
     }
 
-    /// The links depth first, those of one parent by the names of their joints.
+    /// Returns the links depth first; links of one parent are sorted by the names of their joints.
     fn order(&self) -> Vec<usize> {
         let (mut order, mut open) = (Vec::new(), vec![0]);
         while let Some(link) = open.pop() {
@@ -269,7 +270,7 @@ impl Robot {
         order
     }
 
-    /// Names of the entries of `q`.
+    /// Returns the names of the entries of `q`.
     pub fn coordinates(&self) -> Vec<String> {
         const PLACE: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
         let mut names = Vec::new();
@@ -285,7 +286,7 @@ impl Robot {
         names
     }
 
-    /// By link, the first entries of its joint.
+    /// Returns for each link the indices of the first entries of its joint in `q` and `v`.
     fn entries(&self) -> Vec<[usize; 2]> {
         let (mut entries, mut next) = (vec![[0; 2]; self.links.len()], [0; 2]);
         for link in self.order() {
@@ -296,7 +297,7 @@ impl Robot {
         entries
     }
 
-    /// Unit quaternions, all else as it comes: `q`, `v`, `v̇`.
+    /// Returns random `q`, `v` and `v̇`; quaternions in `q` are normalised.
     pub fn state(&self, random: &mut Random) -> [Vec<f64>; 3] {
         let entries = self.entries();
         let count = |k: usize| self.links.iter().map(|link| link.sizes(self.free)[k]).sum::<usize>();
@@ -313,7 +314,7 @@ impl Robot {
         [q, v, a]
     }
 
-    /// Whether a link moves at all.
+    /// Returns whether a link can move.
     pub fn moves(&self, link: usize) -> bool {
         match &self.links[link].joint {
             None => self.free,
@@ -321,7 +322,7 @@ impl Robot {
         }
     }
 
-    /// Axes and origin of every link in the ground.
+    /// Returns axes and origin of every link relative to the ground.
     fn places(&self, state: &State) -> Vec<Pose> {
         let entries = self.entries();
         let mut places: Vec<Pose> = Vec::new();
@@ -346,7 +347,7 @@ impl Robot {
         places
     }
 
-    /// What moves and has mass.
+    /// Returns the moving bodies with their masses.
     pub fn pieces(&self, state: &State) -> Vec<Piece> {
         let places = self.places(state);
         let moving = (0..self.links.len()).filter(|k| self.moves(*k));
@@ -365,7 +366,7 @@ impl Joint {
         self.axis.map(|x| x / length)
     }
 
-    /// What turns about or slides along the axis.
+    /// Returns the pose of a joint that rotates about or slides along its axis.
     fn moved(&self, coordinate: Jet) -> Pose {
         match KINDS[self.kind] {
             "prismatic" => Pose { p: scaled(coordinate, self.unit()), ..Pose::identity() },
@@ -373,7 +374,7 @@ impl Joint {
         }
     }
 
-    /// What has several coordinates, or none.
+    /// Returns the pose of a joint with several coordinates, or none.
     fn placed(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
         match KINDS[self.kind] {
             "floating" => floating(state, [q, v]),
@@ -393,7 +394,7 @@ impl Joint {
     }
 }
 
-/// A coordinate in time.
+/// Returns a coordinate as a Taylor series in time.
 fn plain(state: &State, [q, v]: [usize; 2]) -> Jet {
     Jet([state.q[q], state.v[v], state.a[v] * 0.5])
 }
@@ -402,7 +403,7 @@ fn three(list: &[C], at: usize) -> [C; 3] {
     from_fn(|k| list[at + k])
 }
 
-/// Position and quaternion; linear and angular velocity in the axes of what moves.
+/// Returns the pose from position and quaternion; linear and angular velocity are in body axes.
 fn floating(state: &State, [q, v]: [usize; 2]) -> Pose {
     let (w, rate) = (three(&state.v, v + 3), three(&state.a, v + 3));
     let r = turning(&state.q[q + 3..q + 7], w, rate);

@@ -1,12 +1,12 @@
-//! A random robot as an SDF file of any version: poses in the model or in other links, axes in the frames
-//! that the version has.
+//! Random robots as SDF files of any version. Poses are relative to the model or to other links, and axes are
+//! expressed in the frames of the version.
 
 use crate::random::Random;
 use crate::robot::{KINDS, Link, Robot};
 use std::array::from_fn;
 use std::fmt::Write;
 
-/// Types of joints that SDF has, by their index among those of URDF.
+/// Joint types of SDF, as indices of the joint types of URDF.
 pub const OF_SDF: [usize; 5] = [0, 1, 2, 3, 6];
 
 /// Minor numbers of the versions 1.2 to 1.12.
@@ -14,7 +14,7 @@ const VERSIONS: [usize; 11] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
 
 type Matrix = [[f64; 3]; 3];
 
-/// A rigid pose in numbers: axes as columns, and a position.
+/// Rigid pose with axes as columns, and position.
 #[derive(Clone, Copy)]
 struct Placed(Matrix, [f64; 3]);
 
@@ -29,7 +29,7 @@ fn transposed(m: &Matrix) -> Matrix {
 impl Placed {
     const ZERO: Placed = Placed([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
 
-    /// The pose with this position, and roll, pitch and yaw.
+    /// Creates the pose with this position, and roll, pitch and yaw.
     fn new(xyz: [f64; 3], [roll, pitch, yaw]: [f64; 3]) -> Placed {
         let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(f64::sin_cos);
         let rows = [
@@ -51,7 +51,7 @@ impl Placed {
         Placed(axes, apply(&axes, self.1).map(|x| -x))
     }
 
-    /// The six numbers of a `<pose>`.
+    /// Returns the six numbers of a `<pose>`.
     fn text(&self) -> String {
         let Placed(m, [x, y, z]) = self;
         let angles =
@@ -68,7 +68,7 @@ struct Writer<'a> {
     placed: Vec<Placed>,
 }
 
-/// Writes the robot, whose joints are [`OF_SDF`], in a random version.
+/// Writes the robot in a random version. Its joint types must be in [`OF_SDF`].
 pub fn text(robot: &Robot, random: &mut Random) -> String {
     let minor = VERSIONS[random.below(VERSIONS.len())];
     let mut placed = vec![Placed::ZERO];
@@ -87,8 +87,8 @@ pub fn text(robot: &Robot, random: &mut Random) -> String {
     if robot.free || random.below(3) > 0 {
         return format!("<sdf version=\"{version}\">{model}</sdf>");
     }
-    // In a world, gravity is an element of `<physics>` before version 1.6, and joints may hold the model
-    // since 1.10.
+    // In a world, gravity is an element of `<physics>` before version 1.6. Joints to the model are possible
+    // since version 1.10.
     let gravity = "<gravity>0 0 -9.81</gravity>";
     let gravity = if minor < 6 { format!("<physics>{gravity}</physics>") } else { gravity.to_string() };
     let held = "<joint name=\"hold\" type=\"fixed\"><parent>world</parent><child>m::l0</child></joint>";
@@ -97,8 +97,8 @@ pub fn text(robot: &Robot, random: &mut Random) -> String {
 }
 
 impl Writer<'_> {
-    /// An attribute of a pose that names an earlier link than `k`, and that link's pose; nothing, and the
-    /// pose `usual`.
+    /// Returns the attribute of a pose that names a random link before link `k`, with the pose of that link.
+    /// May also return an empty attribute and the pose `usual`.
     fn base(&self, k: usize, usual: Placed, random: &mut Random) -> (String, Placed) {
         let word = match self.minor {
             ..5 => "",
@@ -116,7 +116,7 @@ impl Writer<'_> {
         let Link { mass, com, inertia, .. } = self.robot.links[k];
         let (attribute, base) = self.base(k, Placed::ZERO, random);
         let pose = base.back().then(&self.placed[k]).text();
-        // The inertial frame may be placed in other links before version 1.7.
+        // Before version 1.7, the pose of the inertial frame may be relative to other links.
         let center = self.placed[k].then(&Placed::new(com, [0.0; 3]));
         let usual = (String::new(), self.placed[k]);
         let (of_center, base) = if self.minor < 7 { self.base(k, usual.1, random) } else { usual };
@@ -134,7 +134,7 @@ impl Writer<'_> {
         let Some(joint) = &self.robot.links[child].joint else { return String::new() };
         let kind = match KINDS[joint.kind] {
             "spherical" => "ball",
-            // The older versions have no word for it.
+            // Older versions do not have this joint type.
             "continuous" if self.minor < 10 => "revolute",
             kind => kind,
         };

@@ -1,4 +1,4 @@
-//! Random MJCF files with motors on sites: the power of their forces and torques, by partial velocities.
+//! Random MJCF files with motors on sites: the power of forces and torques compared with partial velocities.
 
 use crate::jet::{C, cross, real, still};
 use crate::kane::State;
@@ -14,10 +14,10 @@ use linkwork_compiler::{derive, read};
 use std::array::from_fn;
 use std::path::Path;
 
-/// Generalized forces of a configuration, velocities and inputs.
+/// Generalized forces as a function of configuration, velocities and inputs.
 type Function = dyn Fn(&[f64], &[f64], &[f64]) -> Vec<f64>;
 
-/// Names of coordinates and inputs of a file, and its generalized forces.
+/// Names of the coordinates and inputs of a file, and its generalized forces.
 struct Forces {
     coordinates: Vec<String>,
     inputs: Vec<String>,
@@ -36,7 +36,7 @@ fn forces(text: &str, locked: &[String]) -> Forces {
         Path::new("/"),
         &mut cx,
     );
-    // What is left in the folder for temporary files harms nobody.
+    // Files that remain in the folder for temporary files do no harm.
     let _ = std::fs::remove_file(&file);
     let source = source.filter(|_| cx.is_empty()).unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
     let graph = Graph::new();
@@ -59,7 +59,7 @@ fn forces(text: &str, locked: &[String]) -> Forces {
     Forces { coordinates, inputs, values: Box::new(values) }
 }
 
-/// A frame on a link, or on the ground.
+/// Frame on a link or on the ground.
 struct Site {
     link: Option<usize>,
     xyz: [f64; 3],
@@ -81,7 +81,7 @@ impl Site {
     }
 }
 
-/// A motor on a site, with another one that feels the reaction or without.
+/// Motor on a site, with or without a reference site that receives the reaction.
 struct Motor {
     sites: [usize; 2],
     against: bool,
@@ -89,8 +89,8 @@ struct Motor {
 }
 
 impl Motor {
-    /// The power of the motor at a unit input: the work of its force and torque on what moves relative to
-    /// the other site.
+    /// Returns the power of the motor for a unit input: the power of its force and torque in the motion
+    /// relative to the reference site.
     fn power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
         let [on, against] = self.sites.map(|k| sites[k].pose(robot, state));
         let axes = if self.against { &against } else { &on };
@@ -108,7 +108,7 @@ impl Motor {
     }
 }
 
-/// Files of two to seven links with one to four motors, on links that move and on links that do not.
+/// Files of two to seven links with one to four motors, on moving and on fixed links.
 #[test]
 fn random_motors_on_sites_do_the_work_of_their_forces() {
     for seed in seeds(60) {
@@ -167,7 +167,7 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
     }
 }
 
-/// A nozzle at the end of an arm: by hand, and by MuJoCo 4.0.0.
+/// Nozzle at the end of an arm: results calculated by hand and with MuJoCo 4.0.0.
 #[test]
 fn motors_on_sites_of_an_arm() {
     let arm = |actuator: &str| {
@@ -187,7 +187,8 @@ fn motors_on_sites_of_an_arm() {
         let found = (forces(&arm(actuator), &[]).values)(&[at], &[0.0], &[1.0]);
         assert!((found[0] - expected).abs() < 1e-15, "{actuator}: {found:?}");
     }
-    // Two rotors lift a hull with the sum of their forces, and turn it by the difference of their torques.
+    // Two rotors lift a hull with the sum of their forces, and rotate it with the difference of their
+    // torques.
     let hull = "<mujoco><worldbody><body><freejoint/><inertial pos='0 0 0' mass='0.5' diaginertia='0.01 0.01 0.02'/>\
         <site name='front' pos='0.2 0 0'/><site name='back' pos='-0.2 0 0'/></body></worldbody>\
         <actuator><motor site='front' gear='0 0 1 0 0 0.1'/><motor site='back' gear='0 0 1 0 0 -0.1'/></actuator></mujoco>";

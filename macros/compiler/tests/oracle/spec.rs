@@ -1,9 +1,8 @@
-//! A random mechanism as plain data: what the oracle and the text in the words of the language are both made
-//! from.
+//! Random mechanisms as plain data, from which both the oracle's model and the source text are generated.
 
 use crate::random::Random;
 
-/// A joint of the language.
+/// Joint type of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Pin,
@@ -19,7 +18,7 @@ pub enum Kind {
     Weld,
 }
 
-/// All of them.
+/// All joint types.
 pub const KINDS: [Kind; 11] = [
     Kind::Pin,
     Kind::Sleeve,
@@ -35,7 +34,7 @@ pub const KINDS: [Kind; 11] = [
 ];
 
 impl Kind {
-    /// How many configuration numbers and velocities it has.
+    /// Returns the numbers of configuration coordinates and velocities.
     pub fn sizes(self) -> (usize, usize) {
         match self {
             Kind::Pin | Kind::Sleeve | Kind::Screw => (1, 1),
@@ -47,7 +46,7 @@ impl Kind {
         }
     }
 
-    /// The coordinates that an element can act on, in the order of the velocities.
+    /// Returns the coordinates that an element can act on, in the order of the velocities.
     pub fn coordinates(self) -> &'static [&'static str] {
         match self {
             Kind::Pin | Kind::Sleeve | Kind::Screw => &[""],
@@ -60,124 +59,124 @@ impl Kind {
     }
 }
 
-/// A place on a body: a position, then rotations about carried coordinate axes.
+/// Pose on a body: a position, followed by rotations about successive coordinate axes.
 #[derive(Clone, Debug, Default)]
 pub struct Place {
     pub at: [f64; 3],
     pub turns: Vec<(usize, f64)>,
 }
 
-/// A particle that a coordinate moves along an axis of the ground, away from a point of a body.
+/// Particle that a coordinate moves along an axis of the ground, relative to a point of a body.
 #[derive(Clone, Debug)]
 pub struct Slider {
     pub mass: f64,
     pub offset: [f64; 3],
 }
 
-/// A body with the joint that leads to it.
+/// Body with its joint to the parent.
 #[derive(Clone, Debug)]
 pub struct Body {
     pub kind: Kind,
-    /// The body that carries it, or the ground.
+    /// Parent body; `None` for the ground.
     pub parent: Option<usize>,
     pub on_parent: Place,
     pub on_child: Place,
-    /// Unit vectors: the first axis of the joint and the second.
+    /// Unit vectors of the first and the second axis of the joint.
     pub axes: [[f64; 3]; 2],
     pub pitch: f64,
     pub mass: f64,
     pub com: [f64; 3],
-    /// Principal moments, about axes that are turned by [`Body::inertia_turns`].
+    /// Principal moments, about axes that are rotated by [`Body::inertia_turns`].
     pub moments: [f64; 3],
     pub inertia_turns: Vec<(usize, f64)>,
-    /// A particle of this mass, at this place.
+    /// Mass and position of a particle on the body.
     pub particle: Option<(f64, [f64; 3])>,
     pub slider: Option<Slider>,
 }
 
-/// A point of a body or of the ground.
+/// Point of a body or of the ground.
 #[derive(Clone, Debug)]
 pub struct End {
     pub body: Option<usize>,
     pub at: [f64; 3],
 }
 
-/// The laws of elements between two points, on a coordinate, or on the length of a path.
+/// Law of an element between two points, on a coordinate, or on the length of a path.
 #[derive(Clone, Copy, Debug)]
 pub enum Law {
     /// Stiffness and free length.
     Spring(f64, f64),
-    /// Damping.
+    /// Damping coefficient.
     Dashpot(f64),
     /// Inertance.
     Inerter(f64),
-    /// Strength, of a pull that falls with the square of the distance; between two points alone.
+    /// Strength of an attraction with the inverse square of the distance; only between two points.
     Attraction(f64),
-    /// Dry friction; on coordinates alone.
+    /// Dry friction; only on coordinates.
     Friction(Friction),
 }
 
-/// The figures of dry friction.
+/// Parameters of dry friction.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction {
     pub coulomb: f64,
     pub stiction: f64,
     pub stribeck_speed: f64,
     pub viscous: f64,
-    /// Of the regularisation.
+    /// Speed of the regularisation.
     pub speed: f64,
 }
 
-/// A way between points that has a length.
+/// Path with a length.
 #[derive(Clone, Debug)]
 pub enum Path {
-    /// Straight from point to point.
+    /// Straight segments between points.
     Rope([End; 3]),
-    /// A cable between two points around a ball, or around a cylinder with an axis in the frame of its body.
+    /// Cable between two points around a ball, or around a cylinder with an axis in the frame of its body.
     Cable { ends: [End; 2], around: End, radius: f64, axis: Option<[f64; 3]> },
 }
 
-/// What acts.
+/// Force element.
 #[derive(Clone, Debug)]
 pub enum Element {
-    /// Along the line between two points.
+    /// Element along the line between two points.
     Between(Law, End, End),
-    /// Along a path.
+    /// Element along a path.
     Along(Law, Path),
-    /// On a coordinate of a body's joint.
+    /// Element on a coordinate of a body's joint: law, body, coordinate.
     On(Law, usize, usize),
-    /// A force in ground axes at a point of a body.
+    /// Force in ground axes at a point of a body.
     Push(End, [f64; 3]),
-    /// A force in the body's own axes at a point of a body.
+    /// Force in body axes at a point of a body.
     Follow(End, [f64; 3]),
-    /// A torque in ground axes on a body.
+    /// Torque in ground axes on a body.
     Twist(usize, [f64; 3]),
 }
 
-/// A mechanism.
+/// Mechanism.
 #[derive(Clone, Debug)]
 pub struct Spec {
     pub gravity: [f64; 3],
     pub bodies: Vec<Body>,
     pub elements: Vec<Element>,
-    /// Masses are parameters.
+    /// Whether masses are parameters.
     pub symbolic: bool,
 }
 
-/// What kind of mechanisms a generator makes.
+/// Parameters of the generator.
 #[derive(Clone, Copy, Debug)]
 pub struct Style {
-    /// How many bodies at most.
+    /// Maximum number of bodies.
     pub bodies: usize,
-    /// How many limbs of one form; a tree without form if none.
+    /// Number of identical limbs; zero for a random tree.
     pub limbs: usize,
-    /// Masses lie within this many powers of ten of one.
+    /// Masses are within this many powers of ten of one.
     pub decades: f64,
-    /// Angles and axes miss those of a plain machine by this.
+    /// Standard magnitude of deviations of angles and axes from coordinate axes.
     pub noise: Option<f64>,
 }
 
-/// Numbers with a choice of words.
+/// Random numbers and choices.
 struct Source(Random);
 
 impl Source {
@@ -193,7 +192,7 @@ impl Source {
         std::array::from_fn(|_| self.0.uniform(bound))
     }
 
-    /// A coordinate axis, or any.
+    /// Returns a coordinate axis or a random axis.
     fn axis(&mut self, style: &Style) -> [f64; 3] {
         let mut axis = [0.0; 3];
         if style.noise.is_some() || !self.chance(3) {
@@ -234,7 +233,7 @@ impl Source {
 
     fn body(&mut self, kind: Kind, parent: Option<usize>, style: &Style) -> Body {
         let mass = self.mass(style);
-        // Moments of a cuboid, which a real body has.
+        // Moments of a cuboid are always physically possible.
         let sides = self.vector(0.4).map(|s| s * s + 0.05);
         let all: f64 = sides.iter().sum();
         Body {
@@ -282,13 +281,13 @@ impl Source {
         })
     }
 
-    /// A rope over a peg, or a cable around a round part of any body.
+    /// Returns a rope over a peg, or a cable around a round obstacle on any body.
     fn path(&mut self, bodies: &[Body], one: usize) -> Option<Path> {
         let other = self.any(bodies);
         if self.chance(2) {
             return Some(Path::Rope([self.end(None), self.end(Some(one)), self.end(other)]));
         }
-        // Bodies that are welded together have a distance that stays.
+        // Bodies that are welded together have a constant distance.
         if other.and_then(|other| rigid(bodies, other)) == rigid(bodies, one) {
             return None;
         }
@@ -305,14 +304,14 @@ impl Source {
         })
     }
 
-    /// A body or the ground.
+    /// Returns a random body or the ground.
     fn any(&mut self, bodies: &[Body]) -> Option<usize> {
         self.below(bodies.len() + 1).checked_sub(1)
     }
 
     fn element(&mut self, bodies: &[Body]) -> Option<Element> {
         let one = self.below(bodies.len());
-        // What is welded to the ground cannot be moved by what acts on it.
+        // Forces cannot move a body that is welded to the ground.
         if is_fixed(bodies, one) {
             return None;
         }
@@ -332,7 +331,7 @@ impl Source {
             5 if turns(bodies, one) => Element::Twist(one, self.vector(3.0)),
             _ => {
                 let other = self.below(bodies.len());
-                // Bodies that are welded together have a distance that stays.
+                // Bodies that are welded together have a constant distance.
                 if rigid(bodies, other) == rigid(bodies, one) {
                     return None;
                 }
@@ -342,7 +341,7 @@ impl Source {
     }
 }
 
-/// The body that a body is welded to in the end; `None` for the ground.
+/// Returns the body that a body is rigidly connected to by welds; `None` for the ground.
 fn rigid(bodies: &[Body], body: usize) -> Option<usize> {
     match (bodies[body].kind, bodies[body].parent) {
         (Kind::Weld, None) => None,
@@ -351,7 +350,7 @@ fn rigid(bodies: &[Body], body: usize) -> Option<usize> {
     }
 }
 
-/// Whether a joint between the ground and the body turns.
+/// Returns whether a joint between the ground and the body rotates.
 fn turns(bodies: &[Body], body: usize) -> bool {
     let own = !matches!(bodies[body].kind, Kind::Sleeve | Kind::Stage | Kind::Weld);
     own || bodies[body].parent.is_some_and(|parent| turns(bodies, parent))
@@ -361,13 +360,13 @@ fn is_fixed(bodies: &[Body], body: usize) -> bool {
     rigid(bodies, body).is_none()
 }
 
-/// The vector of length one in a direction, as the language's `unit` makes it.
+/// Returns the unit vector in a direction, computed like the language's `unit`.
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     v.map(|x| x / length)
 }
 
-/// Joints that limbs are made of, common ones more often.
+/// Joint types of limbs; common types occur more often.
 const LIMB_KINDS: [Kind; 12] = [
     Kind::Pin,
     Kind::Pin,
@@ -383,7 +382,7 @@ const LIMB_KINDS: [Kind; 12] = [
     Kind::Free,
 ];
 
-/// The mechanism of a seed.
+/// Returns the mechanism of a seed.
 pub fn spec(seed: u64, style: Style) -> Spec {
     let mut source = Source(Random::new(seed));
     let mut bodies: Vec<Body> = Vec::new();
@@ -392,7 +391,7 @@ pub fn spec(seed: u64, style: Style) -> Spec {
         let count = 1 + source.below(style.bodies);
         for k in 0..count {
             let parent = (k > 0 && !source.chance(8)).then(|| source.below(k));
-            // A base that floats is met most of all.
+            // Floating bases are most frequent in applications.
             let kind = match parent {
                 None if source.chance(3) => Kind::Free,
                 _ => KINDS[source.below(KINDS.len())],
@@ -409,7 +408,7 @@ pub fn spec(seed: u64, style: Style) -> Spec {
     Spec { gravity: source.vector(10.0), bodies, elements, symbolic: source.chance(2) }
 }
 
-/// Limbs of one form on a trunk; how many elements there should be besides.
+/// Adds identical limbs to a trunk. Returns the number of further elements to generate.
 fn limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
     let trunk = match source.below(4) {
         0 => None,

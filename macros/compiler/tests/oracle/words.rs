@@ -1,11 +1,11 @@
-//! A random mechanism in the words of the language.
+//! Random mechanisms as source text.
 
 use crate::spec::{Body, Element, End, Friction, Kind, Law, Path, Place, Spec};
 use std::fmt::Write;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The attribute's arguments and the struct.
+/// Returns the attribute's arguments and the struct.
 pub fn source(spec: &Spec, name: &str, requests: &str) -> (String, String) {
     let mut out = String::new();
     for (k, body) in spec.bodies.iter().enumerate() {

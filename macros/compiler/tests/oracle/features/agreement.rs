@@ -1,6 +1,6 @@
-//! What must agree among the functions of one mechanism, whatever it is: derivatives with differences,
-//! forward with inverse dynamics, momenta, energies and powers with each other, constraints with their rates,
-//! and every function with itself as other passes, prepared numbers or vector registers make it.
+//! Consistency of the functions of one mechanism: derivatives with differences, forward with inverse
+//! dynamics, momenta, energies and powers with each other, constraints with their rates, and every function
+//! with its variants for other passes, prepared values or lanes.
 
 use super::source;
 use super::values::{By, Values, difference, slope};
@@ -12,15 +12,16 @@ use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::{compile, read};
 use std::path::Path;
 
-/// Largest difference of what passes change alone, relative to the result's largest entry.
+/// Maximum difference between results that differ only in passes, relative to the largest entry.
 pub(super) const SAME: f64 = 1e-9;
-/// Largest difference from differences, relative to the largest of both and of what they are differences of.
+/// Maximum difference from numeric differences, relative to the largest entry and to the differentiated
+/// values.
 pub(super) const TOLERANCE: f64 = 1e-7;
-/// Step of differences of differences.
+/// Step of second differences.
 const WIDE: f64 = 8e-3;
 const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
 
-/// Compiles a mechanism, if there is no mistake in it, and calls `f` with it.
+/// Compiles a mechanism and calls `f` with it, unless it has errors.
 fn with_compiled(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Output)) {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let tokens = |text: &str| text.parse().expect("the source is Rust");
@@ -30,14 +31,14 @@ fn with_compiled(arguments: &str, item: &str, f: &mut dyn FnMut(&Model<'_>, &Out
     }
 }
 
-/// Everything of the mechanism of a seed. The number of comparisons that were possible.
+/// Checks all functions of the mechanism of a seed. Returns the number of comparisons.
 pub fn check(seed: u64) -> usize {
     let (arguments, item) = source::source(seed);
     check_all(&arguments, &item, &[], seed)
 }
 
-/// Everything of a mechanism, which has some functions at least, in the state of a seed. The number of
-/// comparisons that were possible.
+/// Checks all functions of a mechanism, which must include `functions`, at a random state. Returns the number
+/// of comparisons.
 pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> usize {
     let name = format!("seed {seed}\n#[mechanism({arguments})]\n{item}");
     let mut compared = 0;
@@ -60,7 +61,7 @@ pub fn check_all(arguments: &str, item: &str, functions: &[&str], seed: u64) -> 
     compared
 }
 
-/// A compiled mechanism in some state.
+/// Compiled mechanism at a state.
 pub(super) struct Case<'a, 'g> {
     pub(super) model: &'a Model<'g>,
     pub(super) output: &'a Output,
@@ -77,7 +78,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The product of a matrix, column by column, and a vector.
+/// Returns the product of a matrix, stored by columns, and a vector.
 pub(super) fn product(columns: &[f64], vector: &[f64]) -> Vec<f64> {
     let rows = columns.len() / vector.len().max(1);
     (0..rows).map(|i| vector.iter().enumerate().map(|(j, x)| columns[j * rows + i] * x).sum()).collect()
@@ -92,7 +93,7 @@ impl Case<'_, '_> {
         self.output.functions.iter().find(|f| f.name == name)
     }
 
-    /// A function's result; nothing of a function that the mechanism does not have.
+    /// Returns the results of a function; empty for a function that the mechanism does not have.
     pub(super) fn run(&self, name: &str, values: &Values) -> Vec<f64> {
         self.function(name).map_or_else(Vec::new, |f| values.run(self.output, f))
     }
@@ -101,8 +102,8 @@ impl Case<'_, '_> {
         self.run(name, &self.values)
     }
 
-    /// Compares lists; `more` is what may be doubtful of them. Where mechanisms have no value, both have
-    /// none.
+    /// Compares two lists with the tolerance `bound`. If an entry of one list is not finite, that of the
+    /// other must not be finite either.
     pub(super) fn close(&mut self, what: &str, found: &[f64], expected: &[f64], bound: f64) {
         assert_eq!(found.len(), expected.len(), "{what} of {}", self.name);
         self.compared += 1;
@@ -116,7 +117,7 @@ impl Case<'_, '_> {
         }
     }
 
-    /// Compares a list with the derivative of another along some motion, unless that is at a kink.
+    /// Compares a list with the derivative of a function at zero. Skipped near a kink.
     pub(super) fn compare(&mut self, what: &str, found: &[f64], of: &dyn Fn(f64) -> Vec<f64>) {
         let (expected, doubt) = slope(of);
         let scale = 1.0 + size(found) + size(&expected) + size(&of(0.0));
@@ -145,7 +146,7 @@ impl Case<'_, '_> {
         }
     }
 
-    /// The functions that contain derivatives of another one after another.
+    /// Compares a function whose results are consecutive derivatives of another function.
     pub(super) fn check_columns(&mut self, what: &str, base: &str, by: &[By]) {
         let found = self.here(what);
         if found.is_empty() || self.function(base).is_none() {
@@ -163,8 +164,8 @@ impl Case<'_, '_> {
         assert!(rest.is_empty(), "{what} has more than derivatives, {}", self.name);
     }
 
-    /// The values with one entry changed: where speeds are declared, a displacement is measured in them, as
-    /// they are at the start.
+    /// Returns the function that changes one entry of the values. With declared generalized speeds,
+    /// displacements are measured in the speeds at the initial configuration.
     fn changer(&self) -> impl Fn(&Values, By, usize, f64) -> Values + use<> {
         let charts = self.model.charts.clone();
         let (columns, nv) = (self.here("__rate_matrix"), self.values.v.len());
@@ -180,10 +181,10 @@ impl Case<'_, '_> {
         }
     }
 
-    /// The derivative of a function along the motion.
+    /// Returns a function along the motion, as a function of time.
     pub(super) fn along<F: Fn(&Values) -> Vec<f64>>(&self, of: F) -> impl Fn(f64) -> Vec<f64> + use<F> {
         let (values, charts) = (self.values.clone(), self.model.charts.clone());
-        // With declared speeds the joints have other velocities.
+        // With declared generalized speeds, joint velocities differ from `v`.
         let joints = match self.function("rates_of_speeds") {
             Some(rates) => values.run(self.output, rates),
             None => values.v.clone(),
@@ -191,7 +192,7 @@ impl Case<'_, '_> {
         move |h| of(&values.later(&charts, &joints, h))
     }
 
-    /// Every function in vector registers, and of prepared numbers.
+    /// Compares every function with its variants with lanes and with prepared values.
     fn check_variants(&mut self) {
         let output = self.output;
         for function in &output.functions {
@@ -213,7 +214,7 @@ impl Case<'_, '_> {
         }
     }
 
-    /// Every function as it is without passes.
+    /// Compares every function with its variant without passes.
     fn check_passes(&mut self, plain: &Output) {
         for function in &plain.functions {
             if let Some(own) = self.function(&function.name).filter(|own| is_alike(own, function)) {
@@ -302,8 +303,8 @@ impl Case<'_, '_> {
         self.check_constraint_curvature();
     }
 
-    /// Columns of forward dynamics that are known, and those of the forces that are multiplied by the
-    /// inverse.
+    /// Checks the columns of the derivatives of forward dynamics: columns that are outputs themselves, and
+    /// columns of forces that are multiplied by the inverse.
     fn check_forward_derivatives(&mut self) {
         let Some(function) = self.function("forward_dynamics_derivatives").cloned() else { return };
         let get = |name: &str| self.function(name).cloned();
@@ -349,7 +350,7 @@ impl Case<'_, '_> {
         );
     }
 
-    /// Second derivatives of a function, contracted with the factors.
+    /// Checks second derivatives of a function, contracted with the factors.
     fn check_hessian(&mut self, what: &str, base: &str, blocks: &[(By, By)]) {
         let found = self.here(what);
         let Some(function) = self.function(base).cloned().filter(|_| !found.is_empty()) else { return };
@@ -358,8 +359,8 @@ impl Case<'_, '_> {
         self.compare_blocks(what, &found, blocks, &|x| dot(&x.run(output, &function), &factors));
     }
 
-    /// Compares second derivatives of a number by two things each with differences of differences; those by
-    /// configuration twice with the mean of both orders.
+    /// Compares blocks of second derivatives of a scalar with second differences. For two derivatives with
+    /// respect to configuration, the reference is the mean of both orders.
     pub(super) fn compare_blocks(
         &mut self,
         what: &str,
@@ -374,7 +375,7 @@ impl Case<'_, '_> {
             for (i, j) in (0..n).flat_map(|j| (0..m).map(move |i| (i, j))) {
                 let entry = found[first + j * m + i];
                 let values = self.values.clone();
-                // The inner motion begins where the outer one has led to.
+                // The inner displacement starts at the end of the outer one.
                 let mixed = |outer: (By, usize), inner: (By, usize), h: f64| {
                     difference(h, &|e| {
                         let there = changed(&values, outer.0, outer.1, e);
@@ -402,7 +403,7 @@ impl Case<'_, '_> {
         }
     }
 
-    /// What the regressors make of any mass properties, and of those of the mechanism.
+    /// Checks the regressors with arbitrary inertial parameters and with those of the mechanism.
     fn check_regressors(&mut self) {
         let (regressor, base) = (self.here("joint_torque_regressor"), self.here("base_regressor"));
         if regressor.is_empty() {
@@ -413,7 +414,7 @@ impl Case<'_, '_> {
         let forces = product(&regressor, &any);
         let bound = SAME * (1.0 + size(&regressor) * size(&any));
         self.close("base regressor", &product(&base, &self.here("base_parameters")), &forces, bound);
-        // Springs and other elements act beside the bodies.
+        // Springs and other elements contribute to the forces in addition to the bodies.
         if ["#[acts", "#[energy", "#[dissipation"].iter().all(|element| !self.name.contains(element)) {
             let own = self.here("standard_parameters");
             let bound = SAME * (1.0 + size(&regressor) * size(&own));
@@ -466,7 +467,7 @@ impl Case<'_, '_> {
     }
 }
 
-/// True for functions whose results mean the same, entry by entry.
+/// Returns true for functions whose results have the same meaning entry by entry.
 fn is_alike(a: &Function, b: &Function) -> bool {
     use catalogue::Shape;
     let divided =

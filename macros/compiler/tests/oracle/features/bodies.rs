@@ -1,5 +1,6 @@
-//! What is written computes what its programs compute: bodies are run as the Rust that they are, for one
-//! state, for one in debug builds, and for several at once. So do constants say what their functions compute.
+//! Comparison of generated Rust code with its programs: function bodies are interpreted for one state, for
+//! one state in debug builds, and for several states. Constants are compared with the functions that they
+//! describe.
 
 use super::agreement::{SAME, size, sum};
 use super::values::Values;
@@ -15,8 +16,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{Block, Expr, FnArg, ImplItem, ImplItemFn, Item, ItemImpl, Pat, Stmt};
 
-/// The functions and constants of the mechanism's own implementations, and the bodies that those of a number
-/// dispatch to.
+/// Functions and constants of the mechanism's inherent implementations, and the bodies of `Evaluate`
+/// implementations by number.
 struct Written {
     functions: BTreeMap<String, ImplItemFn>,
     constants: BTreeMap<String, Expr>,
@@ -27,7 +28,7 @@ fn written(text: &str) -> Written {
     let mut all = Written { functions: BTreeMap::new(), constants: BTreeMap::new(), bodies: BTreeMap::new() };
     for item in syn::parse_file(text).expect("Rust").items {
         let Item::Impl(block) = item else { continue };
-        // Of those with bounds the functions say that they are missing.
+        // Functions in blocks with bounds only report that they are absent.
         let (number, other) =
             (number_of(&block), block.trait_.is_some() || block.generics.where_clause.is_some());
         for member in block.items {
@@ -49,7 +50,7 @@ fn written(text: &str) -> Written {
     all
 }
 
-/// The first argument of `Evaluate<…>`.
+/// Returns the first type argument of `Evaluate<…>`.
 fn number_of(block: &ItemImpl) -> Option<String> {
     let of = block.trait_.as_ref()?.0.segments.last().filter(|last| last.ident == "Evaluate")?.clone();
     first_argument(&of.arguments)
@@ -60,7 +61,7 @@ fn first_argument(arguments: &syn::PathArguments) -> Option<String> {
     types.args.first().map(|first| quote::quote!(#first).to_string())
 }
 
-/// The bodies of a function, or those that it dispatches to, each with the patterns of its arguments.
+/// Returns the bodies of a function, or those that it dispatches to, with the patterns of their arguments.
 fn bodies<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
     let Some(function) = written.functions.get(name) else { return Vec::new() };
     let arguments = |function: &ImplItemFn| -> Vec<Pat> {
@@ -87,7 +88,7 @@ fn bodies<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
     vec![(arguments(function), &function.block)]
 }
 
-/// Values of an argument side by side.
+/// Combines the values of an argument for several states to lanes.
 fn lanes(all: &[Value]) -> Value {
     match &all[0] {
         Value::List(list) => {
@@ -128,7 +129,7 @@ fn argument(a: Argument, f: &Function, values: &Values) -> Option<Value> {
     })
 }
 
-/// Runs all bodies that call no other functions. Their names, with what they are for.
+/// Interprets all bodies that call no other functions. Returns their names, with their variants.
 pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
     let tokens = |text: &str| -> TokenStream { text.parse().expect("the source is Rust") };
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
@@ -154,8 +155,8 @@ pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
     run
 }
 
-/// Which entries of the generalized forces the inputs are, and which velocities those of ball and free
-/// joints, as constants say.
+/// Compares two constants with the functions: the entries of the generalized forces that equal inputs, and
+/// the velocities of ball and free joints.
 fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64, about: &str) {
     let constant = |name: &str| written.constants.get(name).map(places);
     let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
@@ -173,8 +174,7 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     let range = [ends.iter().min(), ends.iter().max()].map(|end| end.copied().unwrap_or(0));
     assert_eq!(turned, model.speeds.is_none().then(|| range.to_vec()), "velocities that turn, {about}");
 
-    // Elsewhere, with other parameters, and for other inputs, the forces change like the inputs, or they do
-    // not.
+    // An entry equals an input if it changes by the same amount for random states, parameters and inputs.
     let all = [seed, seed + 1000].map(|seed| Values::random(model, seed));
     let u = all[0].u.clone();
     let unit = |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
@@ -196,7 +196,7 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     assert_eq!(direct, expected.filter(|_| is_near(&here, &there)), "places of inputs, {about}");
 }
 
-/// The numbers in `Some([…])` or `Some((…))`; nothing for `None`.
+/// Returns the numbers in `Some([…])` or `Some((…))`; `None` for `None`.
 fn places(expr: &Expr) -> Option<Vec<usize>> {
     let Expr::Call(call) = expr else { return None };
     let list = match &call.args[0] {
@@ -208,7 +208,7 @@ fn places(expr: &Expr) -> Option<Vec<usize>> {
     Some(list.iter().map(number).collect())
 }
 
-/// True if a body calls nothing else.
+/// Compares a body with its program. Returns false for a body that calls other functions.
 fn check_body(
     model: &Model<'_>,
     output: &Output,
@@ -219,7 +219,7 @@ fn check_body(
 ) -> bool {
     let all: Vec<Values> = (0..states as u64).map(|k| Values::random(model, seed + 1000 * k)).collect();
     let parameters = &all[0].parameters;
-    // Several states have the same parameters.
+    // The states share their parameters.
     let all: Vec<Values> =
         all.iter().map(|values| Values { parameters: parameters.clone(), ..values.clone() }).collect();
     let named = model.parameters.iter().cloned().zip(parameters.iter().map(|x| Value::Number(*x)));
@@ -236,7 +236,7 @@ fn check_body(
         Err(Stop::Foreign) => return false,
         Err(Stop::Wrong(what)) => panic!("{what}, {about}"),
     };
-    // Results of such a function are where it puts them.
+    // The results of a function that writes to arguments are in these arguments.
     let into =
         f.arguments.iter().filter_map(|a| if let Argument::Into(name, _) = a { Some(*name) } else { None });
     result.extend(into.map(|name| machine.variable(name).expect("a matrix")));
@@ -245,7 +245,7 @@ fn check_body(
             .iter()
             .flat_map(|value| value.numbers(lane).unwrap_or_else(|stop| panic!("{stop:?}, {about}")))
             .collect();
-        // This one says where its numbers go, on both sides of the diagonal.
+        // A packed symmetric matrix is compared with the entries on both sides of the diagonal.
         let whole = output.functions.iter().find(|f| f.name == "mass_matrix");
         let of = whole.filter(|_| matches!(f.shape, Shape::Symmetric(_))).unwrap_or(f);
         let expected = values.run(output, of);

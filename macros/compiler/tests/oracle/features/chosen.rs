@@ -1,6 +1,6 @@
-//! Mechanisms with what random ones seldom have together.
+//! Mechanisms with combinations of features that are rare in random mechanisms.
 
-/// Arguments of the attribute, fields, and functions that must be among those that are compared.
+/// Arguments of the attribute, fields, and functions that must be among the compared ones.
 pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
     (
         "gravity = -9.81 * y, derivatives, second_derivatives, momentum_derivatives, sensitivities, regressor, hamilton",
@@ -61,7 +61,7 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
         #[joint(nut.at(0.2 * x).rotated(x(0.3)) -> ram.at(0.1 * y), about = z, pitch = p)] thread: Screw,",
         &["constraint_residuals", "constraint_jacobian", "constraint_bias"],
     ),
-    // Inputs that are entries of the generalized forces, beside and behind joints of every chart.
+    // Inputs that equal entries of the generalized forces, next to and after joints of every chart.
     (
         "gravity = -9.81 * y, derivatives",
         "#[body(mass = 1)] cart: Body,
@@ -76,7 +76,7 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
         #[acts(on = rail)] push: Force,",
         &["__input_derivatives"],
     ),
-    // An input that is two entries.
+    // An input that acts on two entries of the generalized forces.
     (
         "gravity = -9.81 * y, derivatives",
         "push: Input,
@@ -97,7 +97,7 @@ pub const MECHANISMS: [(&str, &str, &[&str]); 7] = [
     ),
 ];
 
-/// A chain of pins whose columns go to the root as lanes.
+/// Returns a chain of pins whose columns are propagated to the root in lanes.
 pub fn chain(joints: usize) -> String {
     (0..joints)
         .map(|k| {
@@ -112,7 +112,7 @@ pub fn chain(joints: usize) -> String {
         .collect()
 }
 
-/// A body that carries alike limbs, which are lanes.
+/// Returns a body with identical limbs, which are evaluated in lanes.
 pub fn limbs(count: usize, joints: usize) -> String {
     let mut fields =
         "#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, #[joint(ground -> trunk)] base: Free,\n"
@@ -125,7 +125,7 @@ pub fn limbs(count: usize, joints: usize) -> String {
     fields
 }
 
-/// A limb of pins with springs that hangs from a point; those of other numbers are like it.
+/// Returns a limb of pins with springs at a point; limbs with different numbers are identical.
 pub fn limb(number: usize, mut parent: String, joints: usize) -> String {
     let mut fields = String::new();
     for k in 0..joints {
@@ -141,7 +141,7 @@ pub fn limb(number: usize, mut parent: String, joints: usize) -> String {
     fields
 }
 
-/// A body that hangs from so many springs.
+/// Returns a body with `count` springs to the ground.
 pub fn springs(count: usize) -> String {
     let mut fields = "#[body(mass = 2, inertia = diagonal(0.3, 0.4, 0.5))] block: Body,
         #[joint(ground -> block, about = z)] pose: Planar,"

@@ -1,4 +1,4 @@
-//! What must agree of constraints and contacts.
+//! Consistency of constraints and contacts.
 
 use super::agreement::{Case, TOLERANCE, dot, product, size, sum};
 use super::source;
@@ -24,8 +24,8 @@ impl Case<'_, '_> {
         self.check_constrained_dynamics(&jacobian);
     }
 
-    /// What elimination finds, where it says that it is to be trusted: it fulfils the equations of motion and
-    /// the constraints.
+    /// Checks elimination with well-conditioned pivots: its result satisfies the equations of motion and the
+    /// constraints.
     fn check_constrained_dynamics(&mut self, jacobian: &[f64]) {
         let Some(function) = self.function("__constrained_dynamics").cloned() else { return };
         let Shape::Record(Record::Elimination(nv, nc)) = function.shape else { return };
@@ -47,8 +47,8 @@ impl Case<'_, '_> {
         self.close("constrained accelerations", &change, &vec![0.0; nc], 1e-4 * TOLERANCE * scale);
     }
 
-    /// `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`, twice differentiated, and `−J w` by configuration, whose rows
-    /// are the multipliers.
+    /// Checks the second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`, and the derivative of `−J w`
+    /// with respect to configuration, whose rows belong to the multipliers.
     pub(super) fn check_constraint_curvature(&mut self) {
         let found = self.here("__constraint_curvature");
         let get = |name: &str| self.function(name).cloned();
@@ -92,8 +92,8 @@ impl Case<'_, '_> {
             }
             first += contact.rates.len();
         }
-        // Of the rim of a cylinder those points count that are there at the moment: their gaps are not
-        // followed.
+        // For the rim of a cylinder, the contact points at the current instant are evaluated. The motion of
+        // these points along the rim is not differentiated.
         if self.name.contains(source::RIMS) {
             return;
         }
@@ -104,7 +104,7 @@ impl Case<'_, '_> {
         self.compare("gaps", &approach, &along);
     }
 
-    /// `Gᵀ f`, `G a + b` and the rates `G v + …`.
+    /// Checks the derivatives of `Gᵀ f`, `G a + b` and the contact velocities `G v + …`.
     fn check_contact_derivatives(&mut self) {
         let found = self.here("__contact_derivatives");
         let get = |name: &str| self.function(name).cloned();
@@ -131,7 +131,7 @@ impl Case<'_, '_> {
         self.compare_columns("rates at contacts", rest, By::Q, &|x| x.run(output, &rates));
     }
 
-    /// `M a + h − Jᵀ λ`, `J a + b` and the rates.
+    /// Checks the derivatives of `M a + h − Jᵀ λ`, `J a + b` and the constraint rates.
     pub(super) fn check_motion_derivatives(&mut self) {
         let found = self.here("__motion_derivatives");
         let get = |name: &str| self.function(name).cloned();

@@ -1,11 +1,11 @@
-//! A random mechanism in the words of the language: joints of all types, loops, force elements, values and
-//! outputs that are expressions of anything, states, speeds, contacts, limits, constraints, and words that
-//! ask for functions.
+//! Random mechanisms as source text: joints of all types, loops, force elements, random expressions as values
+//! and outputs, states, generalized speeds, contacts, limits, constraints, and options that request
+//! functions.
 
 use crate::random::Random;
 use std::fmt::Write;
 
-/// A joint by its type's name, its arguments, the names of its coordinates.
+/// Joint: name of its type, arguments, and names of its coordinates.
 type Joint = (&'static str, &'static str, &'static [&'static str]);
 
 const JOINTS: [Joint; 12] = [
@@ -23,7 +23,7 @@ const JOINTS: [Joint; 12] = [
     ("Weld", "", &[]),
 ];
 
-/// Joints of particles.
+/// Joints of particles, as indices of [`JOINTS`].
 const OF_PARTICLES: [usize; 4] = [1, 7, 8, 9];
 
 const VECTORS: [&str; 6] = ["x", "y", "-z", "0.3 * x", "[0.7, -1.2, 0.4]", "[0, 0, 0]"];
@@ -35,7 +35,7 @@ const SOLIDS: [&str; 5] = [
     "cuboid(M, 0.1, 0.2, 0.3)",
     "cylinder(M, 0.1, 0.3, y)",
 ];
-/// Values of scalars `S` and vectors `V`.
+/// Templates of scalar values. `S` is a scalar, `V` a vector, `B` the same scalar throughout.
 const VALUES: [&str; 10] = [
     "S",
     "S * S",
@@ -48,7 +48,7 @@ const VALUES: [&str; 10] = [
     "S / (1.5 + S * S)",
     "0.3 * dot(V, V)",
 ];
-/// Vectors of points `P`, axes `A`, bodies `H` and scalars `S`.
+/// Templates of vectors. `P` is a point, `A` a frame with axes, `H` a body, `S` a scalar.
 const VECTOR_VALUES: [&str; 8] = [
     "S * ground.y",
     "r(P / P)",
@@ -59,9 +59,9 @@ const VECTOR_VALUES: [&str; 8] = [
     "project(r(P / ground), A.z)",
     "S * A.y + 0.2 * ground.x",
 ];
-/// The surface of [`SURFACES`] that has rims.
+/// The entry of [`SURFACES`] with rims.
 pub const RIMS: &str = "cylinder(0.2, 0.5, x), ground";
-/// Pairs of surfaces of a body `H` and the ground.
+/// Templates of contact pairs between a body `H` and the ground.
 const SURFACES: [&str; 7] = [
     "H.sphere(0.1), ground.plane(y)",
     "H.sphere(0.1), ground.plane(y), rolling = 0.01, torsional = 0.02",
@@ -71,7 +71,7 @@ const SURFACES: [&str; 7] = [
     "H.at([0, 1, 0]).sphere(0.1), ground.at([0, 3, 0]).sphere(0.7)",
     "H.cylinder(0.2, 0.5, x), ground.plane(y)",
 ];
-/// What outputs alone may be.
+/// Templates that are valid only as outputs.
 const SCALAR_OUTPUTS: [&str; 8] = [
     "kinetic_energy(H)",
     "moment_of_inertia(H / P, ground.z)",
@@ -126,24 +126,24 @@ const WORDS: [&str; 17] = [
     "equations = structure",
 ];
 
-/// The fields so far, and what further ones may name.
+/// Fields generated so far, and names that further fields may use.
 struct Source {
     random: Random,
     fields: String,
     bodies: Vec<String>,
     particles: Vec<String>,
     coordinates: Vec<String>,
-    /// Axes that are no body's.
+    /// Frames that are not bodies.
     frames: Vec<String>,
-    /// Points and states by their names.
+    /// Names of points and of states.
     points: Vec<String>,
     states: Vec<String>,
-    /// Elements that take no part in functions of some words.
+    /// Whether elements exist that exclude some options.
     has_constraints: bool,
     has_parameters: bool,
 }
 
-/// The attribute's arguments and the struct of a seed.
+/// Returns the attribute's arguments and the struct for a seed.
 pub fn source(seed: u64) -> (String, String) {
     let mut source = Source {
         random: Random::new(seed),
@@ -249,7 +249,7 @@ impl Source {
         format!("{body}.at({})", self.one_of(&VECTORS))
     }
 
-    /// A scalar of the state, of time, of an input, or a number.
+    /// Returns a random scalar: a function of the state, time or an input, or a number.
     fn scalar(&mut self) -> String {
         let coordinate = (!self.coordinates.is_empty()).then(|| {
             let n = self.random.below(self.coordinates.len());
@@ -272,8 +272,8 @@ impl Source {
         }
     }
 
-    /// A form with scalars, vectors, points and bodies in the places of its letters; a `B` is one scalar
-    /// throughout.
+    /// Fills the placeholders of a template with random scalars, vectors, points and bodies. All placeholders
+    /// `B` are replaced by the same scalar.
     fn filled(&mut self, form: &str) -> String {
         let same = self.scalar();
         let mut text = String::new();
@@ -301,7 +301,7 @@ impl Source {
         self.bodies.get(n).cloned().unwrap_or_else(|| "ground".to_string())
     }
 
-    /// A body, or a frame.
+    /// Returns a random body, a frame or the ground.
     fn axes(&mut self) -> String {
         let n = self.random.below(self.bodies.len() + self.frames.len() + 1);
         let named = self.bodies.iter().chain(&self.frames).nth(n);
@@ -368,7 +368,7 @@ impl Source {
         let _ = writeln!(self.fields, "{field},");
     }
 
-    /// Elements that are seldom met.
+    /// Returns a rare element.
     fn further(&mut self, kind: usize, k: usize) -> String {
         let coordinate = self.coordinates.last().cloned().unwrap_or_else(|| "t".to_string());
         let body = self.bodies.last().cloned().unwrap_or_else(|| "ground".to_string());

@@ -1,4 +1,4 @@
-//! The functions of a compiled mechanism in numbers, where it is in some state, and how they change with it.
+//! Numeric evaluation of the functions of a compiled mechanism at a state, and of their derivatives.
 
 use crate::random::Random;
 use linkwork_compiler::catalogue::Called;
@@ -6,10 +6,10 @@ use linkwork_compiler::derive::{Function, Output, Prepared};
 use linkwork_compiler::lower::Program;
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
 
-/// Step of differences of sixth order.
+/// Step of sixth-order differences.
 const H: f64 = 4e-3;
 
-/// What functions depend on, with a list of numbers for each kind.
+/// Values that functions depend on, one list for each kind.
 #[derive(Clone)]
 pub struct Values {
     pub t: f64,
@@ -24,7 +24,7 @@ pub struct Values {
     pub contact_forces: Vec<f64>,
 }
 
-/// By what a function is differentiated.
+/// Variables with respect to which a function is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum By {
     Q,
@@ -50,7 +50,7 @@ impl Values {
             given: list(4 * (nv + model.constraints.len()), 0.7),
             contact_forces: list(model.contacts.iter().map(|c| c.rates.len()).sum(), 0.9),
         };
-        // Parameters of mass properties are given, too: ten of each body.
+        // Also provides standard inertial parameters: ten for each body.
         values.given.extend(list(10 * model.frames.len(), 0.7));
         for chart in &model.charts {
             if let Some(quaternion) = quaternion(*chart, &mut values.q) {
@@ -61,12 +61,12 @@ impl Values {
         values
     }
 
-    /// A result of a function, which may begin with those of functions that it calls.
+    /// Returns the results of a function, which may depend on results of functions that it calls.
     pub fn run(&self, output: &Output, function: &Function) -> Vec<f64> {
         self.run_program(output, function, false)
     }
 
-    /// By the program in lanes, where there is one.
+    /// Returns the results of the program with lanes, if there is one.
     pub fn run_lanes(&self, output: &Output, function: &Function) -> Option<Vec<f64>> {
         function.program.simd.is_some().then(|| self.run_program(output, function, true))
     }
@@ -84,7 +84,7 @@ impl Values {
         })
     }
 
-    /// A result of a function of the prepared mechanism.
+    /// Returns the results of a function of the prepared mechanism.
     pub fn run_prepared(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
         let numbers = prepared.numbers.run(&|s| self.at(Quantity::of(s), &[]));
         let at = |name: &str| {
@@ -116,12 +116,12 @@ impl Values {
         }
     }
 
-    /// A result of a program that calls nothing.
+    /// Returns the results of a program without calls.
     fn run_alone(&self, program: &Program) -> Vec<f64> {
         program.run(&|s| self.at(Quantity::of(s), &[]))
     }
 
-    /// The values with one entry changed, of anything but a configuration.
+    /// Returns the values with one entry changed, except configuration coordinates.
     pub fn changed(&self, by: By, k: usize, h: f64) -> Values {
         let mut values = self.clone();
         match by {
@@ -134,14 +134,15 @@ impl Values {
         values
     }
 
-    /// The values elsewhere, by a small motion.
+    /// Returns the values after a small displacement of the configuration.
     pub fn displaced(&self, charts: &[Chart], step: &[f64]) -> Values {
         let mut values = self.clone();
         move_along(charts, &mut values.q, step);
         values
     }
 
-    /// The values a little later, by the velocities of the joints, with the accelerations as they are.
+    /// Returns the values after a short time `h`: moved with the joint velocities, with constant
+    /// accelerations.
     pub fn later(&self, charts: &[Chart], joints: &[f64], h: f64) -> Values {
         let step: Vec<f64> = joints.iter().map(|v| h * v).collect();
         let mut values = self.displaced(charts, &step);
@@ -169,12 +170,12 @@ fn normalise(q: &mut [f64]) {
     q.iter_mut().for_each(|x| *x /= length);
 }
 
-/// `a × b`
+/// Returns `a × b`.
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Adds a small motion, in the axes of balls and free bodies.
+/// Applies a small displacement, in the body axes for ball and free joints.
 fn move_along(charts: &[Chart], q: &mut [f64], step: &[f64]) {
     for chart in charts {
         match *chart {
@@ -193,7 +194,7 @@ fn move_along(charts: &[Chart], q: &mut [f64], step: &[f64]) {
     }
 }
 
-/// Turns a quaternion (scalar part last) by a small rotation vector in its own axes.
+/// Rotates a quaternion (scalar part last) by a small rotation vector in body axes.
 fn turn(quaternion: &mut [f64], step: &[f64]) {
     let (axis, scalar) = ([0, 1, 2].map(|k| quaternion[k]), quaternion[3]);
     let half = [0, 1, 2].map(|k| 0.5 * step[k]);
@@ -203,7 +204,7 @@ fn turn(quaternion: &mut [f64], step: &[f64]) {
     normalise(quaternion);
 }
 
-/// The derivative at zero of what depends on a small number, by differences of sixth order over steps of `h`.
+/// Returns the derivative at zero of a function, by sixth-order differences with steps of `h`.
 pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [one, two, three] = [h, 2.0 * h, 3.0 * h].map(|h| (of(h), of(-h)));
     let part = |(plus, minus): &(Vec<f64>, Vec<f64>), k: usize| plus[k] - minus[k];
@@ -211,8 +212,8 @@ pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     (0..one.0.len()).map(at).collect()
 }
 
-/// Such a derivative, and what is doubtful of it: halving the step changes 63 times what is left of the
-/// error.
+/// Returns the derivative at zero of a function, with an error estimate. Halving the step changes the result
+/// by 63 times the remaining error.
 pub fn slope(of: &dyn Fn(f64) -> Vec<f64>) -> (Vec<f64>, f64) {
     let (wide, narrow) = (difference(H, of), difference(0.5 * H, of));
     let doubt = wide.iter().zip(&narrow).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
