@@ -216,7 +216,7 @@ fn without_momentum(requests: Requests) -> Option<&'static str> {
 }
 
 /// Maximum number of parameter derivatives, and of second derivatives of the energies and dissipation
-/// functions of elements. Each has as many terms as there are velocities.
+/// functions of elements. Each has one term per velocity.
 const MOST_DERIVATIVES: usize = 300_000;
 
 /// Returns the requested derivatives whose code would be too long for rustc, if there are any.

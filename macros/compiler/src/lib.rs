@@ -204,7 +204,7 @@ fn describe(output: &mut derive::Output, mechanism: &Mechanism) {
 }
 
 /// Reports rates of states that depend on accelerations or reactions: accelerations depend on the rates of
-/// states, which would be circular. Returns true if there are none.
+/// states, which would be circular. Returns true if no rate is wrong.
 fn check_rates(description: &Description, functions: &[derive::Function], cx: &mut Diagnostics) -> bool {
     let before = cx.len();
     for (state, _) in &description.states {

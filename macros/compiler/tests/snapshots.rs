@@ -1,6 +1,6 @@
 //! Generated code of small mechanisms, for reviewing changes of the compiler. A difference is not an error in
-//! itself: review it, and regenerate the files with `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test
-//! snapshots`.
+//! itself: review it, and regenerate the files with
+//! `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test snapshots`.
 
 mod generated;
 

@@ -1,6 +1,6 @@
 //! Individual errors, in the files of the folder `tables`. Each row contains the source text, in which `‹`
-//! and `›` enclose the tokens that the message points at, and the message. `LINKWORK_WRITE=1 cargo test -p
-//! linkwork-compiler --test mistakes` regenerates the files; review the difference.
+//! and `›` enclose the tokens that the message points at, and the message. To regenerate the files, run
+//! `LINKWORK_WRITE=1 cargo test -p linkwork-compiler --test mistakes` and review the difference.
 //!
 //! A section begins with `== mechanism(arguments)` and fields, which are common to its rows. Rows of `==
 //! items` are complete items. Several messages of a row are in the order of their tokens.

@@ -217,7 +217,7 @@ impl<'a> Reader<'a> {
                     let class = self.defaults.class(child, "childclass", class, cx);
                     let element = self.defaults.element(child, &[], 0, cx);
                     let pose = outer.then(&read_pose(&element, &self.settings, cx));
-                    // As deep as elements stand in one another, which is limited.
+                    // The recursion depth is that of nested elements, which is limited.
                     self.gather(child, &pose, class, found, cx);
                 }
                 "body" => found.bodies.push((child, *outer, class)),

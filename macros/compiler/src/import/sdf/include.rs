@@ -201,7 +201,7 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
     }
 }
 
-/// Returns the only model of an included file, or reports that there is none or more than one.
+/// Returns the only model of an included file, or reports that it has no model or several.
 fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
     let mut models = elements(root).filter(|node| node.tag_name().name() == "model");
     let found = models.next().filter(|_| root.tag_name().name() == "sdf");
