@@ -1,10 +1,10 @@
 //! Constrained mechanisms: closed loops, rolling and other constraints ([guide](crate::guide::constraints)).
 //!
-//! The coordinates are those of the spanning tree and are not independent: a state `(q, v)` fulfils the
-//! residuals `φ(t, q) = 0` and the rates `J(t, q) v + … = 0`. [`Constrained::assemble`] finds such a
-//! configuration near a given one, [`Constrained::complete_velocity`] the velocity with given entries,
-//! [`Constrained::project_velocity`] the nearest, and [`simulate`](crate::simulate()) keeps both, or lets
-//! violations decay where a mechanism is [`stabilized`].
+//! The coordinates are those of the spanning tree and are not independent. A state `(q, v)` satisfies the
+//! constraints if the residuals `φ(t, q)` and the rates `J(t, q) v + …` are zero. [`Constrained::assemble`]
+//! finds a configuration near a guess, [`Constrained::complete_velocity`] the velocity with prescribed
+//! entries, and [`Constrained::project_velocity`] the nearest velocity. [`simulate`](crate::simulate()) keeps
+//! the state on the constraints by projection, or lets violations decay if the mechanism is [`stabilized`].
 
 use crate::private::{constant, epsilon, to_f64};
 use crate::{ByMotion, Real, Rheonomic};
@@ -47,94 +47,95 @@ pub use solve::{independent_solution, least_solution, regular_solution};
 pub use stabilized::stabilized_derivatives;
 pub use stabilized::{Stabilized, stabilized};
 
-/// A share of the velocity by which a projection changes it where it leads to another branch.
+/// Relative change of velocity above which a projection may have switched to another branch.
 const TURN: f64 = 0.01;
 
-/// Newton steps of a projection; a state that has drifted needs one or two.
+/// Maximum number of Newton steps of a projection; a state that has drifted needs one or two.
 const MOST_STEPS: usize = 20;
 
-/// Why a state could not be brought onto the constraints.
+/// Reason why no state, force or impulse satisfies the constraints.
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ConstraintError {
-    /// No configuration near the given one fulfils the constraints.
+    /// No configuration near the initial one satisfies the constraints.
     Configuration {
-        /// The constraint that is violated most.
+        /// Name of the constraint with the largest residual.
         constraint: &'static str,
-        /// What is left of it, m or rad.
+        /// Residual of this constraint, m or rad.
         residual: f64,
     },
-    /// No velocity fulfils the constraints: what is driven in time contradicts them, or the configuration is
+    /// No velocity satisfies the constraints: prescribed motions contradict them, or the configuration is
     /// singular.
     Velocity {
-        /// The constraint that is violated most.
+        /// Name of the constraint with the largest violation.
         constraint: &'static str,
-        /// What is left of its rate, m/s or rad/s.
+        /// Violation of the rate of this constraint, m/s or rad/s.
         rate: f64,
     },
-    /// No acceleration fulfils the constraints: entries that are given contradict them, or the configuration
-    /// is singular.
+    /// No acceleration satisfies the constraints: prescribed entries contradict them, or the configuration is
+    /// singular.
     Acceleration {
-        /// The constraint that is violated most.
+        /// Name of the constraint with the largest violation.
         constraint: &'static str,
-        /// The remainder of its second rate, m/s² or rad/s².
+        /// Violation of the second rate of this constraint, m/s² or rad/s².
         acceleration: f64,
     },
-    /// No configuration of the assembly mode that was asked for was found around the guess
+    /// No configuration of the requested assembly mode was found near the guess
     /// ([`Constrained::assemble_in_mode`]).
     Mode {
-        /// The assembly mode.
+        /// Requested assembly mode.
         mode: i8,
     },
-    /// Forces at the velocities that are driven cannot give the motion: another velocity has to be driven as
-    /// well ([`Constrained::constrained_inverse_dynamics`]).
+    /// Forces at the driven velocities cannot cause the motion; further velocities must be driven
+    /// ([`Constrained::constrained_inverse_dynamics`]).
     Undriven {
-        /// The velocity whose equation is violated most.
+        /// Name of the velocity whose equation has the largest residual.
         velocity: &'static str,
-        /// The force that is missing there, N or N·m.
+        /// Missing force at this velocity, N or N·m.
         force: f64,
     },
-    /// Constraints depend on each other here that are independent elsewhere: the motion is not determined to
-    /// first order.
+    /// Constraints that are usually independent are dependent in this configuration, and the motion is not
+    /// determined to first order.
     Singular,
-    /// Friction jams: a normal force that friction depends on does not follow from the motion (Painlevé's
-    /// paradox), or is shared by contacts in more than one way.
+    /// Friction jams: a normal force on which friction depends does not follow from the motion (Painlevé's
+    /// paradox), or contacts can share it in several ways.
     Jammed {
-        /// The contact.
+        /// Name of the contact.
         constraint: &'static str,
     },
-    /// No impulses are found that fulfil the laws of contact: constraints, or what is driven in time, hold
-    /// surfaces that approach each other.
+    /// No impulses satisfy the contact conditions: constraints or prescribed motions force surfaces to
+    /// penetrate.
     Contact {
-        /// The contact whose law is fulfilled least.
+        /// Name of the contact with the largest violation.
         constraint: &'static str,
     },
-    /// A coefficient of friction is negative or not finite, or one of restitution not between zero and one.
+    /// A coefficient of friction is negative or not finite, or a coefficient of restitution is not between 0
+    /// and 1.
     Coefficient {
-        /// The contact.
+        /// Name of the contact.
         constraint: &'static str,
-        /// What the parameters make of it.
+        /// Value of the coefficient for the parameters of the mechanism.
         value: f64,
     },
-    /// Surfaces overlap that were to be apart.
+    /// Surfaces that must be separated overlap.
     Overlap {
-        /// The contact whose surfaces overlap most.
+        /// Name of the contact with the largest overlap.
         constraint: &'static str,
-        /// By how much, m or rad.
+        /// Overlap, m or rad.
         depth: f64,
     },
-    /// An index of a velocity to be held is none: `held` counts the velocities from zero.
+    /// An index in `held` is out of range; velocities are counted from zero.
     Held {
-        /// The index.
+        /// Index in `held`.
         index: usize,
-        /// How many velocities there are.
+        /// Number of velocities.
         velocities: usize,
     },
-    /// Residuals or rates are infinite or NaN there.
+    /// Residuals or rates are infinite or NaN.
     NotFinite,
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints the `Debug` form of a returned error.
 impl fmt::Debug for ConstraintError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
@@ -187,13 +188,13 @@ impl fmt::Display for ConstraintError {
 
 impl core::error::Error for ConstraintError {}
 
-/// Configuration and velocity that fulfil constraints.
+/// Configuration and velocity that satisfy the constraints.
 pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVector<T, NV>);
 
 /// Accelerations `v̇` and multipliers `λ`.
 pub type Solution<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
 
-/// The constraints on configurations of a mechanism at a time, for assembly.
+/// Returns the holonomic constraints of a mechanism at an instant, for assembly.
 macro_rules! loops {
     ($mechanism:ident, $t:ident) => {
         Loops {
@@ -207,14 +208,14 @@ macro_rules! loops {
     };
 }
 
-/// What mechanisms with closed loops, rolling or other constraints offer, for generic code.
+/// Functions of mechanisms with closed loops, rolling or other constraints, for generic code.
 ///
-/// There are `NC` scalar constraints, of which the first `NH` restrict configurations (holonomic) and the
-/// others velocities alone. `#[mechanism]` implements the trait where joints close loops or constraints are
-/// declared. Time `t` is in seconds; mechanisms that do not contain it take any.
+/// There are `NC` scalar constraints. The first `NH` restrict configurations (holonomic constraints), the
+/// others restrict only velocities. `#[mechanism]` implements the trait if joints close loops or constraints
+/// are declared. Time `t` is in seconds; mechanisms that do not depend on time accept any value.
 ///
-/// The equations of motion are `M v̇ + h = τ + Jᵀ λ` with `J v̇ + b = 0`: `forward_dynamics` solves both,
-/// while the mass matrix, bias forces and inverse dynamics are those of the spanning tree.
+/// The equations of motion are `M v̇ + h = τ + Jᵀ λ` and `J v̇ + b = 0`. `forward_dynamics` solves both. The
+/// mass matrix, bias forces and inverse dynamics are those of the spanning tree.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no constraints",
     label = "expected a mechanism with constraints",
@@ -223,22 +224,21 @@ macro_rules! loops {
 pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>:
     Rheonomic<NQ, NV, NU>
 {
-    /// Name of every constraint.
+    /// Names of the constraints.
     const CONSTRAINTS: [&'static str; NC];
 
-    /// Indices of the entries of `q` that are angles, rad: those of pins and of other coordinates that rotate
-    /// something.
+    /// Indices of the entries of `q` that are angles, rad: coordinates of pins and of other rotations.
     const ANGLES: &'static [usize] = &[];
 
-    /// `φ(t, q)`, m and rad: zero where the constraints hold.
+    /// Returns the residuals `φ(t, q)`, m and rad, which are zero if the constraints are satisfied.
     fn constraint_residuals(
         &self,
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
     ) -> SVector<Self::Scalar, NH>;
 
-    /// `J(t, q) v + …`, m/s and rad/s: zero where the constraints hold. The first `NH` are the rates of the
-    /// residuals.
+    /// Returns the constraint rates `J(t, q) v + …`, m/s and rad/s, which are zero if the constraints are
+    /// satisfied. The first `NH` are the rates of the residuals.
     fn constraint_rates(
         &self,
         t: Self::Scalar,
@@ -246,14 +246,15 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NC>;
 
-    /// `J(t, q)`: how the rates change with the velocities.
+    /// Returns the constraint Jacobian `J(t, q)`: the derivatives of the rates with respect to the
+    /// velocities.
     fn constraint_jacobian(
         &self,
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
     ) -> SMatrix<Self::Scalar, NC, NV>;
 
-    /// `b(t, q, v)`, m/s² and rad/s²: the rates change by `J v̇ + b`.
+    /// Returns the bias `b(t, q, v)`, m/s² and rad/s², of the rates' time derivatives `J v̇ + b`.
     fn constraint_bias(
         &self,
         t: Self::Scalar,
@@ -261,8 +262,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NC>;
 
-    /// `v̇` and the multipliers `λ` under the forces `tau`: N for lengths, N·m for angles. Where constraints
-    /// are redundant, the multipliers of least norm.
+    /// Returns `v̇` and the multipliers `λ` for the forces `tau`. Multipliers are in N for lengths and in N·m
+    /// for angles. If constraints are redundant, the multipliers have minimum norm.
     fn constrained_dynamics(
         &self,
         t: Self::Scalar,
@@ -271,7 +272,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         tau: &SVector<Self::Scalar, NV>,
     ) -> Solution<Self::Scalar, NV, NC>;
 
-    /// The change of velocity `x` of least kinetic energy that takes `gap` away: `J x = −gap`.
+    /// Returns the velocity change `x` with minimum kinetic energy that removes `gap`: `J x = −gap`.
     fn constraint_correction(
         &self,
         t: Self::Scalar,
@@ -279,9 +280,9 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         gap: &SVector<Self::Scalar, NC>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// The change of velocity `x` by the generalized impulse `p`, N·s and N·m·s, and by impulses of the
-    /// constraints that take `gap` away: `M x = p + Jᵀ λ`, `J x = −gap`. Dry friction of contacts that slip
-    /// is left out.
+    /// Returns the velocity change `x` due to the generalized impulse `p` (N·s and N·m·s) and to impulses of
+    /// the constraints that remove `gap`: `M x = p + Jᵀ λ`, `J x = −gap`. Dry friction of sliding contacts is
+    /// neglected.
     fn constraint_response(
         &self,
         t: Self::Scalar,
@@ -290,8 +291,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         gap: &SVector<Self::Scalar, NC>,
     ) -> SVector<Self::Scalar, NV>;
 
-    /// [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the mechanism
-    /// [`stabilized`], with violations that decay at `rate`, 1/s; `None` without [`ConstrainedDerivatives`].
+    /// Returns [`Mechanism::acceleration_derivatives`](crate::Mechanism::acceleration_derivatives) of the
+    /// mechanism [`stabilized`] with the decay rate `rate`, 1/s; `None` without [`ConstrainedDerivatives`].
     fn stabilized_derivatives(
         &self,
         _t: Self::Scalar,
@@ -302,10 +303,10 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         None
     }
 
-    /// [`Mechanism::impulse`](crate::Mechanism::impulse) of a mechanism with constraints. Those on
-    /// configurations are looked at where `v` leads in `h` seconds, those on velocities half-way there (a
-    /// discrete constraint that reads the same forwards and backwards: McLachlan and Perlmutter, *Integrators
-    /// for nonholonomic mechanical systems*, J. Nonlinear Sci. 16, 2006).
+    /// Returns [`Mechanism::impulse`](crate::Mechanism::impulse) of a mechanism with constraints. Holonomic
+    /// constraints are evaluated at the configuration that `v` reaches in `h` seconds, velocity constraints
+    /// half-way to it (a discrete constraint that is symmetric in time: McLachlan and Perlmutter,
+    /// *Integrators for nonholonomic mechanical systems*, J. Nonlinear Sci. 16, 2006).
     fn constrained_impulse(
         &self,
         t: Self::Scalar,
@@ -330,20 +331,20 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         self.constraint_response(t, q, p, &gap)
     }
 
-    /// Returns a configuration near `q` in which the constraints hold, by damped Newton steps of bounded
-    /// length and number (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006, § 10.3),
-    /// starting from `q` and, if that fails, from points around it. The coordinates whose velocities have the
-    /// indices `held` keep their values. Angles are found within half a turn of `q`, unless the constraints
-    /// rotate them farther, as gears do.
+    /// Returns a configuration near `q` that satisfies the constraints. The method uses damped Newton steps
+    /// of bounded length and number (Levenberg–Marquardt: Nocedal and Wright, *Numerical Optimization*, 2006,
+    /// § 10.3), starting from `q` and, if that fails, from points around it. Coordinates whose velocities
+    /// have the indices `held` do not change. Angles are within half a revolution of `q`, unless the
+    /// constraints require larger rotations, as gears do.
     ///
-    /// Most linkages can be assembled in several ways. The result is usually in the mode next to `q`:
+    /// Most linkages have several assembly modes. The result is usually in the mode nearest to `q`:
     /// [`assembly_mode`](Self::assembly_mode) returns the mode, [`assemble_in_mode`](Self::assemble_in_mode)
     /// finds another one.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Configuration`] where none is found, [`ConstraintError::Held`] for an index that is
-    /// none.
+    /// [`ConstraintError::Configuration`] if no configuration is found, [`ConstraintError::Held`] for an
+    /// index that is not less than `NV`.
     fn assemble(
         &self,
         t: Self::Scalar,
@@ -353,12 +354,13 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         assemble(&loops!(self, t), q, held, None)
     }
 
-    /// A configuration around `q` in which the constraints hold, as [`assemble`](Self::assemble) finds it, of
-    /// the given [`assembly_mode`](Self::assembly_mode).
+    /// Returns a configuration near `q` that satisfies the constraints and has the assembly mode `mode`, see
+    /// [`assemble`](Self::assemble) and [`assembly_mode`](Self::assembly_mode).
     ///
     /// # Errors
     ///
-    /// Those of [`assemble`](Self::assemble), and [`ConstraintError::Mode`] where only others are found.
+    /// The errors of [`assemble`](Self::assemble), and [`ConstraintError::Mode`] if only configurations of
+    /// other modes are found.
     fn assemble_in_mode(
         &self,
         t: Self::Scalar,
@@ -369,24 +371,26 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         assemble(&loops!(self, t), q, held, Some(mode))
     }
 
-    /// The assembly mode of the configuration `q`, 1 or −1: the sign of the determinant of the derivatives of
-    /// the constraints on configurations by the coordinates whose velocities are not `held`. It changes only
-    /// in singular positions, where the coordinates that are held no longer determine the others to first
-    /// order. The two modes of a four-bar with a given crank, open and crossed, have different signs;
-    /// linkages of several loops may have more modes than two, of which some share a sign.
+    /// Returns the assembly mode of the configuration `q`, 1 or −1: the sign of the determinant of the
+    /// derivatives of the holonomic constraints with respect to the coordinates whose velocities are not
+    /// `held`. The mode changes only in singular configurations, in which the coordinates `held` do not
+    /// determine the others to first order. The two modes of a four-bar linkage with a fixed crank, open and
+    /// crossed, have different signs. Linkages with several loops may have more than two modes, some of which
+    /// share a sign.
     ///
-    /// `None` in a singular position, and where the coordinates that are not held are more or fewer than the
-    /// constraints on configurations.
+    /// Returns `None` in a singular configuration, and if the number of coordinates that are not held differs
+    /// from the number of holonomic constraints.
     fn assembly_mode(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>, held: &[usize]) -> Option<i8> {
         assembly_mode(&loops!(self, t), q, held)
     }
 
-    /// The configuration nearest to `q` that fulfils the constraints, in the metric of the kinetic energy.
-    /// For what has drifted; [`assemble`](Self::assemble) comes from farther away.
+    /// Returns the configuration nearest to `q`, in the metric of the kinetic energy, that satisfies the
+    /// constraints. This corrects numeric drift; [`assemble`](Self::assemble) converges from a larger
+    /// distance.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Configuration`] where Newton's method does not converge.
+    /// [`ConstraintError::Configuration`] if Newton's method does not converge.
     fn project_configuration(
         &self,
         t: Self::Scalar,
@@ -397,13 +401,13 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         for _ in 0..MOST_STEPS {
             let residuals = self.constraint_residuals(t, &q);
             let (worst, size) = largest(&residuals)?;
-            // A drift that is let be is another linkage, which may have no singular position where this one
-            // has it.
+            // The first check is strict: a configuration with uncorrected drift belongs to a slightly
+            // different linkage, which may have no singular configuration near that of the mechanism.
             let enough = if last.is_none() { known(&q) } else { rounding(&q) };
             if size <= enough {
                 return Ok(q);
             }
-            // Rounding ends the convergence.
+            // Convergence ends at rounding errors.
             if last.is_some_and(|last| size * constant(2.0) > last) {
                 return near(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size));
             }
@@ -415,11 +419,12 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         near(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size))
     }
 
-    /// The velocity nearest to `v` that fulfils the constraints, in the metric of the kinetic energy.
+    /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the
+    /// constraints.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Velocity`] where none does.
+    /// [`ConstraintError::Velocity`] if no velocity satisfies them.
     fn project_velocity(
         &self,
         t: Self::Scalar,
@@ -427,14 +432,14 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
     ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
         let mut v = *v;
-        // The second correction takes away what the first one may leave where constraints nearly depend on
-        // each other.
+        // The second correction removes the residual of the first one, which is large if constraints are
+        // nearly dependent.
         for enough in [epsilon::<Self::Scalar>() * reach(&v), rounding(&v)] {
             let rates = self.constraint_rates(t, q, &v);
             if largest(&rates)?.1 <= enough {
                 return Ok(v);
             }
-            // Beside the speed, so that what counts as rounding is told from what does not.
+            // Relative to the speed, so that rounding errors can be distinguished from velocities.
             let unit = reach(&v);
             v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
@@ -442,7 +447,8 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         if near(size, &v) {
             return Ok(v);
         }
-        // Beside a branch, near a singular position, the constraints have other directions than on it.
+        // Off a branch, near a singular configuration, the constraints have other directions than on the
+        // branch.
         let left = self.constraint_residuals(t, q);
         let farthest = farthest(&self.constraint_jacobian(t, q));
         if near(largest(&left)?.1, q) && size <= careful::turned(&left) * farthest * reach(&v) {
@@ -452,16 +458,16 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         Err(ConstraintError::Velocity { constraint, rate: to_f64(size) })
     }
 
-    /// The velocity whose entries `held` (indices) are those of `v`, while the others follow from the
-    /// constraints: `J v + … = 0`, [`constraint_rates`](Self::constraint_rates). m/s and rad/s. What the
-    /// constraints leave open is nearest to `v` in the metric of the kinetic energy; with nothing held the
-    /// whole is, as by [`project_velocity`](Self::project_velocity).
+    /// Returns the velocity with the entries `held` (indices) of `v`. The other entries follow from the
+    /// constraints `J v + … = 0`, [`constraint_rates`](Self::constraint_rates), in m/s and rad/s. Entries
+    /// that the constraints do not determine are those nearest to `v` in the metric of the kinetic energy.
+    /// With no entries held, the result equals that of [`project_velocity`](Self::project_velocity).
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Velocity`] where the held entries contradict the constraints or nothing finite
-    /// follows from them (a piston that is to move while its crank is in line with the rod),
-    /// [`ConstraintError::Held`] for an index that is none.
+    /// [`ConstraintError::Velocity`] if the held entries contradict the constraints or require infinite
+    /// velocities (a moving piston whose crank is in line with the rod), [`ConstraintError::Held`] for an
+    /// index that is not less than `NV`.
     fn complete_velocity(
         &self,
         t: Self::Scalar,
@@ -472,14 +478,14 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         complete::complete(self, t, q, v, held)
     }
 
-    /// The acceleration whose entries `held` (indices) are those of `a`, while the others follow from the
-    /// constraints: `J a + b = 0`, m/s² and rad/s². What the constraints leave open is nearest to `a` in the
-    /// metric of the kinetic energy.
+    /// Returns the acceleration with the entries `held` (indices) of `a`. The other entries follow from the
+    /// constraints `J a + b = 0`, in m/s² and rad/s². Entries that the constraints do not determine are those
+    /// nearest to `a` in the metric of the kinetic energy.
     ///
     /// # Errors
     ///
-    /// [`ConstraintError::Acceleration`] if the held entries contradict the constraints or nothing finite
-    /// follows from them, [`ConstraintError::Held`] for an index that is not less than `NV`.
+    /// [`ConstraintError::Acceleration`] if the held entries contradict the constraints or require infinite
+    /// accelerations, [`ConstraintError::Held`] for an index that is not less than `NV`.
     fn complete_acceleration(
         &self,
         t: Self::Scalar,
@@ -492,11 +498,12 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     }
 
     /// Returns the generalized forces `τ` (N and N·m) of drives at the velocities with the indices `driven`,
-    /// zero elsewhere, and the multipliers `λ` of the constraints, for a motion that fulfils the constraints:
-    /// `M a + h = τ + Jᵀ λ` (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 8). Usually as many
-    /// velocities are driven as there are degrees of freedom, and none if the constraints drive the mechanism
-    /// themselves: the drives are then in `λ`. If constraints are redundant or more velocities are driven,
-    /// the multipliers have the least norm. Dry friction of slipping contacts is left out.
+    /// zero elsewhere, and the multipliers `λ` of the constraints, for a motion that satisfies the
+    /// constraints: `M a + h = τ + Jᵀ λ` (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 8).
+    /// Usually the number of driven velocities equals the number of degrees of freedom; it is zero if the
+    /// constraints themselves drive the mechanism, whose forces are then part of `λ`. If constraints are
+    /// redundant or more velocities are driven, the multipliers have minimum norm. Dry friction of sliding
+    /// contacts is neglected.
     ///
     /// # Errors
     ///
@@ -514,15 +521,16 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         complete::drive(self, t, (q, v), a, driven)
     }
 
-    /// Both: configuration first.
+    /// Projects the configuration, then the velocity.
     ///
-    /// Where constraints have two branches that cross, a state within rounding of the crossing, which fulfils
-    /// the rates of both alike, keeps its velocity: it tells the branch that the state is on, when the
-    /// configuration no longer does.
+    /// Near a crossing of two branches of the constraints, a state within rounding errors of the crossing
+    /// keeps its velocity if it satisfies the rates of both branches. The velocity identifies the branch of
+    /// the state when the configuration no longer does.
     ///
     /// # Errors
     ///
-    /// Those of the two.
+    /// The errors of [`project_configuration`](Self::project_configuration) and
+    /// [`project_velocity`](Self::project_velocity).
     fn project_state(
         &self,
         t: Self::Scalar,
@@ -542,7 +550,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     }
 }
 
-/// Index and magnitude of the largest entry.
+/// Returns index and magnitude of the largest entry.
 fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), ConstraintError> {
     let mut found = (0, T::zero());
     for (k, x) in x.iter().enumerate() {
@@ -556,37 +564,38 @@ fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), Con
     Ok(found)
 }
 
-/// The largest magnitude, at least one.
+/// Returns the largest magnitude of the entries, but at least one.
 fn reach<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::one(), |reach, x| reach.max(x.abs()))
 }
 
-/// Roundings of a number that are left of constraints which are fulfilled.
+/// Residual of satisfied constraints, in units of the rounding error of the coordinates.
 const ROUNDINGS: f64 = 16.0;
 
-/// What is left of constraints that are fulfilled as well as the numbers allow.
+/// Returns the residual of constraints that are satisfied as accurately as floating-point numbers permit.
 fn rounding<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     constant::<T>(ROUNDINGS) * epsilon() * reach(x)
 }
 
-/// What rounding of the numbers alone makes of constraints: angles of many turns are known less well than the
-/// rest.
+/// Returns the residual that rounding of the coordinates alone causes. Angles of many revolutions have larger
+/// rounding errors than other coordinates.
 fn known<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     epsilon::<T>() * reach(x).max(constant(ROUNDINGS))
 }
 
-/// Whether what is left of constraints can be borne: half of the digits where they lose rank.
+/// Returns whether a residual is acceptable: half of the digits, which is the accuracy where constraints lose
+/// rank.
 fn near<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
     size <= epsilon::<T>().sqrt() * reach(x)
 }
 
-/// Whether the rate of a constraint is so small that its direction may be that of either of two branches
-/// which cross.
+/// Returns whether a constraint rate is so small that the velocity may belong to either of two crossing
+/// branches.
 fn open<T: Real, const N: usize>(rate: T, v: &SVector<T, N>) -> bool {
     rate <= epsilon::<T>().sqrt().sqrt() * v.iter().fold(T::zero(), |most, v| most.max(v.abs()))
 }
 
-/// The farthest that a velocity of one moves what a constraint holds, at least one.
+/// Returns the largest entry of the Jacobian, but at least one.
 fn farthest<T: Real, const NC: usize, const NV: usize>(jacobian: &SMatrix<T, NC, NV>) -> T {
     jacobian
         .column_iter()

@@ -1,5 +1,4 @@
-//! Assembly: from a guess to a configuration that fulfils the constraints, and which assembly mode it belongs
-//! to.
+//! Assembly: search for a configuration that satisfies the constraints, and its assembly mode.
 
 use super::{ConstraintError, complete, largest, near, off};
 use crate::Real;
@@ -9,35 +8,36 @@ use nalgebra::{SMatrix, SVector};
 /// Maximum number of steps of one descent.
 const MOST_STEPS: usize = 200;
 
-/// Longest step of an angle, rad: from a guess near an assembly mode the steps lead into this one.
+/// Maximum change of an angle in one step, rad. Short steps from a guess near an assembly mode lead to this
+/// mode.
 const LONGEST: f64 = 0.3;
 
-/// Number of other starts around the guess, ever farther away; the first and the last distance, m or rad.
+/// Number of further starting points around the guess. Their distances grow from `NEAR` to `FAR`, m or rad.
 const AGAIN: usize = 24;
 const NEAR: f64 = 0.05;
 const FAR: f64 = 3.0;
-/// Times the starts around the guess are gone through for an assembly mode that is asked for.
+/// Number of repetitions of all starting points if a particular assembly mode is requested.
 const ROUNDS: usize = 8;
 
-/// Constraints of configurations, of a mechanism with inertia or without.
+/// Constraints of a mechanism with or without inertia, for assembly.
 pub struct Loops<R, J, I, const NV: usize, const NC: usize> {
-    /// Name of every constraint.
+    /// Names of the constraints.
     pub names: [&'static str; NC],
-    /// Entries of `q` that are angles.
+    /// Indices of the entries of `q` that are angles.
     pub angles: &'static [usize],
-    /// Velocities that rotate something.
+    /// Whether each velocity is that of a rotation.
     pub turns: [bool; NV],
-    /// Residuals of the constraints on configurations.
+    /// Function that returns the residuals of the holonomic constraints.
     pub residuals: R,
-    /// Derivatives of the rates of all constraints by the velocities.
+    /// Function that returns the derivatives of all constraint rates with respect to the velocities.
     pub jacobian: J,
-    /// The configuration after a displacement.
+    /// Function that returns the configuration after a displacement.
     pub integrate: I,
 }
 
-/// Finds a configuration that fulfils the constraints: by steps from the guess; where these end in a gap that
-/// no small step closes, or lead more than half a turn away, by steps from around it. A `mode` that is asked
-/// for must be that of [`assembly_mode`].
+/// Finds a configuration that satisfies the constraints. Starts at the guess. If the steps end at a nonzero
+/// residual, or lead more than half a revolution away, points around the guess are tried. If `mode` is given,
+/// the result has this [`assembly_mode`].
 pub fn assemble<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -55,8 +55,7 @@ pub fn assemble<
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     complete::check::<NV>(held)?;
     let is_wanted = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
-    // Where coordinates are bound to turn farther than half a turn, by gears, the first configuration that
-    // was found.
+    // First configuration found whose angles differ by more than half a revolution, as gears may require.
     let mut far = None;
     let mut attempt = |from: &SVector<T, NQ>| -> Result<Option<SVector<T, NQ>>, ConstraintError> {
         let found = unwind(loops, q, descend(loops, from, held)?);
@@ -96,14 +95,14 @@ pub fn assemble<
     }
 }
 
-/// Number of turns by which an angle differs from that of the guess.
+/// Returns the number of revolutions by which an angle differs from that of the guess.
 fn turns<T: Real, const NQ: usize>(guess: &SVector<T, NQ>, q: &SVector<T, NQ>, k: usize) -> T {
     let entry = |q: &SVector<T, NQ>| q.get(k).copied().unwrap_or(T::zero());
     (entry(q) - entry(guess)) / T::two_pi()
 }
 
-/// Takes whole turns out of angles that are more than half a turn from the guess, where the constraints hold
-/// without these turns as well: all together, or else each by itself.
+/// Subtracts whole revolutions from angles that are more than half a revolution from the guess, if the result
+/// still satisfies the constraints. First tries all angles together, then each individually.
 fn unwind<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -139,7 +138,7 @@ fn unwind<
     })
 }
 
-/// Levenberg–Marquardt on `½ |φ|²` over the coordinates that are not held, in steps of bounded length.
+/// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
 fn descend<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -165,7 +164,7 @@ fn descend<
         }
         let rows = open_rows::<T, NV, NH, NC>(&(loops.jacobian)(&q), held);
         let mut normal = rows * rows.transpose();
-        // Relative to each row, so that units do not matter; rows without influence are left alone.
+        // Relative to each row, so that units have no effect. Zero rows are skipped.
         for k in 0..NH {
             let own = normal[(k, k)];
             let influences = own > nalgebra::zero();
@@ -179,7 +178,7 @@ fn descend<
                 (q, residuals) = (next, r);
                 damping *= constant(0.1);
             }
-            // Rounding is all that is left.
+            // Only rounding errors remain.
             None if near(size, &q) => break,
             None => damping *= constant(10.0),
         }
@@ -191,14 +190,14 @@ fn descend<
     near(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
 }
 
-/// The step, shortened so that no angle changes by more than [`LONGEST`].
+/// Returns the step, scaled such that no angle changes by more than [`LONGEST`].
 fn bounded<T: Real, const NV: usize>(step: SVector<T, NV>, turns: &[bool; NV]) -> SVector<T, NV> {
     let angles = step.iter().zip(turns).filter(|(_, turns)| **turns);
     let longest = angles.fold(T::zero(), |longest, (angle, _)| longest.max(angle.abs()));
     if longest > constant(LONGEST) { step * (constant::<T>(LONGEST) / longest) } else { step }
 }
 
-/// Rows of the constraints on configurations, with zeros for velocities that are held.
+/// Returns the rows of the holonomic constraints, with zeros for velocities that are held.
 fn open_rows<T: Real, const NV: usize, const NH: usize, const NC: usize>(
     jacobian: &SMatrix<T, NC, NV>,
     held: &[usize],
@@ -209,9 +208,9 @@ fn open_rows<T: Real, const NV: usize, const NH: usize, const NC: usize>(
     })
 }
 
-/// The assembly mode of a configuration: the sign of the determinant of the derivatives of the constraints on
-/// configurations by the coordinates that are not held. `None` in a singular position, and where there are
-/// more or fewer coordinates than such constraints.
+/// Returns the assembly mode of a configuration: the sign of the determinant of the derivatives of the
+/// holonomic constraints with respect to the coordinates that are not held. Returns `None` in a singular
+/// configuration, and if the number of these coordinates differs from that of the constraints.
 pub fn assembly_mode<
     T: Real,
     R,
@@ -233,7 +232,7 @@ where
     if NH + (0..NV).filter(|k| is_held(*k)).count() != NV {
         return None;
     }
-    // A row for each constraint, then one for each velocity that is held.
+    // One row per constraint, then one per held velocity.
     let open = open_rows::<T, NV, NH, NC>(&(loops.jacobian)(q), held);
     let mut rows = [[T::zero(); NV]; NV];
     let mut fixed = (0..NV).filter(|k| is_held(*k));
@@ -249,7 +248,7 @@ where
     let mut sign = 1;
     for k in 0..NV {
         let pivot = (k..NV).fold(k, |best, i| if rows[i][k].abs() > rows[best][k].abs() { i } else { best });
-        // This is false for a pivot that is NaN.
+        // False if the pivot is NaN.
         let is_regular = rows[pivot][k].abs() > epsilon::<T>().sqrt();
         if !is_regular {
             return None;

@@ -1,5 +1,5 @@
-//! The careful way to accelerations and multipliers: where straight-line elimination would lose digits, with
-//! light and heavy bodies in one loop, near singular positions and in them.
+//! Rank-revealing solution for accelerations and multipliers. It is used where straight-line elimination
+//! would lose digits: with light and heavy bodies in one loop, and in or near singular configurations.
 
 mod passing;
 
@@ -10,25 +10,25 @@ use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 use passing::size;
 
-/// What is known of the constraints of a mechanism before it runs.
+/// Structure of a mechanism's constraints, which does not depend on the state.
 #[derive(Clone, Copy, Debug)]
 pub struct Structure<const NC: usize> {
-    /// Constraints of one number are components of one vector.
+    /// Group of each constraint. Constraints of one group are components of one vector.
     pub groups: [usize; NC],
-    /// Those that determine coordinates without inertia.
+    /// Indices of the constraints that determine coordinates without inertia.
     pub determining: &'static [usize],
-    /// How many are independent where the position is not singular.
+    /// Number of independent constraints in regular (nonsingular) configurations.
     pub rank: usize,
 }
 
-/// `v̇` and the multipliers of least norm: `M v̇ + h = τ + Jᵀ λ`, `J v̇ = −b`, for any masses and in any
-/// position.
+/// Returns `v̇` and the multipliers of minimum norm: `M v̇ + h = τ + Jᵀ λ`, `J v̇ = −b`, for any masses and
+/// in any configuration.
 ///
-/// In a singular position fewer constraints are independent than elsewhere, and `J v̇ = −b` leaves
-/// accelerations open that are determined a moment before and after; close to it they follow from differences
-/// of rounded numbers. There, those of the motion that passes through are taken, which are continuous. At
-/// rest nothing tells the branches from each other; the least deviation from free motion in the metric of the
-/// kinetic energy is taken then (Gauss).
+/// In a singular configuration, fewer constraints are independent than in regular ones, and `J v̇ = −b` does
+/// not determine accelerations that are determined shortly before and after. Close to it, accelerations
+/// follow from differences of rounded numbers. There, the result is that of the motion that passes through,
+/// whose accelerations are continuous. At rest, the branches cannot be distinguished; then the result is the
+/// least deviation from free motion in the metric of the kinetic energy (Gauss's principle).
 #[cold]
 #[inline(never)]
 pub fn careful_dynamics<
@@ -57,7 +57,8 @@ where
     }
     if let Some(clear) = System::<T, NV, NC>::clearance(v, &least.0) {
         let (taken, regular) = system.solve(structure, clear, Weak::Dropped);
-        // What the constraints hold against is no measure of what they leave.
+        // The threshold depends on the accelerations that the constraints permit, not on those that they
+        // prevent.
         let ratio = epsilon::<T>().sqrt() * size(&least.0) / size(&taken.0);
         let enough = System::<T, NV, NC>::clearance(v, &taken.0)
             .map(|clear| clear.max(ratio))
@@ -74,14 +75,16 @@ where
     system.solve(structure, zone(), passing.map_or(Weak::Taken, Weak::Known)).0
 }
 
-/// Rows of this size, beside the numbers that they are computed from, are far enough from singular positions.
+/// Returns the relative magnitude above which rows are well-conditioned: entries relative to the numbers that
+/// they were computed from. A configuration is regular if all independent rows are well-conditioned.
 fn zone<T: Real>() -> T {
     epsilon::<T>().cbrt().sqrt()
 }
 
-/// Accelerations for forces and biases: `M x = f + Jᵀ λ`, `J x = −b`. What is left of constraints near a
-/// singular position is not chased unless it is more than what rounding of the place makes of it, nor more
-/// than the place itself is off its branch: the change of velocity that takes it away would be large there.
+/// Returns accelerations and multipliers for forces and biases: `M x = f + Jᵀ λ`, `J x = −b`. Near a singular
+/// configuration, a residual is removed only if it is larger than rounding errors of the configuration cause,
+/// and larger than the configuration's distance from its branch. Removing smaller residuals would require
+/// large changes of velocity.
 #[cold]
 #[inline(never)]
 pub fn careful_response<
@@ -111,10 +114,11 @@ where
     }
     let gap = bias.iter().fold(T::zero(), |most, b| most.max(b.abs()));
     let left = mechanism.constraint_residuals(t, q);
-    // Whether it is the place itself that is brought onto the constraints, not a velocity.
+    // Whether the bias is the residual of the configuration, which is to be projected, and not that of a
+    // rate.
     let apart = (0..NH).fold(T::zero(), |most, k| most.max((at(&left.data.0[0], k) - at(bias, k)).abs()));
     let is_place = size(&left) > T::zero() && apart <= size(&left) * constant(0.5);
-    // With places known to ε, a row of size σ is known as the direction of a branch to ε / σ².
+    // If positions have the error ε, a row of relative magnitude σ has a direction error of ε / σ².
     let reach = q.iter().fold(T::one(), |most, q| most.max(q.abs()));
     let (known, root) = (constant::<T>(16.0) * epsilon::<T>() * reach, epsilon::<T>().sqrt());
     let turned = if is_place && gap > root { T::zero() } else { turned(&left) };
@@ -125,21 +129,21 @@ where
     if force.iter().all(|f| *f == T::zero()) {
         return correction;
     }
-    // Pushes are answered by all rows that tell a direction.
+    // All rows with a known direction contribute to the response to forces.
     let answer = System { bias: [T::zero(); NC], ..both };
     let answer = answer.solve(structure, zone(), Weak::Down(known.sqrt().max(turned))).0;
     (answer.0 + correction.0, answer.1 + correction.1)
 }
 
-/// The size that rows must have near a singular position so that their directions are known, with so much
-/// `left` of the constraints: where that is `r`, the place is off its branch by `r` / σ, and directions,
-/// which turn by one over the way σ to the other branch, by `r` / σ².
+/// Returns the minimum relative magnitude near a singular configuration of rows with known directions, for
+/// the residuals `left`. With a residual `r`, the configuration is off its branch by `r` / σ. Directions
+/// rotate by one radian over the distance σ to the other branch, so their error is `r` / σ².
 pub(super) fn turned<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
     (constant::<T>(64.0) * size(left).max(epsilon())).sqrt()
 }
 
-/// Whether a position is singular, or so near to one that a step by `dv` changes the constraints as much as
-/// they differ from dependent ones.
+/// Returns whether a configuration is singular, or so close to a singular one that a step by `dv` changes the
+/// constraints as much as they differ from dependent ones.
 #[cold]
 #[inline(never)]
 pub fn nearly_singular<
@@ -166,15 +170,16 @@ where
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
     let length =
         |j: &SMatrix<T, NC, NV>, k: usize| norm(&metric.half(core::array::from_fn(|i| at(&j.data.0[i], k))));
-    // States whose constraints turn more than this, beside how far they are from dependent ones, count as
-    // near; a step that turns all of them is merely long.
+    // A configuration is nearly singular if a few such steps would rotate the constraints more than they
+    // differ from dependent ones. The rotation is bounded, because a step that rotates all constraints is
+    // merely long.
     let (steps, most) = (constant::<T>(3.0), constant::<T>(0.2));
     let change = later - jacobian;
     let turn = (0..NC).fold(T::zero(), |most, k| {
         let own = length(&jacobian, k);
         if own > T::zero() { most.max(length(&change, k) / own) } else { most }
     });
-    // Single precision drops constraints that far out already.
+    // In single precision, rows of this magnitude are dropped anyway.
     let least = far::<T>().min(constant(0.07));
     let clear = (turn * steps).min(most).max(least);
     let mut span = Span::of(&metric, &jacobian, &structure.groups);
@@ -182,32 +187,33 @@ where
     span.rank < structure.rank
 }
 
-/// How far it is out of a singular position, m or rad: what rounding and interpolation leave is about the
-/// same there.
+/// Returns the distance from a singular configuration, m or rad, at which the errors of rounding and of
+/// interpolation are about equal.
 fn far<T: Real>() -> T {
     constant::<T>(6.0) * zone()
 }
 
-/// What is independent beyond the rank that the constraints have elsewhere, beside what it was: states
-/// between the steps of an integrator do not fulfil constraints that follow from others.
+/// Returns the relative threshold for rows beyond the rank of regular configurations. States between the
+/// steps of an integrator do not satisfy redundant constraints exactly, so these rows are not exactly
+/// dependent.
 fn beyond<T: Real>() -> T {
     if epsilon::<T>() < constant(1e-10) { constant(1e-4) } else { constant(1e-2) }
 }
 
-/// What becomes of constraints that nearly lose their rank.
+/// Treatment of nearly dependent rows.
 #[derive(Clone, Copy)]
 enum Weak<T, const NV: usize> {
-    /// The accelerations that they leave open are these.
+    /// Accelerations that well-conditioned rows do not determine are these.
     Known(SVector<T, NV>),
-    /// They are taken as they are.
+    /// All rows above rounding errors are used.
     Taken,
-    /// They are taken down to this size.
+    /// Rows above this relative magnitude are used.
     Down(T),
-    /// They are left out.
+    /// Nearly dependent rows are dropped.
     Dropped,
 }
 
-/// A system of accelerations and multipliers.
+/// Linear equations for accelerations and multipliers.
 #[derive(Clone, Copy)]
 struct System<T, const NV: usize, const NC: usize> {
     mass: SMatrix<T, NV, NV>,
@@ -217,7 +223,7 @@ struct System<T, const NV: usize, const NC: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
-    /// That of a mechanism in a state.
+    /// Returns the equations of a mechanism at a state.
     fn of<M, const NQ: usize, const NU: usize, const NH: usize>(
         mechanism: &M,
         t: T,
@@ -230,7 +236,8 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         Self::under(mechanism, t, (q, v), (tau - mechanism.bias_forces(t, q, v)).data.0[0])
     }
 
-    /// That of a mechanism in a state under forces which are all that acts.
+    /// Returns the equations of a mechanism at a state with the total force `force`, which replaces the bias
+    /// forces.
     fn under<M, const NQ: usize, const NU: usize, const NH: usize>(
         mechanism: &M,
         t: T,
@@ -248,17 +255,17 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         }
     }
 
-    /// The size of rows that give accelerations like `a` to half of the digits, if it is less than that of
-    /// all that are taken: on constraints that are fulfilled up to a rounding ε, rows of size σ ask for
-    /// accelerations that are off by ε v² / σ³.
+    /// Returns the relative magnitude of rows that determine accelerations like `a` to half of the digits, if
+    /// it is below the usual threshold. If constraints are satisfied up to a rounding error ε, rows of
+    /// relative magnitude σ cause an acceleration error of ε v² / σ³.
     fn clearance(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
         let speed = size(v);
         let clear = (constant::<T>(4.0) * epsilon::<T>().sqrt() * speed * speed / size(a)).cbrt();
         (clear < zone()).then_some(clear)
     }
 
-    /// The solution, and whether the constraints have the rank that they have elsewhere with rows of more
-    /// than the size `clear`.
+    /// Returns the solution, and whether the rows above the relative magnitude `clear` have the rank of
+    /// regular configurations.
     fn solve(&self, structure: &Structure<NC>, clear: T, weak: Weak<T, NV>) -> (Solution<T, NV, NC>, bool) {
         let (mass, force) = self.loaded(structure);
         let metric = Metric::of(&mass);
@@ -272,8 +279,9 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
             Weak::Known(_) | Weak::Dropped => {}
         }
         let free = span.forward(&metric.half(force));
-        // Known accelerations fulfil weak rows as well: only what they lack of the strong ones is left to
-        // find. (The biases themselves contain the part of each row that is weak.)
+        // Known accelerations satisfy nearly dependent rows as well; only their deviation from the
+        // well-conditioned rows is solved for. (The biases include the nearly dependent component of each
+        // row.)
         let (mut x, bias) = match weak {
             Weak::Known(a) if !regular => (
                 span.forward(&metric.upper(&a.data.0[0])),
@@ -297,8 +305,8 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         ((SVector::from(a), SVector::from(triangle.multipliers(&span, &lacking))), regular)
     }
 
-    /// Mass matrix and forces with what makes up for coordinates without inertia: with the rows `J` that
-    /// determine them, `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
+    /// Returns mass matrix and forces, extended for coordinates without inertia. With the rows `J` that
+    /// determine these, `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
     fn loaded(&self, structure: &Structure<NC>) -> ([[T; NV]; NV], [T; NV]) {
         let (mut mass, mut force) = (self.mass.data.0, self.force);
         let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
@@ -316,7 +324,8 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
     }
 }
 
-/// The triangle `R` of the columns, in their own lengths; `Rᵀ = U S` where not all columns are in the basis.
+/// Triangular factor `R` of the columns, relative to their lengths; `Rᵀ = U S` if not all columns are in the
+/// basis.
 struct Triangle<T, const NC: usize> {
     base: [[T; NC]; NC],
     upper: [[T; NC]; NC],
@@ -333,7 +342,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         Self { base, upper }
     }
 
-    /// `Rᵀ z = −b`, or least squares.
+    /// Solves `Rᵀ z = −b`, in the least-squares sense for a rank-deficient `R`.
     fn particular<const NV: usize>(&self, span: &Span<T, NV, NC>, bias: &[T; NC]) -> [T; NC] {
         let rank = span.rank;
         let mut z = [T::zero(); NC];
@@ -361,7 +370,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
         z
     }
 
-    /// The least `λ` with `R λ = d`.
+    /// Returns the `λ` of minimum norm with `R λ = d`.
     fn multipliers<const NV: usize>(&self, span: &Span<T, NV, NC>, lacking: &[T; NC]) -> [T; NC] {
         let rank = span.rank;
         let mut lambda = [T::zero(); NC];

@@ -1,5 +1,5 @@
-//! Completion of velocities and accelerations, of which some entries are given and the others follow from the
-//! constraints, and the forces that such a motion takes.
+//! Completion of velocities and accelerations: some entries are prescribed, and the others follow from the
+//! constraints. Also the drive forces for such a motion.
 
 use super::{Constrained, ConstraintError, farthest, largest, near, reach, rounding};
 use crate::Real;
@@ -148,7 +148,7 @@ where
     let open = core::array::from_fn(|i| if is_driven(i) { [nalgebra::zero(); NC] } else { rows[i] });
     let mut lambda = [nalgebra::zero(); NC];
     let mut left = forces;
-    // Once more for what rounding has left.
+    // The second pass removes rounding errors of the first one.
     for _ in 0..2 {
         let (change, _) = least(&open, &size, &left.data.0[0]);
         add(&mut lambda, nalgebra::one(), &change);
@@ -184,13 +184,13 @@ fn dot<T: Real, const N: usize>(a: &Row<T, N>, b: &Row<T, N>) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
-/// `a + factor · b`.
+/// Adds `factor · b` to `a`.
 fn add<T: Real, const N: usize>(a: &mut Row<T, N>, factor: T, b: &Row<T, N>) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * *b);
 }
 
-/// Takes a direction of unit length out of rows; twice is enough (Björck, *Numerical Methods for Least
-/// Squares Problems*, 1996, § 2.4.5).
+/// Removes the component along a unit direction from rows. Two passes are sufficient for orthogonality
+/// (Björck, *Numerical Methods for Least Squares Problems*, 1996, § 2.4.5).
 fn remove<T: Real, const N: usize, const K: usize>(rows: &mut [Row<T, N>; K], direction: &Row<T, N>) {
     for row in rows {
         for _ in 0..2 {
@@ -200,7 +200,7 @@ fn remove<T: Real, const N: usize, const K: usize>(rows: &mut [Row<T, N>; K], di
     }
 }
 
-/// The row that is largest by `size` among those that are not taken.
+/// Returns the row with the largest `size` among those that are not taken.
 fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) -> T) -> Option<(usize, T)> {
     let mut best = None;
     for k in (0..K).filter(|k| !taken[*k]) {
@@ -212,9 +212,9 @@ fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) 
     best
 }
 
-/// `x` with `J x = −gap` and zeros where velocities are held, of the least `xᵀ M x`.
+/// Returns the `x` with `J x = −gap` and zeros for held velocities that minimises `xᵀ M x`.
 ///
-/// A solution by [`least`], then the least energy over what is left of the axes: a basis of all motions.
+/// First finds a solution with [`least`], then minimises the energy over the space of all remaining motions.
 /// Coordinates are scaled by their inertia.
 fn correction<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
@@ -229,7 +229,7 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
     });
     let rows: [Row<T, NV>; NC] =
         core::array::from_fn(|k| core::array::from_fn(|i| jacobian.data.0[i][k] * scale[i]));
-    // How large a row is as long as nothing is held.
+    // Squared lengths of the rows without held velocities.
     let reach: Row<T, NC> = core::array::from_fn(|k| dot(&rows[k], &rows[k]));
     let rows = rows.map(|row| core::array::from_fn(|i| if held.contains(&i) { T::zero() } else { row[i] }));
     let mut axes: [Row<T, NV>; NV] = core::array::from_fn(|i| {
@@ -244,10 +244,11 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
     SVector::from_fn(|i, _| y[i] * scale[i])
 }
 
-/// Returns the least `y` with `rows · y = targets`, and the unit directions that span it.
+/// Returns the minimum-norm `y` with `rows · y = targets`, and the unit directions that span it.
 ///
-/// By Gram–Schmidt over the rows, that one first which is most independent of those before it, next to its
-/// own size. Rows that depend on others are left out; their targets follow, or cannot be.
+/// Uses Gram–Schmidt orthogonalisation. In each step, the row with the largest independent component relative
+/// to its length is selected. Dependent rows are dropped; their targets are satisfied automatically or not at
+/// all.
 fn least<T: Real, const N: usize, const K: usize>(
     rows: &[Row<T, N>; K],
     sizes: &[T; K],
@@ -255,7 +256,7 @@ fn least<T: Real, const N: usize, const K: usize>(
 ) -> (Row<T, N>, [Option<Row<T, N>>; K]) {
     let (mut rest, mut taken, mut y) = (*rows, [false; K], [T::zero(); N]);
     let mut directions = [None; K];
-    // What a velocity would be multiplied by beyond this is no answer.
+    // Rows with a smaller independent component would require excessive velocities.
     let least = epsilon::<T>().powf(constant(4.0 / 3.0));
     for slot in &mut directions {
         let part =
@@ -272,7 +273,7 @@ fn least<T: Real, const N: usize, const K: usize>(
     (y, directions)
 }
 
-/// Moves `y` along what the `axes` span to where `yᵀ M y` is least.
+/// Moves `y` within the space spanned by `axes` to the minimum of `yᵀ M y`.
 fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T, N>; N], y: &mut Row<T, N>) {
     // The longest remainder of an axis is at least as long as the mean.
     let some = constant::<T>(0.5 / N.max(1) as f64);
@@ -288,7 +289,7 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
     }
     let heavy = basis.map(|b| core::array::from_fn(|i| dot(&mass[i], &b)));
     let mut rest: Row<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
-    // A = L D Lᵀ. Where a motion has no inertia, what is there stays.
+    // A = L D Lᵀ. Motions without inertia keep their value.
     let (mut lower, mut pivots) = ([[T::zero(); N]; N], [T::zero(); N]);
     let over = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };
     for i in 0..N {

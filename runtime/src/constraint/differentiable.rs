@@ -1,5 +1,5 @@
-//! Derivatives of the equations of constrained motion, of accelerations, multipliers and projections, for
-//! generic code.
+//! First derivatives of the equations of constrained motion, of accelerations and multipliers, for generic
+//! code.
 
 use super::layout::MotionDerivatives;
 use super::{Constrained, Solution};
@@ -7,15 +7,16 @@ use crate::blocks::zeros;
 use crate::{At, ByMotion, Real, RheonomicDerivatives};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)`: a row for each of the `NC` constraints.
+/// Derivatives `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers, one row for each of the `NC` constraints.
 pub type MultiplierDerivatives<T, const NV: usize, const NC: usize> =
     (SMatrix<T, NC, NV>, SMatrix<T, NC, NV>, SMatrix<T, NC, NV>);
 
 /// First derivatives of a mechanism's constrained equations. `#[mechanism(…, derivatives)]` implements it for
-/// mechanisms with constraints whose contacts do not slip.
+/// mechanisms with constraints but without sliding contacts.
 ///
-/// A derivative by `q` is along motions of the configuration, whether the constraints allow them or not:
-/// column `i` is along `q ⊕ ε eᵢ`, for ball and free joints in body axes. Time `t` as for [`Constrained`].
+/// Derivatives with respect to `q` are along displacements of the configuration, whether or not the
+/// constraints permit them: column `i` is along `q ⊕ ε eᵢ`, in body axes for ball and free joints. Time `t`
+/// is as in [`Constrained`].
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no derivatives of constrained motion",
     note = "the word asks for them: `#[mechanism(…, derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
@@ -28,7 +29,8 @@ pub trait ConstrainedDerivatives<
     const NC: usize,
 >: Constrained<NQ, NV, NU, NH, NC> + RheonomicDerivatives<NQ, NV, NU>
 {
-    /// Derivatives of `M a + h − Jᵀ λ`, of `J a + b` and of the constraints' rates, at any `a` and `λ`.
+    /// Returns the derivatives of `M a + h − Jᵀ λ`, of `J a + b` and of the constraint rates, for any `a` and
+    /// `λ`.
     fn equation_derivatives(
         &self,
         t: Self::Scalar,
@@ -38,10 +40,10 @@ pub trait ConstrainedDerivatives<
         lambda: &SVector<Self::Scalar, NC>,
     ) -> EquationDerivatives<Self::Scalar, NV, NC>;
 
-    /// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers by
-    /// [`constrained_dynamics`](Constrained::constrained_dynamics); of redundant constraints those of least
-    /// norm. Differentiating both equations gives `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)`,
-    /// `J δv̇ = −∂(J a + b)`.
+    /// Returns the derivatives `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers of
+    /// [`constrained_dynamics`](Constrained::constrained_dynamics), which have minimum norm for redundant
+    /// constraints. They follow from the differentiated equations `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)`
+    /// and `J δv̇ = −∂(J a + b)`.
     fn multiplier_derivatives(
         &self,
         t: Self::Scalar,
@@ -54,19 +56,19 @@ pub trait ConstrainedDerivatives<
     }
 }
 
-/// First derivatives of the equations `M a + h − Jᵀ λ = τ` and `J a + b = 0`, and of the rates `J v + …` of
-/// the constraints.
+/// First derivatives of the equations `M a + h − Jᵀ λ = τ` and `J a + b = 0`, and of the constraint rates `J
+/// v + …`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquationDerivatives<T, const NV: usize, const NC: usize> {
-    /// `∂(M a + h − Jᵀ λ)/∂q`.
+    /// Derivative `∂(M a + h − Jᵀ λ)/∂q`.
     pub forces_by_q: SMatrix<T, NV, NV>,
-    /// `∂(M a + h − Jᵀ λ)/∂v`.
+    /// Derivative `∂(M a + h − Jᵀ λ)/∂v`.
     pub forces_by_v: SMatrix<T, NV, NV>,
-    /// `∂(J a + b)/∂q`.
+    /// Derivative `∂(J a + b)/∂q`.
     pub accelerations_by_q: SMatrix<T, NC, NV>,
-    /// `∂(J a + b)/∂v`.
+    /// Derivative `∂(J a + b)/∂v`.
     pub accelerations_by_v: SMatrix<T, NC, NV>,
-    /// `∂(J v + …)/∂q`.
+    /// Derivative `∂(J v + …)/∂q`.
     pub rates_by_q: SMatrix<T, NC, NV>,
 }
 
@@ -87,16 +89,16 @@ impl<T, const NV: usize, const NC: usize> From<MotionDerivatives<T, NV, NC>>
 /// Derivatives of accelerations and multipliers.
 type Changes<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
 
-/// Constrained motion with its derivatives.
+/// Accelerations and multipliers of constrained motion, with their derivatives.
 pub(crate) struct Solved<T, const NV: usize, const NC: usize> {
     pub(crate) a: SVector<T, NV>,
     pub(crate) lambda: SVector<T, NC>,
-    /// By configuration, velocity and force.
+    /// Derivatives with respect to configuration, velocity and force.
     pub(crate) by: [Changes<T, NV, NC>; 3],
 }
 
-/// Accelerations and multipliers by [`constrained_dynamics`](Constrained::constrained_dynamics) with their
-/// derivatives.
+/// Returns the accelerations and multipliers of [`constrained_dynamics`](Constrained::constrained_dynamics)
+/// with their derivatives.
 pub(crate) fn solved_derivatives<
     M,
     T,
@@ -124,7 +126,7 @@ where
         for j in 0..NV {
             let p = -column(forces, j);
             let change = m.constraint_response(t, q, &p, &column(gaps, j));
-            // Forces that hold the balance of a change of velocity, and are constraints' alone.
+            // Residual forces of the velocity change, which are constraint forces.
             let held = tau + p - mass * change;
             set_column(&mut changes, j, &change);
             set_column(&mut multipliers, j, &(m.constrained_dynamics(t, q, v, &held).1 - lambda));
@@ -139,7 +141,7 @@ where
     Solved { a, lambda, by }
 }
 
-/// Multipliers `μ` of forces `p` that are constraints' alone, `p = Jᵀ μ`.
+/// Returns the multipliers `μ` of constraint forces `p = Jᵀ μ`.
 pub(crate) fn multipliers<
     M,
     T,
@@ -163,20 +165,20 @@ where
     m.constrained_dynamics(t, q, &still, &(rest - p)).1 - m.constrained_dynamics(t, q, &still, &rest).1
 }
 
-/// What is done with a mechanism whose constraints are of any number, by
-/// [`visit_constraints`](crate::Derivatives::visit_constraints): generic code that knows nothing of
-/// constraints reaches them.
+/// Operation on a mechanism with any number of constraints.
+/// [`visit_constraints`](crate::Derivatives::visit_constraints) calls it, so that generic code without the
+/// number of constraints in its types can use the constraints.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// What comes of it.
+    /// Result of the operation.
     type Output;
 
-    /// Does it.
+    /// Applies the operation to a mechanism.
     fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
 }
 
-/// A visitor of a mechanism at an instant.
+/// Visitor of a mechanism at a fixed time.
 pub(crate) struct Frozen<V, T> {
     pub(crate) visitor: V,
     pub(crate) t: T,
@@ -197,7 +199,7 @@ where
     }
 }
 
-/// A constrained mechanism at an instant is one at any time.
+/// Implements the trait for a mechanism at a fixed time; the argument `t` is ignored.
 #[diagnostic::do_not_recommend]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
     Constrained<NQ, NV, NU, NH, NC> for At<'_, M, T>
@@ -276,7 +278,7 @@ where
     }
 }
 
-/// A column of a matrix.
+/// Returns a column of a matrix; zeros if the index is out of range.
 pub(crate) fn column<T: Real, const R: usize, const C: usize>(
     m: &SMatrix<T, R, C>,
     j: usize,
@@ -284,7 +286,7 @@ pub(crate) fn column<T: Real, const R: usize, const C: usize>(
     m.data.0.get(j).map_or_else(SVector::zeros, |column| SVector::from(*column))
 }
 
-/// Puts a column into a matrix.
+/// Sets a column of a matrix.
 pub(crate) fn set_column<T: Real, const R: usize, const C: usize>(
     m: &mut SMatrix<T, R, C>,
     j: usize,
@@ -295,7 +297,7 @@ pub(crate) fn set_column<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// A matrix by its columns.
+/// Returns the matrix with these columns.
 pub(crate) fn each_column<T: Real, const R: usize, const C: usize>(
     column: impl Fn(usize) -> SVector<T, R>,
 ) -> SMatrix<T, R, C> {

@@ -1,4 +1,5 @@
-//! Rows that are held in mechanisms whose masses differ by many orders of magnitude.
+//! Velocity changes that satisfy enforced constraint rows, for masses that differ by many orders of
+//! magnitude.
 
 use super::span::{Metric, Span, at, rounding};
 use crate::Real;

@@ -1,81 +1,81 @@
-//! What generated functions hand to the runtime, with a name for each part. Generated code makes these
-//! structs field by field, so that neither side counts numbers.
+//! Results that generated functions pass to the runtime, as structs with named fields. Generated code
+//! constructs them field by field, so that neither side depends on positions in arrays.
 
 use crate::Real;
 
-/// What elimination finds for accelerations and multipliers, with what tells whether they can be trusted.
+/// Result of an elimination for accelerations and multipliers, with data to judge its accuracy.
 #[derive(Clone, Copy, Debug)]
 pub struct Elimination<T, const NV: usize, const NC: usize> {
     /// Accelerations.
     pub accelerations: [T; NV],
     /// Multipliers of the constraints.
     pub multipliers: [T; NC],
-    /// The pivot of each constraint.
+    /// Pivot of each constraint.
     pub pivots: [T; NC],
-    /// What each pivot was before other constraints took their part.
+    /// Value of each pivot before the elimination of other constraints.
     pub before: [T; NC],
 }
 
-/// What accelerations and multipliers follow from where some constraints always follow from others.
+/// Data for accelerations and multipliers of mechanisms with redundant constraints.
 #[derive(Clone, Copy, Debug)]
 pub struct Responses<T, const NV: usize, const NC: usize> {
     /// Accelerations without multipliers.
     pub free: [T; NV],
-    /// What the constraints lack of zero under those.
+    /// Negative constraint accelerations `−(J a + b)` for these accelerations.
     pub lacking: [T; NC],
     /// Rows of `J M⁻¹ Jᵀ`.
     pub gram: [[T; NC]; NC],
-    /// The accelerations that a unit of each multiplier gives.
+    /// Accelerations due to a unit of each multiplier.
     pub given: [[T; NV]; NC],
 }
 
-/// Derivatives at given accelerations and multipliers. Matrices are lists of columns.
+/// Derivatives at fixed accelerations and multipliers. Matrices are arrays of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
-    /// Derivatives of `M a + h − Jᵀ λ` by `q`.
+    /// Derivatives of `M a + h − Jᵀ λ` with respect to `q`.
     pub forces_by_q: [[T; NV]; NV],
-    /// Derivatives of `M a + h − Jᵀ λ` by `v`.
+    /// Derivatives of `M a + h − Jᵀ λ` with respect to `v`.
     pub forces_by_v: [[T; NV]; NV],
-    /// Derivatives of `J a + b` by `q`.
+    /// Derivatives of `J a + b` with respect to `q`.
     pub bias_by_q: [[T; NC]; NV],
-    /// Derivatives of `J a + b` by `v`.
+    /// Derivatives of `J a + b` with respect to `v`.
     pub bias_by_v: [[T; NC]; NV],
-    /// Derivatives of the constraints' rates by `q`.
+    /// Derivatives of the constraint rates with respect to `q`.
     pub rates_by_q: [[T; NC]; NV],
-    /// What turns displacements that are measured in turning axes.
+    /// Rotation of displacements that are measured in rotating axes.
     pub turning: [[T; NV]; NV],
 }
 
-/// Second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`. Matrices are lists of columns.
+/// Second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`. Matrices are arrays of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintCurvature<T, const NV: usize, const NC: usize> {
-    /// By `q` twice.
+    /// Derivatives with respect to `q` twice.
     pub qq: [[T; NV]; NV],
-    /// By `q` (rows) and `v`.
+    /// Derivatives with respect to `q` (rows) and `v`.
     pub qv: [[T; NV]; NV],
-    /// By `v` twice.
+    /// Derivatives with respect to `v` twice.
     pub vv: [[T; NV]; NV],
-    /// By `q` (rows) and `a`.
+    /// Derivatives with respect to `q` (rows) and `a`.
     pub qa: [[T; NV]; NV],
-    /// By `q` (rows) and `λ`.
+    /// Derivatives with respect to `q` (rows) and `λ`.
     pub q_lambda: [[T; NV]; NC],
 }
 
-/// The generalized forces of the inputs with their derivatives. Matrices are lists of columns.
+/// Generalized forces of the inputs with their derivatives. Matrices are arrays of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct InputDerivatives<T, const NV: usize, const NU: usize> {
-    /// The forces `τ`.
+    /// Generalized forces `τ`.
     pub forces: [T; NV],
-    /// Derivatives of the forces by `q`.
+    /// Derivatives of the forces with respect to `q`.
     pub by_q: [[T; NV]; NV],
-    /// Derivatives of the forces by `v`.
+    /// Derivatives of the forces with respect to `v`.
     pub by_v: [[T; NV]; NV],
-    /// Derivatives of the forces by `u`.
+    /// Derivatives of the forces with respect to `u`.
     pub by_u: [[T; NV]; NU],
 }
 
 impl<T: Real, const NV: usize, const NC: usize> MotionDerivatives<T, NV, NC> {
-    /// Derivatives with the forces of inputs among those that act: these may depend on the state.
+    /// Returns the derivatives with the inputs' forces included; these forces may depend on the state.
     pub fn under<const NU: usize>(mut self, inputs: &InputDerivatives<T, NV, NU>) -> Self {
         let subtract = |from: &mut [[T; NV]; NV], what: &[[T; NV]; NV]| {
             for (entry, other) in from.iter_mut().flatten().zip(what.iter().flatten()) {

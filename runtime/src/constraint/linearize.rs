@@ -1,4 +1,4 @@
-//! Constrained motion to first order: derivatives of the accelerations, and the linear system in independent
+//! Linearised constrained motion: derivatives of the accelerations, and the linear system in independent
 //! coordinates and speeds.
 
 use super::ConstraintError;
@@ -7,28 +7,29 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
-/// The motion to first order about a state, in independent coordinates and speeds.
+/// Linear system of a constrained motion about a state, in independent coordinates and speeds.
 ///
-/// With `NP` independent coordinates and `NS` independent speeds `ẋ = A x + B δu` with `x` the displacements
-/// of the coordinates (body-axes motions for ball and free joints), then the changes of the speeds.
-/// `NX = NP + NS`.
+/// With `NP` independent coordinates and `NS` independent speeds, `ẋ = A x + B δu`. The state `x` contains
+/// the displacements of the coordinates (in body axes for ball and free joints), followed by the changes of
+/// the speeds; `NX = NP + NS`.
 ///
-/// All other coordinates and speeds follow from the constraints. Constraints on velocities alone leave more
-/// coordinates than speeds: a rolling wheel has somewhere to go that it cannot slide to (Neimark and Fufaev,
-/// *Dynamics of Nonholonomic Systems*, 1972).
+/// All other coordinates and speeds follow from the constraints. With velocity constraints, there are more
+/// independent coordinates than independent speeds: a rolling wheel can reach positions to which it cannot
+/// slide (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*, 1972).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearization<T, const NX: usize, const NU: usize, const NP: usize, const NS: usize> {
-    /// `A`.
+    /// System matrix `A`.
     pub a: SMatrix<T, NX, NX>,
-    /// `B`.
+    /// Input matrix `B`.
     pub b: SMatrix<T, NX, NU>,
-    /// The independent coordinates: indices in `v` of their rates.
+    /// Independent coordinates, as indices of their rates in `v`.
     pub coordinates: [usize; NP],
-    /// The independent speeds: indices in `v`.
+    /// Independent speeds, as indices in `v`.
     pub speeds: [usize; NS],
 }
 
-/// Derivatives of the accelerations by `q`, `v` and `τ`; `solve` gives accelerations for forces and biases.
+/// Returns the derivatives of the accelerations with respect to `q`, `v` and `τ`. `solve` returns
+/// accelerations for forces and biases.
 pub fn constrained_derivatives<T: Real, const NV: usize, const NC: usize>(
     parts: &MotionDerivatives<T, NV, NC>,
     solve: impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV>,
@@ -52,7 +53,7 @@ fn each_column<T: Real, const R: usize, const C: usize>(
     m
 }
 
-/// An entry; zero outside, since an index that was searched for would leave a way to panic.
+/// Returns an entry, or zero if the index is out of range. Bounds checks could panic.
 fn entry<T: Real, const R: usize, const C: usize>(m: &SMatrix<T, R, C>, i: usize, j: usize) -> T {
     m.get((i, j)).copied().unwrap_or(T::zero())
 }
@@ -65,29 +66,30 @@ fn scale_row<T: Real, const R: usize, const C: usize>(m: &mut SMatrix<T, R, C>, 
     }
 }
 
-/// What generated code knows of a motion.
+/// Derivatives of a motion that generated code provides.
 pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
-    /// Derivatives of the accelerations by `q` and `v`.
+    /// Derivatives of the accelerations with respect to `q`.
     pub by_q: SMatrix<T, NV, NV>,
-    /// The same by `v`.
+    /// Derivatives of the accelerations with respect to `v`.
     pub by_v: SMatrix<T, NV, NV>,
-    /// The same by the inputs.
+    /// Derivatives of the accelerations with respect to the inputs.
     pub by_u: SMatrix<T, NV, NU>,
-    /// The Jacobian of the constraints.
+    /// Constraint Jacobian.
     pub jacobian: SMatrix<T, NC, NV>,
-    /// Derivatives of the constraints' rates by `q`.
+    /// Derivatives of the constraint rates with respect to `q`.
     pub rates_by_q: SMatrix<T, NC, NV>,
-    /// What displacements in turning axes add to their own rates.
+    /// Contribution of displacements in rotating axes to their own rates.
     pub turning: SMatrix<T, NV, NV>,
-    /// How many constraints are on configurations.
+    /// Number of holonomic constraints.
     pub holonomic: usize,
-    /// Velocities that should be independent.
+    /// Indices of the velocities that should be independent.
     pub preferred: &'a [usize],
 }
 
 impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, NV, NC, NU> {
-    /// In independent coordinates and speeds. Where the constraints have less rank than elsewhere, there are
-    /// more of them than `NP` and `NS`: [`ConstraintError::Singular`].
+    /// Returns the linear system in independent coordinates and speeds. Returns [`ConstraintError::Singular`]
+    /// if the constraints have less than their usual rank, because there are more than `NP` and `NS`
+    /// independent ones then.
     pub fn independent<const NX: usize, const NP: usize, const NS: usize>(
         &self,
     ) -> Result<Linearization<T, NX, NU, NP, NS>, ConstraintError> {
@@ -128,11 +130,11 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
     }
 }
 
-/// `J x = R y` solved for dependent entries of `x`: Gauss–Jordan elimination with complete pivoting.
+/// Solution of `J x = R y` for dependent entries of `x`, by Gauss–Jordan elimination with complete pivoting.
 struct Dependence<T, const NV: usize, const NC: usize> {
     left: SMatrix<T, NC, NV>,
     right: SMatrix<T, NC, NV>,
-    /// By row: the column of its pivot.
+    /// Column of the pivot in each row.
     pivots: [Option<usize>; NC],
 }
 
@@ -172,7 +174,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
         Self { left, right, pivots }
     }
 
-    /// The independent entries, and how all entries follow from them.
+    /// Returns the independent entries, and all entries as linear functions of them.
     fn free<const N: usize>(&self) -> Result<([usize; N], SMatrix<T, NV, N>), ConstraintError> {
         let is_free = |j: &usize| !self.pivots.contains(&Some(*j));
         if (0..NV).filter(is_free).count() != N {
@@ -191,7 +193,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
         Ok((indices, shape))
     }
 
-    /// The dependent entries where the independent ones are zero, by `y`.
+    /// Returns the dependent entries as functions of `y` for independent entries of zero.
     fn particular(&self) -> SMatrix<T, NV, NV> {
         SMatrix::from_fn(|i, j| {
             let row = self.pivots.iter().position(|p| *p == Some(i));

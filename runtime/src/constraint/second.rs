@@ -8,11 +8,11 @@ use crate::{At, Real, RheonomicSecondDerivatives, SecondOrder};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Second derivatives of a mechanism's constrained equations. `#[mechanism(…, second_derivatives)]`
-/// implements it for mechanisms with constraints whose contacts do not slip.
+/// implements it for mechanisms with constraints but without sliding contacts.
 ///
-/// Displacements of the configuration are as for [`ConstrainedDerivatives`], whether the constraints allow
-/// them or not; along `q ⊕ ε dq` a function changes by `½ ε² dqᵀ H dq` beyond the first order. Time `t` as
-/// for [`Constrained`](super::Constrained).
+/// Displacements of the configuration are as in [`ConstrainedDerivatives`], whether or not the constraints
+/// permit them: along `q ⊕ ε dq`, the second-order change of a function is `½ ε² dqᵀ H dq`. Time `t` is as in
+/// [`Constrained`](super::Constrained).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no second derivatives of constrained motion",
     note = "the word asks for them: `#[mechanism(…, second_derivatives)]`; mechanisms without constraints and those with contacts that slip have none"
@@ -25,9 +25,9 @@ pub trait ConstrainedSecondDerivatives<
     const NC: usize,
 >: ConstrainedDerivatives<NQ, NV, NU, NH, NC> + RheonomicSecondDerivatives<NQ, NV, NU>
 {
-    /// Second derivatives of `wᵀ (M a + h − Jᵀ λ) + zᵀ (J a + b) + yᵀ (J v + …)` at any `a` and `λ`: of the
-    /// equations of motion, of those of the constraints and of the constraints' rates, contracted with `w`,
-    /// `z` and `y`.
+    /// Returns the second derivatives of `wᵀ (M a + h − Jᵀ λ) + zᵀ (J a + b) + yᵀ (J v + …)` for any `a` and
+    /// `λ`: the equations of motion, the acceleration constraints and the constraint rates, contracted with
+    /// `w`, `z` and `y`.
     #[allow(clippy::too_many_arguments, reason = "three factors stand beside the state")]
     fn equation_second_derivatives(
         &self,
@@ -42,24 +42,25 @@ pub trait ConstrainedSecondDerivatives<
     ) -> EquationSecondDerivatives<Self::Scalar, NV, NC>;
 }
 
-/// Second derivatives of the equations of constrained motion, contracted
-/// ([`equation_second_derivatives`](ConstrainedSecondDerivatives::equation_second_derivatives)). Those by
-/// velocity and acceleration, by velocity and multipliers, and by accelerations and multipliers are zero.
+/// Contracted second derivatives of the equations of constrained motion, see
+/// [`equation_second_derivatives`](ConstrainedSecondDerivatives::equation_second_derivatives). Derivatives
+/// with respect to velocity and acceleration, velocity and multipliers, and accelerations and multipliers are
+/// zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquationSecondDerivatives<T, const NV: usize, const NC: usize> {
-    /// By configuration twice.
+    /// Derivatives with respect to configuration twice.
     pub qq: SMatrix<T, NV, NV>,
-    /// By configuration (rows) and velocity.
+    /// Derivatives with respect to configuration (rows) and velocity.
     pub qv: SMatrix<T, NV, NV>,
-    /// By velocity twice.
+    /// Derivatives with respect to velocity twice.
     pub vv: SMatrix<T, NV, NV>,
-    /// By configuration (rows) and acceleration.
+    /// Derivatives with respect to configuration (rows) and acceleration.
     pub qa: SMatrix<T, NV, NV>,
-    /// By configuration (rows) and multipliers.
+    /// Derivatives with respect to configuration (rows) and multipliers.
     pub q_lambda: SMatrix<T, NV, NC>,
 }
 
-/// Those of inverse dynamics with what constraints add.
+/// Returns the sum of the second derivatives of inverse dynamics and of the constraint terms.
 pub fn with_curvature<T: Real, const NV: usize, const NC: usize>(
     (qq, qv, vv, qa): SecondOrder<T, NV>,
     found: ConstraintCurvature<T, NV, NC>,
@@ -74,8 +75,8 @@ pub fn with_curvature<T: Real, const NV: usize, const NC: usize>(
     }
 }
 
-/// What factors `f` of accelerations are for the equations that these solve: `w` and `z` with
-/// `M w + Jᵀ z = f`, `J w = 0`.
+/// Returns the adjoint variables `w` and `z` for factors `f` of the accelerations: `M w + Jᵀ z = f`, `J w =
+/// 0`.
 pub(crate) fn adjoint<
     M,
     T,
@@ -98,8 +99,8 @@ where
     (w, multipliers(m, t, q, &(f - m.mass_matrix(t, q) * w)))
 }
 
-/// The second derivatives of `fᵀ v̇` under constraints. `M v̇ + h − Jᵀ λ = τ` and `J v̇ + b = 0` hold along
-/// all changes of the state; they are differentiated twice and contracted with the adjoint of `f`.
+/// Returns the second derivatives of `fᵀ v̇` with constraints. The equations `M v̇ + h − Jᵀ λ = τ` and `J v̇
+/// + b = 0`, which hold for all states, are differentiated twice and contracted with the adjoint of `f`.
 pub fn constrained_second_derivatives<
     M,
     T,
@@ -133,7 +134,7 @@ where
     (with_transpose(found.qq, &by_q), found.qv + by_v, found.vv, by_tau)
 }
 
-/// `A + B + Bᵀ`.
+/// Returns `A + B + Bᵀ`.
 pub(crate) fn with_transpose<T: Real, const N: usize>(
     mut a: SMatrix<T, N, N>,
     b: &SMatrix<T, N, N>,
@@ -143,19 +144,19 @@ pub(crate) fn with_transpose<T: Real, const N: usize>(
     a
 }
 
-/// What is done with a mechanism whose constraints are of any number and have second derivatives, by
-/// [`visit_constraint_curvature`](crate::SecondDerivatives::visit_constraint_curvature).
+/// Operation on a mechanism with any number of constraints and with second derivatives.
+/// [`visit_constraint_curvature`](crate::SecondDerivatives::visit_constraint_curvature) calls it.
 pub trait CurvatureVisitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
-    /// What comes of it.
+    /// Result of the operation.
     type Output;
 
-    /// Does it.
+    /// Applies the operation to a mechanism.
     fn visit<M, const NH: usize, const NC: usize>(self, mechanism: &M) -> Self::Output
     where
         M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
 }
 
-/// A visitor of a mechanism at an instant.
+/// Visitor of a mechanism at a fixed time.
 pub(crate) struct FrozenCurvature<V, T> {
     pub(crate) visitor: V,
     pub(crate) t: T,

@@ -1,5 +1,5 @@
-//! What generated code calls where contacts slip: the signs of their normal forces are found, with which
-//! friction acts.
+//! Solution of the equations of motion with sliding contacts: finds the signs of their normal forces, on
+//! which friction depends.
 
 use super::layout::Elimination;
 use super::solve::{determined, regular_solution};
@@ -8,9 +8,10 @@ use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// Accelerations and multipliers with friction in proportion to the magnitudes of the multipliers `rows`.
-/// `solve` gives what [`regular_solution`] takes, for given signs: first all contacts press, then those whose
-/// force turns out to pull change their sign. One contact is decided with the second attempt.
+/// Returns accelerations and multipliers with friction proportional to the magnitudes of the multipliers
+/// `rows`. `solve` returns the input of [`regular_solution`] for given signs. Initially all contacts have
+/// compressive normal forces; then the signs of tensile ones are changed. One contact is resolved in the
+/// second attempt.
 #[inline]
 pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usize>(
     rows: &[usize; K],
@@ -42,7 +43,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usi
     Err(jammed(rows.first().copied().unwrap_or(0)))
 }
 
-/// The same where all of them press, for lanes: in every lane, or none.
+/// Returns the solution for lanes if all sliding contacts have positive normal forces in every lane.
 #[inline]
 pub fn pressing_solution<T: Real, const NV: usize, const NC: usize>(
     rows: &[usize],
@@ -54,8 +55,8 @@ pub fn pressing_solution<T: Real, const NV: usize, const NC: usize>(
     rows.iter().all(presses).then_some(solution)
 }
 
-/// Accelerations by forces and biases, with the signs that the multipliers have: how the motion answers small
-/// changes.
+/// Returns accelerations as a function of forces and biases, with the signs of the multipliers fixed. This is
+/// the response of the motion to small changes.
 #[inline]
 pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const K: usize>(
     rows: &'a [usize; K],

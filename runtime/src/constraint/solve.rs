@@ -1,4 +1,4 @@
-//! Accelerations and multipliers from what straight-line elimination found, as long as it loses few digits.
+//! Accelerations and multipliers from straight-line elimination, if its loss of accuracy is small.
 
 use super::Solution;
 use super::layout::{Elimination, Responses};
@@ -7,26 +7,26 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::SVector;
 
-/// What must be left of a constraint's pivot after the other constraints took their part. Pivots are squares
-/// of lengths: the accelerations keep three quarters of the digits.
+/// Returns the minimum ratio of a constraint's pivot to its value before elimination of the other
+/// constraints. Pivots are squared lengths: accelerations retain three quarters of the digits.
 fn tolerance<T: Real>() -> T {
     epsilon::<T>().sqrt().sqrt()
 }
 
-/// What a constraint must be beside others of its group: less is rounding for the most part. Squares of
-/// lengths, too.
+/// Returns the minimum pivot relative to the pivots of the constraint's group; smaller pivots are mostly
+/// rounding errors. Also a ratio of squared lengths.
 fn noise<T: Real>() -> T {
     epsilon::<T>().cbrt()
 }
 
-/// The sum over the group of a constraint.
+/// Returns the sum over the group of a constraint.
 fn of_group<T: Real, const NC: usize>(groups: &[usize; NC], k: usize, each: impl Fn(usize) -> T) -> T {
     let own = |i: &usize| groups.get(*i) == groups.get(k);
     (0..NC).filter(own).fold(T::zero(), |sum, i| sum + each(i))
 }
 
-/// Splits the result of an elimination into accelerations and multipliers; `None` if a pivot is too small
-/// beside what it was.
+/// Splits the result of an elimination into accelerations and multipliers. Returns `None` if a pivot is too
+/// small relative to its value before elimination.
 #[inline]
 pub fn regular_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
@@ -36,13 +36,14 @@ pub fn regular_solution<T: Real, const NV: usize, const NC: usize>(
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
-    /// Accelerations and multipliers.
+    /// Returns accelerations and multipliers.
     #[inline]
     pub(super) fn solution(&self) -> Solution<T, NV, NC> {
         (SVector::from(self.accelerations), SVector::from(self.multipliers))
     }
 
-    /// The pivot of a constraint, and what it was before; zeros for one that is none.
+    /// Returns the pivot of a constraint, and its value before elimination; zeros if the index is out of
+    /// range.
     #[inline]
     fn pivot(&self, k: usize) -> (T, T) {
         let of = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
@@ -50,7 +51,7 @@ impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
     }
 }
 
-/// Whether the pivot of a constraint can be trusted; not so what is not a number.
+/// Returns whether the pivot of a constraint is sufficiently accurate; false for NaN.
 #[inline]
 fn regular<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
@@ -61,7 +62,7 @@ fn regular<T: Real, const NV: usize, const NC: usize>(
     pivot > tolerance::<T>() * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
 }
 
-/// Whether the pivot of a contact that slips can be trusted: it must keep its sign, and nothing else decides.
+/// Returns whether the pivot of a sliding contact is sufficiently accurate: it must keep its sign.
 #[inline]
 pub(super) fn determined<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
@@ -73,9 +74,9 @@ pub(super) fn determined<T: Real, const NV: usize, const NC: usize>(
     pivot > least * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
 }
 
-/// What [`regular_solution`] does with an elimination whose pivots are entries of the Jacobian, at places
-/// chosen in advance. The pivots are squared, as are the lengths that their rows had. What rounding grows by
-/// is at most the product of what the pivots lack of a third of their rows.
+/// Splits the result of an elimination whose pivots are entries of the Jacobian in predetermined columns.
+/// Pivots and the lengths of their rows before elimination are squared. The growth of rounding errors is
+/// bounded by the product of the ratios of a third of the row lengths to the pivots.
 #[inline]
 pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
@@ -84,7 +85,7 @@ pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
         let (pivot, before) = found.pivot(k);
         constant::<T>(9.0) * pivot / before
     };
-    // A share that is not a number must not be passed over.
+    // A ratio of NaN must not be skipped.
     let product = (0..NC).fold(T::one(), |product, k| {
         let share = share(k);
         product * if share > T::one() { T::one() } else { share }
@@ -92,9 +93,8 @@ pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
     (product > tolerance::<T>() * constant(1e-2)).then(|| found.solution())
 }
 
-/// Accelerations and multipliers of constraints of which some always follow from others. The multipliers are
-/// those of least norm; `None` unless `rank` of the constraints are clearly independent, and the others
-/// clearly follow from them.
+/// Returns accelerations and multipliers of constraints some of which are always redundant. The multipliers
+/// have minimum norm. Returns `None` unless exactly `rank` constraints are clearly independent.
 #[inline]
 pub fn least_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
@@ -109,9 +109,9 @@ pub fn least_solution<T: Real, const NV: usize, const NC: usize>(
     Some((SVector::from(a), SVector::from(lambda)))
 }
 
-/// The solution of least norm of `A x = b` for a positive semidefinite `A` of the given rank: with `A = L Lᵀ`
-/// for as many columns of `L` and `L = U S`, `x = U S⁻ᵀ S⁻¹ Uᵀ b` (Higham, *Accuracy and Stability of
-/// Numerical Algorithms*, 2002, § 10.3).
+/// Returns the minimum-norm solution of `A x = b` for a positive semidefinite `A` of the given rank. With `A
+/// = L Lᵀ` for `rank` columns of `L`, and `L = U S`, the solution is `x = U S⁻ᵀ S⁻¹ Uᵀ b` (Higham, *Accuracy
+/// and Stability of Numerical Algorithms*, 2002, § 10.3).
 fn least_norm<T: Real, const N: usize>(
     groups: &[usize; N],
     rank: usize,
@@ -142,7 +142,7 @@ fn least_norm<T: Real, const N: usize>(
             }
         }
     }
-    // States between the steps of an integrator do not quite fulfil what follows from other constraints.
+    // States between the steps of an integrator do not satisfy redundant constraints exactly.
     let follow = (0..N).all(|k| taken[k] || part(k, &a) < epsilon::<T>().sqrt());
     if !follow {
         return None;

@@ -1,21 +1,22 @@
-//! Rows of constraints in the metric of the kinetic energy, with the rank that they have up to rounding.
+//! Rank-revealing factorisation of constraint rows in the metric of the kinetic energy.
 //!
-//! With `M = L Lᵀ` the columns of `W = L⁻¹ Jᵀ` are made triangular by reflections with column pivoting,
-//! `Qᵀ W = R`. It is `J` that is factorised, never its square `J M⁻¹ Jᵀ`; a column is scaled by its length
-//! and its largest entry is exchanged to the diagonal, so that light and heavy bodies lose no digits to each
-//! other (Powell and Reid, *On applying Householder transformations to linear least squares problems*, IFIP
-//! 1968; Cox and Higham, *Stability of Householder QR factorization for weighted least squares problems*,
-//! 1998). What is left of a column is told from rounding entry by entry: with every entry goes the largest
-//! number that it was computed from.
+//! With `M = L Lᵀ`, the columns of `W = L⁻¹ Jᵀ` are made triangular by Householder reflections with column
+//! pivoting, `Qᵀ W = R`. The factorised matrix is `J`, never the squared matrix `J M⁻¹ Jᵀ`. Columns are
+//! scaled by their length, and the largest entry of a column is exchanged to the diagonal, so that light and
+//! heavy bodies do not reduce each other's accuracy (Powell and Reid, *On applying Householder
+//! transformations to linear least squares problems*, IFIP 1968; Cox and Higham, *Stability of Householder QR
+//! factorization for weighted least squares problems*, 1998). The remainder of a column is compared with
+//! rounding errors entry by entry: each entry is stored with the largest number that it was computed from.
 
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::SMatrix;
 
-/// Roundings of the largest number that an entry was computed from, beyond which it is something else.
+/// Rounding errors, in units of that of the largest number that an entry was computed from, above which an
+/// entry is significant.
 const ROUNDINGS: f64 = 64.0;
 
-/// An entry; zero outside, since an index that was searched for would leave a way to panic.
+/// Returns an entry, or zero if the index is out of range. Bounds checks could panic.
 pub(super) fn at<T: Real>(x: &[T], k: usize) -> T {
     x.get(k).copied().unwrap_or(T::zero())
 }
@@ -28,19 +29,21 @@ pub(super) fn norm<T: Real, const N: usize>(a: &[T; N]) -> T {
     dot(a, a).sqrt()
 }
 
-/// Less than this is rounding beside one.
+/// Returns the relative magnitude below which a number is a rounding error.
 pub(super) fn rounding<T: Real>() -> T {
     constant::<T>(ROUNDINGS) * epsilon()
 }
 
-/// `M = L Lᵀ` as `L' D L'ᵀ`: the rows of `L'` below its diagonal of ones, and the roots of `D⁻¹`.
+/// Factorisation `M = L Lᵀ` as `L' D L'ᵀ`: the rows of `L'` below its unit diagonal, and the square roots of
+/// `D⁻¹`.
 pub(super) struct Metric<T, const N: usize> {
     lower: [[T; N]; N],
     root: [T; N],
 }
 
 impl<T: Real, const N: usize> Metric<T, N> {
-    /// Pivots that rounding has made zero or negative are as small as rounding.
+    /// Factorises a mass matrix. Pivots that are zero or negative due to rounding are replaced by the
+    /// magnitude of rounding errors.
     pub fn of(mass: &[[T; N]; N]) -> Self {
         let (mut lower, mut inverse) = ([[T::zero(); N]; N], [T::zero(); N]);
         for i in 0..N {
@@ -56,7 +59,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
         Self { lower, root: inverse.map(|x| x.sqrt()) }
     }
 
-    /// `L⁻¹ x`.
+    /// Returns `L⁻¹ x`.
     pub fn half(&self, mut x: [T; N]) -> [T; N] {
         for i in 0..N {
             x[i] = (0..i).fold(x[i], |sum, k| sum - self.lower[i][k] * x[k]);
@@ -65,7 +68,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
         x
     }
 
-    /// How large the numbers are that `L⁻¹ x` is computed from, for those of `x`.
+    /// Returns the magnitudes of the numbers that `L⁻¹ x` is computed from, for given magnitudes of `x`.
     fn sizes(&self, mut x: [T; N]) -> [T; N] {
         for i in 0..N {
             x[i] = (0..i).fold(x[i], |most, k| most.max(self.lower[i][k].abs() * x[k]));
@@ -74,7 +77,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
         x
     }
 
-    /// `Lᵀ x`.
+    /// Returns `Lᵀ x`.
     pub fn upper(&self, x: &[T; N]) -> [T; N] {
         let mut out = *x;
         for i in 0..N {
@@ -83,7 +86,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
         out
     }
 
-    /// `L⁻ᵀ x`.
+    /// Returns `L⁻ᵀ x`.
     pub fn back(&self, mut x: [T; N]) -> [T; N] {
         x.iter_mut().zip(&self.root).for_each(|(x, root)| *x *= *root);
         for i in (0..N).rev() {
@@ -93,21 +96,22 @@ impl<T: Real, const N: usize> Metric<T, N> {
     }
 }
 
-/// A column of `W`, scaled to length one.
+/// Column of `W`, scaled to unit length.
 #[derive(Clone, Copy)]
 pub(super) struct Column<T, const N: usize> {
-    /// What the reflections have made of it.
+    /// Entries after the reflections.
     pub x: [T; N],
-    /// The largest number that each entry was computed from.
+    /// Largest number that each entry was computed from.
     size: [T; N],
-    /// Its length, zero for a column of zeros.
+    /// Length before scaling; zero for a zero column.
     pub length: T,
-    /// The step at which it became part of the basis.
+    /// Step at which the column became part of the basis.
     pub step: Option<usize>,
 }
 
 impl<T: Real, const N: usize> Column<T, N> {
-    /// What is left of it beyond the first entries: its length, and its largest entry beside rounding.
+    /// Returns the length of the column without its first entries, and the largest ratio of its entries to
+    /// the numbers that they were computed from.
     fn left(&self, first: usize) -> (T, T) {
         let all = self.x.iter().zip(&self.size).skip(first);
         let (square, most) = all.fold((T::zero(), T::zero()), |(square, most), (x, size)| {
@@ -128,21 +132,22 @@ impl<T: Real, const N: usize> Column<T, N> {
     }
 }
 
-/// The space that columns span, by the reflections that make them triangular.
+/// Space that columns span, represented by the reflections that make them triangular.
 pub(super) struct Span<T, const NV: usize, const NC: usize> {
-    /// The columns of the constraints.
+    /// Columns of the constraints.
     pub columns: [Column<T, NV>; NC],
-    /// How many columns have become part of the basis.
+    /// Number of columns in the basis.
     pub rank: usize,
-    /// Entries are exchanged: by place the index.
+    /// Permutation of the entries: original index of each position.
     order: [usize; NV],
     /// Normals of the reflections, of length √2.
     normals: [[T; NV]; NV],
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
-    /// The rows of a Jacobian. Each entry was computed from numbers as large as what stands in other
-    /// components of the same vector, in the units of the entry; what is rounding beside them is nothing.
+    /// Prepares the rows of a Jacobian. The magnitude that an entry was computed from is estimated by the
+    /// other components of the same vector, in the units of the entry. Entries below the corresponding
+    /// rounding error become zero.
     pub fn of(metric: &Metric<T, NV>, jacobian: &SMatrix<T, NC, NV>, groups: &[usize; NC]) -> Self {
         let rows: [[T; NV]; NC] =
             core::array::from_fn(|k| core::array::from_fn(|i| at(&jacobian.data.0[i], k)));
@@ -161,7 +166,8 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
             let mut row = rows.get(k).copied().unwrap_or([T::zero(); NV]);
             let mut sizes = bound;
             for (i, ((x, size), bound)) in row.iter_mut().zip(&mut sizes).zip(&bound).enumerate() {
-                // Zeros are exact, unless what stands beside them is next to nothing, too.
+                // Zeros are exact, unless the corresponding entries of the other components are also
+                // negligible.
                 let most = beside(k, i);
                 let alike = most <= *bound * rounding() || most > *bound * epsilon::<T>().sqrt();
                 if alike && x.abs() <= *bound * rounding() {
@@ -178,20 +184,20 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         Self { columns, rank: 0, order, normals: [[T::zero(); NV]; NV] }
     }
 
-    /// Entries in the order of the columns.
+    /// Returns the entries in the order of the columns.
     fn arranged(&self, x: &[T; NV]) -> [T; NV] {
         self.order.map(|i| at(x, i))
     }
 
-    /// Adds columns to the basis, the longest first, as long as they have an entry of at least `least` of
-    /// what it was computed from, and the basis has at most `most` of them.
+    /// Adds columns to the basis, the longest first. A column must have an entry of at least `least` relative
+    /// to the number that it was computed from. The basis has at most `most` columns.
     pub fn extend(&mut self, least: T, most: usize) {
         while self.rank < most.min(NV) {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
                 let (length, share) = column.left(self.rank);
-                // Among columns that are as long up to rounding, the first: which it is must not depend on
-                // rounding.
+                // Of columns with equal length up to rounding errors, the first is used, so that the choice
+                // does not depend on rounding.
                 if length > best.1 * constant(1.01) && share > least {
                     best = (Some(k), length);
                 }
@@ -203,7 +209,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         }
     }
 
-    /// Adds a direction: the part of `x` that is not in the basis, in its own coordinates.
+    /// Adds a direction to the basis: the component of `x` outside the basis, in transformed coordinates.
     fn add(&mut self, mut x: [T; NV]) {
         let first = self.rank;
         let mut most = (first, T::zero());
@@ -228,7 +234,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         self.rank += 1;
     }
 
-    /// Exchanges two places that no direction of the basis ends at.
+    /// Exchanges two positions after those of the basis.
     fn exchange(&mut self, i: usize, j: usize) {
         exchange(&mut self.order, i, j);
         self.normals.iter_mut().for_each(|normal| exchange(normal, i, j));
@@ -238,7 +244,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         }
     }
 
-    /// `Qᵀ x`.
+    /// Returns `Qᵀ x`.
     pub fn forward(&self, x: &[T; NV]) -> [T; NV] {
         let mut x = self.arranged(x);
         for normal in self.normals.iter().take(self.rank) {
@@ -247,7 +253,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         x
     }
 
-    /// `Q x`.
+    /// Returns `Q x`.
     pub fn backward(&self, mut x: [T; NV]) -> [T; NV] {
         for normal in self.normals.iter().take(self.rank).rev() {
             reflect(&mut x, normal);
@@ -261,7 +267,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         out
     }
 
-    /// The column that joined the basis at a step.
+    /// Returns the index and the column that joined the basis at a step.
     pub fn pivot(&self, step: usize) -> Option<(usize, &Column<T, NV>)> {
         self.columns.iter().enumerate().find(|(_, column)| column.step == Some(step))
     }
@@ -283,7 +289,8 @@ fn exchange<T: Copy, const N: usize>(x: &mut [T; N], i: usize, j: usize) {
     }
 }
 
-/// Makes the first vectors orthonormal, twice for the sake of rounding: `L = U S` with the triangle `S`.
+/// Orthonormalises the first vectors, in two passes to remove rounding errors. Returns the triangle `S` of `L
+/// = U S`.
 pub(super) fn orthogonal<T: Real, const N: usize>(vectors: &mut [[T; N]; N], count: usize) -> [[T; N]; N] {
     let mut upper = [[T::zero(); N]; N];
     for j in 0..N {

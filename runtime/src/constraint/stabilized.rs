@@ -1,4 +1,4 @@
-//! Constraints kept by feedback instead of projection.
+//! Stabilization of constraints by feedback instead of projection.
 
 use super::differentiable::{column, each_column, multipliers};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
@@ -9,13 +9,13 @@ use crate::private::constant;
 use crate::{Real, Rheonomic};
 use nalgebra::{SMatrix, SVector};
 
-/// A mechanism whose violated constraints decay by themselves.
+/// Mechanism whose constraint violations decay exponentially.
 ///
-/// Baumgarte's stabilization: `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of constraints and
-/// integrals of motion in dynamical systems*, Comp. Meth. Appl. Mech. Eng. 1, 1972). Integrators then leave
-/// the state as it is, whether it fulfils the constraints or not; the violation is small, not zero. The word
-/// `derivatives` gives derivatives of this motion, too: its linear system has the exponent `−α` twice for
-/// each constraint on configurations, and `−2 α` once for each of the others.
+/// Uses Baumgarte's stabilization `φ̈ + 2 α φ̇ + α² φ = 0` (Baumgarte, *Stabilization of constraints and
+/// integrals of motion in dynamical systems*, Comp. Meth. Appl. Mech. Eng. 1, 1972). Integrators do not
+/// project the state, whether or not it satisfies the constraints, so the violation is small but not zero.
+/// The option `derivatives` also provides the derivatives of this motion. Its linear system has the double
+/// eigenvalue `−α` for each holonomic constraint, and the eigenvalue `−2 α` for each velocity constraint.
 ///
 /// ```
 /// # use linkwork::prelude::*;
@@ -42,8 +42,8 @@ pub struct Stabilized<'m, M, T, const NH: usize, const NC: usize> {
     rate: T,
 }
 
-/// The mechanism with violations of its constraints decaying at `rate`, 1/s: a few times the fastest rate of
-/// the motion.
+/// Returns the mechanism with constraint violations that decay at `rate`, 1/s. Use a few times the fastest
+/// rate of the motion.
 pub fn stabilized<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     mechanism: &M,
     rate: M::Scalar,
@@ -55,7 +55,7 @@ where
 }
 
 impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> {
-    /// The acceleration that lets violations decay.
+    /// Returns the acceleration that lets violations decay.
     fn correction<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         t: T,
@@ -69,7 +69,7 @@ impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> 
     }
 }
 
-/// `2 α φ̇ + α² φ`, the latter of constraints on configurations.
+/// Returns `2 α φ̇ + α² φ`; the second term exists only for holonomic constraints.
 fn gap<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     rate: M::Scalar,
@@ -86,9 +86,9 @@ where
     gap
 }
 
-/// The accelerations under the forces `tau` where violations decay at `rate`, and their derivatives: with
-/// these accelerations and multipliers `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)` and
-/// `J δv̇ = −∂(J a + b + 2 α φ̇ + α² φ)`.
+/// Returns the accelerations for the forces `tau` and violations that decay at `rate`, with their
+/// derivatives. With these accelerations and multipliers, `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)` and `J δv̇
+/// = −∂(J a + b + 2 α φ̇ + α² φ)`.
 fn to_first_order<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     rate: M::Scalar,
@@ -116,7 +116,7 @@ where
     (a, (by_q, by_v, of(&-SMatrix::identity(), &SMatrix::zeros())))
 }
 
-/// [`Constrained::stabilized_derivatives`] of mechanisms with derivatives.
+/// Implements [`Constrained::stabilized_derivatives`] for mechanisms with derivatives.
 pub fn stabilized_derivatives<
     M,
     const NQ: usize,
@@ -182,7 +182,7 @@ where
         Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.correction(t, q, v))
     }
 
-    /// States need not fulfil the constraints: they stay as they are.
+    /// Returns the state unchanged, because it need not satisfy the constraints.
     fn project(
         &self,
         _t: M::Scalar,
@@ -192,7 +192,8 @@ where
         Ok((*q, *v))
     }
 
-    /// Where violations decay, constraints are looked at for their rates alone.
+    /// Returns the velocity change for an impulse. Only constraint rates are corrected, because violations
+    /// decay.
     fn impulse(
         &self,
         t: M::Scalar,
@@ -299,7 +300,7 @@ where
         acceleration
     }
 
-    /// Constraints are in the accelerations.
+    /// Returns `None`, because the accelerations include the constraints.
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: super::Visitor<M::Scalar, NQ, NV, NU>,

@@ -1,4 +1,4 @@
-//! Accelerations in singular positions, from the motion that passes through.
+//! Accelerations in singular configurations, from the motion that passes through them.
 
 use super::{Structure, System, Triangle, Weak, far, zone};
 use crate::Real;
@@ -7,35 +7,36 @@ use crate::constraint::span::{Metric, Span, norm, rounding};
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
-/// Newton steps to a point of a way, at most.
+/// Maximum number of Newton steps for the projection of a point of a path.
 const MOST_STEPS: usize = 12;
 
-/// The motion to third order about an instant: acceleration and jerk.
+/// Acceleration and jerk, which describe the motion to third order about an instant.
 type Course<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
-/// A way along the branch that a state is on.
+/// Path along the branch of the constraints on which a state is.
 struct Way<T, const NQ: usize, const NV: usize> {
     t: T,
     q: SVector<T, NQ>,
     v: SVector<T, NV>,
-    /// The velocity of the way, and whether it is that of the state, which time goes on with.
+    /// Velocity along the path. If `moves` is true, it is the velocity of the state, and time advances along
+    /// the path.
     heading: SVector<T, NV>,
     moves: bool,
 }
 
-/// The largest magnitude of the entries.
+/// Returns the largest magnitude of the entries.
 pub(super) fn size<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |most, x| most.max(x.abs()))
 }
 
-/// The acceleration of the motion that passes through a state, with what constraints leave possible
-/// interpolated from a little before and after.
+/// Returns the acceleration of the motion that passes through a state. The accelerations that the constraints
+/// permit are interpolated from configurations shortly before and after.
 ///
-/// Which accelerations constraints leave possible depends on where a branch is and how fast it is passed, and
-/// changes little over the way. Masses and forces are those at the state: what a heavy body adds that is at
-/// rest there, or a stiff element, changes as much as it likes. The way leads along the velocity of the state
-/// or, at rest, along the acceleration `least`. `None` where the position is singular around as well, or
-/// nothing moves.
+/// Permitted accelerations are functions of the position on the branch and of the velocity, and change little
+/// along the path. Masses and forces are those at the state, because contributions of heavy bodies at rest or
+/// of stiff elements may change rapidly along the path. The path leads along the velocity of the state or, at
+/// rest, along the acceleration `least`. Returns `None` if the neighbouring configurations are singular as
+/// well, or if nothing moves.
 pub(super) fn acceleration<
     M,
     T: Real,
@@ -56,8 +57,8 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let (speed, rate) = (size(v), size(least));
-    // Velocities have a direction beyond rounding. Where constraints move by themselves, slow ones tell
-    // little.
+    // Only velocities above rounding errors have a direction. If constraints depend on time, slow velocities
+    // do not indicate the direction of motion.
     let driven = size(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
     let clear = speed > epsilon::<T>().cbrt();
     let moves = clear && (!driven || speed * speed > rate * far::<T>() * constant(0.03));
@@ -69,7 +70,7 @@ where
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
         steps.into_iter().find_map(|step| way.points(step, clear).interpolated(mechanism, structure))
     };
-    // Farther on, or nearer, other things happen.
+    // Other paths and step lengths are tried if the interpolation fails on the first ones.
     passed(&way, &[1.0, 2.0], clear)
         .or_else(|| passed(&way.aside(mechanism, structure)?, &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
         .or_else(|| passed(&way.aside(mechanism, structure)?.across(&way), &[1.0, 2.0, 4.0, 8.0, 0.5], clear))
@@ -83,8 +84,9 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
         Points { way: self, step, clear }
     }
 
-    /// Another way along the branch, for states whose velocity leads out slowly beside that of other
-    /// coordinates: into a direction with all of them, which a little before and after is known well enough.
+    /// Returns another path along the branch, for states with velocities that leave the singular
+    /// configuration slowly in comparison with other coordinates. Its direction has components along all
+    /// motions that are free shortly before and after.
     fn aside<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
@@ -106,14 +108,15 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
         (size > T::zero()).then(|| Way { heading: heading / size, moves: false, ..*self })
     }
 
-    /// What is left of the way without the part along another.
+    /// Returns the path without its component along another path.
     fn across(&self, other: &Self) -> Self {
         let part = self.heading.dot(&other.heading) / other.heading.norm_squared();
         Way { heading: self.heading - other.heading * part, ..*self }
     }
 
-    /// Time and state `h` along the way, on the constraints: as near as can be in the coordinates themselves,
-    /// since heavy bodies would hold what is near in the metric of the kinetic energy where they are.
+    /// Returns time and state at distance `h` along the path, projected on the constraints. The projection
+    /// uses the Euclidean metric of the coordinates, because heavy bodies would not move in the metric of the
+    /// kinetic energy.
     fn moved<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
@@ -136,7 +139,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
             let off = size(&gap);
             let room = Room::of(structure, &mechanism.constraint_jacobian(t, &q), zone());
             q = mechanism.integrate(&q, &room.least(&gap));
-            // What is left of the constraints decides: once more, although it is rounding.
+            // The last correction is applied even if the residual before it is a rounding error.
             if off <= rounding() || last.is_some_and(|last| off * constant(2.0) > last) {
                 break;
             }
@@ -152,7 +155,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     }
 }
 
-/// Points of a way, a `step` apart, with rows of more than the size `clear`.
+/// Points of a path at multiples of `step`; rows above the relative magnitude `clear` are well-conditioned.
 struct Points<'a, T, const NQ: usize, const NV: usize> {
     way: &'a Way<T, NQ, NV>,
     step: T,
@@ -160,7 +163,7 @@ struct Points<'a, T, const NQ: usize, const NV: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
-    /// What is possible `h` along the way.
+    /// Returns the permitted accelerations at distance `h` along the path.
     fn at<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
@@ -178,7 +181,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
         (room.regular && possible.bend.iter().all(|a| a.is_finite())).then_some(possible)
     }
 
-    /// The polynomial of degree five through six points of a way.
+    /// Returns the value at the state of the fifth-degree polynomial through six points of the path.
     fn interpolated<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
@@ -190,7 +193,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
         let (step, half) = (self.step, constant::<T>(0.5));
         let at = |h: T, course: &Course<T, NV>| self.at(mechanism, structure, h, course);
         let mut course = (SVector::zeros(), SVector::zeros());
-        // The way bends as little as the branch lets it.
+        // The path has the smallest curvature that the branch permits.
         for _ in 0..if self.way.moves { 2 } else { 0 } {
             let (before, after) = (at(-step, &course)?.bend, at(step, &course)?.bend);
             course = ((before + after) * half, (after - before) * (half / step));
@@ -207,16 +210,16 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     }
 }
 
-/// Rows of constraints in the metric of the coordinates.
+/// Rows of constraints in the Euclidean metric of the coordinates.
 struct Room<T, const NV: usize, const NC: usize> {
     span: Span<T, NV, NC>,
     triangle: Triangle<T, NC>,
-    /// Whether the rank is the one that the constraints have elsewhere.
+    /// Whether the well-conditioned rows have the rank of regular configurations.
     regular: bool,
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
-    /// With rows of more than the size `clear`, or with all that there are.
+    /// Factorises the rows above the relative magnitude `clear`, and the smaller ones up to rounding errors.
     fn of(structure: &Structure<NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
         let mut span = Span::of(&Metric::of(&SMatrix::identity().data.0), jacobian, &structure.groups);
         span.extend(clear, structure.rank);
@@ -226,7 +229,7 @@ impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
         Self { span, triangle, regular }
     }
 
-    /// The least `x` with `J x = −gap`.
+    /// Returns the `x` of minimum norm with `J x = −gap`.
     fn least(&self, gap: &SVector<T, NC>) -> SVector<T, NV> {
         let known = self.triangle.particular(&self.span, &gap.data.0[0]);
         let mut x = [T::zero(); NV];
@@ -234,7 +237,7 @@ impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
         SVector::from(self.span.backward(x))
     }
 
-    /// The projection `P` on what the rows leave free.
+    /// Returns the projection `P` on the null space of the rows.
     fn free(&self) -> SMatrix<T, NV, NV> {
         let mut free = SMatrix::<T, NV, NV>::identity();
         for column in &mut free.data.0 {
@@ -246,15 +249,15 @@ impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
     }
 }
 
-/// Possible accelerations: `P y + c` for any `y`.
+/// Permitted accelerations: `P y + c` for any `y`.
 struct Possible<T, const NV: usize> {
     free: SMatrix<T, NV, NV>,
     bend: SVector<T, NV>,
 }
 
 impl<T: Real, const NV: usize> Possible<T, NV> {
-    /// The one that masses and forces choose (Gauss): rows that span what is not possible are constraints
-    /// like others.
+    /// Returns the permitted acceleration that follows from masses and forces (Gauss's principle). Rows that
+    /// span the complement of the permitted accelerations are treated as constraints.
     fn acceleration<const NC: usize>(
         &self,
         structure: &Structure<NC>,

@@ -1,11 +1,11 @@
-//! Random systems of light and heavy bodies under constraints that nearly depend on each other, against an
-//! elimination in twice the precision.
+//! Random systems of light and heavy bodies with nearly dependent constraints, compared with an elimination
+//! in double-double precision.
 
 use super::*;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number of about 32 digits, as the sum of two (Dekker, *A floating-point technique for extending the
-/// available precision*, Numer. Math. 18, 1971).
+/// Number with about 32 digits, represented as a sum of two (Dekker, *A floating-point technique for
+/// extending the available precision*, Numer. Math. 18, 1971).
 #[derive(Clone, Copy)]
 struct Double(f64, f64);
 
@@ -59,11 +59,11 @@ impl Div for Double {
     }
 }
 
-/// SplitMix64 (Steele, Lea and Flood, 2014).
+/// Random number generator SplitMix64 (Steele, Lea and Flood, 2014).
 struct Random(u64);
 
 impl Random {
-    /// Uniform in `[-1, 1)`.
+    /// Returns a uniformly distributed number in `[-1, 1)`.
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -73,7 +73,7 @@ impl Random {
     }
 }
 
-/// Masses, Jacobian, forces and biases.
+/// Mass matrix, Jacobian, forces and biases.
 #[derive(Clone, Copy)]
 struct Sample<const NV: usize, const NC: usize> {
     mass: SMatrix<f64, NV, NV>,
@@ -83,8 +83,8 @@ struct Sample<const NV: usize, const NC: usize> {
 }
 
 impl<const NV: usize, const NC: usize> Sample<NV, NC> {
-    /// Points of masses that differ by up to `10^(2 spread)` on a chain of coordinates; every other system
-    /// has a constraint that is another one but for a part of `10^-near`.
+    /// Returns random point masses on a chain of coordinates, which differ by up to a factor of `10^(2
+    /// spread)`. Half of the systems have a constraint that differs from another one by at least `10^-near`.
     fn random(random: &mut Random, spread: f64, near: f64) -> Self {
         let mut mass = SMatrix::<f64, NV, NV>::zeros();
         for link in 0..NV {
@@ -107,7 +107,7 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
         Self { mass, jacobian, force, bias: core::array::from_fn(|_| random.next()) }
     }
 
-    /// With every number off by a rounding.
+    /// Returns the system with a random rounding error in every number.
     fn rounded(&self, random: &mut Random, epsilon: f64) -> Self {
         let mut other = *self;
         for i in 0..NV {
@@ -124,7 +124,7 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
         other
     }
 
-    /// Accelerations and multipliers by elimination with complete pivoting.
+    /// Returns accelerations and multipliers from elimination with complete pivoting.
     fn exact(&self) -> (SVector<f64, NV>, SVector<f64, NC>) {
         let n = NV + NC;
         let mut rows: Vec<Vec<Double>> = (0..n)
@@ -175,13 +175,13 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
     }
 }
 
-/// As near to the exact solution as the numbers that describe the system allow.
+/// Checks that the solution is as close to the exact one as rounding errors of the system permit.
 fn check<T: Real, const NV: usize, const NC: usize>(seed: u64, spread: f64, near: f64) {
     let mut random = Random(seed);
     let epsilon = crate::private::to_f64(epsilon::<T>());
     for case in 0..300 {
         let all = Sample::<NV, NC>::random(&mut random, spread, near);
-        // Numbers of `T`.
+        // Numbers rounded to `T`.
         let to = |x: f64| crate::private::to_f64(constant::<T>(x));
         let system = Sample {
             mass: all.mass.map(to),
@@ -197,7 +197,7 @@ fn check<T: Real, const NV: usize, const NC: usize>(seed: u64, spread: f64, near
             lambda_error = lambda_error.max((lambda - mu).amax());
         }
         let (found, mu) = system.solved::<T>(NC);
-        // Where a rounding changes everything, nothing can be asked for.
+        // If rounding errors change the solution completely, it is not compared.
         if a_error < 1e-3 * a.amax() {
             assert!((found - a).amax() < 1e3 * a_error, "case {case}: {} for {a_error}", (found - a).amax());
         }
@@ -226,8 +226,8 @@ fn nearly_dependent_constraints_are_kept() {
     check::<f32, 5, 3>(10, 0.5, 4.0);
 }
 
-/// A constraint that is a combination of others, exactly: the motion is that without it, and the multipliers
-/// have the least norm of those that give this motion.
+/// An exactly redundant constraint. The motion is that without this constraint, and the multipliers have
+/// minimum norm.
 #[test]
 fn what_follows_from_others_changes_nothing() {
     let mut random = Random(11);
@@ -270,7 +270,8 @@ fn what_follows_from_others_changes_nothing() {
     }
 }
 
-/// A particle on a line in the plane, held by the same constraint twice: each carries half of the force.
+/// A particle on a line in the plane with the same constraint twice. Each constraint exerts half of the
+/// force.
 #[test]
 fn redundant_constraints_share_the_force() {
     let system = Sample::<2, 2> {
@@ -284,8 +285,8 @@ fn redundant_constraints_share_the_force() {
     assert!((lambda - SVector::from([10.0, 10.0])).norm() < 1e-14);
 }
 
-/// A mass on a line, and a coordinate without inertia that is twice its place: the force on both moves the
-/// mass.
+/// A mass on a line, and a coordinate without inertia that equals twice the mass's position. Forces on both
+/// accelerate the mass.
 #[test]
 fn coordinates_without_inertia_are_determined() {
     let structure = Structure { groups: [0], determining: &[0], rank: 1 };
