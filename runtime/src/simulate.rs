@@ -1,9 +1,9 @@
 //! Simulation of a mechanism: from an initial state to samples of its motion
 //! ([guide](crate::guide::simulating)).
 //!
-//! [`simulate`] begins, the methods of [`Simulation`] say the rest, and iterating yields [`Sample`]s. All
-//! other types here belong to events: they appear in the type of a simulation, and programs need not name
-//! them.
+//! [`simulate`] creates a simulation, the methods of [`Simulation`] set its options, and iterating over it
+//! yields [`Sample`]s. The other types of this module belong to events. They appear in the type of a
+//! simulation, but programs need not name them.
 
 mod clock;
 mod event;
@@ -23,8 +23,8 @@ use core::fmt;
 use nalgebra::SVector;
 use run::Progress;
 
-/// Simulates a mechanism: from its neutral configuration at rest at t = 0, without inputs, with
-/// [`DormandPrince`], until the methods of [`Simulation`] say otherwise.
+/// Creates a simulation of a mechanism. By default, it starts from the neutral configuration at rest at t = 0
+/// and uses no inputs and the method [`DormandPrince`]. The methods of [`Simulation`] change these settings.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -65,12 +65,12 @@ where
     }
 }
 
-/// The events `E` and one more.
+/// The events `E` and one more event.
 type With<E, T, G, A> = (E, Event<T, G, A>);
 /// The events `E` and an impact.
 type WithImpact<E, T, G, F> = With<E, T, G, Impact<F>>;
 
-/// The motion at one instant.
+/// State and inputs at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
     /// Time, s.
@@ -79,15 +79,15 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub q: SVector<T, NQ>,
     /// Velocity.
     pub v: SVector<T, NV>,
-    /// Inputs; at a control instant the new ones.
+    /// Inputs; at a control instant those after it.
     pub u: SVector<T, NU>,
-    /// The event that this sample reports, counted from zero in the order of declaration; `None` otherwise.
+    /// Index of the event that this sample reports, in the order of declaration; `None` for other samples.
     pub event: Option<usize>,
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, NV, NU> {
-    /// A sample of a motion that does not come from [`simulate`]: measured, computed by another program, or a
-    /// single state to be drawn or logged. It reports no event.
+    /// Creates a sample of a motion that was measured, computed by another program, or is a single state to
+    /// draw or log. The sample reports no event.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -102,7 +102,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
     ///
     /// let upright = Sample::new(&Top {}, 0.5, [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 30.0], [])?;
     /// assert_eq!((upright.t, upright.v[2]), (0.5, 30.0));
-    /// // No quaternion, and no time.
+    /// // Neither of these is valid: a zero quaternion, and a time that is NaN.
     /// assert!(Sample::new(&Top {}, 0.5, [0.0; 4], [0.0; 3], []).is_err());
     /// assert!(Sample::new(&Top {}, f64::NAN, [0.0, 0.0, 0.0, 1.0], [0.0; 3], []).is_err());
     /// # Ok::<(), Error>(())
@@ -110,8 +110,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
     ///
     /// # Errors
     ///
-    /// [`Error::NotFinite`] for a number that is infinite or NaN, and [`Error::Quaternion`] for a quaternion
-    /// that is not of unit length.
+    /// [`Error::NotFinite`] if a number is infinite or NaN, and [`Error::Quaternion`] if a quaternion does
+    /// not have unit norm.
     pub fn new<M>(
         mechanism: &M,
         t: T,
@@ -131,41 +131,41 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
     }
 }
 
-/// When samples are due.
+/// Times of the samples.
 #[derive(Clone, Copy, Debug)]
 enum Samples<'m, T> {
-    /// At the end of every step.
+    /// The end of every step.
     Steps,
-    /// At equal intervals, s.
+    /// Equal intervals, s.
     Every(T),
-    /// At these times, s.
+    /// These times, s.
     At(&'m [T]),
 }
 
-/// What a simulation does about surfaces of contacts that overlap at its start by more than `1e-8` m or rad
+/// Treatment of contact surfaces that overlap at the start of a simulation by more than `1e-8` m or rad
 /// (`2.3e-4` with `f32`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overlaps {
-    /// [`ConstraintError::Overlap`](crate::ConstraintError::Overlap), which names the contact whose surfaces
-    /// overlap most.
+    /// The simulation fails with [`ConstraintError::Overlap`](crate::ConstraintError::Overlap), which names
+    /// the contact with the largest overlap.
     #[default]
     Refuse,
-    /// They are taken apart through the constraints of the mechanism
-    /// ([`contact::project`](crate::contact::project)); where that cannot be the error is the same.
+    /// The surfaces are separated by displacements that satisfy the constraints
+    /// ([`contact::project`](crate::contact::project)). If this is impossible, the error is that of `Refuse`.
     Part,
-    /// They stay as they are: for a run that goes on where another has ended, since a step of
-    /// [`TimeStepping`](crate::integrate::TimeStepping) leaves surfaces that meet in each other by what they
-    /// approach in it. Where bodies start deep inside each other they stay so.
+    /// The overlap remains. Use this option to continue a run: at the end of a step of
+    /// [`TimeStepping`](crate::integrate::TimeStepping), colliding surfaces overlap by up to their approach
+    /// in one step. Bodies that overlap deeply at the start remain so.
     Keep,
 }
 
-/// A simulation: first what is to be simulated and how, then the iterator over its samples.
+/// Simulation: its settings, and the iterator over its samples.
 ///
-/// Made by [`simulate`]. The samples are the initial state, then one every
-/// [`sample_every`](Self::sample_every) seconds (or one per step of the integrator, or those
-/// [`asked for`](Self::sample_at)), one per event (two per [`impact`](Self::impact)), and the last exactly at
-/// the end of the [`duration`](Self::duration). After an error the iterator ends. Changing a setting starts
-/// over. Nothing is allocated.
+/// [`simulate`] creates it. The first sample is the initial state. Then follow samples every
+/// [`sample_every`](Self::sample_every) seconds, at the times of [`sample_at`](Self::sample_at), or at every
+/// step of the integrator; one sample per event (two per [`impact`](Self::impact)); and the last sample
+/// exactly at the end of the [`duration`](Self::duration). The iterator ends after an error. Changing a
+/// setting restarts the simulation. Simulations allocate no memory.
 #[must_use = "a simulation does nothing until its samples are asked for"]
 pub struct Simulation<'m, M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
 where
@@ -190,21 +190,22 @@ where
     T: Real,
     S: Method<T>,
 {
-    /// Starts from the configuration `q` and the velocity `v`: vectors, references to them or arrays
-    /// ([`Start`]). Quaternions x y z w of unit length; others are [`Error::Quaternion`].
+    /// Sets the initial configuration `q` and velocity `v`: vectors, references to vectors or arrays
+    /// ([`Start`]). Quaternions (x, y, z, w) must have unit norm, otherwise the error is
+    /// [`Error::Quaternion`].
     pub fn from(self, q: impl Start<T, NQ>, v: impl Start<T, NV>) -> Self {
         let start = State { t: self.start.t, q: q.vector(), v: v.vector() };
         Self { start, ..self.afresh() }
     }
 
-    /// Starts at the time `t`, s, instead of zero.
+    /// Sets the initial time, s; the default is zero.
     pub fn start_at(self, t: T) -> Self {
         let start = State { t, ..self.start };
         Self { start, ..self.afresh() }
     }
 
-    /// What is done about surfaces of [contacts](crate::contact) that overlap at the start: without it they
-    /// are refused.
+    /// Sets the treatment of [contact](crate::contact) surfaces that overlap at the start. By default,
+    /// overlaps are an error.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -221,7 +222,7 @@ where
     /// }
     ///
     /// # fn main() -> Result<(), Error> {
-    /// // Its centre is in the floor.
+    /// // The centre of the ball is in the floor plane.
     /// let run = simulate(&Ball {}).method(TimeStepping::step(1e-3)).duration(0.1);
     /// let refused = run.clone().finish().unwrap_err();
     /// assert_eq!(refused.to_string(), "at t = 0 s the surfaces of the contact `floor` overlap by 0.1");
@@ -234,22 +235,23 @@ where
         Self { overlaps, ..self.afresh() }
     }
 
-    /// Ends `duration` seconds after the start; with zero the start is all there is. Without it the run ends
-    /// at an event of [`until`](Self::until), or goes on for as long as samples are asked for.
+    /// Sets the duration, s. A duration of zero yields only the initial state. Without a duration, the run
+    /// ends at an event of [`until`](Self::until), or continues as long as samples are requested.
     pub fn duration(self, duration: T) -> Self {
         Self { duration: Some(duration), ..self.afresh() }
     }
 
-    /// Samples every `interval` seconds: the `k`-th exactly at start + k · interval. Fixed-step methods
-    /// divide the interval into equal steps; adaptive ones interpolate. Without it every step of the
-    /// integrator is a sample.
+    /// Samples every `interval` seconds; the `k`-th sample is exactly at start + k · interval. Fixed-step
+    /// methods divide the interval into equal steps, adaptive methods interpolate. By default, every step of
+    /// the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
         Self { samples: Samples::Every(interval), ..self.afresh() }
     }
 
-    /// Samples at these times, s, as the run counts them: increasing, none before the start, which is a
-    /// sample if it is one of them. The last one ends the run, or else the [`duration`](Self::duration),
-    /// whose end is a sample, too. Fixed-step methods end steps there; adaptive ones interpolate.
+    /// Samples at these times of the run, s. The times must increase, and none may be before the start; the
+    /// initial state is a sample only if its time is listed. The run ends at the last time, or at the end of
+    /// the [`duration`](Self::duration), which is then a sample, too. Fixed-step methods end steps at these
+    /// times, adaptive methods interpolate.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -262,7 +264,7 @@ where
     ///     rail: Sleeve,
     /// }
     ///
-    /// // Where was it when somebody looked?
+    /// // Samples at the times of measurements.
     /// let looked = [0.013, 0.4, 0.41, 7.25];
     /// let run = simulate(&Cart).from([0.0], [2.0]).sample_at(&looked);
     /// for (sample, t) in run.zip(looked) {
@@ -275,8 +277,8 @@ where
         Self { samples: Samples::At(times), ..self.afresh() }
     }
 
-    /// Inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For functions with
-    /// jumps, such as digital controllers, use [`control_every`](Self::control_every).
+    /// Sets the inputs `u` as a function `|t, q, v|`, continuous in time; replaces earlier inputs. For
+    /// functions with jumps, such as digital controllers, use [`control_every`](Self::control_every).
     pub fn inputs<F>(self, inputs: F) -> Simulation<'m, M, T, ContinuousInputs<F>, S, E, NQ, NV, NU>
     where
         F: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NU>,
@@ -284,8 +286,9 @@ where
         self.with_inputs(ContinuousInputs(inputs))
     }
 
-    /// Inputs of a digital controller: `|t, q, v| u` is called once every `period` seconds, from the start
-    /// on, and `u` is held in between (zero-order hold). Integrator steps end on the control instants.
+    /// Sets the inputs of a digital controller. `|t, q, v| u` is called once every `period` seconds, first at
+    /// the start, and `u` is constant within a period (zero-order hold). Integrator steps end at the control
+    /// instants.
     pub fn control_every<F>(
         self,
         period: T,
@@ -297,16 +300,17 @@ where
         self.with_inputs(SampledInputs::new(period, control))
     }
 
-    /// Integrates with another method: [`DormandPrince`] with other settings, [`Rk4`](crate::integrate::Rk4),
+    /// Sets the integration method: [`DormandPrince`] with other settings, [`Rk4`](crate::integrate::Rk4),
     /// [`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint),
     /// [`Rosenbrock`](crate::integrate::Rosenbrock),
-    /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler).
+    /// [`SemiImplicitEuler`](crate::integrate::SemiImplicitEuler) or another [method](crate::integrate).
     pub fn method<R: Method<T>>(self, method: R) -> Simulation<'m, M, T, I, R, E, NQ, NV, NU> {
         let Self { system, events, start, overlaps, duration, samples, .. } = self;
         Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }
     }
 
-    /// Ends when `function(t, q, v)` crosses zero in either direction; the last sample is the state there.
+    /// Ends the run when `function(t, q, v)` crosses zero in either direction; the last sample is at the
+    /// crossing.
     pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, With<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
@@ -314,7 +318,8 @@ where
         self.until_crossing(Crossing::Either, function)
     }
 
-    /// Ends when `function(t, q, v)` crosses zero in the given direction; the last sample is the state there.
+    /// Ends the run when `function(t, q, v)` crosses zero in this direction; the last sample is at the
+    /// crossing.
     pub fn until_crossing<G>(
         self,
         crossing: Crossing,
@@ -326,12 +331,12 @@ where
         self.with_event(Event::new(function, crossing, Stop))
     }
 
-    /// Reports zero crossings of `function(t, q, v)` by additional samples, whose [`Sample::event`] says
-    /// which.
+    /// Reports zero crossings of `function(t, q, v)` by additional samples, whose [`Sample::event`] is the
+    /// index of the event.
     ///
-    /// Every step is searched at its quarters, so that two crossings closer together than a quarter of a step
-    /// may be missed; a function that is zero at the start counts once it has left zero and returned, however
-    /// soon. The crossing is located to rounding on the interpolated motion. A function that is not a number
+    /// Each step is searched at its quarters, so two crossings within a quarter of a step may be missed. A
+    /// function that is zero at the start counts once it has become nonzero and zero again, after any time.
+    /// Crossings are located to rounding error on the interpolated motion. If the function is NaN, the error
     /// is [`Error::Event`].
     pub fn event<G>(
         self,
@@ -344,15 +349,15 @@ where
         self.with_event(Event::new(function, crossing, Report))
     }
 
-    /// An [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. It has two
-    /// samples of the same time: one before it, whose [`Sample::event`] is `None`, and one that reports the
-    /// event with the velocity after it, which constraints have changed to the nearest that fulfils them
-    /// (they give impulses, too).
+    /// Adds an [`event`](Self::event) at which the velocity becomes `after(t, q, v)`, as in an impact. It
+    /// yields two samples at the same time: the first has the velocity before the impact and no
+    /// [`Sample::event`], the second reports the event with the velocity after it. With constraints, this
+    /// velocity is projected on them, because they exert impulses, too.
     ///
-    /// Nothing rests on the surface of an event. Where the impact stops the motion towards it (a plastic one)
-    /// and the motion then goes on through, or impacts follow each other ever faster without end, the run
-    /// ends with [`Error::Impacts`]. Events that coincide, such as an [`until`](Self::until), all act, in the
-    /// order of declaration.
+    /// Bodies cannot rest on the surface of an event. If the impact stops the motion towards the surface (a
+    /// plastic impact) and the motion then continues through it, or if impacts accumulate, the run ends with
+    /// [`Error::Impacts`]. Coincident events, such as an [`until`](Self::until), all take effect in the order
+    /// of declaration.
     pub fn impact<G, F>(
         self,
         crossing: Crossing,
@@ -370,8 +375,8 @@ where
     ///
     /// # Errors
     ///
-    /// Those of the method, and [`Error::Endless`] if neither a duration nor an
-    /// [`until`](Self::until) ends the run.
+    /// The errors of the method, and [`Error::Endless`] if neither a duration nor an [`until`](Self::until)
+    /// ends the run.
     pub fn finish(mut self) -> Result<Sample<T, NQ, NV, NU>, Error>
     where
         I: Inputs<T, NQ, NV, NU>,
@@ -389,7 +394,7 @@ where
         last
     }
 
-    /// The same simulation before its first sample.
+    /// Returns the simulation before its first sample.
     fn afresh(self) -> Self {
         Self { progress: None, over: false, ..self }
     }

@@ -82,7 +82,7 @@ pub enum Error {
     },
 }
 
-/// The text of `Display`, which `main` prints of an error that it returns.
+/// Prints the text of `Display`, because `main` prints the `Debug` form of a returned error.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)

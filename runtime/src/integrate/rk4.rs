@@ -43,9 +43,9 @@ fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     (system.displacement_rate(&start.q, &displacement, &v), system.acceleration(start.t + h, &q, &v))
 }
 
-/// Displacement and change of the velocity through a step of `h` seconds, with the acceleration `before` at
-/// its start, and an acceleration `added` throughout, if any, that keeps its direction in space. The latter
-/// is returned in the axes of the end.
+/// Returns the displacement and the change of the velocity in a step of `h` seconds, with the acceleration
+/// `before` at its start. An additional acceleration `added` has a constant direction in space during the
+/// step; it is returned in the axes at the end of the step.
 pub(super) fn through<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,

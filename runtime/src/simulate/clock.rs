@@ -1,33 +1,34 @@
-//! When samples, control periods and the end of a run are due: instants counted in integers.
+//! Instants of samples, control periods and the end of a run, counted with integers.
 //!
-//! A run does not add up its steps. The `k`-th instant is `k` periods after the start, in double precision
-//! whatever the numbers of the mechanism are, and steps between two instants count time from their own start,
-//! so that in single precision, too, a period of a millisecond lasts that long after hours.
+//! Steps are not added up. The `k`-th instant is `k` periods after the start, computed in double precision
+//! for any scalar type of the mechanism, and steps between two instants count time from their own start. In
+//! single precision, a period of a millisecond is therefore accurate after hours, too.
 
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 
-/// Largest denominator of a ratio of two periods that is taken for exact.
+/// Maximum denominator of a ratio of two periods that is recognised as rational.
 const MOST_PARTS: u32 = 64;
 
-/// The instants of a run, in seconds after its start.
+/// Instants of a run, in seconds after its start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
     end: Option<f64>,
     every: Option<f64>,
     period: Option<f64>,
-    /// The sample and the control instant that are at the end.
+    /// Indices of the sample and of the control instant that coincide with the end.
     last: [Option<u64>; 2],
-    /// `period / every` as a ratio of integers.
+    /// Ratio `period / every` of integers.
     ratio: Option<[u64; 2]>,
 }
 
-/// `a / b` as a ratio of integers, if it is that to rounding.
+/// Returns `a / b` as a ratio of integers, if it is one up to rounding.
 fn ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
     let near = |x: f64| {
         (1..=MOST_PARTS).find_map(|parts| {
             let scaled = x * f64::from(parts);
-            // Whole numbers this large are not told apart.
+            // Rounded to the nearest integer; for very large values, neighbouring integers cannot be
+            // distinguished.
             let whole = (scaled + 0.5) as u64;
             let exact = whole > 0 && (scaled - whole as f64).abs() <= rounding * scaled;
             exact.then_some([whole, u64::from(parts)])
@@ -37,7 +38,7 @@ fn ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
 }
 
 impl Clock {
-    /// For a run of the given length, with samples and control instants at these intervals.
+    /// Creates the clock of a run with this duration and these intervals of samples and control instants.
     pub(super) fn new<T: Real>(duration: Option<T>, every: Option<T>, period: Option<T>) -> Self {
         let rounding = 8.0 * to_f64(epsilon::<T>());
         let [end, every, period] = [duration, every, period].map(|time| time.map(to_f64));
@@ -50,19 +51,19 @@ impl Clock {
         Self { end, every, period, last, ratio }
     }
 
-    /// The end of the run.
+    /// Returns the end of the run.
     pub(super) fn end(&self) -> Option<f64> {
         self.end
     }
 
-    /// A sample, not later than the end; `None` if every step is one.
+    /// Returns the instant of a sample, limited to the end; `None` if every step is a sample.
     pub(super) fn sample(&self, count: u64) -> Option<f64> {
         // Counts are exact up to 2⁵³.
         let due = self.every? * count as f64;
         Some(self.end.filter(|end| due > *end || self.last[0] == Some(count)).unwrap_or(due))
     }
 
-    /// A control instant. Where it is a sample or the end, it is exactly there.
+    /// Returns a control instant. If it coincides with a sample or the end, both are exactly equal.
     pub(super) fn control(&self, count: u64) -> Option<f64> {
         let plain = self.period? * count as f64;
         if self.last[1] == Some(count) {
@@ -76,7 +77,7 @@ impl Clock {
     }
 }
 
-/// The time so many seconds after the start.
+/// Returns the time `elapsed` seconds after the start.
 pub(super) fn after<T: Real>(start: T, elapsed: f64) -> T {
     start + constant::<T>(elapsed)
 }
@@ -85,7 +86,7 @@ pub(super) fn after<T: Real>(start: T, elapsed: f64) -> T {
 mod tests {
     use super::*;
 
-    /// Ten million samples at a millisecond in single precision: none is lost, none comes twice.
+    /// Ten million samples at intervals of a millisecond in single precision: none is missing or repeated.
     #[test]
     fn instants_are_counted() {
         let clock = Clock::new::<f32>(Some(10_000.0), Some(1e-3), Some(1e-3));
@@ -112,7 +113,7 @@ mod tests {
         );
         let clock = Clock::new(Some(10.0), Some(0.05), Some(0.02));
         assert_eq!((clock.control(5), clock.control(1)), (clock.sample(2), Some(0.02)));
-        // Periods that have nothing in common keep their own.
+        // Periods without a rational ratio are not adjusted.
         let clock = Clock::new(None, Some(1.0), Some(core::f64::consts::SQRT_2));
         assert_eq!(clock.control(3), Some(3.0 * core::f64::consts::SQRT_2));
     }

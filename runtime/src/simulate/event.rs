@@ -6,14 +6,14 @@ use crate::private::{constant, epsilon};
 use core::cmp::Ordering;
 use nalgebra::SVector;
 
-/// Which zero crossings of an event function count.
+/// Directions of zero crossings that are events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossing {
     /// From negative to positive.
     Rising,
     /// From positive to negative.
     Falling,
-    /// Both.
+    /// Either direction.
     Either,
 }
 
@@ -22,51 +22,52 @@ impl Crossing {
         match before {
             Ordering::Less => after != Ordering::Less && self != Self::Falling,
             Ordering::Greater => after != Ordering::Greater && self != Self::Rising,
-            // Which side the motion comes from is not known until it has left the surface.
+            // The side from which the motion comes is unknown until it has left the surface.
             Ordering::Equal => false,
         }
     }
 }
 
-/// An event found on a step.
+/// Event found on a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<T> {
-    /// Where on the step, 0 at the start and 1 at the end; at or just behind the crossing.
+    /// Position on the step at or just after the crossing, 0 at the start and 1 at the end.
     pub theta: T,
-    /// Which event, in the order of declaration.
+    /// Index of the event, in the order of declaration.
     pub index: usize,
 }
 
-/// Why the search for events failed.
+/// Reason why the search for events failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Undefined {
-    /// The function of this event is not a number.
+    /// The function of the event with this index is NaN.
     Value(usize),
-    /// The motion goes on through the surface of this event, whose impact should have kept it from there.
+    /// The motion continues through the surface of the event with this index, although its impact should
+    /// prevent this.
     Through(usize),
 }
 
-/// How a run goes on after an event.
+/// Continuation of a run after an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
-    /// It ends.
+    /// The run ends.
     Stop,
-    /// It goes on undisturbed.
+    /// The run continues unchanged.
     Go,
     /// The velocity has changed.
     Jump,
 }
 
-/// What an event does to the velocity and the run.
+/// Effect of an event on the velocity and the run.
 pub trait Action<T, const NQ: usize, const NV: usize> {
-    /// Whether it ends the run.
+    /// Whether the event ends the run.
     const STOPS: bool;
 
-    /// Acts at the event.
+    /// Applies the effect of the event.
     fn act(&mut self, state: &mut State<T, NQ, NV>) -> Flow;
 }
 
-/// Ends the run.
+/// Effect that ends the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Stop;
 
@@ -78,7 +79,7 @@ impl<T, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Stop {
     }
 }
 
-/// Emits a sample.
+/// Effect that emits a sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Report;
 
@@ -90,7 +91,7 @@ impl<T, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Report {
     }
 }
 
-/// Emits a sample and changes the velocity to `(t, q, v) → v`.
+/// Effect that emits a sample and changes the velocity to the result of a function `(t, q, v) → v`.
 #[derive(Clone, Copy, Debug)]
 pub struct Impact<F>(pub F);
 
@@ -107,26 +108,26 @@ where
     }
 }
 
-/// The events of a run: a list of types, `((NoEvents, Event), Event)`, so that none has to be allocated.
+/// Events of a run: a list of types, `((NoEvents, Event), Event)`, which requires no allocation.
 pub trait Events<T: Real, const NQ: usize, const NV: usize> {
-    /// How many there are.
+    /// Number of events.
     const COUNT: usize;
-    /// Whether one of them ends the run.
+    /// Whether one of the events ends the run.
     const STOPS: bool;
 
-    /// Notes the signs at the first state of a run.
+    /// Records the signs of the event functions at the initial state.
     ///
     /// # Errors
     ///
-    /// [`Undefined::Value`] where a function is not a number.
+    /// [`Undefined::Value`] if a function is NaN.
     fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), Undefined>;
 
-    /// The first event between `from` and `to` on a step. Every event remembers where it is itself, if it is
-    /// not later than the first by more than rounding.
+    /// Returns the first event between `from` and `to` on a step. Every event that is not later than the
+    /// first one, up to rounding, stores its own position.
     ///
     /// # Errors
     ///
-    /// [`Undefined`] where a function is not a number, and where an impact has not separated what has met.
+    /// [`Undefined`] if a function is NaN, or if an impact has not separated the colliding bodies.
     fn locate<P: Fn(T) -> State<T, NQ, NV>>(
         &mut self,
         path: &P,
@@ -134,13 +135,15 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
         to: T,
     ) -> Result<Option<Hit<T>>, Undefined>;
 
-    /// Takes over the signs at the end of the last range without an event.
+    /// Adopts the signs at the end of the last range without an event.
     fn pass(&mut self);
 
-    /// The first event, from the index `from` on, that is not later than `limit` on the step.
+    /// Returns the index of the first event, from the index `from` on, that is not later than `limit` on the
+    /// step.
     fn due(&self, from: usize, limit: T) -> Option<usize>;
 
-    /// Lets an event act. `later` is the state a moment after another, with its velocity.
+    /// Applies the effect of an event. `later` returns the state shortly after another one, with the same
+    /// velocity.
     fn act<P: Fn(&State<T, NQ, NV>) -> State<T, NQ, NV>>(
         &mut self,
         index: usize,
@@ -148,17 +151,16 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
         later: &P,
     ) -> Flow;
 
-    /// Forgets on which side of their surfaces the motion goes on after the events up to `limit`: the
-    /// velocity has changed.
+    /// Marks the sides of the surfaces of events up to `limit` as unknown, because the velocity has changed.
     fn rebound(&mut self, limit: T);
 }
 
-/// How far apart events on a step may be, by rounding, that are one.
+/// Returns the distance on a step below which events coincide up to rounding.
 pub(super) fn together<T: Real>() -> T {
     epsilon::<T>() * constant(8.0)
 }
 
-/// No events.
+/// Empty list of events.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoEvents;
 
@@ -197,18 +199,19 @@ impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
     fn rebound(&mut self, _limit: T) {}
 }
 
-/// One event: its function, which crossings count, what it does, and what is known of the motion.
+/// Event: function, directions of crossings, effect, and state of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct Event<T, G, A> {
     function: G,
     crossing: Crossing,
     action: A,
-    /// The sign of the function where the search has come to, and at the end of the range searched last.
+    /// Sign of the function at the current position of the search. `ahead` is the sign at the end of the
+    /// range searched last.
     side: Ordering,
     ahead: Ordering,
-    /// Where it was found on the step.
+    /// Position on the step at which the event was found.
     found: Option<T>,
-    /// The side on which the motion cannot go on after an impact.
+    /// Side to which the motion must not continue after an impact.
     closed: Ordering,
 }
 
@@ -218,7 +221,7 @@ impl<T, G, A> Event<T, G, A> {
         Self { function, crossing, action, side: unknown, ahead: unknown, found: None, closed: unknown }
     }
 
-    /// The value of the function.
+    /// Returns the value of the function.
     fn value<const NQ: usize, const NV: usize>(&mut self, state: &State<T, NQ, NV>) -> T
     where
         T: Real,
@@ -228,10 +231,10 @@ impl<T, G, A> Event<T, G, A> {
     }
 }
 
-/// Part of the speed before an impact below which nothing is left of it.
+/// Ratio of the speeds after and before an impact below which the motion has stopped.
 const STOPPED: f64 = 1e-6;
 
-/// The sign of a number; zero for NaN.
+/// Returns the sign of a number; `Equal` for zero and NaN.
 fn side<T: Real>(value: T) -> Ordering {
     value.partial_cmp(&T::zero()).unwrap_or(Ordering::Equal)
 }
@@ -263,7 +266,7 @@ where
         to: T,
     ) -> Result<Option<Hit<T>>, Undefined> {
         let earlier = self.0.locate(path, from, to)?;
-        // A little farther, so that events that coincide are found, whatever their order.
+        // Slightly farther, so that coincident events are found in any order.
         let to = earlier.map_or(to, |hit| (hit.theta + together()).min(to));
         let event = &mut self.1;
         event.found = None;
@@ -321,7 +324,8 @@ where
         event.side = beyond;
         if flow == Flow::Jump {
             let after = event.value(&later(state)) - event.value(state);
-            // What goes on in the same direction passes; all else has met a surface.
+            // Motion in the same direction passes the surface; any other motion has been stopped or reversed
+            // by it.
             let passes = after * before > T::zero() && after.abs() > before.abs() * constant(STOPPED);
             event.closed = if passes { Ordering::Equal } else { beyond };
         }
@@ -336,8 +340,8 @@ where
     }
 }
 
-/// To which side `f`, which is zero at `a` up to rounding, leaves on the way to `b`, and from where on that
-/// is known: it may be back before `b`.
+/// Returns the side to which `f`, which is zero at `a` up to rounding, leaves on the way to `b`, and a
+/// position with this sign. `f` may be zero again before `b`.
 fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
     let rounding = f(a).abs() * constant(4.0);
     for part in [1.5e-8, 1e-6, 6e-5, 4e-3, 0.1, 1.0] {
@@ -350,9 +354,10 @@ fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering)
     (a, Ordering::Equal)
 }
 
-/// The place where `f` changes from negative to `end`, its non-negative value at `b`: bracketed to rounding,
-/// the non-negative end of the bracket. The ITP method: never more than one evaluation above bisection, far
-/// fewer for smooth functions. Oliveira and Takahashi, ACM Trans. Math. Softw. 47 (2020).
+/// Returns the position where `f` changes from negative to `end`, its non-negative value at `b`. The position
+/// is bracketed to rounding error, and the result is the non-negative end of the bracket. The ITP method
+/// takes at most one evaluation more than bisection, and much fewer for smooth functions (Oliveira and
+/// Takahashi, ACM Trans. Math. Softw. 47, 2020).
 fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2], end: T) -> T {
     let zero = T::zero();
     let (half, two) = (constant::<T>(0.5), constant::<T>(2.0));
@@ -390,7 +395,7 @@ fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2],
 mod tests {
     use super::*;
 
-    /// The sign change of `f` between 0 and 1, and the evaluations it took.
+    /// Returns the sign change of `f` between 0 and 1, and the number of evaluations.
     fn found(f: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
         let counted = |x| {

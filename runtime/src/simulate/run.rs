@@ -1,4 +1,4 @@
-//! The course of a run: steps of the integrator, samples, control instants and events in the order of time.
+//! Execution of a run: steps of the integrator, samples, control instants and events in the order of time.
 
 use super::clock::{Clock, after};
 use super::event::together;
@@ -8,20 +8,21 @@ use crate::private::{constant, epsilon, to_f64};
 use crate::{Real, Rheonomic};
 use nalgebra::SVector;
 
-/// Parts into which every step is divided in the search for events.
+/// Number of parts into which each step is divided in the search for events.
 const SEARCHES: u8 = 4;
 
-/// Part of a step within which the same impact again is one of infinitely many.
+/// Fraction of a step within which a repetition of the same impact indicates an accumulation of impacts.
 const SOON: f64 = 1e-6;
 
-/// Whether numbers differ by more than a rounded figure does, or one of them is none.
+/// Returns whether two numbers differ by more than printing with six digits explains, or one of them is NaN.
 fn far<T: Real>(a: T, b: T) -> bool {
     let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
     let near = (a - b).abs() <= tolerance * (T::one() + a.abs());
     !near
 }
 
-/// Checks that a configuration is equal to the one with unit quaternions.
+/// Checks that the quaternions of a configuration have unit norm; `unit` is the configuration with normalised
+/// quaternions.
 pub(super) fn check_quaternions<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     q: &SVector<T, NQ>,
     unit: &SVector<T, NQ>,
@@ -30,14 +31,15 @@ where
     M: Rheonomic<NQ, NV, NU, Scalar = T>,
 {
     let off = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| far(*a, *b));
-    // From the back: NaN may have spread to the position in front of the quaternion.
+    // From the end: NaN in a quaternion may spread to the position before it.
     match (0..NQ).rev().find(off).and_then(|i| M::CONFIGURATION.get(i)) {
         Some(coordinate) => Err(Error::Quaternion { coordinate }),
         None => Ok(()),
     }
 }
 
-/// The name of the entry that moves most from one vector to another, and by how much, if any is [`far`].
+/// Returns the name and the change of the entry that differs most between two vectors, if any difference is
+/// significant (see [`far`]).
 fn farthest<T: Real, const N: usize>(
     to: &SVector<T, N>,
     from: &SVector<T, N>,
@@ -48,55 +50,55 @@ fn farthest<T: Real, const N: usize>(
     moves.reduce(|most, other| if other.1.abs() > most.1.abs() { other } else { most })
 }
 
-/// Events of one instant, as they act one after another.
+/// Events of one instant, whose effects are applied one after another.
 #[derive(Clone, Debug)]
 struct Firing<T, const NQ: usize, const NV: usize> {
     state: State<T, NQ, NV>,
-    /// Seconds after the start.
+    /// Time after the start, s.
     elapsed: f64,
-    /// How far on the step events belong to the instant.
+    /// Position on the step up to which events belong to the instant.
     limit: T,
-    /// The event whose sample after the jump of the velocity is still to be emitted.
+    /// Event with a change of velocity whose second sample has not been emitted yet.
     jump: Option<usize>,
-    /// The index from which on events have still to act.
+    /// Index of the first event whose effect has not been applied yet.
     next: usize,
-    /// What they have done together.
+    /// Whether one of the events has changed the velocity. `stopped` tells whether one has ended the run.
     jumped: bool,
     stopped: bool,
 }
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Clone, Debug)]
 pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
     clock: Clock,
-    /// The last node: start of the current step, or where the next begins; and its seconds after the start.
+    /// Last node: start of the current step, or of the next one. `elapsed` is its time after the start, s.
     node: State<T, NQ, NV>,
     elapsed: f64,
-    /// The end of the current step in seconds after the start, and its time.
+    /// End of the current step: time after the start, s, and time of the run.
     ahead: (f64, T),
-    /// Events that are acting.
+    /// Events whose effects are being applied.
     firing: Option<Firing<T, NQ, NV>>,
     memory: Memory,
-    /// The current step, whose samples and events are being emitted. It counts time from its start.
+    /// Current step, whose samples and events are being emitted. It counts time from its start.
     step: Option<Step<T, NQ, NV>>,
-    /// How far on the current step events have been searched and handled.
+    /// Position on the current step up to which events have been searched and handled.
     cursor: T,
-    /// The next event on the current step, if any.
+    /// Next event on the current step, if there is one.
     hit: Option<Hit<T>>,
-    /// Number of the next sample and the next control instant.
+    /// Index of the next sample. `control` is the index of the next control instant.
     sample: u64,
     control: u64,
     /// Whether the node has been emitted.
     shown: bool,
-    /// Whether only the last sample is of interest.
+    /// Whether only the last sample is needed.
     pub(super) quiet: bool,
     /// Whether an event has ended the run.
     stopped: bool,
-    /// The last event that changed the velocity, and its seconds after the start.
+    /// Last event that changed the velocity, and its time after the start, s.
     jump: Option<(usize, f64)>,
 }
 
-/// Why a run ends where the search for events has failed.
+/// Returns the error for a failed search for events.
 fn failure(reason: Undefined, t: f64) -> Error {
     match reason {
         Undefined::Value(event) => Error::Event { t, event },
@@ -106,7 +108,7 @@ fn failure(reason: Undefined, t: f64) -> Error {
 
 type Memory<T, S, const NV: usize> = <S as Method<T>>::Memory<NV>;
 
-/// A sample, if one is due.
+/// Sample, if one is due.
 type Due<T, const NQ: usize, const NV: usize, const NU: usize> = Result<Option<Sample<T, NQ, NV, NU>>, Error>;
 
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
@@ -118,7 +120,7 @@ where
     S: Method<T>,
     E: Events<T, NQ, NV>,
 {
-    /// Checks all settings and goes to the start, or to where an interrupted run has come.
+    /// Checks all settings and returns the initial progress, or the progress of an interrupted run.
     pub(super) fn begin(&mut self) -> Result<Progress<T, Memory<T, S, NV>, NQ, NV>, Error> {
         if let Some(run) = self.progress.take() {
             return Ok(run);
@@ -128,9 +130,9 @@ where
         self.check_samples()?;
         self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
         let start = self.start.finite()?;
-        // Going nowhere makes quaternions unit.
+        // A zero displacement normalises quaternions.
         let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
-        // Where declared speeds determine no rates, nothing leads anywhere.
+        // If declared generalized speeds determine no rates, the displacement is not finite.
         if M::SPEEDS && unit.iter().any(|x| !x.is_finite()) {
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
@@ -163,7 +165,7 @@ where
         })
     }
 
-    /// The start where surfaces of contacts do not overlap, unless they may.
+    /// Returns the initial state with separated contact surfaces, unless overlaps are permitted.
     fn parted(&self, start: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
         if !M::CONTACTING || self.overlaps == Overlaps::Keep {
             return Ok(start);
@@ -178,7 +180,7 @@ where
         self.on_constraints(State { t, q: parted, v })
     }
 
-    /// The next sample; `None` at the end of the run.
+    /// Returns the next sample; `None` at the end of the run.
     pub(super) fn next_sample(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
@@ -224,13 +226,13 @@ where
         Clock::new(self.duration.or(last), every, self.system.inputs.period())
     }
 
-    /// Seconds from the start to a time that was asked for.
+    /// Returns the time from the start to a requested time, s.
     fn since_start(&self, t: &T) -> f64 {
         to_f64(*t) - to_f64(self.start.t)
     }
 
-    /// When the next sample is due; `None` if every step is one. Behind the last one that was asked for, at
-    /// the end.
+    /// Returns the instant of the next sample; `None` if every step is a sample. After the last requested
+    /// time, the instant is the end of the run.
     fn next_due(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let Samples::At(times) = self.samples else { return run.clock.sample(run.sample) };
         let end = run.clock.end().unwrap_or(f64::INFINITY);
@@ -238,7 +240,7 @@ where
         Some(due.map_or(end, |t| self.since_start(t).min(end)))
     }
 
-    /// The time at an instant of the run.
+    /// Returns the time of the run at an instant.
     fn time(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
         if let Samples::At(times) = self.samples
             && let Some(asked) = usize::try_from(run.sample).ok().and_then(|k| times.get(k))
@@ -250,14 +252,15 @@ where
         end.map_or_else(|| after(self.start.t, elapsed), |duration| self.start.t + duration)
     }
 
-    /// Where the next step must end at the latest.
+    /// Returns the latest instant at which the next step must end.
     fn next_stop(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let sample = self.next_due(run).filter(|_| S::FIXED);
         let stops = [run.clock.end(), run.clock.control(run.control), sample];
         stops.into_iter().flatten().reduce(f64::min)
     }
 
-    /// Between two steps: renews the inputs, emits the node if it is a sample, otherwise takes a step.
+    /// Continues at a node between two steps: updates the inputs, emits the node if it is a sample, otherwise
+    /// takes a step.
     fn at_node(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) -> Due<T, NQ, NV, NU> {
         self.renew(run);
         let due = self.next_due(run).map_or(!run.shown, |sample| run.elapsed >= sample);
@@ -270,7 +273,7 @@ where
         }
         let stop = self.next_stop(run);
         let until = stop.map(|stop| constant(stop - run.elapsed));
-        // Samples that no step ends on are interpolated.
+        // Samples between the ends of steps are interpolated.
         let sample = self.next_due(run).filter(|_| !S::FIXED);
         let within = sample.is_some_and(|sample| stop.is_none_or(|stop| sample < stop));
         let dense = E::COUNT > 0;
@@ -288,19 +291,19 @@ where
         Ok(None)
     }
 
-    /// To the end of a step.
+    /// Advances to the end of a step.
     fn go_ahead(&self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
         let (elapsed, t) = run.ahead;
         (run.node, run.elapsed, run.step, run.shown) = (step.end.timed(t), elapsed, None, false);
     }
 
-    /// A state on a step, with the time of the run.
+    /// Returns a state on a step, with the time of the run.
     fn state(&self, origin: T, step: &Step<T, NQ, NV>, theta: T) -> State<T, NQ, NV> {
         let state = step.at(&self.system, theta);
         state.timed(origin + state.t)
     }
 
-    /// Along a step: emits the next sample inside or the next event, otherwise goes to its end.
+    /// Continues within a step: emits the next sample or event, otherwise advances to the end of the step.
     fn along(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
@@ -335,12 +338,12 @@ where
         Ok(None)
     }
 
-    /// A state brought onto the constraints, if there are any.
+    /// Projects a state onto the constraints, if there are any.
     fn on_constraints(&self, state: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
         settled(&self.system, state, state.t)
     }
 
-    /// Looks for the first event behind the cursor.
+    /// Searches the first event after the cursor.
     fn search(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
@@ -373,7 +376,7 @@ where
         Ok(())
     }
 
-    /// Lets the next event of an instant act; behind the last goes on.
+    /// Applies the effect of the next event of an instant; after the last event, continues the run.
     fn fire(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,

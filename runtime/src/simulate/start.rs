@@ -1,10 +1,10 @@
-//! What a simulation may start from.
+//! Types of initial values of a simulation.
 
 use crate::Real;
 use nalgebra::SVector;
 
-/// `N` numbers that a simulation starts from: a vector, a reference to one (what all functions of mechanisms
-/// take), or an array.
+/// `N` initial values of a simulation: a vector, a reference to a vector (as functions of mechanisms take),
+/// or an array.
 ///
 /// ```
 /// use linkwork::prelude::*;
@@ -34,7 +34,7 @@ use nalgebra::SVector;
     note = "they may be an array, an `SVector` (of `linkwork::nalgebra`), or a reference to one"
 )]
 pub trait Start<T, const N: usize> {
-    /// The numbers as a vector.
+    /// Returns the values as a vector.
     fn vector(self) -> SVector<T, N>;
 }
 

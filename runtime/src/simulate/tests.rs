@@ -8,7 +8,7 @@ use std::vec::Vec;
 
 const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-13, 1e-13);
 
-/// The samples of a run of the oscillator, by their times.
+/// Returns the times of the samples of a run of the oscillator.
 fn times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
     let oscillator = oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(duration).sample_every(interval);
@@ -63,7 +63,7 @@ fn the_defaults_are_rest_in_the_neutral_configuration() {
     assert!(end.u.is_empty());
 }
 
-/// A reference to a mechanism moves as the mechanism.
+/// A reference to a mechanism can be simulated like the mechanism.
 #[test]
 fn a_plant_is_borrowed() {
     struct Controller<P> {
@@ -88,7 +88,8 @@ fn a_run_can_start_later() {
     assert!((q - (3.0 - 2.0 * 1.0_f64.cos() - 1.0_f64.sin())).abs() < 1e-7);
 }
 
-/// A free mass pushed by ±1 in turn for periods of 0.1 s; closed form by summation.
+/// Simulates a free mass with forces of alternating sign for periods of 0.1 s. The closed-form solution is a
+/// sum.
 fn controlled<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
     let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
     let calls = Cell::new(0);
@@ -116,7 +117,7 @@ fn digital_controllers_hold_their_output() {
     }
 }
 
-/// Inputs at samples every 0.1 s of a controller that counts its periods of 0.3 s.
+/// Returns the inputs at samples every 0.1 s of a controller that counts its periods of 0.3 s.
 fn held<S: Method<f64>>(method: S) -> Vec<f64> {
     let oscillator = oscillator::<f64>();
     let mut count = -1.0;
@@ -150,7 +151,8 @@ fn pendulum_crossings_are_periodic() {
         let sample = sample.unwrap();
         assert_eq!(sample.event, Some(count % 2));
         let wanted = period * (0.25 + 0.5 * count as f64);
-        // The tolerance lets the energy drift, and with it the period: errors grow with the square of time.
+        // The error of the energy, and with it of the period, grows linearly; errors of the times grow
+        // quadratically.
         assert!(
             (sample.t - wanted).abs() < 5e-13 * ((count + 1) * (count + 1)) as f64,
             "{count}: {}",
@@ -163,7 +165,7 @@ fn pendulum_crossings_are_periodic() {
 
 #[test]
 fn a_run_ends_where_it_is_told() {
-    // A stone thrown up from the ground lands after t = 2 v; the start itself does not count.
+    // A stone thrown upwards from the ground lands after t = 2 v; the start is no event.
     let stone = falling();
     let run = simulate(&stone).from([0.0], [3.0]).until(|_, q, _| q[0]);
     let check = |end: Result<Sample<f64, 1, 1, 1>, Error>| {
@@ -175,7 +177,7 @@ fn a_run_ends_where_it_is_told() {
     check(run.clone().method(Rk4::step(0.7)).finish());
     check(run.clone().method(ImplicitMidpoint::step(0.7)).finish());
     check(run.clone().sample_every(0.25).method(Rk4::step(0.07)).finish());
-    // Directions: the stone passes 4 m on its way up, and again on its way down.
+    // The stone passes 4 m on its way up, and again on its way down.
     let falls = |crossing| {
         let run = simulate(&stone).from([0.0], [3.0]).until_crossing(crossing, |_, q, _| q[0] - 4.0);
         run.finish().unwrap().t
@@ -203,8 +205,8 @@ fn several_events_come_in_order() {
 
 #[test]
 fn a_ball_bounces() {
-    // From 0.5 m under unit gravity it falls for 1 s; every bounce halves the speed: impacts at 1, 2, 2.5,
-    // 2.75 s.
+    // From 0.5 m with unit gravity, the ball falls for 1 s. Each bounce halves the speed: impacts at 1, 2,
+    // 2.5 and 2.75 s.
     let ball = falling();
     let run = simulate(&ball).from([0.5], [0.0]).duration(2.9);
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
@@ -216,7 +218,7 @@ fn a_ball_bounces() {
             assert!((hit.t - t).abs() < 1e-12 && (hit.v[0] - v).abs() < 1e-12, "{hit:?}");
         }
     };
-    // The whole flight fits into a step, and into a part of one.
+    // The whole flight takes one step, or less.
     check(&mut run.clone());
     check(&mut run.clone().method(Rk4::step(2.9)));
     check(&mut run.clone().method(DormandPrince::new().max_step(0.05)));
@@ -237,7 +239,7 @@ fn a_ball_bounces_for_ever() {
     assert!((thrown.t - 6.0).abs() < 1e-12, "{thrown:?}");
 }
 
-/// Bounces that lose a part of the speed end after a finite time.
+/// Bounces that each lose a fraction of the speed accumulate at a finite time.
 #[test]
 fn impacts_without_end_are_an_error() {
     let ball = falling();
@@ -293,7 +295,7 @@ fn changing_a_setting_starts_over() {
     assert_eq!(run.duration(2.0).count(), 21);
 }
 
-/// Energy that a mechanism has gained after a unit of time: code over all mechanisms.
+/// Returns the energy gain of a mechanism in one unit of time, with code that is generic over mechanisms.
 fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: SVector<M::Scalar, NQ>,
@@ -314,7 +316,7 @@ fn generic_code_can_simulate() {
     );
 }
 
-/// A plastic impact leaves nothing that could hold the ball: an error, not a fall through the floor.
+/// After a plastic impact, no contact force supports the ball: an error instead of a fall through the floor.
 #[test]
 fn a_plastic_impact_is_an_error() {
     let ball = falling();
@@ -334,14 +336,15 @@ fn a_plastic_impact_is_an_error() {
             );
         }
     }
-    // Where nothing presses, it stays where it is; and it goes on where the impact lets it through.
+    // Without forces the ball remains on the surface; and the motion continues if the impact does not stop
+    // it.
     let free = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
     let run = simulate(&free).from([0.5], [-1.0]).duration(3.0);
     let end = run.clone().impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * 0.0).finish().unwrap();
     assert!(end.q[0].abs() < 1e-14 && end.v[0] == 0.0, "{end:?}");
     let end = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * 0.5).finish().unwrap();
     assert!((end.q[0] + 1.25).abs() < 1e-12, "{end:?}");
-    // A push at an instant.
+    // An impulse at a fixed time.
     let run = simulate(&free).duration(3.0).impact(
         Crossing::Rising,
         |t, _, _| t - 1.0,
@@ -350,7 +353,7 @@ fn a_plastic_impact_is_an_error() {
     assert!((run.finish().unwrap().q[0] - 4.0).abs() < 1e-12);
 }
 
-/// Events of one instant all act, in the order of declaration.
+/// All events of one instant take effect, in the order of declaration.
 #[test]
 fn events_that_coincide_all_act() {
     let ball = falling();
@@ -362,7 +365,7 @@ fn events_that_coincide_all_act() {
     let last = run.clone().until(|_, q, _| q[0]).impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v);
     let end = last.finish().unwrap();
     assert!((end.t - 1.0).abs() < 1e-12 && end.event == Some(1) && end.v[0] > 0.0, "{end:?}");
-    // Reports before and after the impact, each bounce once.
+    // Reports before and after the impact; each bounce is reported once.
     let run = run
         .event(Crossing::Either, |_, q, _| q[0])
         .impact(Crossing::Falling, |_, q, _| q[0] * 0.7, |_, _, v| -v)
@@ -373,7 +376,7 @@ fn events_that_coincide_all_act() {
     }
 }
 
-/// A quaternion that is not of unit length is no orientation.
+/// A quaternion without unit norm is not an orientation.
 #[test]
 fn quaternions_at_the_start_are_unit() {
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 0.0 };
@@ -389,7 +392,7 @@ fn quaternions_at_the_start_are_unit() {
     );
 }
 
-/// A run of no length is its start.
+/// A run of zero duration yields only the initial state.
 #[test]
 fn a_run_may_be_its_start() {
     let oscillator = oscillator::<f64>();
@@ -400,7 +403,7 @@ fn a_run_may_be_its_start() {
     assert_eq!(run.sample_every(0.1).method(Rk4::step(0.1)).count(), 1);
 }
 
-/// In single precision periods of a millisecond last as long after an hour as at the start.
+/// In single precision, periods of a millisecond have the same length after an hour as at the start.
 #[test]
 fn single_precision_keeps_time() {
     let mass = OneDof { force: |_| 0.0, ..oscillator::<f32>() };
@@ -420,13 +423,13 @@ fn single_precision_keeps_time() {
             run.fold((0, 0.0), |(n, _), s| (n + 1, s.unwrap().q[0]))
         };
         assert_eq!((count, calls.get()), (50_001, 100_001));
-        // Each of 10⁵ steps adds its rounding.
+        // Each of 10⁵ steps adds its rounding error.
         assert!((end - 100.0).abs() < 0.1, "{end}");
     }
 }
 
-/// An oscillator looked at when one likes, by an adaptive method, which interpolates, and by one with equal
-/// steps.
+/// Samples an oscillator at given times, with an adaptive method, which interpolates, and with a fixed-step
+/// method.
 fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     let (start, looked) = (2.0, [2.0, 2.013, 2.5, 2.500_000_1, 5.75]);
     let mass = oscillator::<f64>();
@@ -437,13 +440,13 @@ fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     assert!(samples.iter().all(|sample| exact(sample) < tolerance), "{samples:?}");
     let end = run.clone().sample_at(&looked).finish().unwrap();
     assert!(end.t == 5.75 && exact(&end) < tolerance);
-    // With a duration its end is a sample, too, and what lies beyond is none; the start is one if it is asked
-    // for.
+    // With a duration, the end is a sample, too, and later times are ignored. The start is a sample only if
+    // its time is listed.
     for (duration, expected) in [(4.0, &[2.013, 5.75, 6.0][..]), (3.0, &[2.013, 5.0][..])] {
         let run = run.clone().sample_at(&[2.013, 5.75]).duration(duration);
         assert_eq!(run.map(|sample| sample.unwrap().t).collect::<Vec<_>>(), expected);
     }
-    // In the order of time with events.
+    // In the order of time, together with events.
     let run = run.sample_at(&[2.5, 4.0]).event(Crossing::Either, |_, q, _| q[0]);
     let times: Vec<f64> = run.map(|sample| sample.unwrap().t).collect();
     assert!(times.len() == 3 && (times[1] - start - core::f64::consts::FRAC_PI_2).abs() < 1e-4, "{times:?}");
