@@ -1,5 +1,6 @@
-/* Sine and cosine, branch-free for angles up to 1e5: reduction by quarter turns after Cody and Waite, polynomials of fdlibm
- * (Sun Microsystems 1993). It relies on rounding: compilations that reorder sums, or round more than once, take the library. */
+/* Returns sine and cosine, without branches for angles up to 1e5 rad: argument reduction by multiples of pi/2 (Cody and Waite),
+ * polynomials of fdlibm (Sun Microsystems 1993). The reduction requires exactly rounded operations. Compilers that reorder sums,
+ * or use excess precision, use the library functions instead. */
 #if defined(__FAST_MATH__) || !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0 || defined(PLAIN_ANGLES)
 static inline void lw_sin_cos(double x, double *s, double *c) {
     *s = sin(x);
@@ -43,7 +44,7 @@ static inline void lw_small_sin_cos(double x, double *s, double *c) {
     const double lost = (1.0 - most) - half;
     const double cos_r = most + (square * cosine + (lost - r * low));
 #endif
-    /* An odd quadrant exchanges sine and cosine; bits of the quadrant are their signs. */
+    /* In odd quadrants, sine and cosine are exchanged; bits of the quadrant determine their signs. */
     uint64_t quadrant, s_bits, c_bits;
     memcpy(&quadrant, &shifted, sizeof quadrant);
     memcpy(&s_bits, &sin_r, sizeof s_bits);

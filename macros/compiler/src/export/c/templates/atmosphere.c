@@ -1,5 +1,5 @@
-/* The standard atmosphere (ISO 2533:1975, U.S. Standard Atmosphere 1976) at a geopotential height, m: temperature, K,
- * pressure, Pa, and rate of the temperature, K/m. */
+/* Returns temperature (K), pressure (Pa) and temperature gradient (K/m) of the standard atmosphere (ISO 2533:1975,
+ * U.S. Standard Atmosphere 1976) at a geopotential height (m). */
 static void lw_atmosphere(double h, double *temperature, double *pressure, double *rate) {
     static const double base[8] = {0.0, 11000.0, 20000.0, 32000.0, 47000.0, 51000.0, 71000.0, 84852.0};
     static const double lapse[8] = {-6.5e-3, 0.0, 1.0e-3, 2.8e-3, 0.0, -2.8e-3, -2.0e-3, 0.0};

@@ -1,4 +1,4 @@
-/* How q + dv of a ball joint moves in its body axes with q and with dv, column by column: exp(-dv) and the right Jacobian of
+/* Derivatives of q + dv of a ball joint in body axes with respect to q and dv, by columns: exp(-dv) and the right Jacobian of
  * SO(3) (Chirikjian, Stochastic Models, Information Theory, and Lie Groups, vol. 2, 2012, 10.6). */
 static void lw_ball_integrate_derivatives(const double dv[3], double by_q[9], double by_dv[9]) {
     static const double identity[4] = {0.0, 0.0, 0.0, 1.0};
@@ -23,7 +23,7 @@ static void lw_ball_integrate_derivatives(const double dv[3], double by_q[9], do
     }
 }
 
-/* How the rate of dv of a ball joint changes with dv and with v. */
+/* Derivatives of the rate of dv of a ball joint with respect to dv and v. */
 static void lw_ball_tangent_rate_derivatives(const double dv[3], const double v[3], double by_dv[9], double by_v[9]) {
     const double square = lw_dot_of(dv, dv);
     const double second = lw_second_bracket(square), fall = -2.0 * lw_fourth_bracket(square);

@@ -6,7 +6,7 @@
 #define casadi_int long long int
 #endif
 
-/* What CasADi asks of a function beside its values. */
+/* Functions with which CasADi queries a function's signature. */
 #define EXTERNAL(NAME, INPUTS, OUTPUTS, WORK) \
     casadi_int NAME##_n_in(void) { \
         return INPUTS; \
@@ -42,7 +42,7 @@
         return 0; \
     }
 
-/* Rows of so many columns from one matrix to another, with the distances between columns. */
+/* Copies a block between matrices with different distances between columns. */
 static void lw_block(int rows, int columns, int from_stride, const casadi_real *from, int stride, casadi_real *to) {
     for (int j = 0; j < columns; ++j) {
         for (int i = 0; i < rows; ++i) {

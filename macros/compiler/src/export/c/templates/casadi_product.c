@@ -1,4 +1,4 @@
-/* The product of two matrices. */
+/* Product of two matrices. */
 static void lw_product(int rows, int inner, int columns, const casadi_real *a, const casadi_real *b, casadi_real *c) {
     for (int j = 0; j < columns; ++j) {
         for (int i = 0; i < rows; ++i) {

@@ -1,4 +1,4 @@
-/* Adds to every column of a matrix its combination of the columns of the trunk, whose factors stand in a row for each column. */
+/* Adds a linear combination of the trunk's columns to every column of a matrix; factors has one row of coefficients per column. */
 static void lw_complete(int rows, int width, double *matrix, const int *trunk, const double *factors) {
     for (int j = 0; j < rows; ++j) {
         for (int t = 0; t < width; ++t) {

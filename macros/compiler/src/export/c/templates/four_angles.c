@@ -1,5 +1,5 @@
-/* Four at a time, which compilers turn into vector instructions. Where they are sure to be there these are written out: the angles
- * come and go in registers, the operations are those of `lw_small_sin_cos`. */
+/* Four sines and cosines at a time, which compilers vectorise. With AVX2 and FMA, intrinsics replace this loop, so that angles and
+ * results stay in registers; the operations are those of `lw_small_sin_cos`. */
 #if defined(ROUND) && defined(FP_FAST_FMA) && defined(__AVX2__) && defined(__FMA__)
 #include <immintrin.h>
 #define ALL(x) _mm256_set1_pd(x)

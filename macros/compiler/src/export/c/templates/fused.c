@@ -1,4 +1,4 @@
-/* Products with sums: one instruction where the processor has it, which not every compiler says by the standard's macro. */
+/* Fused multiply-add, if the processor supports it. Some compilers do not define the standard's macro for it. */
 #if defined(__FMA__) && !defined(FP_FAST_FMA)
 #define FP_FAST_FMA
 #endif
@@ -12,7 +12,7 @@
 #define lw_neg_mul_add(a, b, c) ((c) - (a) * (b))
 #endif
 
-/* gcc puts the entries of results that stand side by side into vector registers one by one, which takes longer than to store them. */
+/* gcc collects adjacent results in vector registers entry by entry, which takes longer than storing them individually. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-slp-vectorize")
 #endif

@@ -1,4 +1,4 @@
-/* Puts the inverse of a symmetric positive definite matrix in its place: Gauss-Jordan elimination without interchanges (Golub and
+/* Replaces a symmetric positive definite matrix by its inverse: Gauss-Jordan elimination without row exchanges (Golub and
  * Van Loan 2013, ch. 3.2). */
 static void lw_invert_inner(int n, double *m) {
     for (int k = 0; k < n; ++k) {
@@ -20,8 +20,8 @@ static void lw_invert_inner(int n, double *m) {
     }
 }
 
-/* Inverts a mass matrix [A B; B' C]: the matrix has the inverse of C, a block for each limb, in the columns of the limbs; borders
- * has the rows of the trunk by column. The limb of a velocity of the trunk is -1. */
+/* Inverts a mass matrix [A B; B' C]. Initially, the columns of the limbs contain the inverse of C, with one block per limb, and
+ * borders contains the rows of the trunk, column by column. Velocities of the trunk have the limb index -1. */
 static void lw_invert(int rows, int width, double *matrix, const int *trunk, const int *limb, const double *borders) {
     double g[@NV@ * @NV@], inner[@NV@ * @NV@];
     for (int c = 0; c < width; ++c) {

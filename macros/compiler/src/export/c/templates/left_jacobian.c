@@ -1,4 +1,4 @@
-/* (1 - cos x)/x^2 and (x - sin x)/x^3 of x^2: the left Jacobian of SO(3) is 1 + a [x] + b [x]^2. */
+/* (1 - cos x)/x^2 and (x - sin x)/x^3 as functions of x^2, the factors a and b of the left Jacobian 1 + a [x] + b [x]^2 of SO(3). */
 static void lw_left_jacobian(double square, double factors[2]) {
     if (square < 0.05) {
         static const double even[6] = {2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0};

@@ -5,8 +5,8 @@ static void lw_plus_into(const double a[6], double s, const double b[6], double 
     }
 }
 
-/* Factors of ad, ad^2, ad^3 and ad^4 in the left Jacobian of SE(3), the sum of ad^k / (k + 1)!, of x^2: ad has the minimal
- * polynomial ad (ad^2 + x^2)^2 (Selig, Geometric Fundamentals of Robotics, 4.6). */
+/* Factors of ad, ad^2, ad^3 and ad^4 in the left Jacobian of SE(3), the sum of ad^k / (k + 1)!, as functions of x^2: ad has the
+ * minimal polynomial ad (ad^2 + x^2)^2 (Selig, Geometric Fundamentals of Robotics, 4.6). */
 static void lw_jacobian_factors(double square, double c[4]) {
     if (square < 1.0) {
         double power = 1.0, odd = 0.5, even = 1.0 / 6.0;
@@ -34,8 +34,8 @@ static void lw_jacobian_factors(double square, double c[4]) {
     }
 }
 
-/* How q + dv of a free joint moves in its body axes with q and with dv: the adjoint of exp(-dv) and the right Jacobian of
- * SE(3); linear parts first, column by column. */
+/* Derivatives of q + dv of a free joint in body axes with respect to q and dv: the adjoint of exp(-dv) and the right Jacobian of
+ * SE(3), by columns, with linear components first. */
 static void lw_free_integrate_derivatives(const double dv[6], double by_q[36], double by_dv[36]) {
     static const double identity[7] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0};
     double end[7], c[4];
@@ -61,7 +61,7 @@ static void lw_free_integrate_derivatives(const double dv[6], double by_q[36], d
     }
 }
 
-/* Derivatives by x^2 of the factors of ad^2 and ad^4 in the inverse Jacobian of SE(3). */
+/* Derivatives of the factors of ad^2 and ad^4 in the inverse Jacobian of SE(3) with respect to x^2. */
 static void lw_even_slopes(double square, double slopes[2]) {
     static const double series[8] = {1.0 / 12.0, 1.0 / 720.0, 1.0 / 30240.0, 1.0 / 1209600.0, 1.0 / 47900160.0,
         691.0 / 1307674368000.0, 1.0 / 74724249600.0, 3617.0 / 10670622842880000.0};
@@ -85,7 +85,7 @@ static void lw_even_slopes(double square, double slopes[2]) {
     slopes[1] = (slope_by - slope - 2.0 * (value + slope)) / (square * square * square);
 }
 
-/* How the rate of dv of a free joint changes with dv and with v. */
+/* Derivatives of the rate of dv of a free joint with respect to dv and v. */
 static void lw_free_tangent_rate_derivatives(const double dv[6], const double v[6], double by_dv[36], double by_v[36]) {
     const double square = lw_dot_of(dv + 3, dv + 3);
     const double fourth = lw_fourth_bracket(square);

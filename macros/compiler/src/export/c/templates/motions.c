@@ -11,7 +11,7 @@ static void lw_rotate(const double q[4], const double a[3], double r[3]) {
     }
 }
 
-/* Free joints: position and quaternion; velocities in body axes, linear part first. */
+/* Free joints: position and quaternion; velocities in body axes, linear components first. */
 static void lw_free_integrate(const double q[7], const double dv[6], double result[7]) {
     const double square = lw_dot_of(dv + 3, dv + 3);
     double a, b;

@@ -1,4 +1,4 @@
-/* Rows of a block of a square matrix with the same rows of all columns; values stay. */
+/* Multiplies the derivatives in the rows of one joint by a square block; values do not change. */
 static void lw_moved_block(int rows, int first, const double *by, const double *part, double *result) {
     for (int j = 1; j <= @COLUMNS@; ++j) {
         for (int i = 0; i < rows; ++i) {

@@ -1,4 +1,4 @@
-/* The factor becomes minus its product with the inverse: both column by column, of so many rows. */
+/* Replaces a factor by the product of the negative inverse and the factor. Both are stored by columns. */
 static void lw_minus_products(int rows, int columns, const double *inverse, double *factor) {
     for (int j = 0; j < columns; ++j) {
         double *column = factor + j * rows;

@@ -1,5 +1,5 @@
-/* Accelerations of forces by the inverse, with what is left over corrected: the inverse of an ill-conditioned matrix is exact enough
- * for that, not for the whole. Every velocity belongs to the trunk where there are no limbs. */
+/* Solves for accelerations with the inverse and, without limbs, one step of iterative refinement: the inverse of an ill-conditioned
+ * matrix is accurate enough for the residual, but not for the solution. Without limbs, every velocity belongs to the trunk. */
 static void lw_solve(int rows, int width, const double *inverse, const int *trunk, const int *limb, const double *borders, double *column) {
     double x[@NV@], rest[@NV@];
     int limbs = 0;

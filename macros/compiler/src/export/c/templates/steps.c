@@ -1,4 +1,4 @@
-/* Accelerations under inputs. */
+/* Accelerations for given inputs. */
 static void lw_accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, const double *v, const double *u, double *a) {
     double tau[@NV@];
     @FORCES@

@@ -1,4 +1,4 @@
-/* Adds the product of a square matrix with so many columns. */
+/* Adds the product of a square matrix and the given number of columns. */
 static void lw_add_products(int columns, const double *by, const double *part, double *sum) {
     for (int j = 0; j < columns; ++j) {
         double column[@NV@];

@@ -1,4 +1,5 @@
-/* The weights of the four points around the cell of an axis that holds x, of the derivative of some order; the cell's number. */
+/* Computes the weights of the four points around the cell of an axis that contains x, for a derivative of the given order. Returns
+ * the index of the cell. */
 static int lw_weights_around(const double *points, int count, double x, int order, int smooth, int extrapolated,
     double weights[4]) {
     const double low = points[0], high = points[count - 1];
@@ -18,7 +19,7 @@ static int lw_weights_around(const double *points, int count, double x, int orde
     if (smooth) {
         const double b = cell > 0 ? points[cell] - points[cell - 1] : 0.0;
         const double a = cell + 2 < count ? points[cell + 2] - points[cell + 1] : 0.0;
-        /* Slopes at both ends, times the width, by the parabolas through three points (Bessel's tangents). */
+        /* Slopes at both ends, times the width of the cell, from parabolas through three points (Bessel's tangents). */
         double first[4] = {0.0, -1.0, 1.0, 0.0}, second[4] = {0.0, -1.0, 1.0, 0.0};
         if (b > 0.0) {
             first[0] = -h * h / (b * (b + h));
@@ -38,7 +39,7 @@ static int lw_weights_around(const double *points, int count, double x, int orde
             second[1] = -(h + b) / b;
             second[2] = (2.0 * h + b) / (h + b);
         }
-        /* Hermite's polynomials, of the value at the end and of both slopes, by order. */
+        /* Hermite polynomials of the value at the end and of both slopes, for each order of differentiation. */
         const double end[4] = {3.0 * s * s - 2.0 * s * s * s, 6.0 * (s - s * s), 6.0 - 12.0 * s, -12.0};
         const double m0[4] = {s * s * s - 2.0 * s * s + s, 3.0 * s * s - 4.0 * s + 1.0, 6.0 * s - 4.0, 6.0};
         const double m1[4] = {s * s * s - s * s, 3.0 * s * s - 2.0 * s, 6.0 * s - 2.0, 6.0};
@@ -71,7 +72,7 @@ static int lw_weights_around(const double *points, int count, double x, int orde
     return cell;
 }
 
-/* The derivative of these orders of a table of so many variables. */
+/* Returns the derivative of a table with respect to its variables, with the given orders. */
 static double lw_tabulated(const @PREFIX@_table *table, int variables, const double *x, const int *orders) {
     double weights[3][4] = {{0.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}};
     int cells[3] = {0, 0, 0}, counts[3] = {1, 1, 1};

@@ -1,4 +1,4 @@
-/* Accelerations under inputs with their derivatives. */
+/* Accelerations for given inputs, with their derivatives. */
 static void lw_linear_motion(@OWN_DECLARED@@T_DECLARED@const double *q, const double *v, const double *u, double *a, double *by_q,
     double *by_v, double *by_u) {
     double tau[@NV@], by_tau[@NV@ * @NV@];
@@ -6,10 +6,11 @@ static void lw_linear_motion(@OWN_DECLARED@@T_DECLARED@const double *q, const do
 @LINEAR@    @PREFIX@_forward_dynamics(@OWN@@T@q, v, tau, a);
 }
 
-/* Arrays of what changes with the start of a step: the value, then derivatives by q, v, u and h, NV numbers each. */
+/* Layout of quantities that depend on the start of a step: the value, then the derivatives with respect to q, v, u and h, with NV
+ * entries each. */
 enum { LW_CHANGING = (1 + @COLUMNS@) * @NV@, LW_BY_Q = @N@, LW_BY_V = (1 + @N@) * @N@, LW_BY_U = (1 + 2 * @N@) * @N@, LW_BY_H = (1 + 2 * @N@ + @M@) * @N@ };
 
-/* a + s b, where s is a part of the step's length. */
+/* a + s b, where s is a fraction of the step size. */
 static void lw_plus_part(const double *a, double part, double h, const double *b, double *sum) {
     for (int k = 0; k < LW_CHANGING; ++k) {
         sum[k] = a[k] + part * h * b[k];
@@ -19,7 +20,7 @@ static void lw_plus_part(const double *a, double part, double h, const double *b
     }
 }
 
-@WAYS@/* The acceleration of a motion and a velocity that change. */
+@WAYS@/* Acceleration with its derivatives, from the derivatives of configuration and velocity. */
 static void lw_changing_acceleration(@OWN_DECLARED@@T_DECLARED@const double *q, const double *motion, const double *v, const double *u,
     double *result) {
     double by_q[@NV@ * @NV@], by_v[@NV@ * @NV@];
@@ -31,7 +32,7 @@ static void lw_changing_acceleration(@OWN_DECLARED@@T_DECLARED@const double *q, 
     lw_add_products(@COLUMNS@, by_v, v + LW_BY_Q, result + LW_BY_Q);
 }
 
-/* Where the columns go. */
+/* Stores the columns of the derivatives in the results. */
 static void lw_put_columns(const double *motion, const double *v, double *next_v, double *by_state, double *by_input@H_DECLARED@) {
 @UNUSED@    for (int k = 0; k < @N@; ++k) {
         next_v[k] = v[k];

@@ -1,4 +1,4 @@
-/* Quaternions, x y z w, and rotation vectors. */
+/* Quaternions (x, y, z, w) and rotation vectors. */
 static void lw_cross_into(const double a[3], const double b[3], double c[3]) {
     const double x = a[1] * b[2] - a[2] * b[1];
     const double y = a[2] * b[0] - a[0] * b[2];
@@ -69,7 +69,7 @@ static void lw_ball_difference(const double from[4], const double to[4], double 
     }
 }
 
-/* (1 - (x/2) cot(x/2)) / x^2 of x^2, by its series of Bernoulli's numbers where x is small. */
+/* (1 - (x/2) cot(x/2)) / x^2 as a function of x^2; for small x by its series with Bernoulli numbers. */
 static double lw_second_bracket(double square) {
     static const double series[8] = {1.0 / 12.0, 1.0 / 720.0, 1.0 / 30240.0, 1.0 / 1209600.0, 1.0 / 47900160.0,
         691.0 / 1307674368000.0, 1.0 / 74724249600.0, 3617.0 / 10670622842880000.0};

@@ -1,4 +1,4 @@
-/* How the configuration moves that a displacement leads to. */
+/* Motion of the configuration after a displacement, with its derivatives. */
 static void lw_moved(@START_DECLARED@const double *displacement, double *motion) {
     double by_q[@NV@ * @NV@], by_dv[@NV@ * @NV@];
     @PREFIX@_integrate_derivatives(@START@displacement, by_q, by_dv);
@@ -11,7 +11,7 @@ static void lw_moved(@START_DECLARED@const double *displacement, double *motion)
     }
 }
 
-/* The rate of a displacement with which the configuration moves with the velocity v. */
+/* Rate of a displacement for which the configuration moves with the velocity v, with its derivatives. */
 static void lw_rate_of(@START_DECLARED@const double *displacement, const double *v, double *rate) {
     double by_q[@NV@ * @NV@], by_dv[@NV@ * @NV@], by_v[@NV@ * @NV@];
     @PREFIX@_displacement_rate_derivatives(@START@displacement, v, by_q, by_dv, by_v);
