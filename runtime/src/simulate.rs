@@ -138,7 +138,7 @@ enum Samples<'m, T> {
     Steps,
     /// Equal intervals, s.
     Every(T),
-    /// These times, s.
+    /// Listed times, s.
     At(&'m [T]),
 }
 

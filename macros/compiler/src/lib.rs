@@ -33,8 +33,9 @@ pub use derive::{derive, derive_with, equations, equations_latex};
 pub use source::{Source, read};
 pub use syntax::second_definition;
 
-/// Runs the whole compiler: translates `#[mechanism(arguments)] item` to the generated code, or to one
-/// `compile_error!` per error. Paths of files are relative to `folder`.
+/// Runs the whole compiler: translates `#[mechanism(arguments)] item` to the generated code. Each error is
+/// reported as one `compile_error!`; the code of an invalid mechanism contains only its interface. Paths of
+/// files are relative to `folder`.
 pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     // rustc already reports missing and wrong commas of the struct.

@@ -9,9 +9,9 @@ use crate::private::constant;
 use nalgebra::SVector;
 
 /// Returns accelerations and multipliers with friction proportional to the magnitudes of the multipliers
-/// `rows`. `solve` returns the input of [`regular_solution`] for given signs. Initially all contacts have
-/// compressive normal forces; then the signs of tensile ones are changed. One contact is resolved in the
-/// second attempt.
+/// `rows`. `solve` returns the input of [`regular_solution`] for assumed signs of these multipliers.
+/// Initially all normal forces are assumed to be compressive; the sign is changed for those that result as
+/// tensile. One contact is resolved in the second attempt.
 #[inline]
 pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usize>(
     rows: &[usize; K],

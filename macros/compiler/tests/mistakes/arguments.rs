@@ -210,7 +210,7 @@ fn actions() {
     answers(|said| (String::new(), format!("{ARM} {said}")), ACTIONS);
 }
 
-/// Other elements.
+/// Arguments of other elements.
 const OTHERS: &[Row] = &[
     (
         "theta: Coordinate, #[particle(m = 1, at = theta * x)] bead: Particle",

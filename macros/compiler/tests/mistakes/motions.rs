@@ -2,8 +2,8 @@
 
 use super::{ARM, Row, answers, messages};
 
-/// Vectors as outputs, in a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a
-/// free stone.
+/// Vector outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
+/// stone.
 const VECTORS: &[Row] = &[
     ("instant_center(arm)", "`instant_center` takes a body and a frame", "`instant_center(body / frame)`"),
     ("instant_center(arm / ground / ground)", "`instant_center` takes a body and a frame", "(body / frame)"),
@@ -71,7 +71,8 @@ const VECTORS: &[Row] = &[
     ("r(arm.at(rate(s) * x) / ground)", "the rate of `s` cannot stand here", "coordinates and time"),
 ];
 
-/// Scalars as outputs of the same mechanism.
+/// Scalar outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
+/// stone.
 const SCALARS: &[Row] = &[
     ("curvature(wire)", "`curvature` takes a curve and the coordinate along it", "`curvature(curve, s)`"),
     ("curvature(wire, u)", "`curvature` takes a coordinate, along which the curve is run through", ""),
@@ -124,7 +125,8 @@ fn points_of_motions() {
     answers(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), SCALARS);
 }
 
-/// Matrices as outputs of the same mechanism.
+/// Matrix outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
+/// stone.
 const MATRICES: &[Row] = &[
     ("r(arm / ground)", "expected a matrix, found a vector", "`projector(n)`"),
     ("2 * s", "expected a matrix, found a scalar", "`inertia(body / point)`"),
@@ -175,7 +177,8 @@ fn matrices() {
     answers(|said| (String::new(), format!("{ARM} {MORE} {said}")), fields);
 }
 
-/// Further fields of the same mechanism.
+/// Further fields of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
+/// stone.
 const FIELDS: &[Row] = &[
     ("#[frame(ground, frenet(line, s))] f: Frame", "this curve is straight, and has no normal", "unit"),
     (

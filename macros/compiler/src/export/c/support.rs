@@ -32,11 +32,11 @@ pub struct Support {
 }
 
 impl Support {
-    /// `a * b + c`
+    /// Name of the function that returns `a * b + c`.
     pub const MUL_ADD: &'static str = "lw_mul_add";
-    /// `a * b - c`
+    /// Name of the function that returns `a * b - c`.
     pub const MUL_SUB: &'static str = "lw_mul_sub";
-    /// `c - a * b`
+    /// Name of the function that returns `c - a * b`.
     pub const NEG_MUL_ADD: &'static str = "lw_neg_mul_add";
 
     /// Creates an empty set of helpers.

@@ -155,7 +155,7 @@ const WHOLE: [&str; 10] = [
     "distance",
 ];
 
-/// Attributes of an element: those that may change the motion, and those that do not.
+/// Attributes of an element, divided by their influence on the motion.
 #[derive(Clone, Default)]
 pub(in crate::import) struct Attributes {
     /// Attributes that may change the motion.

@@ -57,8 +57,8 @@ const WORLD_PARTS: [&str; 20] = [
 /// First version in which gravity is an element of the world instead of its `<physics>`.
 const GRAVITY_OF_WORLD: (u32, u32) = (1, 6);
 
-/// Elements without influence on the motion apart from contact, with the text that the generated
-/// documentation lists for each.
+/// Elements that are skipped unless the options request them, with the text that the generated documentation
+/// lists for each.
 const ASIDE: [(&str, &str); 9] = [
     ("include", "models that the world includes and that are not beside the file"),
     ("visual", "visual geometry of links"),
