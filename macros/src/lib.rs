@@ -68,26 +68,26 @@ use std::path::PathBuf;
 /// | --- | --- |
 /// | `gravity = -9.81 * y` | uniform gravitational acceleration, a vector in ground axes, m/s²; the default is zero, or −9.81 z with a file |
 /// | `scalar = f64` or `f32` | scalar type of a mechanism without parameters |
-/// | `friction_speed = 0.01` | speed below which the dry friction of a file's joints is regularised, m/s or rad/s |
+/// | `friction_speed = 0.01` | regularisation speed of dry friction in a file's joints, m/s or rad/s |
 /// | `derivatives` | adds first derivatives of inverse and forward dynamics, and `linearize` |
 /// | `momentum_derivatives` | adds derivatives of the generalized momenta and of their rates, for the Jacobians of implicit integration methods; includes `derivatives` |
 /// | `second_derivatives` | adds second derivatives of inverse and forward dynamics and of the inputs' generalized forces, contracted with a vector of factors; includes `derivatives` |
 /// | `centroidal` | adds the centroidal momentum matrix and its bias |
 /// | `hamilton` | adds the Hamiltonian and the canonical equations as functions of configuration and momentum |
-/// | `routh` | adds the Routhian and the equations of motion without the cyclic coordinates, as functions of the cyclic momenta |
+/// | `routh` | adds the Routhian and the motion without cyclic coordinates, as functions of their momenta |
 /// | `conserved` | adds the quantities that are conserved in every motion without inputs: energy, Jacobi's integral, momenta |
 /// | `regressor` | adds the joint torque regressor, and base parameters, for identification |
 /// | `sensitivities` | adds derivatives of the dynamics with respect to the struct's parameters |
 /// | `packed` | adds the mass matrix without entries that are always zero, and a function that writes the mass matrix to a matrix of the caller |
 /// | `prepare` | adds `prepare()`, which precomputes all values that depend only on the parameters |
 /// | `batch` | adds a variant of every function of the state that evaluates several states at once |
-/// | `drawing` | adds the geometry of the mechanism as data (`DRAWING`, `linkwork::drawing`), for programs that draw it |
+/// | `drawing` | adds the mechanism's geometry (`DRAWING`, `linkwork::drawing`), for programs that draw it |
 /// | `equations = lagrange`, `hamilton`, `kane`, `routh` or `structure` | form of the equations in `EQUATIONS` and in the documentation: Lagrange's equations of any length, Hamilton's canonical equations, Kane's equations in independent speeds without multipliers, Routh's equations without cyclic coordinates, or only their structure. The default is Lagrange's equations if they are short enough to be readable |
-/// | `formulation = multipliers` or `speeds` | formulation of constraints: Lagrange multipliers (default), or independent speeds (Kane) |
+/// | `formulation = multipliers` or `speeds` | solution by multipliers (default) or in independent speeds (Kane) |
 /// | `independent = (velocity, …)` | independent speeds of `formulation = speeds`; chosen automatically by default. User-defined generalized speeds are elements: `#[speed(…)] name: Speed` |
 /// | `processor = detect` or `target` | `detect` (default): large functions use AVX2 and FMA, and products of large matrices AVX-512, if the processor supports them, even if the compilation target does not include them (x86-64, release builds, feature `std`). `target`: only the instructions of the target are used |
 /// | `skip_passes = [pass, …]` | optimisation passes to skip: `frames` (moves link frames to sparse placements), `regroup` (moves mass properties towards the base), `parallel` (expresses links on parallel axes in common axes) and `limbs` (evaluates identical limbs, and joints of one path, in SIMD lanes); none by default. The results are equal up to rounding; skipping a pass makes the functions slower |
-/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; the crate is recompiled when the file changes |
+/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; rustc tracks its changes |
 /// | `mjcf = "path"` | an MJCF file (MuJoCo) with the files that it includes; path as for `urdf` |
 /// | `sdf = "path"` | an SDF file of one model; path as for `urdf` |
 /// | `base = fixed` or `free` | whether the file's root link is fixed to the ground (default) or a floating base. MJCF files specify this themselves; `free` is valid only for files with one outermost body without a joint |
