@@ -83,11 +83,11 @@ use std::path::PathBuf;
 /// | `batch` | adds a variant of every function of the state that evaluates several states at once |
 /// | `drawing` | adds the mechanism's geometry (`DRAWING`, `linkwork::drawing`), for programs that draw it |
 /// | `equations = lagrange`, `hamilton`, `kane`, `routh` or `structure` | form of the equations in `EQUATIONS` and in the documentation: Lagrange's equations of any length, Hamilton's canonical equations, Kane's equations in independent speeds without multipliers, Routh's equations without cyclic coordinates, or only their structure. The default is Lagrange's equations if they are short enough to be readable |
-/// | `formulation = multipliers` or `speeds` | solution by multipliers (default) or in independent speeds (Kane) |
+/// | `formulation = multipliers` or `speeds` | whether constraints are solved by Lagrange multipliers (default) or in independent speeds (Kane) |
 /// | `independent = (velocity, …)` | independent speeds of `formulation = speeds`; chosen automatically by default. User-defined generalized speeds are elements: `#[speed(…)] name: Speed` |
 /// | `processor = detect` or `target` | `detect` (default): large functions use AVX2 and FMA, and products of large matrices AVX-512, if the processor supports them, even if the compilation target does not include them (x86-64, release builds, feature `std`). `target`: only the instructions of the target are used |
 /// | `skip_passes = [pass, …]` | optimisation passes to skip: `frames` (moves link frames to sparse placements), `regroup` (moves mass properties towards the base), `parallel` (expresses links on parallel axes in common axes) and `limbs` (evaluates identical limbs, and joints of one path, in SIMD lanes); none by default. The results are equal up to rounding; skipping a pass makes the functions slower |
-/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; rustc tracks its changes |
+/// | `urdf = "path"` | a URDF file, relative to the crate's manifest; its changes trigger recompilation |
 /// | `mjcf = "path"` | an MJCF file (MuJoCo) with the files that it includes; path as for `urdf` |
 /// | `sdf = "path"` | an SDF file of one model; path as for `urdf` |
 /// | `base = fixed` or `free` | whether the file's root link is fixed to the ground (default) or a floating base. MJCF files specify this themselves; `free` is valid only for files with one outermost body without a joint |
