@@ -1,4 +1,5 @@
-//! Forces linear in accelerations: of the rate of the angle of attack, of water that is carried along.
+//! Forces that are linear in the accelerations: aerodynamic forces that depend on the rate of the angle of
+//! attack, and the inertia of fluid that moves with a body (added mass).
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
@@ -6,11 +7,11 @@ use linkwork::{Lanes, RheonomicDerivatives, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Between derivatives and differences of eighth order.
+/// Tolerance between derivatives and central differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
 
-/// An aircraft whose lift and pitching moment depend on the rate of the angle of attack, as far as a table
-/// and an engine say.
+/// Aircraft with the state of its engine, whose lift and pitching moment depend on the rate of the angle of
+/// attack. A table gives the lift coefficient.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 #[derive(Debug)]
 struct Unsteady<T: Real> {
@@ -64,7 +65,7 @@ fn unsteady() -> Unsteady<f64> {
     }
 }
 
-/// Two links and a slider; what the links feel of each other's accelerations is not symmetric, and depends on
+/// Two links and a slider. The matrix that maps accelerations to these forces is not symmetric and depends on
 /// position, velocity and time.
 #[mechanism(gravity = -9.81 * y, derivatives, batch, prepare, sensitivities)]
 #[derive(Clone, Copy, Debug)]
@@ -98,14 +99,14 @@ struct Coupled {
 
 const COUPLED: Coupled = Coupled { gain: 0.2, share: 0.5, reach: 1.3, added: 0.7 };
 
-/// A derivative of eighth order.
+/// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
 fn slope<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let terms = weights.iter().zip(1..).map(|(w, k)| (f(k as f64 * h) - f(-(k as f64) * h)) * *w);
     terms.fold(SVector::zeros(), |sum, term| sum + term) / h
 }
 
-/// The matrix of derivatives along each of `K` directions, column by column.
+/// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
 fn slopes<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
@@ -179,7 +180,8 @@ fn what_multiplies_accelerations_is_not_symmetric() {
             COUPLED.inverse_dynamics(t, &q, &v, &a) - at_rest
         };
         let matrix = SMatrix::<f64, 3, 3>::from_columns(&[column(0), column(1), column(2)]);
-        // By hand, from the definition: the water at the tip is a particle there.
+        // The expected matrix is derived by hand from the definition: the water at the tip is a particle
+        // there.
         let Coupled { gain, share, reach, added } = COUPLED;
         let c = q[1].cos();
         let mut expected = COUPLED.mass_matrix(t, &q);
@@ -279,7 +281,7 @@ fn prepared_mechanisms_and_batches_have_them() {
     }
 }
 
-/// A hull with the added mass of Kirchhoff's equations, in body axes.
+/// Hull with the added mass of Kirchhoff's equations, in body axes.
 #[mechanism(derivatives)]
 struct Hull {
     mass: f64,
@@ -310,8 +312,8 @@ struct Hull {
     munk: Torque,
 }
 
-/// Kirchhoff's equations of a body in an ideal fluid: impulse and moment of impulse stay what they are in
-/// space (Lamb, *Hydrodynamics*, 1932, §§ 124–126).
+/// Kirchhoff's equations of a body in an ideal fluid: impulse and moment of impulse are constant in the
+/// ground frame (Lamb, *Hydrodynamics*, 1932, §§ 124–126).
 #[test]
 fn a_hull_moves_by_kirchhoffs_equations() {
     let hull = Hull { mass: 3.0, along: 0.4, across: 2.5, turning: 1.5 };
@@ -378,7 +380,8 @@ fn every_method_integrates_them_as_it_does_an_inerter() {
     compare!(Rodas::new().tolerance(1e-9, 1e-10), 1e-7);
     compare!(Rosenbrock::step(1e-3), 1e-11);
     compare!(SemiImplicitEuler::step(1e-3), 1e-11);
-    // Of momenta in one case, of velocities in the other: they differ by the error of a step.
+    // One of the two mechanisms takes the midpoint of momenta, the other that of velocities. The results
+    // differ by the error of a step.
     compare!(ImplicitMidpoint::step(1e-4), 1e-6);
     let (q, v) = (q.into(), v.into());
     let (a, b) = (other.linear_motion(&q, &v, &[].into()), own.linear_motion(&q, &v, &[].into()));

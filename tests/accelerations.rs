@@ -1,6 +1,6 @@
-//! Accelerations and their derivatives as generated and compiled, against Kane's equations in numbers: the
-//! oracle of the compiler's own tests, which shares nothing with it. The mechanisms are random; they stand in
-//! a file that the same generator writes.
+//! Compares the compiled accelerations and their derivatives with a numerical evaluation of Kane's equations.
+//! This oracle belongs to the compiler's own tests and shares no code with the compiler. The mechanisms are
+//! random and are defined in a file that the same generator writes.
 
 #[path = "../macros/compiler/tests/oracle/jet.rs"]
 mod jet;
@@ -26,20 +26,21 @@ use linkwork::nalgebra::SVector;
 use spec::{Spec, Style};
 use std::fmt::Write;
 
-/// How many mechanisms are compiled.
+/// Number of mechanisms that are compiled.
 const COUNT: u64 = 12;
 /// Largest difference, relative to the largest entry.
 const TOLERANCE: f64 = 1e-9;
-/// Size of the imaginary step: its square is nothing.
+/// Imaginary step of the complex-step derivative: its square is below rounding error.
 const STEP: f64 = 1e-40;
 
-/// Trees, and every third one of alike limbs.
+/// Returns the description of mechanism `k`: a random tree, and for every third `k` a mechanism with
+/// identical limbs.
 fn mechanism(k: u64) -> Spec {
     let limbs = if k % 3 == 2 { 2 + k as usize % 2 } else { 0 };
     Spec { symbolic: false, ..spec::spec(7_000 + k, Style { bodies: 5, limbs, decades: 0.5, noise: None }) }
 }
 
-/// The text of `mechanisms.rs`.
+/// Returns the text of `mechanisms.rs`.
 fn written() -> String {
     let mut out = String::from(
         "//! Written by the test `the_file_is_what_the_generator_writes`.\n\nuse linkwork::mechanism;\n",
@@ -65,12 +66,12 @@ fn the_file_is_what_the_generator_writes() {
     );
 }
 
-/// Real parts, and imaginary ones as derivatives.
+/// Splits complex numbers into values (real parts) and derivatives (imaginary parts over the step).
 fn parts(list: &[C]) -> (Vec<f64>, Vec<f64>) {
     list.iter().map(|x| (x.re, x.im / STEP)).unzip()
 }
 
-/// `v̇ = M⁻¹ (τ − h)`, by elimination with interchanges.
+/// Solves `v̇ = M⁻¹ (τ − h)` by Gaussian elimination with row interchanges.
 fn forward_dynamics((columns, bias): &(Vec<Vec<C>>, Vec<C>), tau: &[C]) -> Vec<C> {
     let n = bias.len();
     let mut rows: Vec<Vec<C>> =

@@ -1,4 +1,4 @@
-//! Functions of several states at once give, lane by lane, the bits of the functions of one state.
+//! Batched functions of several states return, in each lane, the same bits as the function of a single state.
 
 use linkwork::Rheonomic;
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -24,7 +24,7 @@ struct Solo12;
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, batch)]
 struct Humanoid;
 
-/// Every kind of configuration, laws with all sorts of functions, and an output; generic.
+/// Generic mechanism with every kind of coordinate chart, force laws that use many functions, and an output.
 #[mechanism(gravity = -g * y, derivatives, batch)]
 struct Machine<T> {
     g: T,
@@ -59,7 +59,7 @@ struct Machine<T> {
     offset: Vector,
 }
 
-/// So many velocities in a row that derivatives are composed of other functions' results.
+/// Chain with enough velocities that its derivatives are composed from results of other generated functions.
 #[mechanism(gravity = -9.81 * z, derivatives, packed, batch)]
 struct Tail {
     #[body(mass = 3, com = 0.1 * x, inertia = cuboid(3, 0.4, 0.3, 0.2))]
@@ -76,7 +76,7 @@ struct Tail {
     second: Ball,
 }
 
-/// Driven in time.
+/// Bead on a hoop that is driven as a function of time.
 #[mechanism(gravity = -9.81 * z, batch)]
 struct Hoop {
     radius: f64,
@@ -90,8 +90,8 @@ struct Hoop {
     motor: Torque,
 }
 
-/// A four-bar linkage, whose loop is singular where all bars lie on one line; and what is computed of its
-/// parameters.
+/// Four-bar linkage with values prepared from its parameters. Its loop is singular where all bars lie on one
+/// line.
 #[mechanism(gravity = -g * y, batch, prepare, derivatives, centroidal)]
 struct FourBar {
     g: f64,
@@ -116,7 +116,7 @@ fn machine() -> Machine<f64> {
     Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 }
 }
 
-/// The same numbers to the last bit; what is not a number is like any other that is not.
+/// Whether two numbers have the same bits; all NaNs count as equal.
 fn same<T: Real>(a: T, b: T) -> bool {
     a == b && a.is_sign_negative() == b.is_sign_negative() || (is_nan(a) && is_nan(b))
 }
@@ -133,7 +133,8 @@ fn assert_lanes<T: Real, const R: usize, const C: usize, const L: usize>(
     assert_near(what, 0.0, wide, one);
 }
 
-/// The same up to rounding, relative to the largest entry; to the last bit if there is none.
+/// Checks that each lane equals the result of its state up to `rounding`, relative to the largest entry. With
+/// `rounding = 0` the bits must be equal.
 fn assert_near<T: Real, const R: usize, const C: usize, const L: usize>(
     what: &str,
     rounding: f64,
@@ -155,7 +156,7 @@ fn scalar<T: Real>(x: T) -> SMatrix<T, 1, 1> {
     SMatrix::from_element(x)
 }
 
-/// States in lanes, and state by state.
+/// `L` states, stored as lanes and one by one.
 struct States<T, const N: usize, const L: usize> {
     wide: SVector<Lanes<T, L>, N>,
     each: [SVector<T, N>; L],
@@ -170,7 +171,7 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
         Self::new(core::array::from_fn(|_| random.vector::<N>(bound).map(linkwork::nalgebra::convert)))
     }
 
-    /// Displacements of all sizes.
+    /// Returns random displacements with magnitudes from 0 to 3.
     fn displacements(random: &mut Random) -> Self {
         let sizes = [2.0, 1e-9, 0.1, 1e-3, 0.5, 3.0, 0.0, 1e-6];
         Self::new(core::array::from_fn(|k| {
@@ -179,8 +180,8 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
     }
 }
 
-/// All functions of the trait. The mass matrix and dynamics of a single state may differ by so much where
-/// they have lanes of their own.
+/// Checks all functions of the trait. `columns` and `limbs` are the tolerances where the program of a single
+/// state uses SIMD lanes over columns of the mass matrix or over limbs, and so sums in another order.
 fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
     m: &M,
     [columns, limbs]: [f64; 2],
@@ -235,11 +236,11 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
     assert_lanes(type_name::<M>(), &wide.neutral(), |_| m.neutral());
 }
 
-/// To the last bit.
+/// Tolerance of zero: equal bits.
 const SAME: [f64; 2] = [0.0; 2];
-/// What it may differ by where columns of the mass matrix are lanes: sums have another order there.
+/// Tolerance where columns of the mass matrix are lanes, which changes the order of sums.
 const COLUMNS: [f64; 2] = [1e-13, 0.0];
-/// The same where alike limbs are.
+/// Tolerance where identical limbs are lanes, which changes the order of sums.
 const LIMBS: [f64; 2] = [1e-10; 2];
 
 #[test]
@@ -284,7 +285,7 @@ fn loops_in_lanes() {
     check::<_, _, _, _, 4>(&linkage, SAME);
     check::<_, _, _, _, 8>(&linkage, SAME);
     check::<_, _, _, _, 8>(&linkage.prepare(), SAME);
-    // A lane where the constraints depend on one another, beside others where they do not.
+    // One lane has dependent constraints, the other lanes have independent ones.
     let q: States<f64, 3, 4> = States::new([0.3, 0.0, -0.5, 1.1].map(|a| SVector::from([a, -a, a])));
     let [v, tau]: [States<f64, 3, 4>; 2] = [(); 2].map(|()| States::random(&mut Random::new(31), 1.0));
     assert_lanes("forward_dynamics", &linkage.forward_dynamics_lanes(&q.wide, &v.wide, &tau.wide), |k| {

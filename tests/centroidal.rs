@@ -1,29 +1,29 @@
-//! The matrix of the momentum and its bias: by the momentum itself, by its differences along motions, and by
-//! Newton's and Euler's laws for the whole.
+//! Centroidal momentum matrix and its bias. They are compared with the momentum itself, with differences
+//! along motions, and with Newton's and Euler's laws for the whole system.
 
 use linkwork::nalgebra::{SMatrix, SVector, Vector6};
 use linkwork::{Mechanism, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Between two derivations.
+/// Tolerance between two derivations of the same quantity.
 const EXACT: f64 = 1e-11;
-/// Differences.
+/// Tolerance against finite differences.
 const DIFFERENCE: f64 = 1e-7;
 
-/// A quadruped.
+/// Quadruped with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, centroidal)]
 struct Quadruped;
 
-/// A humanoid.
+/// Humanoid with a free base.
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, centroidal)]
 struct Humanoid;
 
-/// An arm on the ground, a finger following another.
+/// Arm fixed to the ground, with two fingers that move as one.
 #[mechanism(urdf = "../models/urdf/panda.urdf", centroidal)]
 struct Panda;
 
-/// Joints of all kinds, and a bead on a wire that a body carries.
+/// Mechanism with joints of all kinds, and a bead on a wire that is fixed to a body.
 #[mechanism(gravity = [0.3, -9.7, 0.4], centroidal)]
 struct Workshop {
     mass: f64,
@@ -45,7 +45,8 @@ struct Workshop {
     bead: Particle,
 }
 
-/// `A v` is the momentum, and where there are no accelerations it changes by `Ȧ v`.
+/// Checks that `A v` is the momentum, and that the momentum changes by `Ȧ v` where all accelerations are
+/// zero.
 macro_rules! check {
     ($at:expr) => {{
         let robot = $at;
@@ -73,7 +74,7 @@ fn momentum_of_robots() {
     check!(Workshop { mass: 0.7, length: 0.4 });
 }
 
-/// Whatever the motors do, what flies freely gains momentum by its weight alone.
+/// Checks that the weight alone changes the momentum of a free-flying robot, for any motor torques.
 fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
     robot: &M,
     mass: f64,

@@ -1,11 +1,11 @@
-//! What keeps its value, along motions; and Hamilton's form beside the others.
+//! Quantities that are conserved along motions, and Hamilton's equations against the other formulations.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Lagrange's top.
+/// Lagrange's top: a symmetric top with one fixed point.
 #[mechanism(gravity = -9.81 * z, conserved, hamilton)]
 struct Top {
     height: f64,
@@ -15,7 +15,7 @@ struct Top {
     tip: Ball,
 }
 
-/// A body without forces.
+/// Rigid body without forces.
 #[mechanism(conserved, hamilton)]
 struct Stone {
     #[body(mass = 2, com = 0.1 * x + 0.2 * y, inertia = diagonal(0.3, 0.4, 0.5))]
@@ -46,7 +46,7 @@ struct Carts {
     motor: Torque,
 }
 
-/// The same with grease in the hinge.
+/// Two carts with a spring between them, and a pendulum with viscous friction in its hinge.
 #[mechanism(gravity = -9.81 * y, conserved, hamilton)]
 struct Greased {
     #[body(mass = 1)]
@@ -61,7 +61,7 @@ struct Greased {
     grease: Dashpot,
 }
 
-/// A bead on a hoop that is kept turning.
+/// Bead on a hoop that rotates at a constant rate.
 #[mechanism(gravity = -9.81 * z, conserved, hamilton)]
 struct Hoop {
     spin: f64,
@@ -72,7 +72,7 @@ struct Hoop {
     bead: Particle,
 }
 
-/// A pendulum whose pivot swings.
+/// Pendulum whose pivot moves sinusoidally.
 #[mechanism(gravity = -9.81 * y, conserved, hamilton)]
 struct Swung {
     theta: Coordinate,
@@ -80,7 +80,7 @@ struct Swung {
     bob: Particle,
 }
 
-/// A planet about a sun that moves, too.
+/// Planet and sun as two particles that attract each other.
 #[mechanism(conserved, hamilton)]
 struct Planets {
     pull: f64,
@@ -96,7 +96,7 @@ struct Planets {
     gravity: Potential,
 }
 
-/// A charge in crossed fields.
+/// Charged particle in crossed electric and magnetic fields.
 #[mechanism(conserved)]
 struct Charge {
     electric: f64,
@@ -108,7 +108,7 @@ struct Charge {
     lorentz: Force,
 }
 
-/// A four-bar linkage.
+/// Four-bar linkage with a closed loop.
 #[mechanism(gravity = -9.81 * y, conserved)]
 struct FourBar {
     #[body(mass = 1, com = 0.1 * x, inertia = rod(1, 0.2, x))]
@@ -127,7 +127,7 @@ struct FourBar {
     last: Pin,
 }
 
-/// Three links that float, closed to a triangle with a slider.
+/// Three links on a floating base that form a closed triangle with a slider.
 #[mechanism(conserved)]
 struct Afloat {
     #[body(mass = 3, inertia = diagonal(1, 1, 1))]
@@ -150,7 +150,7 @@ struct Afloat {
     small_end: Pin,
 }
 
-/// A disk that rolls.
+/// Disk that rolls without slipping.
 #[mechanism(gravity = -9.81 * z, conserved)]
 struct Disk {
     #[body(mass = 0.5, inertia = disk(0.5, 0.2, y))]
@@ -161,7 +161,7 @@ struct Disk {
     contact: Rolling,
 }
 
-/// A ball that slides on a plane.
+/// Ball that slides on a plane.
 #[mechanism(gravity = -9.81 * z, conserved)]
 struct Sliding {
     #[body(mass = 1, inertia = sphere(1, 1))]
@@ -195,7 +195,7 @@ fn what_is_conserved_is_listed() {
     assert_eq!(Sliding::CONSERVED, [""; 0]);
 }
 
-/// Along a motion all of them stay.
+/// Checks that all conserved quantities of the mechanism are constant along a motion.
 macro_rules! stays {
     ($mechanism:expr, $q:expr, $v:expr, |$m:ident, $t:ident, $at:ident, $rate:ident| $kept:expr) => {{
         let $m = $mechanism;
@@ -239,7 +239,7 @@ fn it_stays_along_motions() {
     stays!(Disk {}, q, v, |m, t, q, v| m.conserved(&q, &v));
 }
 
-/// `v = ∂H/∂p`, the energy, and `ṗ` beside `momentum_rate`.
+/// Checks `v = ∂H/∂p`, the energy, and that `ṗ` agrees with `momentum_rate`.
 macro_rules! canonical {
     ($m:expr, $q:expr, $v:expr, $tau:expr, $energy:expr $(, $t:expr)?) => {{
         let (m, q, v, tau) = ($m, $q, $v, $tau);
@@ -288,7 +288,7 @@ fn hamiltons_form_agrees() {
     }
 }
 
-/// `ṗ = −∂H/∂q` for plain coordinates without dissipation.
+/// `ṗ = −∂H/∂q` for coordinates that are their own rates, without dissipation.
 #[test]
 fn momenta_change_by_the_slope_of_the_hamiltonian() {
     let mut random = Random::new(5);

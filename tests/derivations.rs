@@ -1,6 +1,6 @@
-//! Two derivations of one mechanism agree: the recursive algorithms in link axes, and Lagrange's equations
-//! from energies written out in the ground frame. On random trees of every joint, with random bodies,
-//! parameters, springs, dashpots, inputs and states.
+//! Two derivations of the equations of motion agree: the recursive algorithms in link axes, and Lagrange's
+//! equations from energies in the ground frame. The test cases are random trees with joints of every kind and
+//! random bodies, parameters, springs, dashpots, inputs and states.
 
 mod random_speeds;
 mod random_tree;
@@ -18,7 +18,7 @@ use random_tree::trees;
 use support::model::{symbols, with_model};
 use support::random::config;
 
-/// Relative to the largest entry of the reference.
+/// Tolerance relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
 
 fn assert_close(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
@@ -30,7 +30,7 @@ fn assert_close(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[E
     }
 }
 
-/// `M x + h`.
+/// Returns `M x + h`.
 fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
@@ -60,7 +60,8 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     check_lowering(model, &tau, seed);
 }
 
-/// ṗ = Ṁ v + M a and τ = M a + h, so the rate without τ is Ṁ v − h: the derivative of `M v` along the motion.
+/// Checks the rate of the generalized momentum. From ṗ = Ṁ v + M a and τ = M a + h, the rate without τ is Ṁ v
+/// − h, with Ṁ v found as the derivative of `M v` along the motion.
 fn check_momentum_rate<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
@@ -96,7 +97,7 @@ fn check_forward<'g>(
     assert_close("factorisation", model, seed, &factorised, a);
 }
 
-/// The lowered program and its fused form compute what the graph says.
+/// Checks that the lowered program and its fused form compute the values of the expression graph.
 fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     let q = random_configuration(model, seed);
     let symbol = |s| match Quantity::of(s) {
@@ -113,9 +114,9 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     }
 }
 
-/// Generalized forces are the derivatives of the inputs' power by the velocities: the power of a force is its
-/// product with the velocity of its point, found here by differentiating the point's position in the ground
-/// frame.
+/// Checks that the generalized forces are the derivatives of the inputs' power with respect to the
+/// velocities. The power of a force is its product with the velocity of its point, which is found here by
+/// differentiating the point's position in the ground frame.
 fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
     let g = model.graph;
     let joints = kinematics::joints(model);
@@ -166,7 +167,7 @@ fn velocity<'g>(model: &Model<'g>, p: Vec3<'g>) -> Vec3<'g> {
     p.map(|c| along(model, c))
 }
 
-/// From `Ṙ Rᵀ = [ω]×`, in ground axes.
+/// Returns the angular velocity from `Ṙ Rᵀ = [ω]×`, in ground axes.
 fn angular_velocity<'g>(model: &Model<'g>, r: &Mat3<'g>) -> Vec3<'g> {
     let rate = Mat3::from_fn(|i, j| along(model, r.0[i][j]));
     let w = rate * r.transpose();

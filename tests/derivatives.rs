@@ -1,5 +1,5 @@
-//! First derivatives of the dynamics against reference values, and against differentiation of the equations
-//! themselves; what they cost.
+//! First derivatives of the dynamics against reference values and against symbolic differentiation of the
+//! equations, and their numbers of operations.
 
 mod free_bodies;
 mod random_limbs;
@@ -27,9 +27,9 @@ use support::model::{symbols, try_model, with_model};
 use support::random::config;
 use support::table::Record;
 
-/// Relative to the largest entry of a reference.
+/// Tolerance relative to the largest entry of a reference value.
 const REFERENCE: f64 = 1e-9;
-/// Between two derivations.
+/// Tolerance between two derivations of the same quantity.
 const DERIVATION: f64 = 1e-10;
 
 // ---- Robots against
@@ -45,7 +45,7 @@ macro_rules! robot {
             let name = $name.trim_start_matches("../models/urdf/").trim_end_matches(".urdf");
             let mut cases = 0;
             type Square = SMatrix<f64, { $robot::NV }, { $robot::NV }>;
-            // Given again and again: what is always zero is not written.
+            // The same matrices are passed to each call: entries that are always zero are never written.
             let (mut forces, mut motion) = ([Square::zeros(); 2], [Square::zeros(); 3]);
             for (i, case) in Record::load(&format!("robots/{name}.json")).records("cases").iter().enumerate() {
                 if !case.has("Minv") {
@@ -118,7 +118,8 @@ fn check_recursion(model: &Model<'_>, seed: u64) {
     }
 }
 
-/// `C v` is what of the bias depends on the velocities of the links, and `Ṁ = C + Cᵀ`.
+/// Checks that `C v` equals the terms of the bias forces that depend on the links' velocities, and that
+/// `Ṁ = C + Cᵀ`.
 fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
     let joints = kinematics::joints(model);
     let v = mechanics::velocities(model);
@@ -164,7 +165,8 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
     assert_same("inverse in parts", model, seed, &whole.concat(), &factor.inverse().concat());
 }
 
-/// What is known of the motion of a free base solves the equations, differentiated.
+/// Checks that the derivatives of the acceleration of a free base that follow from invariance solve the
+/// differentiated equations of motion. Returns the indices of these columns, by `q` and by `v`.
 fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
     let joints = kinematics::joints(model);
     let mass = crba::mass_matrix(model, &joints);
@@ -185,7 +187,7 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
     known.indices()
 }
 
-/// The configuration after a step of size `h` along velocity `k`, to the second order.
+/// Returns the configuration after a step of size `h` along velocity `k`, correct to second order in `h`.
 fn moved(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
     let along = |s| match Quantity::of(s) {
         Quantity::Configuration(i) => q[i],
@@ -202,8 +204,9 @@ fn moved(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
     moved
 }
 
-/// The derivatives of forward dynamics, with what is known of them in its place, are limits of differences.
-/// Returns the largest deviation relative to the largest derivative, and how many columns are known.
+/// Compares the derivatives of forward dynamics with central differences. Columns that follow from invariance
+/// are replaced by their known values. Returns the largest deviation relative to the largest derivative, and
+/// the number of known columns.
 fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     const STEP: f64 = 1e-5;
     let joints = kinematics::joints(model);
@@ -270,7 +273,8 @@ fn forces_from_the_ground_are_not_forgotten() {
     assert_eq!(of(spring), [none(), vec![0, 1, 2]]);
     let dashpot = "#[acts(between = (ground.at(3 * x), arm.at(z)), damping = 3)] mooring: Dashpot,";
     assert_eq!(of(dashpot), [none(), none()]);
-    // What has inertia falls otherwise than the links, or sees the ground turn.
+    // Invariance does not hold for an inerter between bodies, which has inertia but no weight, nor for a load
+    // that moves along an axis of the ground.
     let inerter = "#[acts(between = (ground.at(3 * x), arm.at(z)), inertance = 3)] mooring: Inerter,";
     assert_eq!(of(inerter), [none(), none()]);
     assert_eq!(of("#[acts(on = elbow, inertance = 3)] inside: Inerter,"), all());
@@ -307,7 +311,7 @@ proptest! {
 proptest! {
     #![proptest_config(config(120))]
 
-    /// Elements of every kind between bodies and the ground, on free bodies as on others.
+    /// Elements of every kind act between bodies and the ground, both on free bodies and on jointed ones.
     #[test]
     fn derivatives_are_limits_of_differences(
         (tree, world, creature) in (tied_trees(4), worlds(), creatures(2)),
@@ -325,15 +329,16 @@ proptest! {
                 assert!(deviation < 1e-6, "{deviation:e}, {known} columns are known (seed {seed})\n{}", source.1);
             }
         };
-        // What holds a body to itself, or moves nothing, is refused.
+        // Mechanisms with an element between a body and itself, or with an element that moves nothing, are
+        // rejected.
         let _ = try_model(&source, |_, model| check(model));
     }
 }
 
-// ----
-// Operations --------------------------------------------------------------------------------------------------
+// ---- Operations ----------------------------------------------------------------------------------------
 
-/// Operations of the derivatives of inverse dynamics, and of the inverse of the mass matrix.
+/// Returns the numbers of operations of the derivatives of inverse dynamics, and of the inverse of the mass
+/// matrix.
 fn operations(arguments: &str) -> [usize; 2] {
     programs(arguments).map(|program| program.counts.total())
 }
@@ -353,8 +358,9 @@ fn programs(arguments: &str) -> [Program; 2] {
     })
 }
 
-/// With alike limbs as lanes: multiplications, additions and divisions together, each on all lanes at once,
-/// and the instructions that are left of them when products are fused into sums.
+/// Numbers of operations with identical limbs as lanes. The first number counts multiplications, additions
+/// and divisions, each of which acts on all lanes at once. The second counts the instructions that remain
+/// after products are fused into sums.
 #[test]
 fn operation_counts_in_lanes() {
     let of = |robot: &str| {
@@ -368,7 +374,7 @@ fn operation_counts_in_lanes() {
             (program.counts.total(), fused.count())
         })
     };
-    // Derivatives of inverse dynamics, and the inverse of the mass matrix.
+    // Each row has the derivatives of inverse dynamics, then the inverse of the mass matrix.
     let expected = [[(1303, 845), (794, 497)], [(6108, 4115), (6301, 3682)]];
     assert_eq!(["solo12", "simple_humanoid"].map(of), expected);
 }

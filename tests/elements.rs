@@ -1,6 +1,6 @@
-//! The elements that are no joints, on random mechanisms with all of them: the recursive algorithms and
-//! Lagrange's equations agree, energy goes where it should, and what is looked at moves as its velocities and
-//! accelerations say.
+//! Elements other than joints, on random mechanisms with all of them. The recursive algorithms and Lagrange's
+//! equations agree, the power balance is satisfied, and output positions change at the rates that output
+//! velocities and accelerations state.
 
 mod random_world;
 
@@ -22,9 +22,9 @@ use random_world::{OUTPUTS, worlds};
 use support::model::with_model;
 use support::random::config;
 
-/// Relative to the largest entry of the reference.
+/// Tolerance relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
-/// Differences.
+/// Tolerance against finite differences.
 const DIFFERENCE: f64 = 1e-7;
 
 /// Numbers for all symbols: a state, accelerations, inputs and time.
@@ -44,7 +44,8 @@ impl State {
         self.later(0.0, &[], e)
     }
 
-    /// After a short time along the motion with the given rates of `q`, to first order.
+    /// Returns the values of expressions after a short time along the motion with the given rates of `q`, to
+    /// first order.
     fn later(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
         let other = |s: Symbol| 2.0 * (sample(s, self.seed) - 1.0);
         eval(e, &|s| match Quantity::of(s) {
@@ -55,7 +56,7 @@ impl State {
         })
     }
 
-    /// Rate of expressions along the motion, by differences.
+    /// Returns the rates of expressions along the motion, by differences.
     fn slope(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
         let rates = self.values(&lagrange::configuration_rates(model));
         let at = |s: f64| self.later(s, &rates, e);
@@ -73,7 +74,8 @@ fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
     }
 }
 
-/// What is generated for a mechanism with a mistake has the signatures of the mechanism without it.
+/// Checks that the outline that is generated for a mechanism with errors has the signatures of the correct
+/// mechanism.
 fn check_outline(description: &Description, model: &Model<'_>) {
     let outline = outline(description);
     assert_eq!(outline.configuration, model.configuration);
@@ -98,7 +100,7 @@ fn check_outline(description: &Description, model: &Model<'_>) {
     assert_eq!(outline.outputs.len(), model.outputs.len());
 }
 
-/// `M x + h`.
+/// Returns `M x + h`.
 fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
@@ -132,7 +134,7 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     let expected: Vec<_> =
         (0..model.nv()).map(|k| by(model, Quantity::Velocity(k), reference.kinetic)).collect();
     close("momentum", &p, &expected);
-    // ṗ = Ṗ(q, v, t) + M a and τ = M a + h.
+    // The reference is ṗ = Ṗ(q, v, t) + M a with τ = M a + h.
     let rate = momentum::momentum_rate(model, &joints, &v);
     let expected: Vec<_> =
         p.iter().zip(&bias).map(|(p, h)| time_derivative(model.space(), *p) - *h).collect();
@@ -142,7 +144,8 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
     check_energy(model, &joints, &tau, &state);
 }
 
-/// Jacobi's integral `p · v − T + U` gains the power of what acts and loses `∂L/∂t`.
+/// Checks the power balance: Jacobi's integral `p · v − T + U` changes by the power of the forces minus
+/// `∂L/∂t`.
 fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], state: &State) {
     let g = model.graph;
     let v = mechanics::velocities(model);
@@ -167,13 +170,13 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
     assert_close("energy", &state.slope(model, &[jacobi]), &state.values(&[expected]), DIFFERENCE);
 }
 
-/// The values of an output by name.
+/// Returns the values of the output with this name.
 fn output<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
     model.outputs.iter().find(|o| o.name == name).expect("every output is there").values.clone()
 }
 
-/// Velocities are the rates of places, accelerations those of velocities, each in the axes in which it is
-/// taken.
+/// Checks that output velocities are the rates of output positions and accelerations those of velocities,
+/// each in the axes in which the output is expressed.
 fn check_outputs(model: &Model<'_>, seed: u64) {
     let state = State::new(model, seed);
     let is_rate = |rate: &str, of: &str| {
@@ -203,7 +206,7 @@ fn check_outputs(model: &Model<'_>, seed: u64) {
             })
         };
         let rates: Vec<f64> = values.iter().map(whole).collect();
-        // Accelerations themselves are held.
+        // Accelerations are constant along this motion.
         assert_close(name, &rates, &state.slope(model, &values), DIFFERENCE);
     }
 }

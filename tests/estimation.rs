@@ -1,12 +1,13 @@
-//! Extended Kalman filters of a load on a ball joint, by its inertial measurement unit: what the sensors see
-//! is found, what they cannot see stays off, and errors are as large as the filter says.
+//! Extended Kalman filters that estimate the state of a load on a ball joint from its inertial measurement
+//! unit. Observable components of the state converge, unobservable ones keep their error, and the errors
+//! agree with the filter's covariance.
 
 use linkwork::nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork::{OutputDerivatives, Outputs, RheonomicDerivatives, discrete};
 use support::random::Random;
 
-/// A load that swings and turns on a ball joint, with gyroscope and accelerometer.
+/// Load that swings and rotates on a ball joint, with a gyroscope and an accelerometer.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Load {
     #[body(mass = 1.5, com = -0.8 * z, inertia = diagonal(0.02, 0.03, 0.01))]
@@ -19,7 +20,7 @@ struct Load {
     accelerometer: Vector,
 }
 
-/// The load with its sensors and a compass.
+/// Load on a ball joint with a gyroscope, an accelerometer and a compass.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Guided {
     #[body(mass = 1.5, com = -0.8 * z, inertia = diagonal(0.02, 0.03, 0.01))]
@@ -35,22 +36,22 @@ struct Guided {
 }
 
 const PERIOD: f64 = 0.01;
-/// Variances of the sensors, and of the changes of velocity that nobody knows of in a period.
+/// Variances of the sensor noise, and of the random changes of velocity in each period.
 const NOISE: f64 = 1e-4;
 const GUSTS: f64 = 1e-6;
-/// Most linearisations of a correction.
+/// Maximum number of linearisations in one correction.
 const MOST: usize = 20;
 
-/// A state that is known up to a spread: the covariance of displacements, then of changes of velocity.
+/// Estimate of the state with the covariance of its error: displacements first, then velocities.
 struct Belief {
     q: SVector<f64, 4>,
     v: SVector<f64, 3>,
     spread: SMatrix<f64, 6, 6>,
 }
 
-/// One period of the filter, whose correction is linearised anew where it leads until that changes no more:
-/// the most likely state, also where the first one is far off (Bell and Cathey, *The iterated Kalman filter
-/// update as a Gauss-Newton method*, 1993).
+/// Runs one period of the iterated extended Kalman filter. The correction is linearised again at its own
+/// result until the result changes no more, which finds the most likely state also from a distant prediction
+/// (Bell and Cathey, *The iterated Kalman filter update as a Gauss-Newton method*, 1993).
 fn update<M, const NY: usize>(m: &M, belief: &mut Belief, y: &SVector<f64, NY>)
 where
     M: RheonomicDerivatives<4, 3, 0, Scalar = f64> + OutputDerivatives<4, 3, 0, NY, Scalar = f64>,
@@ -60,7 +61,7 @@ where
     let a = step.a::<6>();
     let mut spread = a * belief.spread * a.transpose();
     (3..6).for_each(|k| spread[(k, k)] += GUSTS);
-    // What is looked for is a displacement from the prediction.
+    // The unknown is a displacement from the prediction.
     let mut x = SVector::<f64, 6>::zeros();
     let (mut gain, mut c) = (SMatrix::<f64, 6, NY>::zeros(), SMatrix::<f64, NY, 6>::zeros());
     let mut moved = SMatrix::<f64, 6, 6>::identity();
@@ -70,7 +71,7 @@ where
         let motion = at(m, 0.0).linear_motion(&belief.q, &belief.v, &u);
         let (q, v, a) = (&belief.q, &belief.v, &motion.acceleration);
         let seen = m.output_derivatives(0.0, q, v, a, &u).in_motion(&motion);
-        // How the state moves, in its own axes, with that displacement.
+        // Derivative of the displaced state, in its own axes, with respect to the displacement.
         moved.fixed_view_mut::<3, 3>(0, 0).copy_from(&m.integrate_derivatives(&dq).1);
         c = seen.c::<6>() * moved;
         let innovation = c * spread * c.transpose() + SMatrix::identity() * NOISE;
@@ -87,13 +88,14 @@ where
     belief.spread = moved * updated * moved.transpose();
 }
 
-/// Normal to a good approximation: the sum of twelve uniform numbers (Irwin and Hall).
+/// Returns approximately normal random numbers: each is the sum of twelve uniform numbers (Irwin and Hall).
 fn normal<const N: usize>(random: &mut Random, variance: f64) -> SVector<f64, N> {
     SVector::from_fn(|_, _| (0..12).map(|_| random.uniform(0.5)).sum::<f64>() * variance.sqrt())
 }
 
-/// Runs from an error of the start that is as large as `off` for so many seconds: the displacement from the
-/// estimate to the state, the error of the velocity, and the last belief and configuration.
+/// Runs the filter for `duration` seconds from an initial error with standard deviation `off`. Returns the
+/// displacement from the estimate to the true state (configuration, then velocity), the last estimate and the
+/// last true configuration.
 fn run<M, const NY: usize>(
     m: &M,
     random: &mut Random,
@@ -125,7 +127,7 @@ where
     (left, belief, q)
 }
 
-/// With a compass the whole state is found from where every part is off by some 0.3 rad and rad/s.
+/// With a compass the whole state is found from errors with a standard deviation of 0.3 rad and 0.3 rad/s.
 #[test]
 fn a_load_on_a_ball_joint_is_found() {
     for seed in 0..5 {
@@ -134,8 +136,8 @@ fn a_load_on_a_ball_joint_is_found() {
     }
 }
 
-/// Gyroscope and accelerometer tell nothing of how the load stands about the vertical: all else is found, and
-/// that stays off, which the filter knows.
+/// Gyroscope and accelerometer do not observe the heading of the load about the vertical. All other
+/// components converge; the heading keeps its error, and the filter's covariance shows that.
 #[test]
 fn heading_is_not_seen_without_a_compass() {
     for seed in 0..5 {
@@ -152,8 +154,8 @@ fn heading_is_not_seen_without_a_compass() {
     }
 }
 
-/// Errors are as large as the filter says: the mean of `eᵀ P⁻¹ e` is the number of unknowns (Bar-Shalom, Li
-/// and Kirubarajan, *Estimation with applications to tracking and navigation*, 2001, § 5.4).
+/// The errors agree with the filter's covariance: the mean of `eᵀ P⁻¹ e` is the number of unknowns
+/// (Bar-Shalom, Li and Kirubarajan, *Estimation with applications to tracking and navigation*, 2001, § 5.4).
 #[test]
 fn errors_are_as_large_as_they_are_said_to_be() {
     const RUNS: u64 = 30;
@@ -162,8 +164,8 @@ fn errors_are_as_large_as_they_are_said_to_be() {
         let (left, belief, _) = run::<_, 9>(&Guided {}, &mut Random::new(100 + seed), 0.1, 1.0, GUSTS);
         sum += left.dot(&(belief.spread.try_inverse().unwrap() * left));
     }
-    // Of a mean of 30 values of chi square with six degrees of freedom 99.9 % are within 3.3 standard
-    // deviations.
+    // The mean of 30 chi-square values with six degrees of freedom is within 3.3 standard deviations in 99.9
+    // % of cases.
     let mean = sum / RUNS as f64;
     assert!((mean - 6.0).abs() < 3.3 * (12.0 / RUNS as f64).sqrt(), "{mean}");
 }

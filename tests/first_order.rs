@@ -1,4 +1,4 @@
-//! States of first order: integrated by every method, and part of every derivative.
+//! First-order states: every integrator integrates them, and every derivative includes them.
 
 use linkwork::integrate::Method;
 use linkwork::nalgebra::SVector;
@@ -7,11 +7,12 @@ use linkwork::{OutputDerivatives, Outputs, Rheonomic, RheonomicDerivatives, mech
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Between derivatives and differences of eighth order.
+/// Tolerance between derivatives and central differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
 
-/// An aircraft whose thrust follows the throttle late, and whose elevator moves by a filtered angle of
-/// attack; the jet's deflection, an input, acts by the thrust there is.
+/// Aircraft with first-order states: its thrust follows the throttle with a lag, and a filtered angle of
+/// attack moves its elevator. The force of the deflected jet is proportional to the current thrust; the
+/// deflection is an input.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 #[derive(Debug)]
 struct Fighter<T: Real> {
@@ -84,14 +85,14 @@ fn cases() -> Vec<Case> {
     (0..6).map(one).collect()
 }
 
-/// A derivative of eighth order.
+/// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
 fn slope<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let terms = weights.iter().zip(1..).map(|(w, k)| (f(k as f64 * h) - f(-(k as f64) * h)) * *w);
     terms.fold(SVector::zeros(), |sum, term| sum + term) / h
 }
 
-/// The matrix of derivatives along each of `K` directions.
+/// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
 fn slopes<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
@@ -147,7 +148,7 @@ fn the_rates_are_what_was_written() {
         let tau = Rheonomic::generalized_forces(&now, t, &q, &own, &u);
         let accelerations = Rheonomic::forward_dynamics(&now, t, &q, &own, &tau);
         assert_similar("v̇", found.fixed_rows::<6>(0).as_slice(), accelerations.as_slice(), 1e-14);
-        // Velocities are in body axes.
+        // Velocities are expressed in body axes.
         let speed = own.fixed_rows::<3>(0).norm();
         let alpha = own[2].atan2(own[0]);
         let power = (1e4 * u[0] - v[6]) * (1.0 + speed / 400.0) / 0.7;
@@ -218,7 +219,7 @@ fn outputs_change_with_them() {
     }
 }
 
-/// A sled with a late engine: `F = F₀ (1 − e^{−t/τ})`.
+/// Sled whose engine has a lag: `F = F₀ (1 − e^{−t/τ})`.
 #[mechanism]
 #[derive(Clone, Copy)]
 struct Sled {
@@ -261,12 +262,12 @@ fn every_method_integrates_them() {
     sled_runs_by(Rosenbrock::step(1e-3), 0.4, 1e-5);
     sled_runs_by(ImplicitMidpoint::step(1e-3), 0.4, 1e-5);
     sled_runs_by(SemiImplicitEuler::step(1e-4), 0.4, 1e-3);
-    // A lag a thousand times shorter than a step.
+    // The lag is a thousand times shorter than a step.
     sled_runs_by(Rodas::new().tolerance(1e-6, 1e-8), 1e-5, 1e-5);
     sled_runs_by(Rosenbrock::step(1e-2), 1e-5, 1e-4);
 }
 
-/// A slider-crank driven by a torque that is late, or by one that is given.
+/// Slider-crank that is driven either by a torque with a lag or by a torque that is an input.
 macro_rules! engine {
     ($name:ident, { $($field:tt)* }) => {
         #[mechanism(gravity = -9.81 * y)]

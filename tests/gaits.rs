@@ -1,12 +1,12 @@
-//! Optimal control through contacts that are known: a hop of one leg, from its stance by a flight and a
-//! touchdown to its stance.
+//! Optimal control through a known sequence of contacts: one leg hops from stance through flight and
+//! touchdown back to stance.
 
 use linkwork::contact::{self, HeldDerivatives, Touch};
 use linkwork::discrete::{self, Transition};
 use linkwork::optimal::{Policy, Quadratic, Value, backward_into};
 use linkwork::prelude::*;
 
-/// A trunk that keeps upright, on a leg that swings and telescopes.
+/// Trunk that stays upright, on a leg that swings and telescopes.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Hopper {
     #[body(mass = 5)]
@@ -33,17 +33,17 @@ type State = (SVector<f64, 4>, SVector<f64, 4>);
 type Inputs = SVector<f64, 2>;
 
 const PERIOD: f64 = 0.01;
-/// Nodes before the flight, until the touchdown, and in all.
+/// Index of the first node in flight, index of the touchdown, and the number of nodes.
 const LEAVES: usize = 12;
 const LANDS: usize = 24;
 const NODES: usize = 34;
-/// Weights of inputs, of forces of the ground, of the foot's height at touchdown, and of the last state.
+/// Weights of inputs, of ground forces, of the foot's height at touchdown, and of the last state.
 const EFFORT: f64 = 1e-3;
 const FORCES: f64 = 1e-5;
 const HEIGHT: f64 = 1e4;
 const LAST: f64 = 200.0;
 
-/// What contacts do in a node, none at the touchdown.
+/// Returns the contact mode in a node, `None` at the touchdown.
 fn touch(k: usize) -> Option<Touch> {
     match k {
         LANDS => None,
@@ -52,7 +52,7 @@ fn touch(k: usize) -> Option<Touch> {
     }
 }
 
-/// Where a node leads, and what it costs.
+/// Returns the state after a node, and the cost of the node.
 fn advance(k: usize, (q, v): &State, u: &Inputs) -> (State, f64) {
     let m = Hopper {};
     let effort = EFFORT / 2.0 * u.norm_squared();
@@ -66,14 +66,14 @@ fn advance(k: usize, (q, v): &State, u: &Inputs) -> (State, f64) {
     ((m.integrate(q, &(v * PERIOD)), v), effort + FORCES / 2.0 * found.forces.norm_squared())
 }
 
-/// What the last state costs: half a metre on, upright, at rest.
+/// Returns the cost of the last state and its derivatives. The goal is 0.3 m ahead, upright and at rest.
 fn last((q, v): &State) -> (f64, Value<f64, 4>) {
     let (off, one) = (q - SVector::from([0.3, 0.4, 0.0, 0.0]), SMatrix::identity() * LAST);
     let costs = LAST / 2.0 * (off.norm_squared() + v.norm_squared());
     (costs, Value { q: off * LAST, v: v * LAST, qq: one, vv: one, ..Value::zeros() })
 }
 
-/// The motion from the start, and what it costs.
+/// Returns the states of the motion from the start, and its total cost.
 fn motion(start: &State, inputs: &[Inputs]) -> (Vec<State>, f64) {
     let (mut states, mut sum) = (vec![*start], 0.0);
     for (k, u) in inputs.iter().enumerate() {
@@ -85,7 +85,7 @@ fn motion(start: &State, inputs: &[Inputs]) -> (Vec<State>, f64) {
     (states, sum + end)
 }
 
-/// A node to first order, and its costs to second.
+/// Returns the transition of a node to first order, and its cost to second order.
 fn node(
     k: usize,
     (q, v): &State,
@@ -117,7 +117,8 @@ fn node(
     (step, cost)
 }
 
-/// The gradient of the costs by all inputs, by differences of the whole motion of sixth order.
+/// Returns the largest derivative of the total cost with respect to an input, by differences of sixth order
+/// of the whole motion.
 fn gradient(start: &State, inputs: &[Inputs]) -> f64 {
     let mut most = 0.0_f64;
     for k in 0..NODES {
@@ -135,12 +136,12 @@ fn gradient(start: &State, inputs: &[Inputs]) -> f64 {
     most
 }
 
-/// An iterative linear-quadratic regulator finds a motion whose costs no input changes to first order, as
-/// differences of the whole motion say, which know of no derivatives.
+/// The iterative linear-quadratic regulator finds a motion whose cost is stationary with respect to every
+/// input. Differences of the whole motion, which use no derivatives, confirm that.
 #[test]
 fn a_hop_is_optimal() {
     let start: State = ([0.0, 0.38, 0.1, 0.02].into(), SVector::zeros());
-    // The weight at first.
+    // All inputs of the initial guess are zero.
     let mut inputs = vec![SVector::from([0.0, 0.0]); NODES];
     let (mut states, mut cost) = motion(&start, &inputs);
     let (first, begin) = (cost, gradient(&start, &inputs));
@@ -175,7 +176,7 @@ fn a_hop_is_optimal() {
     let end = gradient(&start, &inputs);
     assert!(end < 1e-6 * begin, "{begin:e} {end:e}");
     assert!(cost < 0.1 * first, "{first} {cost}");
-    // It leaves the ground and comes down where it is to.
+    // The foot leaves the ground and touches down at the prescribed node.
     let m = Hopper {};
     let gaps: Vec<f64> = states.iter().map(|(q, _)| m.contact_gaps(q)[0]).collect();
     assert!(gaps[LANDS].abs() < 5e-3, "{gaps:?}");

@@ -1,30 +1,30 @@
-//! Inverse dynamics as a linear function of the mass properties, and the combinations of them that can be
-//! identified.
+//! Inverse dynamics as a linear function of the inertial parameters, and the combinations of them that can be
+//! identified (base parameters).
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{DMatrix, SMatrix, SVector};
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 
-/// Between two derivations.
+/// Tolerance between two derivations of the same quantity.
 const EXACT: f64 = 1e-10;
-/// Singular values below this part of the largest count as zero.
+/// Singular values below this fraction of the largest count as zero.
 const RANK: f64 = 1e-9;
 
-/// A six-axis arm.
+/// Arm with six axes.
 #[mechanism(urdf = "../models/urdf/ur5.urdf", passive = ignore, regressor)]
 struct Ur5;
 
-/// A seven-axis arm with two fingers.
+/// Arm with seven axes and two independent fingers.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, passive = ignore, regressor)]
 struct Panda;
 
-/// A quadruped.
+/// Quadruped with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, passive = ignore, regressor)]
 struct Quadruped;
 
-/// A 6R arm with the geometry of the PUMA 560 in parameters (Armstrong, Khatib and Burdick 1986), its bodies
-/// of no symmetry, one of them with a load that is fixed to it.
+/// Arm with the geometry of the PUMA 560 in parameters (Armstrong, Khatib and Burdick 1986). Its bodies have
+/// no symmetry, and a load is fixed to one of them.
 #[mechanism(gravity = -9.81 * z, regressor, prepare)]
 struct Puma {
     a2: f64,
@@ -60,7 +60,7 @@ struct Puma {
     yaw: Pin,
 }
 
-/// Joints of all kinds, bodies away from their joints, and a bead on a wire.
+/// Mechanism with joints of all kinds, bodies away from their joints, and a bead on a wire.
 #[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
 struct Workshop {
     mass: f64,
@@ -86,8 +86,8 @@ struct Workshop {
     bead: Particle,
 }
 
-/// A universal joint on a body that moves, on which a ball has another: what is moved between the axes of
-/// each acts twice.
+/// Universal joint on a moving body, and a ball with a second universal joint on it. Parameters that move
+/// from one body to the next across such a joint move along both of its axes.
 #[mechanism(gravity = [0.3, -9.7, 0.4], regressor)]
 struct Slings {
     #[body(mass = 0.3, com = -0.3 * z, inertia = sphere(0.3, 0.05))]
@@ -108,15 +108,15 @@ struct Slings {
     second: Universal,
 }
 
-/// How many columns of stacked matrices are independent.
+/// Returns the rank of the stacked matrices: the number of independent columns.
 fn rank<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usize {
     let stacked = DMatrix::from_fn(N * matrices.len(), M, |i, j| matrices[i / N][(i % N, j)]);
     let singular = stacked.singular_values();
     singular.iter().filter(|s| **s > RANK * singular.max()).count()
 }
 
-/// Both regressors give inverse dynamics, for the mechanism's own mass properties and for any others alike,
-/// and there are no fewer combinations that act than base parameters.
+/// Checks that both regressors reproduce inverse dynamics, for the mechanism's own inertial parameters and
+/// for random ones, and that the number of base parameters equals the rank of the regressor.
 macro_rules! check {
     ($robot:ident, $at:expr) => {{
         const STANDARD: usize = 10 * $robot::BODIES.len();
@@ -149,11 +149,12 @@ macro_rules! check {
 
 #[test]
 fn robots() {
-    // 7 for each pin but the first, whose axis is upright: of that only the inertia about it acts.
+    // 7 for each pin except the first, whose axis is vertical: only the inertia about this axis has an
+    // effect.
     assert_eq!(check!(Ur5, Ur5), 36);
     // The arm's 43 (Gaz et al. 2019), and the mass and first moment of each finger.
     assert_eq!(check!(Panda, Panda), 43 + 2 * 4);
-    // All ten of a body that floats, and 7 for each pin.
+    // All ten of the floating body, and 7 for each pin.
     assert_eq!(check!(Quadruped, Quadruped), 10 + 12 * 7);
 }
 
@@ -204,8 +205,8 @@ struct DoublePendulum {
     dashpot: Dashpot,
 }
 
-/// Of a plane chain two components of the first moment and one inertia act for each link, one of the masses
-/// by way of them; what elements do stays outside.
+/// In a plane chain each link has three base parameters: two components of the first moment and one inertia.
+/// The masses act through these. Forces of elements are not part of the regressor.
 #[test]
 fn by_hand() {
     let (m, l, k, c) = (1.5, 0.8, 7.0, 0.3);

@@ -1,5 +1,5 @@
-//! Implicit methods on generated derivatives: the motion is that by differences, for fewer evaluations of the
-//! dynamics.
+//! Implicit methods with generated derivatives: the motion equals that with finite differences, with fewer
+//! evaluations of the dynamics.
 
 use linkwork::contact::{self, Touch};
 use linkwork::integrate::{DormandPrince8, Method, Rodas, Rosenbrock};
@@ -9,7 +9,7 @@ use linkwork::{ByMotion, ConstrainedDerivatives, ConstraintError, Rheonomic, at,
 use linkwork_models::{CarAxle, RollingDisk};
 use std::cell::Cell;
 
-/// A mechanism whose forward dynamics are counted, and whose derivatives are hidden unless `KNOWN`.
+/// Mechanism that counts evaluations of forward dynamics and hides its derivatives unless `KNOWN`.
 struct Counted<'m, M, const KNOWN: bool> {
     mechanism: &'m M,
     count: Cell<usize>,
@@ -97,7 +97,7 @@ where
     }
 }
 
-/// A pendulum on a cart on a stiff spring and dashpot.
+/// Cart with a pendulum, on a stiff spring and dashpot.
 #[mechanism(gravity = -9.81 * y, derivatives, batch)]
 struct Cart {
     #[body(mass = 1)]
@@ -116,7 +116,7 @@ struct Cart {
     motor: Torque,
 }
 
-/// The same with a motor that is late.
+/// Cart with a pendulum, on a stiff spring and dashpot, with a motor that has a lag.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Late {
     lag: f64,
@@ -131,7 +131,7 @@ struct Late {
     motor: Torque,
 }
 
-/// A four-bar linkage with a stiff spring and dashpot at its crank.
+/// Four-bar linkage with a stiff spring and dashpot at its crank.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct FourBar {
     #[body(mass = 1, com = x / 2)]
@@ -156,7 +156,7 @@ struct FourBar {
     motor: Torque,
 }
 
-/// A trunk on a leg that stands.
+/// Trunk on a leg that stands on the ground.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Hopper {
     #[body(mass = 5)]
@@ -177,7 +177,7 @@ struct Hopper {
     foot: Contact,
 }
 
-/// A bob that a constraint holds on a circle, pushed.
+/// Particle that a constraint keeps on a circle, with an input force.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct OnCircle {
     #[particle(mass = 2)]
@@ -190,7 +190,7 @@ struct OnCircle {
     push: Force,
 }
 
-/// How many evaluations of the dynamics a single step of RODAS takes.
+/// Returns the number of evaluations of the dynamics in a single step of RODAS.
 fn evaluations<M, const NQ: usize, const NV: usize>(
     m: &M,
     q: SVector<f64, NQ>,
@@ -214,7 +214,7 @@ where
     [count(&Counted::<_, true>::new(m), q, v), count(&Counted::<_, false>::new(m), q, v)]
 }
 
-/// The end of a run under feedback, with derivatives and by differences.
+/// Returns the ends of a run under feedback, with generated derivatives and with differences.
 fn ends<M, S, const NQ: usize, const NV: usize>(
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
@@ -255,7 +255,7 @@ where
     assert!(gap(&known, &differences) < 1e-6, "{known:?} and {differences:?}");
     let [fixed, other] = ends(m, start, Rosenbrock::step(4e-5));
     assert!(gap(&fixed, &other) < 1e-6, "{fixed:?} and {other:?}");
-    // Order 2 against order 4.
+    // The methods have orders 2 and 4.
     assert!(gap(&fixed, &known) < 1e-4, "{fixed:?} and {known:?}");
 }
 
@@ -288,7 +288,7 @@ fn the_order_is_four() {
     assert!((order - 4.0).abs() < 0.4, "{order}: {:e}", error(0.05));
 }
 
-/// Under constraints the order is that of the method, by generated derivatives and by differences.
+/// Under constraints the order of convergence is four, with generated derivatives and with differences.
 #[test]
 fn the_order_is_four_under_constraints() {
     let start = ([0.0, -1.0].into(), [2.5, 0.0].into());
@@ -301,9 +301,9 @@ fn the_order_is_four_under_constraints() {
     }
 }
 
-/// Where the clock has run for weeks and years it ticks in steps longer than those between samples in time:
-/// forces that depend on it cost no more steps, and the motion is the same but for what rounding of the time
-/// makes of the forces.
+/// After weeks and years of simulated time, adjacent floating-point numbers of the clock are farther apart
+/// than the differences in time that the method would take. Forces that depend on time then cost no more
+/// steps. The motion changes only by the effect of the clock's rounding on the forces.
 #[test]
 fn a_clock_that_has_run_for_long_costs_no_steps() {
     let cart = Cart {};
@@ -358,7 +358,7 @@ fn wrappers_pass_derivatives_on_that_they_do_not_change() {
     assert_eq!(known, Some((linear.by_q, linear.by_v, linear.by_u)));
 }
 
-/// `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` by central differences of fourth order.
+/// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` by central differences of fourth order.
 fn differences<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: f64,
@@ -390,8 +390,8 @@ where
     )
 }
 
-/// The derivatives of a mechanism whose violations decay are those by differences, in states that are off its
-/// constraints too.
+/// Checks that the derivatives of stabilized accelerations, which let constraint violations decay, equal
+/// differences, also in states that violate the constraints.
 #[track_caller]
 fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
@@ -419,14 +419,14 @@ fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize,
         for gap in [found.0 - expected.0, found.1 - expected.1] {
             assert!(gap.amax() < 1e-8 * size, "{gap:e} of {size:e}");
         }
-        // Linear in the inputs: rounding of accelerations alone.
+        // Accelerations are linear in the inputs: the error is only the rounding of accelerations.
         assert!((found.2 - expected.2).iter().all(|gap| gap.abs() < 1e-9 + 1e-12 * size));
-        // Both ways to see the same constraints.
+        // Both views of the constrained mechanism give the same derivatives.
         assert_eq!(Some(found), at(m, t).stabilized_derivatives(0.0, (&q, &v), &u, 12.0));
     }
 }
 
-/// Loops, a rod, a wheel that rolls, and a road that moves.
+/// Stabilized derivatives exist for closed loops, a rod, a rolling wheel and a moving road.
 #[test]
 fn decaying_violations_have_derivatives() {
     decays(&OnCircle {}, 0.0, ([0.6, -0.8].into(), [0.8, 0.6].into()));
@@ -438,7 +438,8 @@ fn decaying_violations_have_derivatives() {
     decays(&CarAxle {}, 0.3, ([0.0, 0.5, 1.0, 0.5].into(), [-0.5, 0.0, -0.5, 0.0].into()));
 }
 
-/// In lanes, each has the derivatives of its state, and the implicit method moves each as it moves it alone.
+/// In lanes, each lane has the derivatives of its own state, and the implicit method moves each lane as it
+/// moves a single state.
 #[test]
 fn lanes_have_derivatives() {
     let cart = Cart {};

@@ -1,11 +1,11 @@
-//! The inverse of the mass matrix, and the derivatives made of it, of mechanisms so large that loops
-//! calculate them.
+//! Inverse of the mass matrix, and derivatives that use it, for mechanisms that are large enough to be
+//! evaluated in loops.
 
 use linkwork::prelude::*;
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// It does not branch.
+/// Chain of links without branches.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
 struct Tail {
     #[body(mass = 3, com = 0.2 * x, inertia = cuboid(3, 0.4, 0.3, 0.2))]
@@ -30,8 +30,8 @@ struct Tail {
     fourth: Ball,
 }
 
-/// Three arms, none like another, declared link by link in turns: their velocities are not neighbours. The
-/// tail does not move with the neck.
+/// Three different arms whose links are declared in turn, so that the velocities of an arm are not adjacent.
+/// The tail does not move with the neck.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
 struct Squid {
     #[body(mass = 5, com = 0.1 * x + 0.1 * z, inertia = cuboid(5, 0.4, 0.3, 0.2))]
@@ -72,7 +72,7 @@ struct Squid {
     left_third: Pin,
 }
 
-/// Two arms alike at the end of a long neck.
+/// Two identical arms at the end of a long neck.
 #[mechanism(gravity = -9.81 * z, derivatives, packed)]
 struct Bird {
     #[body(mass = 5, com = 0.1 * x + 0.1 * z, inertia = cuboid(5, 0.4, 0.3, 0.2))]
@@ -109,8 +109,8 @@ struct Bird {
     right_second: Ball,
 }
 
-/// Compares with the equations of motion: `M⁻¹ M` is one, and where `M v̇ + h = τ` the derivatives of `v̇`
-/// are `−M⁻¹` times those of `M v̇ + h` at `v̇` held fast.
+/// Compares with the equations of motion: `M⁻¹ M` is the identity, and the derivatives of `v̇` are `−M⁻¹`
+/// times those of `M v̇ + h` with `v̇` fixed.
 macro_rules! solve_the_equations {
     ($test:ident, $m:ident, $nv:literal) => {
         #[test]

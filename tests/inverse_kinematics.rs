@@ -1,4 +1,5 @@
-//! Inverse kinematics: random placements in reach are reached, within limits; others are typed errors.
+//! Inverse kinematics: random reachable placements are reached within limits; unreachable ones return typed
+//! errors.
 
 use linkwork::inverse_kinematics::{InverseKinematics, Target, Unreached};
 use linkwork::prelude::*;
@@ -18,7 +19,7 @@ fn frame(frames: &[&str], name: &str) -> usize {
     index_of(frames, name).unwrap_or_else(|| panic!("no {name} among {frames:?}"))
 }
 
-/// Between its limits, a tenth of the range away from them.
+/// Returns a random configuration within the limits, a tenth of the range away from them.
 fn inside<const NV: usize>(random: &mut Random, m: &impl Limits<NV, NV, Scalar = f64>) -> SVector<f64, NV> {
     let (lower, upper) = (m.lower_limits(), m.upper_limits());
     SVector::from_fn(|k, _| {
@@ -27,7 +28,8 @@ fn inside<const NV: usize>(random: &mut Random, m: &impl Limits<NV, NV, Scalar =
     })
 }
 
-/// From near by the search ends where it should, within the limits: how many of so many.
+/// Starts the search near known solutions and checks that it ends there, within the limits. Returns the
+/// number of successes out of `tries`.
 fn reached<M, const N: usize, const NU: usize>(m: &M, tool: usize, off: f64, tries: u64) -> usize
 where
     M: Mechanism<N, N, NU, Scalar = f64> + Frames<N, N, Scalar = f64> + Limits<N, N, Scalar = f64>,
@@ -65,7 +67,8 @@ fn what_is_in_reach_is_reached() {
     assert!(found[0] >= 99 && found[1] >= 99 && found[2] >= 95 && found[3] >= 90, "{found:?}");
 }
 
-/// Four feet at once, while the body is free; what they leave open stays near the start.
+/// Four feet with a free base are reached at once. Directions that the targets do not determine stay near the
+/// start.
 #[test]
 fn several_frames_are_reached_at_once() {
     let mut random = Random::new(4);
@@ -85,7 +88,8 @@ fn several_frames_are_reached_at_once() {
         let now = Solo.placement_of(target.frame, 0.0, &found.q).expect("it is a frame");
         assert!((now.translation.vector - target.placement.translation.vector).norm() <= 1e-6);
     }
-    // Six of eighteen are open: it moves less than the configuration that the targets were taken from.
+    // Six of eighteen degrees of freedom are undetermined: the robot moves no farther than to the
+    // configuration that defined the targets.
     let way = |q| Solo.difference(&bent, q).norm();
     assert!(way(&found.q) <= way(&moved) * 1.01, "{} {}", way(&found.q), way(&moved));
     assert!((found.q.fixed_rows::<4>(3).norm() - 1.0).abs() < 1e-12);
@@ -95,7 +99,7 @@ fn several_frames_are_reached_at_once() {
 fn targets_that_make_no_sense_are_errors() {
     let (tool, start) = (frame(<Ur5 as Frames<6, 6>>::FRAMES, "tool0"), SVector::from([0.3; 6]));
     let search = |target| InverseKinematics::new().reach(&Ur5, 0.0, &[target], &start);
-    // Three metres are more than the arm is long.
+    // Three metres are more than the length of the arm.
     let Err(Unreached::OutOfReach { q, position, iterations, .. }) =
         search(Target::position(tool, [3.0, 0.0, 0.0].into()))
     else {
@@ -113,6 +117,6 @@ fn targets_that_make_no_sense_are_errors() {
     }
     let negative = Target { position: -1.0, ..Target::position(tool, [0.3, 0.0, 0.0].into()) };
     assert_eq!(search(negative), Err(Unreached::NotFinite { target: 0 }));
-    // Nothing to reach is reached.
+    // An empty list of targets is reached without iterations.
     assert_eq!(InverseKinematics::new().reach(&Ur5, 0.0, &[], &start).map(|found| found.iterations), Ok(0));
 }

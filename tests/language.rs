@@ -1,5 +1,5 @@
-//! What the words of the language mean, by values that can be worked out by hand: names, expressions, solids,
-//! particles on joints, scalar types.
+//! Semantics of the language, by values that can be worked out by hand: names, expressions, solids, particles
+//! on joints and scalar types.
 
 use linkwork::nalgebra::{Rotation3, SVector, Vector3};
 use linkwork::{Mechanism, Real, frame, mechanism};
@@ -8,7 +8,7 @@ use support::compare::assert_close;
 
 const TOLERANCE: f64 = 1e-14;
 
-/// Names that generated code might want for itself, and words of Rust.
+/// Parameters with names that generated code could use itself, and keywords of Rust.
 #[mechanism(gravity = -g * y)]
 struct Names {
     q: f64,
@@ -44,7 +44,7 @@ fn names_of_all_kinds() {
     assert_close("end", end.as_slice(), &[1.0, 0.0, 0.0], TOLERANCE);
 }
 
-/// A particle may itself be the end of a joint.
+/// Particle that is itself the end of a joint.
 #[mechanism(gravity = -9.81 * z)]
 struct Projectile {
     m: f64,
@@ -63,7 +63,7 @@ fn particle_on_a_joint() {
     assert_close("place", place.translation.vector.as_slice(), &[1.0, 2.0, 3.0], TOLERANCE);
 }
 
-/// Generics with bounds, a where clause and a default.
+/// Generic parameter with bounds, a where clause and a default.
 #[mechanism(gravity = -9.81 * y)]
 struct Generic<Number: Real = f64>
 where
@@ -92,7 +92,7 @@ fn scalars() {
     assert_eq!(end.translation.vector, Vector3::zeros());
 }
 
-/// Expressions: functions, precedence, several parameters of one dimension, nested solids.
+/// Expressions with functions, precedence, several parameters of one dimension and nested solids.
 #[mechanism(gravity = [0, -9.81, 0])]
 struct Expressions {
     l: f64,
@@ -122,7 +122,7 @@ fn expressions_mean_what_they_say() {
     assert_close("momentum", turning.as_slice(), &[0.0, 3.0 * m, 0.0, 0.0, 0.0, 0.0], TOLERANCE);
 }
 
-/// The same body on a pin: its inertia shows.
+/// Plate on a ball joint, which makes all components of its inertia visible in the mass matrix.
 #[mechanism]
 struct Solids {
     l: f64,
@@ -153,7 +153,7 @@ fn solids_add_up_and_turn() {
     assert_close("inertia", &actual, &expected, TOLERANCE);
 }
 
-/// An expression that a macro of the user's hands on keeps its parentheses, though they are not written.
+/// An expression that a user's macro passes on is evaluated as one operand, even without written parentheses.
 #[test]
 fn expressions_of_macros_stay_together() {
     macro_rules! pendulum {
@@ -171,7 +171,7 @@ fn expressions_of_macros_stay_together() {
     assert_eq!(Rod {}.mass_matrix(&Rod {}.neutral())[0], 1.5 * 1.5);
 }
 
-/// Nothing can move: a structure, all of whose functions are empty.
+/// Structure without degrees of freedom: all its functions have empty arguments and results.
 #[mechanism]
 struct Structure {
     #[body(mass = 1)]
@@ -190,8 +190,8 @@ fn structure_without_motion() {
     assert_eq!(Structure {}.forward_dynamics(&q, &q, &q), q);
 }
 
-/// At right angles: the piston is where Pythagoras has it, stands still against the crank's end, and its rows
-/// are named.
+/// With the crank at a right angle, the position of the piston follows from Pythagoras's theorem, and its
+/// velocity equals that of the crank's end. Its rows have the names of the coordinates.
 #[test]
 fn joint_that_closes_a_loop() {
     let engine = SliderCrank { g: 9.81, r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };
@@ -201,11 +201,11 @@ fn joint_that_closes_a_loop() {
     let q = engine.assemble(&[up, -2.0, 0.5].into(), &[0]).expect("the rod is long enough");
     assert_close("place", q.as_slice(), &[up, -up - 0.6_f64.asin(), 0.4], TOLERANCE);
     let v = engine.project_velocity(&q, &[2.0, 0.0, 0.0].into()).expect("no dead centre");
-    // The rod moves without turning.
+    // The rod moves without rotation.
     assert_close("rates", &[v[1] / v[0], v[2] / v[0]], &[-1.0, -0.3], TOLERANCE);
 }
 
-/// A rolling pair on a free body.
+/// Disk with a rolling pair on a free body.
 #[mechanism(gravity = -g * z)]
 struct RollingDisk {
     g: f64,
@@ -220,9 +220,9 @@ struct RollingDisk {
     contact: Rolling,
 }
 
-/// In the axes that lean but do not roll `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`,
+/// In the axes that lean but do not roll, `u̇₁ = (4 g sin q₂ + 6 r u₂ u₃ − r u₃² tan q₂) / (5 r)`,
 /// `u̇₂ = −⅔ u₁ u₃`, `u̇₃ = (−2 u₂ + u₃ tan q₂) u₁` (Neimark and Fufaev, *Dynamics of Nonholonomic Systems*,
-/// 1972, ch. II); the disk turns in them by `spin` about y.
+/// 1972, ch. II). The disk rotates in these axes by `spin` about y.
 #[test]
 fn rolling_pair() {
     let (g, radius, lean) = (9.81, 0.4, 0.35_f64);
@@ -232,7 +232,7 @@ fn rolling_pair() {
     let (s, c) = (lean / 2.0).sin_cos();
     let q = SVector::from([0.0, 0.0, radius * lean.cos(), s, 0.0, 0.0, c]);
     let u = [0.7, -3.0, 1.3];
-    // The centre moves so that the contact is at rest.
+    // The velocity of the centre makes the contact point instantaneously at rest.
     let v = SVector::from([radius * u[1], -radius * u[0], 0.0, u[0], u[1], u[2]]);
     assert_close("touches", disk.constraint_residuals(&q).as_slice(), &[0.0], TOLERANCE);
     assert_close("rolls", disk.constraint_rates(&q, &v).as_slice(), &[0.0; 3], TOLERANCE);
@@ -248,7 +248,7 @@ fn rolling_pair() {
     assert_close("acceleration", &a.as_slice()[3..], &expected, 1e-12);
 }
 
-/// The smaller and the larger of two, in outputs, and in the law of a spring that only pushes.
+/// Minimum and maximum of two expressions in outputs, and in the law of a spring that only pushes.
 #[mechanism(derivatives)]
 struct Extremes {
     k: f64,
@@ -265,7 +265,7 @@ struct Extremes {
     most: Scalar,
 }
 
-/// Numbers of very different sizes do not wipe each other out.
+/// Minimum and maximum of numbers with very different magnitudes lose no digits.
 #[test]
 fn extremes_are_exact() {
     for (k, expected) in [(1e17, 1.0), (1e-20, 1e-20), (f64::INFINITY, 1.0), (-1e300, -1e300), (0.3, 0.3)] {
@@ -284,8 +284,8 @@ fn extremes_are_exact() {
     assert!(Extremes::EQUATIONS.contains("min(rail, 0)"), "{}", Extremes::EQUATIONS);
 }
 
-/// A carriage with a buffer that it reaches late, a valve that saturates, and a law that is not defined on
-/// the other side.
+/// Carriage with a buffer that it reaches after a gap, a saturating valve, and a law that is undefined on the
+/// other branch.
 #[mechanism(derivatives)]
 struct Pieces {
     gap: f64,
@@ -338,13 +338,13 @@ fn pieces_are_themselves_on_their_sides() {
             assert_close("by q", &[2.0 * by_q[0]], &[stiffness], 1e-13);
             assert_close("by v", &[2.0 * by_v[0]], &[if v > 0.1 { -1.0 } else { -3.0 }], 1e-13);
         }
-        // The energy of the buffer is that of its force, from zero on.
+        // The energy of the buffer is the integral of its force from zero deflection.
         let energy = if x > 0.5 { 40.0 * (x - 0.5) * (x - 0.5) } else { 0.0 };
         assert_close("energy", &[m.potential_energy(&[x].into())], &[energy], 1e-13);
     }
 }
 
-/// Something that flies, with vectors by their components in its axes of stability and of wind.
+/// Airframe with vectors whose components are in its stability and wind axes.
 #[mechanism]
 struct Winged {
     #[body(mass = 2, inertia = diagonal(1, 1, 1))]
@@ -387,7 +387,7 @@ fn stability_and_wind_axes_turn_by_their_angles() {
         assert_close("stability", m.in_stability(&q, &v).as_slice(), (about_y * parts).as_slice(), 1e-12);
         let linear = v.fixed_rows::<3>(0).into_owned();
         assert_close("forward", (both * Vector3::x()).as_slice(), linear.normalize().as_slice(), 1e-12);
-        // What it takes of the power is drag alone.
+        // Drag is the only component of the force that does work.
         let still: SVector<f64, 6> = SVector::from([v[0], v[1], v[2], 0.0, 0.0, 0.0]);
         let force = -m.bias_forces(&q, &still);
         assert_close("power", &[force.dot(&still)], &[-4.0 * linear.norm()], 1e-12);
@@ -429,7 +429,7 @@ struct Buffers {
     piston: Force,
 }
 
-/// A force between two points pushes them apart, does work on their distance alone, and changes no momentum.
+/// A force between two points pushes them apart, does work only on their distance, and changes no momentum.
 #[test]
 fn forces_between_points_push_them_apart() {
     let (m, mut random) = (Pushed {}, support::random::Random::new(3));
@@ -450,7 +450,7 @@ fn forces_between_points_push_them_apart() {
         let rate = m.momentum(&q, &a);
         assert!(rate.amax() < 1e-12, "{rate}");
     }
-    // Whichever of them is in front.
+    // The result is independent of which cart is in front.
     let m = Buffers {};
     for side in [1.0, -1.0] {
         let tau = m.generalized_forces(&[0.0, 2.0 * side].into(), &[5.0].into());

@@ -1,11 +1,12 @@
-//! Mechanisms with alike limbs, which are evaluated as lanes: the functions agree with each other for every
-//! type of scalars, on the ground and on a free base, with parameters of all limbs and of each.
+//! Mechanisms with identical limbs, which are evaluated as SIMD lanes. The generated functions are consistent
+//! with each other for every scalar type, on the ground and on a free base, and with parameters shared by all
+//! limbs or of single limbs.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Lanes, Mechanism, Real, mechanism};
 use support::random::Random;
 
-/// A body on four legs of two joints, mirrored front to back and left to right.
+/// Body on four legs of two joints, mirrored front to back and left to right.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Quadruped<T> {
     trunk_mass: T,
@@ -53,7 +54,7 @@ struct Quadruped<T> {
     #[acts(on = knee_c, damping = damping)]
     friction_c: Dashpot,
 
-    /// One leg carries more.
+    /// One leg has a heavier shank.
     #[body(mass = thigh_mass, com = [-0.01, -0.02, -length / 2], inertia = rod(thigh_mass, length, z))]
     thigh_d: Body,
     #[body(mass = load, com = [-0.01, 0, -length / 2], inertia = rod(load, length, z))]
@@ -66,7 +67,7 @@ struct Quadruped<T> {
     friction_d: Dashpot,
 }
 
-/// A gripper whose three fingers stand on the ground, in single precision.
+/// Gripper whose three fingers are fixed to the ground, in single precision.
 #[mechanism(gravity = -9.81 * z)]
 struct Gripper {
     mass: f32,
@@ -111,7 +112,7 @@ fn quadruped<T: Real>() -> Quadruped<T> {
     }
 }
 
-/// A state, and an acceleration.
+/// Returns a random configuration, velocity and acceleration.
 fn state(random: &mut Random) -> (SVector<f64, 15>, [SVector<f64, 14>; 2]) {
     (random.configuration(&quadruped()), [random.vector(2.0), random.vector(2.0)])
 }
@@ -125,7 +126,7 @@ fn functions_agree() {
         let tau = robot.inverse_dynamics(&q, &v, &a);
         assert!((m * a + h - tau).amax() < 1e-12 * (1.0 + tau.amax()));
         assert!((robot.forward_dynamics(&q, &v, &tau) - a).amax() < 1e-10);
-        // Dashpots are odd in the velocities, Coriolis forces even.
+        // Dashpot forces are odd in the velocities, Coriolis forces even.
         let (c, back, weight) = (
             robot.coriolis_matrix(&q, &v),
             robot.bias_forces(&q, &-v),
@@ -138,7 +139,7 @@ fn functions_agree() {
     }
 }
 
-/// A column of differences for each velocity.
+/// Returns the derivatives of `f` by differences, a column for each velocity.
 fn differences(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) -> SMatrix<f64, 14, 14> {
     const STEP: f64 = 1e-6;
     let column = |k: usize| {
@@ -200,13 +201,13 @@ fn three_fingers_agree() {
         let (m, tau) = (gripper.mass_matrix(&q), gripper.inverse_dynamics(&q, &v, &a));
         assert!((m * a + gripper.bias_forces(&q, &v) - tau).amax() < 1e-6);
         assert!((v.dot(&(m * v)) / 2.0 - Mechanism::kinetic_energy(&gripper, &q, &v)).abs() < 1e-6);
-        // Fingers do not feel each other.
+        // The inertia of one finger does not couple to another.
         assert!((0..2).all(|i| (2..6).all(|j| m[(i, j)] == 0.0)));
         assert!((gripper.forward_dynamics(&q, &v, &tau) - a).amax() < 1e-3);
     }
 }
 
-/// Carts that are alike, with a spring between two of them: the third has no force that corresponds.
+/// Identical carts with a spring between two of them: no corresponding force acts on the third.
 #[mechanism(gravity = -9.81 * z)]
 struct Carts {
     #[body(mass = 1)]
@@ -238,7 +239,7 @@ fn a_spring_between_two_of_three_carts_pulls_those() {
     }
 }
 
-/// Two definitions of one hand: three fingers, with elements between them, as they are and without passes.
+/// Two definitions of one hand, with and without model passes: three fingers with elements between them.
 macro_rules! hand {
     ($name:ident, $($options:tt)*) => {
         #[mechanism(gravity = -9.81 * z $($options)*)]
@@ -289,8 +290,8 @@ fn elements_between_limbs_act_with_and_without_passes() {
     support::compare::assert_same_dynamics(&Hand {}, &PlainHand {}, 20, 1e-11);
 }
 
-/// An arm whose angles and places carry noise, as exporters leave it: axes that are next to parallel, arms of
-/// next to no length, centres of mass next to axes.
+/// Arm whose angles and positions have rounding noise of an exporter: nearly parallel axes, offsets of nearly
+/// zero length, and centres of mass close to axes.
 macro_rules! noisy {
     ($name:ident, $($options:tt)*) => {
         #[mechanism(gravity = -9.81 * z $($options)*)]

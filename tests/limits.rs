@@ -1,4 +1,4 @@
-//! Limits of files and of structs, as generic code sees them.
+//! Joint limits of files and of structs, as generic code accesses them.
 
 use linkwork::nalgebra::SVector;
 use linkwork::{Limits, Mechanism, Real, Rheonomic, at, mechanism};
@@ -10,7 +10,7 @@ fn vector<T: Real, const N: usize>(entries: [T; N]) -> SVector<T, N> {
     SVector::from(entries)
 }
 
-/// The number of an attribute in the `<limit>` of a joint, found as text.
+/// Returns the value of an attribute in the `<limit>` of a joint, searched for as text.
 fn written(file: &str, joint: &str, attribute: &str) -> Option<f64> {
     let from = file.find(&format!("<joint name=\"{joint}\""))?;
     let text = &file[from..];
@@ -21,8 +21,8 @@ fn written(file: &str, joint: &str, attribute: &str) -> Option<f64> {
     Some(value.parse().unwrap())
 }
 
-/// Compares the limits of a robot whose joints do not follow one another with the text of its file; how many
-/// bounds there are.
+/// Compares the limits of a robot without coupled joints with the text of its file. Returns the number of
+/// bounds.
 fn compare<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, file: &str) -> usize
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64> + Limits<NQ, NV, Scalar = f64>,
@@ -56,7 +56,7 @@ fn robots_have_the_limits_of_their_files() {
     assert!(compare(&SimpleHumanoid, &of("simple_humanoid")) > 0);
 }
 
-/// The arm's figures are those of Franka Emika's *Robot and interface specifications* (2021).
+/// The limits of the arm are those of Franka Emika's *Robot and interface specifications* (2021).
 #[test]
 fn the_panda_has_the_limits_of_its_data_sheet() {
     let lower = [-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0.0];
@@ -64,11 +64,11 @@ fn the_panda_has_the_limits_of_its_data_sheet() {
     assert_eq!(Panda.lower_limits(), vector(lower));
     assert_eq!(Panda.velocity_limits(), vector(speed));
     assert_eq!(Panda.effort_limits()[4], 12.0);
-    // The other finger follows this one, and has its limits.
+    // The second finger follows the first and has the same limits.
     assert_eq!((Panda.upper_limits()[7], Panda.effort_limits()[7]), (0.04, 100.0));
 }
 
-/// Followers, joints without ends, infinite and absent figures.
+/// Robot with followers, joints without bounds, and infinite and absent values.
 #[mechanism(urdf = "data/urdf/limits.urdf", lock = ["held"])]
 struct Several;
 
@@ -78,8 +78,8 @@ struct Ignored;
 #[test]
 fn files_say_limits_in_many_ways() {
     assert_eq!(Several::VELOCITIES, ["leader", "wheel", "endless", "rail", "free"]);
-    // −2 q + 0.5 from −2 to 1.5 is q from −0.5 to 1.25; its speed of 4 is 2 of the leader's. What drives it
-    // is its own.
+    // −2 q + 0.5 from −2 to 1.5 is q from −0.5 to 1.25; the follower's maximum velocity of 4 is 2 of the
+    // leader's. The effort limit of the leader is its own.
     assert_eq!(Several.lower_limits(), vector([-0.5, -NONE, -NONE, -NONE, -NONE]));
     assert_eq!(Several.upper_limits(), vector([1.25, NONE, NONE, 0.5, NONE]));
     assert_eq!(Several.velocity_limits(), vector([2.0, 50.0, NONE, 0.0, NONE]));
@@ -101,7 +101,7 @@ fn free_joints_have_none() {
     assert_eq!(Solo12.velocity_limits().rows(0, 6), SVector::<f64, 6>::repeat(NONE));
 }
 
-/// A hand on a slide and a coordinate of its own; limits in parameters, in several fields.
+/// Hand on a slide with a coordinate of its own. Its limits are parameters, given in several fields.
 #[mechanism(gravity = -9.81 * z, prepare)]
 struct Hand<T> {
     reach: T,
@@ -121,7 +121,7 @@ struct Hand<T> {
     floor: Limit,
 }
 
-/// What the limits do to a state, through the trait alone.
+/// Returns a velocity and an effort with all entries `x`, clamped to the limits, in generic code.
 fn clamped<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
     m: &M,
     x: f64,
@@ -137,7 +137,7 @@ fn structs_declare_limits() {
     assert_eq!(hand.upper_limits(), vector([2.0, NONE, NONE]));
     assert_eq!(hand.velocity_limits(), vector([0.5, NONE, NONE]));
     assert_eq!(hand.effort_limits(), vector([4.0, NONE, NONE]));
-    // Both limits hold: the second is the narrower one of a longer hand.
+    // Both limits apply: the second is the narrower one for a longer hand.
     let long = Hand { reach: 8.0, strength: 4.0 };
     assert_eq!((long.lower_limits()[0], long.upper_limits()[0]), (-8.0, 3.0));
     assert_eq!(long.prepare().upper_limits(), long.upper_limits());
@@ -149,7 +149,7 @@ fn structs_declare_limits() {
     assert_eq!(clamped(&&single, -5.0), [vector([-0.5, -5.0, -5.0]), [-4.0, -5.0, -5.0].into()]);
 }
 
-/// A slide that turns as time says.
+/// Slide that rotates as a function of time.
 #[mechanism]
 struct Turning {
     rate: f64,
@@ -171,7 +171,7 @@ fn limits_do_not_depend_on_time() {
     assert_eq!(Rheonomic::neutral(&turning)[0], 0.0);
 }
 
-/// Kinematics alone.
+/// Robot with kinematics only.
 #[mechanism(urdf = "data/urdf/limits.urdf", inertia = none)]
 struct Weightless;
 

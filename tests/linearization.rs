@@ -1,14 +1,14 @@
-//! First derivatives and linearised motion against differences and closed forms.
+//! First derivatives and the linearised motion against differences and closed-form solutions.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Mechanism, at, mechanism};
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 
-/// Against differences.
+/// Tolerance against finite differences.
 const DIFFERENCE: f64 = 1e-8;
 
-/// Derivative at zero by central differences of fourth order.
+/// Returns the derivative of `f` at zero by central differences of fourth order.
 fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
     let h = 1e-3;
     ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
@@ -18,7 +18,7 @@ fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
     SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
 }
 
-/// Checks column by column, each the derivative of `f` along one unit vector.
+/// Checks that each column of the matrix is the derivative of `f` along one unit vector.
 #[track_caller]
 fn check_columns<const R: usize, const C: usize>(
     what: &str,
@@ -31,7 +31,7 @@ fn check_columns<const R: usize, const C: usize>(
     assert_similar(what, matrix.as_slice(), expected.as_slice(), DIFFERENCE);
 }
 
-/// All functions of a mechanism against differences; with `$t`, at that time.
+/// Checks all derivatives of a mechanism against differences; with `$t`, at that time.
 macro_rules! check_differences {
     ($mechanism:expr, $type:ident, $at:ident => $instant:expr $(, $t:expr)?) => {{
         const NV: usize = $type::NV;
@@ -64,7 +64,7 @@ macro_rules! check_differences {
             check_columns("A", &state, |d| {
                 let (dq, dv) = (SVector::from_fn(|i, _| d[i]), SVector::from_fn(|i, _| d[NV + i]));
                 let (start, w) = (m.integrate(&q, &dq), v + dv);
-                // How the displacement from one motion to the other changes.
+                // Rate of change of the displacement from one motion to the other.
                 let apart = slope(|t| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t))));
                 let change = m.forward_dynamics(&start, &w, &Mechanism::generalized_forces(m, &start, &w, &u));
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { apart[i] } else { change[i - NV] })
@@ -73,8 +73,8 @@ macro_rules! check_differences {
     }};
 }
 
-/// Every joint, springs, dashpots, friction, inputs on coordinates and on bodies; not all numbers are
-/// constant.
+/// Joints of every kind, springs, dashpots, friction, and inputs on coordinates and bodies; some of the
+/// values are parameters.
 #[mechanism(gravity = 0.3 * x - 0.4 * y - 9.7 * z, derivatives)]
 struct Zoo {
     mass: f64,
@@ -127,7 +127,7 @@ fn every_joint_and_load() {
     check_differences!(Zoo { mass: 1.1 }, Zoo, m => m);
 }
 
-/// Bodies placed by expressions of coordinates, and an inerter: no recursion applies.
+/// Bodies placed by expressions of coordinates, and an inerter: the recursive algorithms do not apply.
 #[mechanism(gravity = -9.7 * y, derivatives)]
 struct Placed {
     length: f64,
@@ -154,7 +154,7 @@ fn placed_bodies() {
     check_differences!(Placed { length: 0.8 }, Placed, m => m);
 }
 
-/// A driven pivot: everything takes the time first.
+/// Pendulum with a driven pivot: every function has the time as its first argument.
 #[mechanism(gravity = -9.7 * y, derivatives)]
 struct Driven {
     amplitude: f64,
@@ -177,7 +177,7 @@ fn driven_pivot() {
     check_differences!(Driven { amplitude: 0.2 }, Driven, m => at(&m, 0.4_f64), 0.4);
 }
 
-/// One finger follows the other.
+/// Panda arm whose second finger follows the first.
 #[mechanism(urdf = "../models/urdf/panda.urdf", derivatives)]
 struct PandaMimic;
 
@@ -189,7 +189,7 @@ fn coupled_joints() {
 // ---- Closed
 // forms ------------------------------------------------------------------------------------------------
 
-/// A particle on a massless rod with a motor.
+/// Particle on a massless rod with a motor.
 #[mechanism(gravity = -g * y, derivatives)]
 struct Pendulum {
     g: f64,
@@ -221,7 +221,7 @@ fn pendulum() {
     }
 }
 
-/// A cart on a rail with a particle on a massless pole, which stands upright at zero.
+/// Cart on a rail with a particle on a massless pole that is upright at zero.
 #[mechanism(gravity = -g * y, derivatives)]
 struct CartAndPole {
     g: f64,
@@ -271,7 +271,7 @@ fn cart_and_pole() {
     assert_close("B", b.as_slice(), &[0.0, 0.0, 1.0 / mass, 1.0 / (mass * l)], 1e-13);
 }
 
-/// Any scalar type will do.
+/// Pendulum that is generic over the scalar type.
 #[mechanism(gravity = -g * y, derivatives)]
 struct Swing<T> {
     g: T,

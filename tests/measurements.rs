@@ -1,11 +1,11 @@
-//! Outputs as measurements: their derivatives against differences, alone and in the motion, and all of them
-//! as one vector.
+//! Outputs as measurements: their partial derivatives and their total derivatives along the motion against
+//! differences, and all outputs as one vector.
 
 use linkwork::prelude::*;
 use linkwork::{OutputDerivatives, Outputs, RheonomicDerivatives, index_of};
 use support::random::Random;
 
-/// A flying body with a load on a ball joint, with gyroscope, accelerometer, an altimeter, a current and a
+/// Flying body with a load on a ball joint, with a gyroscope, an accelerometer, an altimeter, a current and a
 /// camera.
 #[mechanism(gravity = -9.81 * z, derivatives, sensitivities, batch, prepare)]
 struct Carrier {
@@ -37,7 +37,7 @@ struct Carrier {
     camera: Vector,
 }
 
-/// A pendulum on a pivot that is driven, with a rate gyroscope on its bob.
+/// Pendulum on a driven pivot, with a rate gyroscope on its bob.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Driven {
     rate: f64,
@@ -55,7 +55,8 @@ struct Driven {
     mixed: Scalar,
 }
 
-/// A carrier with a turntable on a driven arm and a bead: momenta and energies of single bodies.
+/// Carrier with a turntable on a driven arm and a bead, whose outputs are momenta and energies of single
+/// bodies.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Bodies {
     mass: f64,
@@ -92,9 +93,9 @@ struct Bodies {
     beside: Scalar,
 }
 
-/// Turned as one rigid body about a line through the ground's origin, all have the kinetic energy `½ ω² J`;
-/// two turns at once tell the products of inertia. The line through another point has the moment of the
-/// parallel-axis theorem.
+/// All bodies, rotated as one rigid body about a line through the ground's origin, have the kinetic energy
+/// `½ ω² J`. Rotations about two axes at once determine the products of inertia. The moment about a line
+/// through another point follows from the parallel-axis theorem.
 #[test]
 fn moments_of_inertia_are_those_of_energies() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(15));
@@ -118,7 +119,8 @@ fn moments_of_inertia_are_those_of_energies() {
     }
 }
 
-/// Of all bodies together they are those of the whole; about its own centre of mass a body has `I ω`.
+/// The momenta and energies of all bodies add up to those of the whole. About its own centre of mass a body
+/// has the angular momentum `I ω`.
 #[test]
 fn bodies_share_momentum_and_energy() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(5));
@@ -132,14 +134,14 @@ fn bodies_share_momentum_and_energy() {
         let w = m.turning(&q, &v);
         let expected = SVector::from([0.1 * w[0], 0.2 * w[1], 0.15 * 1.7 * w[2]]);
         assert!((m.own(&q, &v) - expected).amax() < 1e-13);
-        // How they change with the rates is known as well.
+        // The Jacobian of the linear momentum maps the velocities to it.
         assert!((m.linear_jacobian(&q, &v) * v - linear).amax() < 1e-11);
     }
 }
 
 const TOLERANCE: f64 = 1e-9;
 
-/// A column of slopes for every direction, by differences of sixth order.
+/// Returns the derivatives of `of` along every direction, a column for each, by differences of sixth order.
 fn slopes<const N: usize, const NY: usize>(
     of: impl Fn(&SVector<f64, N>) -> SVector<f64, NY>,
 ) -> SMatrix<f64, NY, N> {
@@ -177,7 +179,7 @@ where
         close("by a", &found.by_a, &slopes(|d| m.outputs(t, &q, &v, &(a + d), &u)));
         close("by u", &found.by_u, &slopes(|d| m.outputs(t, &q, &v, &a, &(u + d))));
 
-        // In the motion accelerations follow from state and inputs.
+        // In the total derivatives, accelerations are functions of state and inputs.
         let now = at(m, t);
         let measured = |q: &_, v: &_, u: &_| {
             let tau = Mechanism::generalized_forces(&now, q, v, u);
@@ -284,7 +286,7 @@ struct Loaded {
     of_grease: Scalar,
 }
 
-/// The same bodies without force elements.
+/// Two rods on a cart without force elements.
 #[mechanism(gravity = -9.81 * y)]
 struct Bare {
     #[body(mass = 2)]
@@ -301,8 +303,9 @@ struct Bare {
     hinge: Pin,
 }
 
-/// What elements deliver is what they add to the rate of the kinetic energy: bias forces with and without
-/// them tell, by the velocities that they act on. Group by group it is the power balance of the whole.
+/// The power of the elements equals their contribution to the rate of the kinetic energy, found from the bias
+/// forces with and without elements times the velocities. For each group of elements it is the power balance
+/// of the whole.
 #[test]
 fn elements_deliver_what_energies_gain() {
     let mut random = Random::new(25);
@@ -320,7 +323,7 @@ fn elements_deliver_what_energies_gain() {
         same(m.lost(&q, &v), -m.dissipated_power(&q, &v));
         same(m.applied(&q, &v), m.disturbance_power(&q, &v));
         same(m.of_grease(&q, &v), -0.7 * v[4] * v[4]);
-        // Energies are lost along the motion.
+        // Potential energy decreases along the motion by the power that springs deliver.
         let moved = |h: f64| m.integrate(&q, &(v * h));
         let energy = |q: &SVector<f64, 6>| m.potential_energy(q) - Bare {}.potential_energy(q);
         let h = 1e-5;
@@ -329,7 +332,7 @@ fn elements_deliver_what_energies_gain() {
     }
 }
 
-/// A bracket on a wall.
+/// Bracket fixed to a wall.
 #[mechanism(gravity = -9.81 * y, second_derivatives, momentum_derivatives, batch)]
 struct Bracket {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
@@ -340,7 +343,8 @@ struct Bracket {
     moment: Vector,
 }
 
-/// Where nothing moves there are no velocities to differentiate by, and the wall holds the weight.
+/// A mechanism without degrees of freedom has no derivatives with respect to velocities, and the wall
+/// supports the weight.
 #[test]
 fn what_is_welded_has_reactions_and_no_motion() {
     let none = SVector::<f64, 0>::zeros();

@@ -1,13 +1,13 @@
-//! MJCF files of `data/mjcf` against MuJoCo's own figures, `data/mujoco`.
+//! MJCF files of `data/mjcf` against reference values of MuJoCo in `data/mujoco`.
 
 use linkwork::prelude::*;
 use linkwork::{Limits, Mechanism};
 use support::compare::assert_close;
 use support::table::Record;
 
-/// MuJoCo finds principal axes to some 1e-11 only.
+/// MuJoCo computes principal axes only to some 1e-11.
 const TOLERANCE: f64 = 1e-10;
-/// Forward dynamics: the condition of the mass matrix enters.
+/// Tolerance of forward dynamics, which includes the condition of the mass matrix.
 const FORWARD: f64 = 1e-9;
 
 #[mechanism(mjcf = "data/mjcf/everything.xml")]
@@ -34,14 +34,14 @@ where
         assert_close(of("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
         let forces = robot.generalized_forces(q, v, u);
         assert_close(of("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
-        // MuJoCo's friction is a constraint, which is left out there; here it is a force.
+        // MuJoCo's friction is a constraint and is not part of these reference values; here it is a force.
         let tau = forces + case.vector("friction");
         let a = robot.forward_dynamics(q, v, &tau);
         assert_close(of("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
     }
 }
 
-/// Placements of bodies and sites.
+/// Checks the placements of bodies and sites.
 macro_rules! check_frames {
     ($robot:ident, $name:literal) => {
         for (i, case) in Record::load(concat!("mujoco/", $name, ".json")).records("cases").iter().enumerate()
@@ -85,9 +85,9 @@ fn joints_that_follow_and_that_are_held() {
     check_frames!(Coupled, "coupled");
 }
 
-/// Tendons through space, straight, around a ball, a cylinder on a side of it, and one on the shorter side,
-/// over pulleys; actuators on them and on sites. Each surface is touched in some of the cases and not in
-/// others.
+/// Tendons through space: straight, around a ball, around a given side of a cylinder, around the shorter side
+/// of one, and over pulleys. Actuators act on the tendons and on sites. Each surface deflects its tendon in
+/// some cases and not in others.
 #[test]
 fn cables_and_sites() {
     #[mechanism(mjcf = "data/mjcf/cables.xml")]
@@ -97,7 +97,7 @@ fn cables_and_sites() {
     check(&Cables, "cables");
 }
 
-/// A medium brakes bodies as the boxes of their inertias.
+/// The drag of a medium acts on each body as on the box with the same inertia.
 #[test]
 fn a_medium_brakes() {
     #[mechanism(mjcf = "data/mjcf/medium.xml")]
@@ -106,8 +106,8 @@ fn a_medium_brakes() {
     check(&Medium, "medium");
 }
 
-/// A connection keeps two points together, a weld two bodies; the conditions of a plane loop out of its plane
-/// are redundant.
+/// A connection constrains two points to coincide, a weld constrains two bodies. The out-of-plane conditions
+/// of a plane loop are redundant.
 #[test]
 fn loops() {
     #[mechanism(mjcf = "data/mjcf/loops.xml")]
@@ -123,14 +123,14 @@ fn loops() {
     }
 }
 
-/// Sums of coordinates and polynomials of them that stay equal; and actuators of a class that several
-/// shortcuts write.
+/// Equality constraints between coordinates, linear and polynomial, are satisfied. Actuators take their
+/// parameters from a default class that several actuator shortcuts define.
 #[test]
 fn conditions() {
     #[mechanism(mjcf = "data/mjcf/conditions.xml")]
     struct Conditions;
 
-    // `right` follows `left`, since their sum is that of two.
+    // `right` is a function of `left`, since their sum is constrained.
     assert_eq!((Conditions::NV, Conditions::NC, Conditions::NU), (7, 3, 4));
     for (i, case) in Record::load("mujoco/conditions.json").records("cases").iter().enumerate() {
         let of = |what: &str| {
@@ -149,7 +149,7 @@ fn conditions() {
     }
 }
 
-/// A contact names the shapes of the file: here a box stands on its corners, and a ball beside it.
+/// A contact can refer to shapes of the file: here a box stands on its corners next to a ball.
 #[test]
 fn geometry_for_contact() {
     #[mechanism(mjcf = "data/mjcf/contacts.xml")]
@@ -161,7 +161,7 @@ fn geometry_for_contact() {
     let mut q = Standing {}.neutral();
     (q[2], q[9]) = (0.5, 0.4);
     let gaps = Standing {}.contact_gaps(&q);
-    // Eight corners of the box, the ends of the capsule, the egg.
+    // Eight corners of the box, the ends of the capsule, the ellipsoid.
     let expected = [0.4, 0.4, 0.4, 0.4, 0.6, 0.6, 0.6, 0.6, 0.7 - 0.05, 0.9 - 0.05, 0.4 - 0.2];
     let mut found: Vec<f64> = gaps.iter().copied().collect();
     found[..8].sort_by(f64::total_cmp);
@@ -169,8 +169,8 @@ fn geometry_for_contact() {
     assert_close("gaps", &found, &expected, 1e-12);
 }
 
-/// The file says what touches: each shape the plane of its world, with the larger of the two coefficients of
-/// friction.
+/// With contacts from the file, each shape collides with the plane of its world, with the larger of the two
+/// coefficients of friction.
 #[test]
 fn contacts_of_the_file() -> Result<(), linkwork::integrate::Error> {
     #[mechanism(mjcf = "data/mjcf/contacts.xml", contacts = file)]
@@ -185,7 +185,7 @@ fn contacts_of_the_file() -> Result<(), linkwork::integrate::Error> {
     Ok(())
 }
 
-/// What the options leave out.
+/// Checks the options that change or omit parts of a file.
 #[test]
 fn options() {
     #[mechanism(mjcf = "data/mjcf/coupled.xml", mimic = independent, inputs = joints, passive = ignore)]
@@ -197,25 +197,25 @@ fn options() {
     assert_eq!(Independent::INPUTS, Independent::VELOCITIES);
     let (q, v) = ([0.3, 0.1, 0.2, -0.4].into(), [0.5, -1.0, 2.0, 0.7].into());
     assert_eq!(Independent.dissipated_power(&q, &v), 0.0);
-    // The rotor is no passive force.
+    // The inertia of the rotor remains, since it is no passive force.
     let with_rotor = Coupled.mass_matrix(&[0.0, 0.02].into())[3];
     assert!(with_rotor > 7.5 * 7.5 * 0.01);
 
-    // What follows a joint that stands still stands, too.
+    // A joint that follows a locked joint is locked, too.
     assert_eq!((Locked::NV, Locked::NU), (1, 0));
     let fall = Locked.bias_forces(&[0.0].into(), &[0.0].into())[0];
     let there = Coupled.bias_forces(&[0.0, 0.0].into(), &[0.0, 0.0].into())[0];
     assert!((fall / there - 3.7 / 9.81).abs() < 1e-12, "{fall} {there}");
 }
 
-/// Limits are in the file's units; the effort of a joint is at most that of all its motors, and that of the
-/// joint itself.
+/// Limits are in the file's units. The effort limit of a joint is the smaller of its motors' total and the
+/// joint's own.
 #[test]
 fn limits() {
     let (lower, upper) = (Everything.lower_limits(), Everything.upper_limits());
     assert_close("angles", &[lower[0], upper[0]], &[-90.0, 120.0].map(f64::to_radians), 1e-15);
     assert_eq!([lower[2], upper[2], lower[1]], [-0.1, 0.4, f64::NEG_INFINITY]);
     let efforts = Everything.effort_limits();
-    // The servo of a tendon drives the first joint too, and has no limit.
+    // The servo of a tendon drives the first joint, too, and has no limit.
     assert_eq!([efforts[0], efforts[8]], [f64::INFINITY, 9.0]);
 }
