@@ -1,5 +1,5 @@
-//! The recursion of optimal control: against dense algebra, and as differential dynamic programming, whose
-//! iterations converge quadratically.
+//! Backward recursion of optimal control: compared with dense linear algebra, and used in differential
+//! dynamic programming, whose iterations converge quadratically.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::optimal::{Indefinite, Policy, Quadratic, Value, backward};
@@ -7,7 +7,7 @@ use linkwork::prelude::*;
 use linkwork::{RheonomicSecondDerivatives, discrete};
 use support::random::Random;
 
-/// Two links in a vertical plane with a motor at the shoulder alone.
+/// Two links in a vertical plane with a motor at the shoulder only.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
 struct Pendubot {
     #[body(mass = 0.6, com = -0.3 * y, inertia = diagonal(0.02, 0.01, 0.02))]
@@ -22,7 +22,7 @@ struct Pendubot {
     motor: Torque,
 }
 
-/// A flying body with two forces.
+/// Flying body with two input forces.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Flyer {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
@@ -40,7 +40,7 @@ fn positive<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
     m * m.transpose() + SMatrix::identity() * 0.1
 }
 
-/// The blocks give what dense matrices do.
+/// The recursion on blocks gives the results of Riccati's equation with dense matrices.
 #[test]
 fn blocks_obey_riccatis_equation() {
     let mut random = Random::new(1);
@@ -90,7 +90,7 @@ fn blocks_obey_riccatis_equation() {
         assert!((policy.by_v - gain.fixed_view::<2, 6>(0, 6)).amax() < 1e-12 * gain.amax());
         assert!((policy.expected[0] - du.dot(&k)).abs() < 1e-12 * du.dot(&k).abs());
         assert!((policy.expected[1] - 0.5 * k.dot(&(uu * k))).abs() < 1e-12 * du.dot(&k).abs());
-        // Costs to go under this policy, whatever it is.
+        // Cost-to-go under any policy with this gain and change of inputs.
         let to_go = xx + gain.transpose() * uu * gain + gain.transpose() * ux + ux.transpose() * gain;
         let slope = x + gain.transpose() * (uu * k + du) + ux.transpose() * k;
         assert!((found.qq - to_go.fixed_view::<6, 6>(0, 0)).amax() < 1e-12 * scale);
@@ -101,7 +101,8 @@ fn blocks_obey_riccatis_equation() {
     }
 }
 
-/// A flying body with an arm: some coordinates turn axes, others are plain.
+/// Flying body with an arm: the rates of some coordinates are in rotating axes, those of others are plain
+/// derivatives.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Flapper {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
@@ -118,9 +119,8 @@ struct Flapper {
     rotor: Force,
 }
 
-/// What is known of a step whose configuration follows from its velocity changes the work, not the result.
-/// Costs of numbers that the motion makes are `Jᵀ g` and `Jᵀ H J`, by a product of whole matrices; half of
-/// the numbers have none.
+/// Second-order costs of values that depend on state and inputs are `Jᵀ g` and `Jᵀ H J`. The blocks equal the
+/// product of the whole matrices, also where half of the values have zero gradient and curvature.
 #[test]
 fn costs_of_numbers_go_through_their_derivatives() {
     let mut random = Random::new(7);
@@ -211,7 +211,7 @@ fn costs_that_are_not_convex_are_errors() {
 const STEPS: usize = 60;
 type State = (SVector<f64, 2>, SVector<f64, 2>);
 
-/// A problem of the pendubot: from hanging at rest to a position, with costs on the way.
+/// Optimal control problem of the pendubot: move from hanging at rest to a goal, with a running cost.
 struct Problem {
     method: SemiImplicitEuler<f64>,
     goal: SVector<f64, 2>,
@@ -229,7 +229,8 @@ impl Problem {
         Value { q: (q - self.goal) * 100.0, v: v * 10.0, qq: one * 100.0, vv: one * 10.0, ..Value::zeros() }
     }
 
-    /// Policies from the last instant to the first; the largest component of the gradient by the inputs, too.
+    /// Returns the policies of all instants, the first one first, and the largest component of the gradient
+    /// with respect to the inputs.
     fn policies<M>(
         &self,
         m: &M,
@@ -241,8 +242,8 @@ impl Problem {
         M: RheonomicSecondDerivatives<2, 2, 1, Scalar = f64>,
     {
         let (mut to_go, mut policies, mut slope) = (self.last(&states[STEPS]), Vec::new(), 0.0_f64);
-        // The gradient along the trajectory itself: factors of the curvature, and what is zero at the
-        // optimum.
+        // The adjoint of the trajectory is the weight of the dynamics' curvature and gives the gradient,
+        // which is zero at the optimum.
         let mut adjoint = (to_go.q, to_go.v);
         for ((q, v), u) in states.iter().zip(inputs).rev() {
             let step = discrete::transition(m, &self.method, 0.0, q, v, u).expect("it moves");
@@ -287,8 +288,8 @@ impl Problem {
     }
 }
 
-/// With curvature the gradient's exponent doubles near the optimum; without, it shrinks by a factor each
-/// time.
+/// With the curvature of the dynamics, the gradient converges quadratically near the optimum; without it,
+/// linearly.
 #[test]
 fn dynamic_programming_converges_quadratically() {
     let m = Pendubot {};
@@ -318,9 +319,10 @@ fn dynamic_programming_converges_quadratically() {
     };
     let (newton, gauss) = (slopes(5), slopes(usize::MAX));
     println!("{newton:?}\n{gauss:?}");
-    // From the fifth on: below a multiple of the square of that before, until rounding.
+    // From the fifth iteration on, each gradient is below a multiple of the square of the one before, down to
+    // rounding error.
     let quadratic = newton[5..].windows(2).all(|w| w[1] < 1e3 * w[0] * w[0] + 1e-13);
     assert!(quadratic && newton[newton.len() - 1] < 1e-12 && newton.len() < 10, "{newton:?}");
-    // Without curvature: a factor of 2 to 4 each.
+    // Without curvature each iteration reduces the gradient by a factor of 2 to 4.
     assert!(gauss.len() > 20 && gauss[8..].windows(2).all(|w| w[1] > 0.2 * w[0]), "{gauss:?}");
 }

@@ -1,4 +1,4 @@
-//! The mass matrix without its zeros is the mass matrix.
+//! The packed mass matrix, without structural zeros, equals the mass matrix.
 
 use linkwork::lanes::f64x4;
 use linkwork::mechanism;
@@ -6,23 +6,24 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use support::compare::assert_close;
 use support::random::Random;
 
-/// A quadruped: legs do not act on one another.
+/// Quadruped: the inertia of one leg does not couple to another.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, packed)]
 struct Quadruped;
 
-/// An arm, of which every joint acts on every other, with a gripper.
+/// Arm with a gripper, in which every joint is coupled to every other.
 #[mechanism(urdf = "../models/urdf/panda.urdf", packed)]
 struct Panda;
 
-/// So many results that they cannot wait in registers: neighbours are stored together as they become known.
+/// Humanoid with so many results that they exceed the registers: neighbouring entries are stored together as
+/// soon as they are computed.
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, packed)]
 struct Humanoid;
 
-/// The same with several columns side by side.
+/// Humanoid with several columns of the mass matrix in SIMD lanes.
 #[mechanism(urdf = "../models/urdf/g1.urdf", base = free, packed)]
 struct G1;
 
-/// Two arms on one cart, with everything else that can be asked for.
+/// Two arms on one cart, with all other options of generated functions.
 #[mechanism(
     gravity = -9.81 * y,
     packed,
@@ -50,7 +51,7 @@ struct TwoArms {
     other: Pin,
 }
 
-/// Not a number that a mass matrix has.
+/// Number that is no entry of a mass matrix: it marks entries that are not written.
 const UNTOUCHED: f64 = -1e30;
 
 macro_rules! check {
@@ -67,7 +68,7 @@ macro_rules! check {
                 (full[(i, j)], full[(j, i)]) = (*entry, *entry);
             }
             assert_close("mass matrix", full.as_slice(), robot.mass_matrix(&q).as_slice(), 1e-14);
-            // What is always zero is not touched, whatever stands there.
+            // Entries that are always zero keep the caller's value.
             let mut kept = SMatrix::from_element(UNTOUCHED);
             robot.mass_matrix_into(&q, &mut kept);
             for (i, j) in (0..$robot::NV).flat_map(|i| (0..$robot::NV).map(move |j| (i, j))) {
@@ -82,14 +83,14 @@ macro_rules! check {
 
 #[test]
 fn packed_is_whole() {
-    // The base with itself: a mass that is the same in all directions, a skew first moment, an inertia. Each
-    // joint with the base: turning a hip about x pushes nothing along x. In each leg each joint with those
-    // above it.
+    // The base with itself has a mass that is the same in all directions, a skew-symmetric first moment and
+    // an inertia. Each joint is coupled to the base; the rotation of a hip about x causes no force along x.
+    // In each leg, each joint is coupled to the joints above it.
     assert_eq!(check!(Quadruped, Quadruped), (21 - 3 - 3) + (12 * 6 - 4) + 4 * 6);
-    // Fingers of equal mass that move against each other push nothing.
+    // Two fingers of equal mass that move in opposite directions cause no net force.
     assert_eq!(check!(Panda, Panda), 7 * 8 / 2 + 1);
     assert_eq!(check!(TwoArms, TwoArms { m: 1.2, l: 0.5 }), 5);
-    // Legs do not act on one another, nor on what the torso carries.
+    // Legs are coupled neither to each other nor to the bodies on the torso.
     assert!(check!(Humanoid, Humanoid) < 35 * 36 / 2);
     assert!(check!(G1, G1) < 35 * 36 / 2);
     let arms = TwoArms { m: 1.2, l: 0.5 };

@@ -1,5 +1,5 @@
-//! Robots whose figures are parameters: with the file's figures they are the robot of the file, with others
-//! that of another file.
+//! Robots whose inertial and geometric values are parameters. With the values of the file they equal the
+//! robot of the file; with other values they equal the robot of another file.
 
 use linkwork::identification::{PutBackError, approach};
 use linkwork::lanes::f64x4;
@@ -10,11 +10,11 @@ use support::random::Random;
 
 const TOLERANCE: f64 = 1e-11;
 
-/// Links and joints of all kinds, in figures.
+/// Robot with links and joints of all kinds and constant values.
 #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, derivatives, regressor)]
 struct Everything;
 
-/// All of them parameters.
+/// Robot with links and joints of all kinds whose values are all parameters.
 #[mechanism(
     urdf = "data/urdf/everything.urdf", mimic = independent, derivatives, regressor, prepare,
     parameters = [inertial, placement, damping, friction]
@@ -22,7 +22,7 @@ struct Everything;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AllOfIt;
 
-/// A quadruped, the mass properties of whose links are parameters.
+/// Quadruped whose inertial parameters are parameters of the struct.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, parameters = inertial, prepare)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadruped;
@@ -55,13 +55,13 @@ fn with_the_figures_of_the_file_it_is_the_robot_of_the_file() {
     assert_same_dynamics(&quadruped.prepare(), &linkwork_models::Solo12, 10, TOLERANCE);
 }
 
-/// An arm in figures, and in others.
+/// The same arm with the constant values of two different files.
 #[mechanism(urdf = "data/urdf/arm_before.urdf")]
 struct Before;
 #[mechanism(urdf = "data/urdf/arm_after.urdf")]
 struct After;
 
-/// The arm with all parameters, beside one of its own.
+/// Arm whose values are all parameters, with one more parameter of its own.
 #[mechanism(
     urdf = "data/urdf/arm_before.urdf", regressor, sensitivities,
     parameters = [inertial, placement, damping, friction]
@@ -73,7 +73,7 @@ struct Arm<T> {
     tool: Particle,
 }
 
-/// The figures of the other file.
+/// Parameters with the default values of the second file.
 #[mechanism(urdf = "data/urdf/arm_after.urdf", parameters = [inertial, placement, damping, friction])]
 #[derive(Clone, Copy)]
 struct Figures;
@@ -103,7 +103,7 @@ fn with_other_figures_it_is_the_robot_of_another_file() {
     let after = arm_of(&Figures::FILE);
     assert_same_dynamics(&after, &After, 20, TOLERANCE);
     assert_ne!(before, after);
-    // As they are written in the file, with an inertia that stands in other axes there.
+    // The parameters have the values that the file states; the inertia of the file is in other axes.
     assert_eq!(
         before.fore,
         Inertial {
@@ -131,7 +131,7 @@ fn parameters_have_the_names_by_which_they_are_written() {
     assert_eq!(Arm::<f64>::LINKS, ["upper-arm", "fore", "type"]);
     let index = |name| linkwork::index_of(&Arm::<f64>::PARAMETERS, name).unwrap();
     assert_eq!(index("load"), 0);
-    // The derivative by the damping of a joint is its velocity.
+    // The derivative of a joint's torque with respect to its damping is its velocity.
     let arm = Arm::<f64>::from_file(0.3);
     let (q, v, a) = ([0.3, 0.2, 0.1].into(), [0.5, -0.7, 0.9].into(), [0.1, 0.2, 0.3].into());
     let by = arm.inverse_dynamics_by_parameters(&q, &v, &a);
@@ -189,7 +189,7 @@ fn what_no_body_has_is_named() {
     assert_eq!(faults(|arm| arm.slide_placement.xyz[2] = 1e90).0, Fault::TooLarge);
 }
 
-/// A seven-axis arm, whose links are parameters, and one of whose links is.
+/// Arm with seven axes, whose links are all parameters, or one of whose links is a parameter.
 #[mechanism(
     urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"],
     regressor, prepare, parameters = inertial
@@ -209,7 +209,8 @@ struct Wrist;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SingleWrist;
 
-/// Other bodies with other shapes: some of the density of the one that is known before, some at other places.
+/// Returns other inertial parameters of a physically consistent body: part of the known body's density, and
+/// two point masses.
 fn other(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
     let mut point =
         || Inertial::point(link.mass * (0.06 + random.uniform(0.05)), random.vector::<3>(0.06).into());
@@ -219,7 +220,8 @@ fn other(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
     link.scaled(0.95).plus(&at(a)).plus(&at(b))
 }
 
-/// The potential energy and the masses by themselves do not act.
+/// Checks that two robots have the same torques in random motions: they may differ only in parameters without
+/// effect.
 fn same_torques(one: &Panda, other: &Panda) {
     let mut random = Random::new(2);
     for _ in 0..20 {
@@ -243,17 +245,17 @@ fn identified_base_parameters_are_put_back() {
         let again = found.base_parameters(&found.standard_parameters());
         assert_similar("base parameters", again.as_slice(), base.as_slice(), 1e-9);
         same_torques(&found, &truth);
-        // They are other bodies: what does not act cannot be known.
+        // The bodies differ: combinations of parameters without effect on the torques cannot be identified.
         assert_ne!(found, truth);
-        // What was found is kept if it is put back once more.
+        // Setting the same base parameters again does not change the result.
         let before = found;
         found.set_base_parameters(&base).unwrap();
         for (one, other) in found.inertials().iter().zip(before.inertials()) {
             assert_close("kept", &one.to_standard(), &other.to_standard(), 1e-7);
         }
     }
-    // The file's own base parameters leave its links as they are, up to those that are at the bound of what
-    // there is.
+    // The base parameters of the file are reproduced by its own links, except by links at the bound of
+    // physical consistency.
     let mut same = Panda::FILE;
     same.set_base_parameters(&same.base_parameters(&same.standard_parameters())).unwrap();
     same_torques(&same, &Panda::FILE);
@@ -272,7 +274,7 @@ fn noise_gives_bodies_all_the_same() {
         let again = found.base_parameters(&found.standard_parameters());
         assert!((again - noisy).amax() < most * base.amax(), "{}", (again - noisy).amax());
     }
-    // Without noise nothing is lost but what the softness allows.
+    // Without noise the result deviates only by the softness of the approximation.
     let mut found = file;
     approach(&mut found, &base, 1e-6).unwrap();
     let again = found.base_parameters(&found.standard_parameters());
@@ -298,7 +300,8 @@ fn what_no_bodies_have_is_an_error_and_changes_nothing() {
     assert_eq!(found, before);
 }
 
-/// One link alone takes what can be said of it, in single precision too.
+/// Checks that one link with free parameters takes all components of a load that act on it, also in single
+/// precision.
 macro_rules! one_link {
     ($robot:ident, $scalar:ty, $tolerance:literal) => {{
         let mut truth = $robot::FILE;
@@ -323,7 +326,7 @@ fn one_link_takes_what_reaches_it() {
     one_link!(SingleWrist, f32, 2e-2);
 }
 
-/// Links whose placement is a parameter stand where it says.
+/// Frames of links whose placement is a parameter are at the placement that the parameter states.
 #[test]
 fn calibration_moves_frames() {
     let mut arm = Arm::<f64>::from_file(0.0);

@@ -1,5 +1,5 @@
-//! Model passes change no function: every variant of a model has the same equations, energies, momenta and
-//! frames as the model itself, on random trees of every joint and on the robots.
+//! Model passes change no generated function. Every variant of a model has the equations, energies, momenta
+//! and frames of the model, on random trees with joints of every kind and on the robots.
 
 mod random_limbs;
 mod random_robot;
@@ -26,7 +26,7 @@ use std::path::Path;
 use support::model::{symbols, try_model, with_model};
 use support::random::config;
 
-/// Relative to the largest entry.
+/// Tolerance relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
 
 const CHOICES: [Passes; 4] = [
@@ -44,7 +44,7 @@ fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) 
     }
 }
 
-/// All functions of a model as expressions; those last that depend on the axes of links.
+/// Returns all functions of a model as expressions. Functions that depend on the axes of links come last.
 fn functions<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<(&'static str, Vec<Expr<'g>>)> {
     let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
     let (mass, moment) = energy::mass_and_moment(model, joints);
@@ -64,7 +64,7 @@ fn functions<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<(&'static str, 
     ]
 }
 
-/// Rotation and position of all named frames in the ground.
+/// Returns rotation and position of all named frames in the ground frame.
 fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut world: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
@@ -81,8 +81,9 @@ fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     all
 }
 
-/// Every variant of a model has its functions, and forward dynamics inverts inverse dynamics. With common
-/// axes everything is so that does not name the axes of links.
+/// Checks that every variant of a model has the model's functions, and that forward dynamics inverts inverse
+/// dynamics. Variants with common axes are compared only in functions that do not depend on the axes of
+/// links.
 fn check_forms(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
     let joints = kinematics::joints(model);
@@ -120,7 +121,8 @@ fn check_forward(variant: &Variant<'_>, seed: u64) {
     }
 }
 
-/// The generated programs compute the same with and without passes, and cost no more with them.
+/// Checks that the generated programs have the same results with and without passes, and no more operations
+/// with passes.
 fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tolerance: f64) {
     for seed in 0..3 {
         let at = symbols(model, seed);
@@ -146,7 +148,7 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
 const OFF: Passes =
     Passes { frames: false, regroup: false, parallel: false, lanes: false, free_parameters: false };
 
-/// Functions of numbers that were computed from the parameters before compute the same.
+/// Checks that functions of prepared numbers have the results of the functions of parameters.
 fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Output, tolerance: f64) {
     for seed in 0..3 {
         let at = symbols(model, seed);
@@ -192,8 +194,8 @@ fn robots_move_as_without_passes() {
     }
 }
 
-/// With alike limbs as lanes every variant of a model has its functions. What acts between limbs may be built
-/// differently for each of them: then there are no lanes.
+/// Checks that every variant of a model with identical limbs has the model's functions when the limbs are
+/// lanes. Forces between limbs may have different expressions in each limb; then no lanes exist.
 fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     const TOLERANCE: f64 = 1e-11;
     let at = symbols(model, seed);
@@ -214,7 +216,8 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
         let Some(limbs) =
             Limbs::of(&variant.model, &variant.joints, &groups, || passive_forces(&variant.model, true))
         else {
-            // Of numbers lanes can be made always; expressions of parameters may be built differently.
+            // Limbs with numeric values always become lanes; expressions of parameters may have a different
+            // structure in each limb.
             assert!(interacts || !model.parameters.is_empty(), "limbs become lanes");
             continue;
         };
@@ -236,7 +239,7 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
         }
         let found = limb_lanes::forward_dynamics(&limbs, &limbs).expect("no coordinate is coupled");
         assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &with_tau), &expected);
-        // The same after lowering.
+        // The lowered program has the same results.
         let program = lower(&limb_lanes::inverse_dynamics(&limbs, true));
         assert_near("program", seed, TOLERANCE, &program.run(&at), &tau);
     }
@@ -249,7 +252,7 @@ proptest! {
     fn alike_limbs_as_lanes_are_the_same_mechanism(creature in creatures(3), seed in 0_u64..1000) {
         let source = creature.source();
         let interacts = source.1.contains(" between");
-        // Elements that hold a limb to itself are refused.
+        // Models with an element between a limb and itself are rejected.
         let refused = try_model(&source, |_, model| check_limbs(model, interacts, seed)).is_err();
         prop_assert!(!refused || interacts);
     }
@@ -260,8 +263,8 @@ proptest! {
     }
 }
 
-/// Every variant has the functions of its model to the last digits, and no figures that are larger than its
-/// own.
+/// Checks that every variant has the functions of its model within rounding error, and that no length of a
+/// variant exceeds those of the model by more than a factor of 10.
 fn check_digits(model: &Model<'_>, seed: u64) {
     let at = symbols(model, seed);
     let joints = kinematics::joints(model);
@@ -283,7 +286,7 @@ fn check_digits(model: &Model<'_>, seed: u64) {
     let (n, own) = (model.nv(), motion(model, &joints));
     let extent: f64 = sizes(model).iter().sum();
     let all = CHOICES.into_iter().flat_map(|passes| variants(model, passes)).collect::<Vec<_>>();
-    // Common axes are those of joints that are parallel but for what files round off.
+    // Joints share common axes if they are parallel within the rounding of files.
     let common = in_common_axes(&all);
     let both =
         all.iter().map(|variant| (variant, 1e-12)).chain(common.iter().map(|variant| (variant, 5e-12)));
@@ -302,7 +305,7 @@ fn check_digits(model: &Model<'_>, seed: u64) {
             let size = (mass[k / n * (n + 1)] * mass[k % n * (n + 1)]).sqrt();
             assert!((found - entry).abs() <= tolerance * size, "{found} and {entry} of {size} (seed {seed})");
         }
-        // Light links on heavy ones take digits, with the passes as without.
+        // Light links on heavy ones lose digits, with and without the passes.
         let error = motion(&variant.model, &variant.joints);
         assert!(
             error <= 100.0 * tolerance + 1000.0 * own,
@@ -319,7 +322,7 @@ proptest! {
         with_model(&tree.source(), |_, model| check_forms(model, seed));
     }
 
-    /// Pins and sleeves, most of them parallel to the one before.
+    /// Robots of pins and sleeves, most of them parallel to the joint before.
     #[test]
     fn parallel_joints_are_the_same_in_common_axes(
         joints in prop::collection::vec((0..3_usize, 0..4_usize, any::<bool>(), -1.0..1.0_f64), 2..6),
@@ -359,8 +362,8 @@ proptest! {
     }
 }
 
-/// Where the axes of pins are parallel nothing is turned between links; what is turned are constants. Axes
-/// that are not parallel are left alone.
+/// No rotation is computed between links whose pins are parallel; constant rotations are merged. Links whose
+/// axes are not parallel are unchanged.
 #[test]
 fn parallel_joints_share_their_axes() {
     let arm = |axes: [&str; 3]| {
@@ -383,13 +386,13 @@ fn parallel_joints_share_their_axes() {
     };
     assert_eq!(shared(["z", "z", "z"]), [false, false, false]);
     assert_eq!(shared(["z", "y", "-y"]), [true, false, false]);
-    // The third turns from the axes that the first two have in common.
+    // The third joint rotates relative to the axes that the first two share.
     assert_eq!(shared(["z", "z", "x"]), [false, false, true]);
     assert_eq!(shared(["z", "y", "z"]), [false; 0]);
 }
 
-/// Arms of next to no length between axes, as exporters leave them, must not take large masses and lose
-/// digits; nor may axes that are next to parallel send a frame far away.
+/// Nearly zero lengths between axes, as exporters write them, must not carry large masses and lose digits.
+/// Nearly parallel axes must not place a frame far away.
 #[test]
 fn figures_next_to_zero_cost_no_digits() {
     let mut fields = String::new();

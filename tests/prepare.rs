@@ -1,5 +1,5 @@
-//! A prepared mechanism has the functions of the mechanism itself, and does no work that its parameters alone
-//! decide.
+//! A prepared mechanism has the functions of the mechanism itself, without the operations that depend on
+//! parameters alone.
 
 use linkwork::integrate::Error;
 use linkwork::simulate::Sample;
@@ -13,7 +13,7 @@ use support::random::Random;
 
 const TOLERANCE: f64 = 1e-11;
 
-/// An arm with a tool, a spring and friction; geometry, masses and elements in parameters.
+/// Arm with a tool, a spring and friction, whose geometry, masses and elements are parameters.
 #[mechanism(gravity = -g * z, prepare, derivatives, centroidal)]
 struct Arm<T> {
     g: T,
@@ -131,7 +131,7 @@ fn in_single_precision() {
     assert_close("mass matrix", mass.as_slice(), double.mass_matrix(&q).as_slice(), 1e-6);
 }
 
-/// Parameters on a robot from a file.
+/// Robot from a file with a parameter of its own.
 #[mechanism(urdf = "../models/urdf/panda.urdf", prepare)]
 #[derive(Clone, Copy)]
 struct LoadedPanda {
@@ -147,13 +147,13 @@ struct LoadedPanda {
 fn robot_with_a_load() {
     let arm = LoadedPanda { load: 1.7, stiffness: 12.0 };
     assert_same_dynamics(&arm.prepare(), &arm, 20, TOLERANCE);
-    // What is prepared does not follow the parameters.
+    // Prepared values do not follow later changes of the parameters.
     let heavier = LoadedPanda { load: 2.0, ..arm };
     assert_ne!(heavier.prepare(), arm.prepare());
     assert_same_dynamics(&heavier.prepare(), &heavier, 5, TOLERANCE);
 }
 
-/// A bead on a hoop that is driven about the vertical.
+/// Bead on a hoop that is driven about the vertical.
 #[mechanism(gravity = -g * z, prepare)]
 struct Hoop {
     g: f64,
@@ -180,7 +180,7 @@ fn driven_in_time() {
     assert!((end(one) - end(other)).abs() < 1e-9);
 }
 
-/// Four bars, with everything that can be asked for.
+/// Four-bar linkage with all options of generated functions.
 #[mechanism(
     gravity = -g * y,
     prepare,
@@ -215,7 +215,8 @@ struct FourBars {
 fn with_a_closed_loop() {
     let bars = FourBars { g: 9.81, m: 0.7, l: 0.4 };
     let prepared = bars.prepare();
-    // The crank upright: the loop is a kite, its other corner as far from the crank's end as from the pivot.
+    // With the crank upright, the loop is a kite: its other corner is as far from the crank's end as from the
+    // pivot.
     let corner = (1.0_f64 + 4.0).sqrt() / 2.0;
     let (axis, half) = ((1.0_f64).atan2(-2.0), (corner / 2.0).acos());
     let (knee, pivot) = (axis + std::f64::consts::PI + half, axis - half);
@@ -226,7 +227,8 @@ fn with_a_closed_loop() {
     assert_close("accelerations", one.as_slice(), other.as_slice(), TOLERANCE);
     let rates = bars.constraint_jacobian(&q) * other + bars.constraint_bias(&q, &v);
     assert_close("the loop stays closed", rates.as_slice(), &[0.0, 0.0], TOLERANCE);
-    // What the motion needs beside the forces that close the loop is what the mass properties account for.
+    // The regressor accounts for the forces of inertia and weight that the motion needs in addition to the
+    // constraint forces of the loop.
     let needed = bars.inverse_dynamics(&q, &v, &other);
     let rigid = bars.joint_torque_regressor(&q, &v, &other) * bars.standard_parameters();
     assert_close("regressor", rigid.as_slice(), needed.as_slice(), TOLERANCE);
@@ -239,12 +241,11 @@ fn with_a_closed_loop() {
     );
 }
 
-// ---- What is left to
-// do ------------------------------------------------------------------------------------------
+// ---- Remaining operations --------------------------------------------------------------------------------
 
 const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
 
-/// Operations of the main functions, and of the prepared ones.
+/// Returns the numbers of operations of the main functions, and of the prepared ones.
 fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
     let tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
@@ -258,8 +259,9 @@ fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
     (main(&output.functions), output.prepared.map(|prepared| main(&prepared.functions)))
 }
 
-/// A 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986), and bodies without any
-/// symmetry; their mass properties are numbers or parameters, and so are the lengths.
+/// Returns the source of a 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986)
+/// whose bodies have no symmetry. The arguments choose whether lengths and inertial parameters are parameters
+/// or numbers.
 fn puma(lengths: bool, parameters: bool) -> String {
     let [a2, a3, d3, d4] = match lengths {
         true => ["a2", "a3", "d3", "d4"],
@@ -293,7 +295,8 @@ fn puma(lengths: bool, parameters: bool) -> String {
     format!("pub struct Puma {{ {fields} }}")
 }
 
-/// Chains of rods along x about these axes in turn; lengths and masses are numbers or parameters.
+/// Returns the source of a chain of `n` rods along x whose joints have these axes in turn. Lengths and masses
+/// are numbers or parameters.
 fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
     let mut fields = String::new();
     for k in 0..n {
@@ -316,8 +319,8 @@ fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
     format!("pub struct Chain {{ {fields} }}")
 }
 
-/// Within ten per cent of the same mechanism in numbers, and exactly. Where rods lie along an axis two
-/// lengths become one.
+/// Prepared functions need at most ten per cent more operations than the mechanism with numbers, and exactly
+/// the stated counts. Where rods lie along an axis, two lengths merge into one.
 #[test]
 fn parameters_cost_next_to_nothing() {
     for (name, numbers, parameters, expected) in [

@@ -1,4 +1,5 @@
-//! Published robots against the reference values of `data/robots` (Pinocchio 4.1.0), and against themselves.
+//! Published robots against the reference values of `data/robots` (Pinocchio 4.1.0), and consistency of their
+//! functions.
 
 use linkwork::nalgebra::SVector;
 use linkwork::{Mechanism, frame};
@@ -6,18 +7,18 @@ use support::compare::assert_close;
 use support::robots::*;
 use support::table::Record;
 
-/// Mass matrix, bias forces, inverse dynamics, energies.
+/// Tolerance of mass matrix, bias forces, inverse dynamics and energies.
 const DYNAMICS: f64 = 1e-11;
-/// Forward dynamics: the condition of the mass matrix enters.
+/// Tolerance of forward dynamics, which includes the condition of the mass matrix.
 const FORWARD: f64 = 1e-9;
-/// Frames, Jacobians, velocities.
+/// Tolerance of frames, Jacobians and velocities.
 const KINEMATICS: f64 = 1e-12;
 
 fn table(robot: &str) -> Record {
     Record::load(&format!("robots/{robot}.json"))
 }
 
-/// Everything of the trait `Mechanism` that the tables hold.
+/// Checks all functions of the trait `Mechanism` that the tables contain.
 fn check_dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
@@ -42,7 +43,7 @@ where
     }
 }
 
-/// The names and the effect of the inputs: one for every moving joint, in the order of the reference.
+/// Checks the names and the effect of the inputs: one for each moving joint, in the order of the reference.
 fn check_inputs<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
@@ -61,7 +62,7 @@ where
     }
 }
 
-/// Placements of all links, in whatever order the robot has them.
+/// Checks the placements of all links, in any order.
 macro_rules! check_frames {
     ($robot:ident, $name:literal) => {
         for (i, case) in table($name).records("cases").iter().enumerate() {
@@ -77,7 +78,7 @@ macro_rules! check_frames {
     };
 }
 
-/// Motion of the last link, and of the robot as a whole.
+/// Checks the motion of the last link, and of the robot as a whole.
 macro_rules! check_kinematics {
     ($robot:ident, $name:literal, $last:literal) => {
         assert_eq!(table($name).string("last_link"), $last);
@@ -146,7 +147,7 @@ robot!(anymal_b, AnymalB, "anymal_b", "RH_FOOT");
 robot!(simple_humanoid, Humanoid, "simple_humanoid", "r_wrist");
 robot!(g1, G1, "g1", "right_rubber_hand");
 
-/// One finger follows the other: one coordinate less.
+/// Panda arm whose second finger follows the first: it has one coordinate less.
 mod panda_mimic {
     use super::*;
 
@@ -186,7 +187,8 @@ mod panda_mimic {
         check_frames!(PandaMimic, "panda_mimic");
     }
 
-    /// The second finger is an independent joint that moves as the first.
+    /// The mimic joint gives the dynamics of an independent second finger that moves identically to the
+    /// first.
     #[test]
     fn following_is_moving_alike() {
         for case in table("panda_mimic").records("cases") {
@@ -206,7 +208,7 @@ mod panda_mimic {
     }
 }
 
-/// Frozen joints stay at zero: what is left are the rows and columns of the others.
+/// Locked joints stay at zero: rows and columns of the other joints remain.
 #[test]
 fn locked_joints_stay_at_zero() {
     for case in table("panda").records("cases") {

@@ -1,5 +1,5 @@
-//! Many states at once: arrays of states and rollouts give what single states give, however many there are,
-//! in however many lanes and threads.
+//! Arrays of states and rollouts of many states give the results of single states, for any number of states,
+//! lanes and threads.
 
 use linkwork::batch::{Error, Lockstep, Progress, Rollout, unwatched};
 use linkwork::integrate::{self, ContinuousInputs, State, System};
@@ -15,7 +15,7 @@ struct Ur5;
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, passive = ignore, batch)]
 struct Solo12;
 
-/// A pole on a cart that is drawn to a magnet: close to it nothing is finite.
+/// Pole on a cart that a magnet attracts: at the magnet itself the force is not finite.
 #[mechanism(gravity = -9.81 * y, batch)]
 struct Trap {
     #[body(mass = 1)]
@@ -53,7 +53,7 @@ impl States {
     }
 }
 
-/// State `k` of `count`.
+/// Returns state `k` of `count`.
 fn column<const N: usize>(numbers: &[f64], count: usize, k: usize) -> SVector<f64, N> {
     SVector::from_fn(|i, _| numbers[i * count + k])
 }
@@ -62,7 +62,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|x| x.to_bits()).collect()
 }
 
-/// A law with a state of rest for each index.
+/// Returns the inputs of a proportional-derivative law whose set point depends on the index of the state.
 fn law<const L: usize, const N: usize>(
     first: usize,
     t: Lanes<f64, L>,
@@ -77,7 +77,7 @@ fn one_law<const N: usize>(k: usize, t: f64, q: &SVector<f64, N>, v: &SVector<f6
     law::<1, N>(k, Lanes([t]), &q.map(|x| Lanes([x])), &v.map(|x| Lanes([x]))).map(|x| x.0[0])
 }
 
-/// One state after another, by the integrators themselves.
+/// Integrates one state after another with the integrators for single states.
 fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, count: usize) {
     for k in 0..count {
         let (q, v) = (column::<6>(&states.q, count, k), column::<6>(&states.v, count, k));
@@ -178,7 +178,8 @@ fn arrays_of_states_are_evaluated_state_by_state() {
         lanes.inverse_dynamics_all(0.0, &states.q, &states.v, &a, &mut tau).expect("lengths");
         lanes.forward_dynamics_all(0.0, &states.q, &states.v, &tau, &mut back).expect("lengths");
         lanes.mass_matrix_all(0.0, &states.q, &mut mass).expect("lengths");
-        // In one lane, since a single state has its alike limbs in lanes.
+        // The reference uses one lane, since the function of a single state evaluates identical limbs in
+        // lanes.
         let one = |x: SVector<f64, 18>| x.map(|x| Lanes([x]));
         for k in 0..count {
             let (q, v) =
@@ -202,7 +203,7 @@ fn a_state_that_fails_leaves_the_others_alone() {
     let lanes = Trap.lanes::<4>();
     let (mut good, mut good_v) = (q.clone(), v.clone());
     lanes.roll_out(&rollout, &mut good, &mut good_v, none, unwatched).expect("far from the magnet");
-    // On the magnet itself.
+    // These two states start at the magnet.
     for k in [2, 9] {
         q[k] = 0.0;
     }

@@ -1,4 +1,4 @@
-//! SDF files of `data/sdf` against the same as URDF and as structs.
+//! SDF files of `data/sdf` against the same mechanisms as URDF files and as structs.
 
 use linkwork::prelude::*;
 use linkwork::{Limits, frame};
@@ -30,8 +30,8 @@ fn the_same_arm_as_sdf_and_as_urdf() {
     assert_eq!(Sdf.velocity_limits()[4], f64::INFINITY, "less than zero stands for none");
 }
 
-/// Fixed joints between links with mass, frames that stand in frames, joints in frames, links in joints,
-/// models in models.
+/// Fixed joints between links with mass, frames relative to frames, joints relative to frames, links relative
+/// to joints, and nested models give the tree of the reference.
 #[test]
 fn the_same_tree_of_nested_frames() {
     #[mechanism(sdf = "data/sdf/tree.sdf")]
@@ -58,7 +58,7 @@ fn the_same_tree_of_nested_frames() {
     }
 }
 
-/// Two axes are two joints with a massless link between them; a screw turns and advances.
+/// A joint with two axes is two joints with a massless link between them; a screw joint rotates and advances.
 #[test]
 fn other_joints() {
     #[mechanism(sdf = "data/sdf/joints.sdf", inputs = none)]
@@ -91,7 +91,7 @@ fn other_joints() {
     assert_same_dynamics(&File, &Written {}, 20, TOLERANCE);
 }
 
-/// A joint to a link that another one carries closes a loop; joints join frames on links, and frames have
+/// A joint to a link that already has a parent closes a loop. Joints connect frames on links, and frames have
 /// placements.
 #[test]
 fn linkage() {
@@ -115,8 +115,7 @@ fn linkage() {
         hold: Weld,
         #[joint(ground.at(0.8 * x).rotated(y(0.3)) -> rocker, about = y)]
         c_swing: Pin,
-        // In the file's pose, where the joint stands at zero: the bar is turned by 0.2 + 1.1, the rocker by
-        // 0.3.
+        // In the file's pose all joints are at zero: the bar is rotated by 0.2 + 1.1, the rocker by 0.3.
         #[joint(
             rocker.at(0.5 * z).rotated(y(1.0)) -> bar.at(
                 (cos(1.3) * (0.8 + 0.5 * sin(0.3) - 0.3 * sin(0.2)) - sin(1.3) * (0.5 * cos(0.3) - 0.3 * cos(0.2))) * x
@@ -144,7 +143,7 @@ fn linkage() {
     assert_close("frame", end.vector.as_slice(), tip.as_slice(), TOLERANCE);
 }
 
-/// A contact names the shapes of the file: a rod and a ball, in the pose of the file.
+/// A contact can refer to shapes of the file: a rod and a ball, in the pose of the file.
 #[test]
 fn geometry_for_contact() {
     #[mechanism(sdf = "data/sdf/linkage.sdf")]

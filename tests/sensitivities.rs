@@ -1,5 +1,4 @@
-//! Derivatives of the dynamics by parameters: against differences of the functions that they are the
-//! derivatives of.
+//! Derivatives of the dynamics with respect to parameters, against finite differences of the same functions.
 
 use linkwork::discrete::{self, StepByParameters};
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -8,10 +7,10 @@ use linkwork::{RheonomicDerivatives, Sensitivities, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Differences.
+/// Tolerance against finite differences.
 const TOLERANCE: f64 = 1e-7;
 
-/// An arm whose lengths, masses, angles and elements are parameters.
+/// Arm whose lengths, masses, angles and elements are parameters.
 #[mechanism(gravity = -g * z, sensitivities, prepare)]
 #[derive(Clone, Copy)]
 struct Arm {
@@ -44,7 +43,7 @@ struct Arm {
     friction: Friction,
 }
 
-/// A flying robot from a file, with a load and a spring.
+/// Flying robot from a file, with a load and a spring.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, sensitivities)]
 #[derive(Clone, Copy)]
 struct Quadruped {
@@ -57,7 +56,7 @@ struct Quadruped {
     spring: Spring,
 }
 
-/// A bead on a hoop that is driven about the vertical.
+/// Bead on a hoop that is driven about the vertical.
 #[mechanism(gravity = -g * z, derivatives, sensitivities)]
 #[derive(Clone, Copy)]
 struct Hoop {
@@ -72,7 +71,7 @@ struct Hoop {
     bead: Particle,
 }
 
-/// Derivative of a function of the mechanism by each parameter, by differences of the fourth order.
+/// Returns the derivatives of `f` with respect to each parameter, by differences of fourth order.
 fn slopes<M: Copy, const NV: usize, const NP: usize>(
     at: M,
     parameters: [fn(&mut M) -> &mut f64; NP],
@@ -166,7 +165,7 @@ fn driven_in_time() {
     assert_similar("∂v̇/∂p", by.as_slice(), &expected, 1e-12);
 }
 
-/// A flying body with a pendulum, pushed along an arm whose length is a parameter.
+/// Flying body with a pendulum and a force at the end of an arm whose length is a parameter.
 #[mechanism(gravity = -g * z, derivatives, sensitivities)]
 #[derive(Clone, Copy)]
 struct Flyer {
@@ -185,8 +184,8 @@ struct Flyer {
     rotor: Force,
 }
 
-/// A body on Cardan's angles, in its angular velocity along its own axes, which contains no parameter, with a
-/// slider.
+/// Body on Cardan angles with a slider. The generalized speeds are the angular velocity in body axes, which
+/// contains no parameter.
 #[mechanism(gravity = -g * z, derivatives, sensitivities)]
 #[derive(Clone, Copy)]
 struct Gimbal {
@@ -221,7 +220,7 @@ struct Gimbal {
     wz: Speed,
 }
 
-/// Derivatives of a step against differences, along displacements of its end.
+/// Compares the derivatives of a step with differences, as displacements of the end of the step.
 fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     what: &str,
     m: M,

@@ -1,4 +1,4 @@
-//! Robots of `models/urdf`, written once more in the struct language: both ways give the same equations.
+//! Robots of `models/urdf` and the same robots in the struct language have the same equations.
 
 use linkwork::{frame, mechanism};
 use support::compare::{assert_close, assert_same_dynamics};
@@ -47,7 +47,7 @@ struct DoublePendulum {
     motor2: Torque,
 }
 
-/// The arm's right angles are those of its file, rounded as they are there.
+/// UR5 arm, with the right angles rounded as in its file.
 #[mechanism(gravity = -9.81 * z)]
 struct Ur5 {
     #[body(mass = 4, inertia = [[0.00443333156, 0, 0], [0, 0.00443333156, 0], [0, 0, 0.0072]])]
@@ -106,7 +106,8 @@ struct Ur5 {
     motor5: Torque,
 }
 
-/// What is not in the trait `Mechanism`: inputs, the robot as a whole, and its bodies by name.
+/// Checks functions that are not in the trait `Mechanism`: inputs, the robot as a whole, and its bodies by
+/// name.
 macro_rules! assert_same_kinematics {
     ($written:ident, $read:ident, $last:literal) => {
         let (written, read) = ($written {}, $read);

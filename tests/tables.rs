@@ -1,17 +1,17 @@
-//! Tables, the standard atmosphere and angles of flight in mechanisms: a table of a parabola is the parabola,
-//! in every function and every derivative; others agree with differences of high order.
+//! Tables, the standard atmosphere and angles of flight in mechanisms. A table of a parabola equals the
+//! parabola in every function and derivative; other tables agree with differences of high order.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{Lanes, Real, Table, mechanism};
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// Between a table and the formula that it was made of.
+/// Tolerance between a table and the formula of its values.
 const FORMULA: f64 = 1e-10;
-/// Between derivatives and differences of eighth order.
+/// Tolerance between derivatives and central differences of eighth order.
 const DIFFERENCE: f64 = 1e-10;
 
-/// The aircraft once with tables and once with formulas: what is written between the braces are its
+/// Defines an aircraft with coefficients from tables or formulas. The braces declare the parameters of the
 /// coefficients.
 macro_rules! aircraft {
     ($name:ident<$t:ident>, { $($parameter:ident: $kind:ty),* }, $lift:expr, $drag:expr, $thrust:expr) => {
@@ -171,7 +171,7 @@ fn tables_agree_with_differences_of_high_order() {
     }
 }
 
-/// Derivative at zero by central differences of eighth order.
+/// Returns the derivative of `f` at zero by central differences of eighth order.
 fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
     let h = 2e-3;
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
@@ -201,7 +201,7 @@ fn several_states_at_once_look_up_each_for_itself() {
     }
 }
 
-/// Angles of flight for a known attitude and velocity.
+/// Airframe whose outputs are the angles of flight for a known attitude and velocity.
 #[mechanism]
 struct Attitude {
     #[body(mass = 1, inertia = sphere(1, 1))]
@@ -241,8 +241,8 @@ fn angles_of_flight_are_those_that_the_attitude_was_made_of() {
     assert!((Attitude.sound(&q) - 295.154).abs() < 1e-3);
 }
 
-/// A fan whose torque is looked up at a speed that is fixed, in one way by a number and in the other by a
-/// parameter.
+/// Fan with a table of torque over speed. The fixed speed ratio is a number in one use and a parameter in the
+/// other.
 #[mechanism(derivatives, prepare, batch, sensitivities)]
 struct Fan {
     torque: Table<1>,
@@ -272,7 +272,7 @@ fn tables_are_looked_up_at_numbers() {
     assert!((fan.forward_dynamics_by_parameters(&q, &v, &tau)[0] - 550.0).abs() < 1e-10);
 }
 
-/// A cam: a follower that a table holds at a height over the angle.
+/// Cam mechanism: a table gives the height of the follower as a function of the angle.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Cam {
     rise: Table<1>,
@@ -292,7 +292,7 @@ struct Cam {
 fn a_constraint_may_be_a_table() {
     static ANGLE: [f64; 4] = [-2.0, -0.5, 0.5, 2.0];
     static RISE: [f64; 4] = [0.4, 0.025, 0.025, 0.4];
-    // The rise is θ² / 10.
+    // The follower's height is θ² / 10.
     let cam = Cam { rise: Table::new([&ANGLE], &RISE).unwrap().smooth() };
     let (q, v) = (SVector::from([0.6, 0.036]), SVector::from([1.5, 0.18]));
     let motion = cam.constrained_dynamics(&q, &v, &SVector::zeros());

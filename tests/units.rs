@@ -1,4 +1,5 @@
-//! Units are inferred: what follows from where a parameter stands, what is refused, and that nothing else is.
+//! Inference of units: units that follow from the use of a parameter, declarations that are rejected, and
+//! correct declarations that are accepted.
 
 #[path = "units/gallery.rs"]
 mod gallery;
@@ -11,7 +12,7 @@ use linkwork_compiler::mechanism::Units;
 use linkwork_compiler::{compile, expand, read};
 use std::path::Path;
 
-/// The units of a mechanism, or the mistakes in it.
+/// Returns the units of a mechanism, or its error messages.
 pub fn units(arguments: &str, item: &str) -> Result<Units, Vec<String>> {
     let mut cx = Diagnostics::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
@@ -21,7 +22,7 @@ pub fn units(arguments: &str, item: &str) -> Result<Units, Vec<String>> {
     model.map(|model| model.units).ok_or_else(|| cx.messages())
 }
 
-/// A body on a sleeve and one on a pin, with more fields.
+/// Returns the source of a mechanism with a body on a sleeve and one on a pin, and these additional fields.
 fn machine(more: &str) -> String {
     format!(
         "struct Machine {{ {more}
@@ -36,7 +37,8 @@ fn of_machine(more: &str) -> Result<Units, Vec<String>> {
     units("", &machine(more))
 }
 
-/// The units of the parameters `a`, `b`, … of a machine, as far as they occur.
+/// Checks the units of the parameters `a`, `b`, … of a machine. The length of `expected` is the number of
+/// parameters.
 #[track_caller]
 fn check(fields: &str, expected: &[&str]) {
     let names: String = ('a'..='f').take(expected.len()).map(|c| format!("{c}: f64, ")).collect();
@@ -46,18 +48,18 @@ fn check(fields: &str, expected: &[&str]) {
     }
 }
 
-/// What a line of a message notes, if it does.
+/// Returns the note of a line of a message, if it has one.
 fn note(line: &str) -> Option<&str> {
     line.strip_prefix("= note: ")
 }
 
-/// True for what is expected in a note: what a parameter is and in which argument, or what it would have to
-/// be.
+/// Whether an expected text belongs to a note. Notes state the unit of a parameter and the argument that
+/// determines it, or the unit that would be required.
 fn is_note(text: &str) -> bool {
     text.starts_with("it is ") || text.ends_with(" in")
 }
 
-/// The mistakes of a machine with the parameters `a`, `b`, `c`, and what is noted beside them.
+/// Checks the errors of a machine with the parameters `a`, `b`, `c`, and the notes of these errors.
 #[track_caller]
 fn refuse(fields: &str, expected: &[&str]) {
     let has =
@@ -133,7 +135,7 @@ fn expressions_carry_units() {
         "#[acts(on = cart, value = sqrt(a * b) * x)] s: Force, #[energy(a * rail + b * rail)] t_: Potential,",
         &["N", "N"],
     );
-    // The root of a product, with both found at other places.
+    // The square root of a product whose factors have their units from other uses.
     check(
         "#[acts(on = rail, damping = 2 * c * sqrt(a * b))] s: Dashpot, #[acts(on = rail, stiffness = a)] k: Spring, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,",
         &["N/m", "kg", "1"],
@@ -152,7 +154,7 @@ fn expressions_carry_units() {
     );
     check("#[acts(on = rail, value = a * pow(rail / b, c))] s: Force,", &["N", "m", "1"]);
     check("#[acts(on = rail, value = a * pow(rail, b))] s: Force,", &["any", "1"]);
-    // In ratios alone nothing is determined.
+    // A ratio of two parameters determines neither unit.
     check("#[acts(on = hinge, value = 3 * sin(a / b))] s: Torque,", &["any", "any"]);
     check(
         "#[acts(on = cart, value = [a, 0, b] - c * unit(r(arm.at(x) / ground)))] s: Force,",
@@ -230,12 +232,12 @@ fn a_parameter_is_one_thing() {
         "#[energy(a * rail)] e: Potential, #[body(mass = 2 * a)] w: Body, #[joint(cart -> w)] j: Weld,",
         &["`a` is a force (N) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
-    // Shown once, however often it stands wrong.
+    // Each conflict is reported once, independent of the number of wrong uses.
     refuse(
         "#[body(mass = a, com = a * y, inertia = rod(a, a, y))] w: Body, #[joint(cart -> w)] j: Weld,",
         &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
-    // By way of others: a b is a mass, and so is b.
+    // The conflict follows through another parameter: a b is a mass, and so is b.
     refuse(
         "#[body(mass = a * b)] w: Body, #[body(mass = b, com = a * y)] w2: Body, #[joint(cart -> w)] j: Weld, #[joint(cart -> w2)] j2: Weld,",
         &[
@@ -246,7 +248,7 @@ fn a_parameter_is_one_thing() {
     );
 }
 
-/// A mechanism that cannot move, with a parameter that is two things: both are told.
+/// A mechanism that cannot move, with a parameter of two conflicting units: both errors are reported.
 #[test]
 fn units_are_told_with_what_holds_the_mechanism() {
     refuse(
@@ -303,7 +305,7 @@ fn like_is_added_to_like() {
     );
 }
 
-/// Sums of coordinates, rates, time and inputs alone.
+/// Units of sums that contain only coordinates, rates, time and inputs are checked, too.
 #[test]
 fn what_moves_is_added_to_like() {
     let input = "#[acts(on = rail)] f: Force, #[acts(on = hinge)] m: Torque,";
@@ -331,7 +333,7 @@ fn what_moves_is_added_to_like() {
     );
 }
 
-/// The number of the mechanism's gravity is an acceleration also as a factor of a parameter; no other number
+/// The number in the mechanism's gravity is an acceleration also as a factor of a parameter; no other number
 /// is.
 #[test]
 fn the_number_of_gravity_is_an_acceleration() {
@@ -346,7 +348,7 @@ fn the_number_of_gravity_is_an_acceleration() {
     assert!(!hovering("gravity = -9.81 * y", "9.8") && !hovering("", "9.81"));
 }
 
-/// A number that multiplies a parameter is a plain factor, for all values.
+/// A number that multiplies a parameter is dimensionless, for every value.
 #[test]
 fn numbers_beside_parameters_are_plain() {
     for number in ["0.5", "0.6", "9.81", "40", "2 / 7", "1e-3", "sin(0.3)", "pi"] {
@@ -398,7 +400,7 @@ fn attributes_pin_units_down() {
     refuse("#[unit(m)] #[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar,", &["a parameter has one `#[unit]`"]);
 }
 
-/// The struct keeps its fields without the attribute, and its documentation has all units.
+/// The struct keeps its fields without the attribute, and its documentation states all units.
 #[test]
 fn units_are_documented() {
     let item = machine(
@@ -419,7 +421,8 @@ fn units_are_documented() {
     }
 }
 
-/// Rows of joints, of expressions and of rolling pairs: multipliers times rates are powers.
+/// Units of the rows of joints, expressions and rolling pairs: a multiplier times its constraint velocity is
+/// a power.
 #[test]
 fn constraints_and_multipliers_have_units() {
     let item = "struct Machine {
@@ -474,7 +477,7 @@ fn constraints_and_multipliers_have_units() {
     }
 }
 
-/// Inference is bounded, whatever it is given.
+/// The time of inference is bounded for structs of any size.
 #[test]
 fn large_structs_are_read_in_time() {
     let n = 800;

@@ -1,4 +1,4 @@
-//! What a URDF file can say, and the options of `#[mechanism(urdf = …)]`, against the same in the struct
+//! URDF files and the options of `#[mechanism(urdf = …)]`, against the same mechanisms in the struct
 //! language.
 
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -8,7 +8,7 @@ use support::random::Random;
 
 const TOLERANCE: f64 = 1e-13;
 
-/// Every joint moves alone, nothing resists, other gravity.
+/// Mechanism in which every joint is independent, without passive forces, and with changed gravity.
 #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, passive = ignore, gravity = x - 9 * z)]
 struct Everything;
 
@@ -57,7 +57,8 @@ struct Written {
     e_fix: Weld,
 }
 
-/// Depth first, the joints of a link in alphabetical order, whatever the order in the file.
+/// The order of joints is depth first, with the joints of a link in alphabetical order, independent of the
+/// order in the file.
 #[test]
 fn order_of_joints() {
     assert_eq!(Everything::INPUTS, ["b_turn", "c_follow", "z_slide"]);
@@ -80,7 +81,7 @@ fn file_and_struct_say_the_same() {
     }
 }
 
-/// Damping `c v` and friction `f tanh(v / friction_speed)` of the file.
+/// Damping `c v` and friction `f tanh(v / friction_speed)` have the coefficients of the file.
 #[test]
 fn passive_forces_are_honoured() {
     #[mechanism(
@@ -104,13 +105,14 @@ fn passive_forces_are_honoured() {
     }
 }
 
-/// `c_follow = 0.2 − 0.5 b_turn`: the equations of the independent joints, seen through that relation.
+/// With `c_follow = 0.2 − 0.5 b_turn`, the equations are those of the independent joints reduced by that
+/// relation.
 #[test]
 fn follower_with_factor_and_offset() {
     #[mechanism(urdf = "data/urdf/everything.urdf", passive = ignore, gravity = x - 9 * z)]
     struct Following;
 
-    // How each velocity of the independent joints depends on those that are left.
+    // The relation maps the remaining velocities to those of the independent joints.
     let relation = SMatrix::<f64, 12, 11>::from_fn(|i, j| match (i, j) {
         (7, 6) => -0.5,
         (i, j) if i < 7 && i == j || i > 7 && i == j + 1 => 1.0,
@@ -121,7 +123,7 @@ fn follower_with_factor_and_offset() {
     for _ in 0..10 {
         let q = random.configuration(&Following);
         let (v, a) = (random.vector(1.0), random.vector(1.0));
-        // Seven numbers of the free joint, then b_turn.
+        // The coordinates are seven of the free joint, then b_turn.
         let q_free = q.insert_row(8, 0.2 - 0.5 * q[7]);
         let (v_free, a_free) = (relation * v, relation * a);
         let mass_matrix = relation.transpose() * Everything.mass_matrix(&q_free) * relation;
@@ -165,7 +167,7 @@ fn free_base_without_inputs() {
     )]
     struct Floating;
 
-    // The follower stands still with the joint that it follows, at its offset.
+    // The follower is locked at its offset, together with its leader.
     assert_eq!((Floating::NQ, Floating::NV, Floating::NU), (7 + 7 + 3, 6 + 6 + 3, 0));
     assert_close("mass", &[Floating.total_mass()], &[7.0 + 0.9 + 1.5 + 0.6 + 0.4 + 0.5 + 0.2], TOLERANCE);
     let q = Floating.neutral();
@@ -196,7 +198,7 @@ fn single_precision() {
     assert_close("forces", forces.cast::<f64>().as_slice(), expected.as_slice(), 1e-5);
 }
 
-/// An arm whose right angles are written with five digits, as they stand and as they were meant.
+/// Arm whose right angles are written with five digits: as written, and with exact right angles.
 #[test]
 fn rounded_frames_are_those_that_were_meant() {
     #[mechanism(urdf = "../models/urdf/gen3.urdf")]
@@ -211,8 +213,8 @@ fn rounded_frames_are_those_that_were_meant() {
         let difference = (written - meant).norm() / written.norm();
         assert!(difference > 1e-9 && difference < 1e-4, "{difference}");
     }
-    // Stretched out upwards, the arm has only its small offsets on one side, all of them: the file's digits
-    // add to that.
+    // Stretched out upwards, the arm deviates to the side only by its small offsets; the rounded digits of
+    // the file add to that.
     let up = SVector::zeros();
     let aside = 0.005375 + 3.0 * 0.006375 + 2.0 * 0.00017505;
     let meant = Meant.frame_placement(frame!(Meant, "EndEffector_Link"), &up).translation;
@@ -221,7 +223,7 @@ fn rounded_frames_are_those_that_were_meant() {
     assert!((written.y + aside).abs() > 1e-7, "{written}");
 }
 
-/// What was rounded stands in the documentation of the struct.
+/// The documentation of the struct states the rounded numbers.
 #[test]
 fn rounded_numbers_are_documented() {
     let tokens = |text: &str| text.parse().expect("the source is Rust");
@@ -237,8 +239,8 @@ fn rounded_numbers_are_documented() {
     assert!(!docs.contains("Rounded numbers"));
 }
 
-/// Without inertia there are frames, their Jacobians, the configuration space and what inputs do, as they
-/// follow from the file: polar coordinates, and a ball at the end.
+/// A file without inertia has frames, their Jacobians, the configuration space and the effect of inputs. The
+/// example has polar coordinates, and a ball joint at the end.
 #[test]
 fn kinematics_need_no_inertia() {
     #[mechanism(urdf = "data/urdf/bare.urdf", inertia = none)]
@@ -272,7 +274,7 @@ fn kinematics_need_no_inertia() {
     assert_close("difference", Bare.difference(&q, &q).as_slice(), &[0.0; 5], TOLERANCE);
 }
 
-/// What is left of a file with inertia is the same.
+/// With `inertia = none`, the kinematics of a file with inertia do not change.
 #[test]
 fn kinematics_are_those_of_the_whole_robot() {
     #[mechanism(urdf = "data/urdf/everything.urdf", mimic = independent, inertia = none)]
@@ -297,7 +299,7 @@ fn kinematics_are_those_of_the_whole_robot() {
     }
 }
 
-/// A linkage by its lengths: constraints and outputs need no inertia either.
+/// Linkage that is defined by its lengths: constraints and outputs need no inertia either.
 #[test]
 fn a_linkage_without_inertia() {
     #[mechanism(inertia = none)]
@@ -323,18 +325,18 @@ fn a_linkage_without_inertia() {
     }
 
     let linkage = Linkage { crank: 0.3, rod: 0.5 };
-    // Crank, rod and line of the piston make a right angle of 0.3, 0.4, 0.5.
+    // Crank, rod and the line of the piston form a right triangle with the sides 0.3, 0.4, 0.5.
     let upright = std::f64::consts::FRAC_PI_2;
     let q = [upright, -upright - (0.3_f64).atan2(0.4), 0.4].into();
     assert_eq!((Linkage::NC, Linkage::NH, Linkage::NS), (2, 2, 1));
     assert_close("closed", linkage.constraint_residuals(&q).as_slice(), &[0.0; 2], TOLERANCE);
-    // The pin of the crank moves along x, so do all points of the rod.
+    // The end of the crank moves along x, and so do all points of the rod.
     let v: SVector<f64, 3> = [1.0, -1.0, -0.3].into();
     assert_close("rates", (linkage.constraint_jacobian(&q) * v).as_slice(), &[0.0; 2], TOLERANCE);
     assert_close("rise", &[linkage.rise(&q, &v)], &[0.0], TOLERANCE);
 }
 
-/// A fixed root of the name `ground` is the ground, and a frame like other links.
+/// A fixed root named `ground` is the ground, and a frame like other links.
 #[test]
 fn the_ground_may_be_a_link() {
     #[mechanism(urdf = "data/urdf/grounded.urdf")]
@@ -350,6 +352,6 @@ fn the_ground_may_be_a_link() {
         &[0.4, 0.0, 0.0],
         0.0,
     );
-    // Whatever is fixed to the ground has no part in the motion.
+    // Bodies that are fixed to the ground have no effect on the motion.
     assert_eq!((Grounded.total_mass(), Grounded.mass_matrix(&q)[0]), (2.0, 2.0));
 }

@@ -1,11 +1,11 @@
-//! What the compiler refuses in a number, `validate` refuses in a parameter.
+//! Values that the compiler rejects as numbers are rejected by `validate` as parameters.
 
 use linkwork::lanes::f64x4;
 use linkwork::{Fault, Lanes, ParameterError, Real, mechanism};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use std::path::Path;
 
-/// A mechanism with parameters, and the text of its elements.
+/// Defines a mechanism with parameters, and the text of its elements.
 macro_rules! with_text {
     ($text:ident, $name:ident { $($parameter:ident: $value:literal,)* } { $($elements:tt)* }) => {
         #[mechanism(gravity = -9.81 * y)]
@@ -70,7 +70,7 @@ with_text! { WHEELS, Wheels {
     rolling: Rolling,
 } }
 
-/// The tokens with numbers where parameters were.
+/// Returns the tokens with parameters replaced by numbers.
 fn with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
     let number = |token: TokenTree| match &token {
         TokenTree::Ident(name) => match values.iter().find(|(known, _)| name == known) {
@@ -86,17 +86,17 @@ fn with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
     tokens.into_iter().map(number).collect()
 }
 
-/// What the compiler says of the mechanism with these numbers.
+/// Returns the error messages of the compiler for the mechanism with these numbers.
 fn compiled((values, elements): (&[(&str, f64)], &str), change: (&str, f64)) -> Vec<String> {
     let values: Vec<(&str, f64)> =
         values.iter().map(|(name, x)| (*name, if *name == change.0 { change.1 } else { *x })).collect();
-    // Attributes' names are no parameters of these mechanisms.
+    // No parameter of these mechanisms has the name of an attribute.
     let elements = with_numbers(elements.parse().unwrap(), &values);
     let item = quote::quote!(struct Machine { #elements });
     linkwork_compiler::check("gravity = -9.81 * y".parse().unwrap(), item, Path::new(""))
 }
 
-/// A parameter, a value that nothing can have, the fault, and a part of the message.
+/// A parameter, a value without physical meaning, the fault, and a part of the message.
 const ARM_ROWS: [(&str, f64, Fault, &str); 21] = [
     ("m", -1.0, Fault::Negative, "the mass of `arm`"),
     ("m", 1e200, Fault::TooLarge, "the mass of `arm`"),
@@ -131,7 +131,8 @@ const WHEEL_ROWS: [(&str, f64, Fault, &str); 7] = [
     ("qw", 0.5, Fault::NotUnit, "a quaternion"),
 ];
 
-/// Each row is refused, names its parameter, and is refused as a number too.
+/// Checks that each row is rejected, that the error names the parameter, and that the compiler rejects the
+/// number, too.
 macro_rules! check {
     ($name:ident, $text:ident, $rows:ident) => {
         assert_eq!($name::<f64>::sound().validate(), Ok(()));
@@ -146,7 +147,7 @@ macro_rules! check {
             assert!(error.figure.contains(figure), "{error}");
             let said = compiled($text, (parameter, value));
             assert_eq!(said.len(), 1, "{parameter} = {value}: {said:?}");
-            // One lane of four.
+            // One of four lanes is wrong.
             let mut lanes = $name::<f64x4>::sound();
             let own = $text.0.iter().find(|(name, _)| *name == parameter).unwrap().1;
             lanes.set(parameter, Lanes([own, own, value, own]));
@@ -170,7 +171,7 @@ fn what_is_wrong_in_a_number_is_wrong_in_a_parameter() {
     check!(Wheels, WHEELS, WHEEL_ROWS);
 }
 
-/// A load may be nothing, and the inertia of a rod is at the bound of what there is.
+/// A load of zero mass and the inertia of a rod, which is at the bound of physical consistency, are accepted.
 #[test]
 fn what_is_at_the_bound_is_sound() {
     assert_eq!(Arm { load: 0.0, ..Arm::<f64>::sound() }.validate(), Ok(()));
@@ -179,8 +180,8 @@ fn what_is_at_the_bound_is_sound() {
     assert_eq!(Arm { m: 0.0, offset: -2.0, ..Arm::<f64>::sound() }.validate(), Ok(()));
 }
 
-/// What is trusted is not judged, nor what is kept for the user's own use; nor a stiffness, which may be
-/// negative.
+/// Trusted inertia is not validated, nor is a parameter that no element uses, nor the sign of a stiffness,
+/// which may be negative.
 #[mechanism(inertia = trust)]
 struct Trusted {
     moment: f64,
