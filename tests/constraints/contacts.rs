@@ -1,10 +1,10 @@
-//! Contacts between surfaces, where the gallery has no mechanism of its own.
+//! Contacts between surfaces that no mechanism of the gallery has.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 
-/// Bevel gears without teeth: cones on crossed axles.
+/// Bevel gears without teeth: two rolling cones on crossed axles.
 #[mechanism]
 struct Cones {
     small: f64,
@@ -25,7 +25,7 @@ struct Cones {
     contact: Rolling,
 }
 
-/// The same with one inside of the other, and the pair the other way round.
+/// Rolling cones with one inside the other, and with the two surfaces of the pair exchanged.
 #[mechanism]
 struct ConeInFunnel {
     small: f64,
@@ -46,12 +46,12 @@ struct ConeInFunnel {
     contact: Rolling,
 }
 
-/// `ω₁ sin α = ∓ ω₂ sin β`: the angular velocities differ by one along the common line.
+/// `ω₁ sin α = ∓ ω₂ sin β`: the difference of the angular velocities is along the common line.
 #[test]
 fn cones_on_axles_are_bevel_gears() {
     let (small, large, inertia) = (0.4_f64, 0.9_f64, 0.02);
     let ratio = small.sin() / large.sin();
-    // What the wheel adds to the pinion's inertia.
+    // The denominator adds the reflected inertia of the wheel to the pinion's.
     let expected = 3.0 / (inertia * (1.0 + 2.0 * ratio * ratio));
     let (q, v) = ([0.3, 0.1].into(), [0.0, 0.0].into());
     let cones = Cones { small, large, inertia };
@@ -64,7 +64,7 @@ fn cones_on_axles_are_bevel_gears() {
     assert!((a - SVector::from([expected, ratio * expected])).amax() < 1e-11, "{a}");
 }
 
-/// A cone that is free to move in a funnel.
+/// Cone that is free to move in a funnel.
 #[mechanism(gravity = -9.81 * z)]
 struct FreeCone {
     #[body(mass = 0.2, com = 0.15 * z, inertia = cone(0.2, 0.1, 0.2, z))]
@@ -75,7 +75,7 @@ struct FreeCone {
     contact: Rolling,
 }
 
-/// The same with its apex on a ball joint, which holds what the contact does as well.
+/// Cone in a funnel with its apex on a ball joint, which makes a part of the contact's conditions redundant.
 #[mechanism(gravity = -9.81 * z)]
 struct HeldCone {
     #[body(mass = 0.2, com = 0.15 * z, inertia = cone(0.2, 0.1, 0.2, z))]
@@ -90,7 +90,7 @@ struct HeldCone {
 fn a_cone_turns_about_the_line_of_contact() {
     assert_eq!((FreeCone::NC, FreeCone::NH, FreeCone::NS), (5, 4, 1));
     assert_eq!((HeldCone::NC, HeldCone::NH, HeldCone::NS), (2, 1, 1));
-    // Leaning towards x by the difference of the angles; turned about its axis.
+    // The cone leans towards x by the difference of the angles, and is rotated about its axis.
     let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.8 - 0.46)
         * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), 1.1);
     let line = turn.inverse() * Vector3::new(0.8_f64.sin(), 0.0, 0.8_f64.cos());
@@ -105,7 +105,7 @@ fn a_cone_turns_about_the_line_of_contact() {
     assert!((held - a.fixed_rows::<3>(3)).amax() < 1e-11 * held.amax());
 }
 
-/// A ball on the tip of a cone that stands on its base.
+/// Ball on a cone that stands on its base.
 #[mechanism(gravity = -9.81 * z)]
 struct BallOnCone {
     #[body(mass = 0.3, inertia = sphere(0.3, 0.05))]
@@ -116,11 +116,12 @@ struct BallOnCone {
     contact: Rolling,
 }
 
-/// Down the line of fall as on an incline: `5/7` of the component of gravity.
+/// Along the line of steepest descent the acceleration is that on an incline: `5/7` of the component of
+/// gravity.
 #[test]
 fn a_ball_rolls_down_a_cone() {
     let (s, c) = 0.5_f64.sin_cos();
-    // At the distance 0.3 along the cone from its apex, away from it by the radius.
+    // The contact is at the distance 0.3 along the cone from its apex; the centre is one radius away from it.
     let (line, normal) = (Vector3::new(s, 0.0, -c), Vector3::new(c, 0.0, s));
     let center = line * 0.3 + normal * 0.05;
     let q = [center.x, center.y, center.z, 0.0, 0.0, 0.0, 1.0].into();
@@ -132,7 +133,7 @@ fn a_ball_rolls_down_a_cone() {
     assert!((lambda[0] - 0.3 * 9.81 * s).abs() < 1e-13);
 }
 
-/// A disk on a plane, and on the same plane given by its points.
+/// Disk on a plane, and on the same plane in parametric form.
 #[mechanism(gravity = -9.81 * z)]
 struct OnPlane {
     #[body(mass = 0.4, inertia = disk(0.4, 0.2, y))]
@@ -167,7 +168,7 @@ struct BySpeeds {
     contact: Rolling,
 }
 
-/// The same accelerations and normal force, pressed or not.
+/// The accelerations and the normal force are equal, with a compressive and with a tensile normal force.
 #[test]
 fn a_plane_is_a_surface() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
@@ -186,12 +187,12 @@ fn a_plane_is_a_surface() {
     assert!((lambda[0] - forces[0]).abs() < 1e-10 && forces.rows(1, 2).amax() < 1e-11, "{lambda} {forces}");
     let (c, others) = BySpeeds {}.constrained_dynamics(&on, &then, &SVector::zeros());
     assert!((b - c).amax() < 1e-9 * b.amax() && (forces - others).amax() < 1e-9, "{b} {c} {forces} {others}");
-    // The inertia that stands in for what the coordinates of the contact lack does not show.
+    // The auxiliary inertia of the contact's coordinates does not appear in inverse dynamics.
     let held = OnPoints {}.constraint_jacobian(&on).transpose() * forces;
     assert!((OnPoints {}.inverse_dynamics(&on, &then, &b) - held).amax() < 1e-11);
 }
 
-/// Derivatives against differences.
+/// Derivatives of a contact on a parametric surface agree with differences.
 #[test]
 fn derivatives_on_a_surface() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
@@ -213,7 +214,7 @@ fn derivatives_on_a_surface() {
     }
 }
 
-/// A ball in a bowl that turns, by its angles; the normal points inwards. The friction is dry.
+/// Ball in a rotating bowl that is described by two angles, with dry friction. The normal points inwards.
 #[mechanism(gravity = -9.81 * z)]
 struct InAngles {
     polar: Coordinate,
@@ -273,7 +274,7 @@ fn a_bowl_is_a_surface() {
     assert!((lambda[0] - forces[0]).abs() < 1e-11 && forces.rows(1, 2).amax() < 1e-11, "{lambda} {forces}");
 }
 
-/// A particle in a paraboloid, by a condition on its coordinates.
+/// Particle in a paraboloid, as a constraint on its coordinates.
 #[mechanism(gravity = -9.81 * z)]
 struct BeadInDish {
     #[particle(mass = 0.1)]
@@ -284,7 +285,7 @@ struct BeadInDish {
     dish: Holonomic,
 }
 
-/// Level circles take `Ω² = g / c` at any height.
+/// A particle circles at any constant height with `Ω² = g / c`.
 #[test]
 fn a_particle_circles_in_a_dish() -> Result<(), Error> {
     let rate = (9.81_f64 / 0.3).sqrt();

@@ -1,4 +1,4 @@
-//! What constrained dynamics costs, in operations.
+//! Numbers of operations of constrained dynamics.
 
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::Path;
 use syn::{Item, Meta};
 
-/// Multiplications, additions and divisions of the constrained dynamics.
+/// Returns the number of multiplications, additions and divisions of the constrained dynamics.
 fn operations(arguments: &str, item: &str) -> usize {
     let tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
@@ -21,7 +21,7 @@ fn operations(arguments: &str, item: &str) -> usize {
     found.expect("it has constraints").program.counts.total()
 }
 
-/// The mechanism with `n` windows of the IFToMM benchmark A02.
+/// Returns the source of the mechanism with `n` windows of the IFToMM benchmark A02.
 fn windows(n: usize) -> String {
     let mut item = String::from("struct Windows {\n");
     for k in 0..=n {
@@ -45,7 +45,7 @@ fn windows(n: usize) -> String {
     item + "}"
 }
 
-/// The elimination keeps the zeros of a chain of loops: each window costs as much as the one before.
+/// The elimination preserves the zeros of a chain of loops: each window adds the same number of operations.
 #[test]
 fn a_chain_of_loops_costs_in_proportion_to_its_length() {
     let counts: Vec<usize> = (1..=10).map(|n| operations("gravity = -9.81 * y", &windows(n))).collect();
@@ -55,7 +55,7 @@ fn a_chain_of_loops_costs_in_proportion_to_its_length() {
     assert!(counts[0] <= 300, "{counts:?}");
 }
 
-/// The mechanism of a file of the models, with the arguments of its attribute.
+/// Returns the mechanism of a file of the models, with the arguments of its attribute.
 fn model(name: &str) -> (String, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/src/{name}.rs"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -72,7 +72,7 @@ fn model(name: &str) -> (String, String) {
     mechanism.expect("it has a mechanism")
 }
 
-/// A platform on legs that change their length, held by balls.
+/// Returns the source of a platform on legs of variable length with ball joints.
 fn platform(legs: usize) -> String {
     let mut item = String::from(
         "struct Platform {
@@ -93,7 +93,8 @@ fn platform(legs: usize) -> String {
     item + "}"
 }
 
-/// Operations of the models, exactly: a change of the compiler that costs or saves some is seen here.
+/// The numbers of operations of the models are exact, which shows every change that the compiler makes to
+/// them.
 #[test]
 fn linkages_and_rolling_bodies() {
     let expected = [

@@ -1,11 +1,12 @@
-//! Loops that are solved in closed form, against the same linkages with multipliers.
+//! Loops that are solved in closed form, against the same linkages with Lagrange multipliers.
 
 use linkwork::prelude::*;
 
-/// A linkage twice: `$branch` is empty, or names the branch of the closed form.
+/// Declares each linkage with multipliers (`$branch` is empty), or with a closed-form solution for the
+/// assembly mode `$branch`.
 macro_rules! linkages {
     ($four_bar:ident, $slider:ident, $six_bar:ident $(, $branch:expr)?) => {
-        /// A four-bar linkage on a cart, with joints placed on turned axes.
+        /// Four-bar linkage on a cart, with joints on rotated axes.
         #[mechanism(gravity = -9.81 * y)]
         struct $four_bar {
             length: f64,
@@ -127,14 +128,15 @@ fn a_solved_four_bar_moves_as_with_multipliers() {
     let (bar, solved) = (FourBar { length: 0.9 }, SolvedFourBar { length: 0.9 });
     for angle in [0.2_f64, 1.1, 2.4, 4.0, -1.3] {
         let q = SVector::from([0.3, angle]);
-        // The same configuration: the coupler's end is where the closed form has it.
+        // Both linkages are in the same configuration: the position of the coupler's end follows from the
+        // closed form.
         let end = solved.frame_placement(frame!(SolvedFourBar, "coupler"), &q);
         let rocker = solved.frame_placement(frame!(SolvedFourBar, "rocker"), &q);
         let reached = end.transform_point(&[0.9, 0.0, 0.0].into());
         assert!((reached - rocker.transform_point(&[0.0, 0.6, 0.0].into())).norm() < 1e-14);
         let direction = end.rotation * linkwork::nalgebra::Vector3::x();
         let up = rocker.rotation * linkwork::nalgebra::Vector3::y();
-        // Relative angles of the tree, from the same frames.
+        // Relative angles of the tree's joints, computed from the same frames.
         let coupler = direction.y.atan2(direction.x) - angle;
         let swing = -(up.y.atan2(up.x) - std::f64::consts::FRAC_PI_2 - 0.4);
         let all = SVector::from([0.3, angle, coupler, swing]);
@@ -147,8 +149,8 @@ fn a_solved_four_bar_moves_as_with_multipliers() {
         let b = bar.forward_dynamics(&all, &v_all, &SVector::from([0.5, 2.0, 0.0, 0.0]));
         assert!((a[0] - b[0]).abs() < 1e-9 * (1.0 + b.amax()), "{a} and {b} at {angle}");
         assert!((a[1] - b[1]).abs() < 1e-9 * (1.0 + b.amax()), "{a} and {b} at {angle}");
-        // Reactions, where one side has its multipliers from the elimination, and the other from the joints
-        // that are solved for.
+        // Reactions: one linkage has them from the multipliers of the elimination, the other from the joints
+        // of the closed-form solution.
         let (u, here) = (SVector::from([2.0]), SVector::from([full[0], full[1]]));
         let close = |x: linkwork::nalgebra::Vector3<f64>, y: linkwork::nalgebra::Vector3<f64>| {
             assert!((x - y).norm() < 1e-9 * (1.0 + y.norm()), "{x} for {y} at {angle}");

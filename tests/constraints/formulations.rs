@@ -1,6 +1,6 @@
-//! Lagrange multipliers and independent speeds solve the same equations: on random closed chains with planar
-//! and spatial joints, loops closed by every joint, and states on and off the constraints. The equations
-//! themselves are the judge.
+//! Lagrange multipliers and independent generalized speeds solve the same equations. The test cases are
+//! random closed chains with planar and spatial joints, loops closed by every joint, and states on and off
+//! the constraints. Both solutions are inserted into the equations.
 
 use linkwork::__private::{Elimination, independent_solution};
 use linkwork_compiler::expr::Expr;
@@ -16,19 +16,19 @@ use std::fmt::Write;
 use support::model::{symbols, try_model};
 use support::random::config;
 
-/// A chain of bodies from the ground and back, with the joint that closes it.
+/// Chain of bodies from the ground back to the ground, with the joint that closes it.
 #[derive(Clone, Debug)]
 struct Chain {
-    /// Directions of the joints, offsets and slides.
+    /// Axis and offset of each joint, and whether the joint slides.
     joints: Vec<([f64; 3], [f64; 3], bool)>,
     closing: usize,
     anchor: [f64; 3],
     planar: bool,
-    /// By how many powers of ten the masses differ, and how.
+    /// Range of the masses in powers of ten, and the exponent of each mass.
     masses: (f64, [f64; 6]),
 }
 
-/// Joints that close a loop, with what they need.
+/// Joints that close a loop, with their arguments.
 const CLOSING: [(&str, &str); 7] = [
     ("Pin", ", about = z"),
     ("Ball", ""),
@@ -85,7 +85,7 @@ fn chains() -> impl Strategy<Value = Chain> {
     )
 }
 
-/// The model, unless the chain cannot move or its speeds depend on each other.
+/// Calls `check` with the model, unless the chain cannot move or its speeds depend on each other.
 fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
     let source = chain.source(arguments);
     if let Err(messages) = try_model(&source, |_, model| check(model)) {
@@ -95,8 +95,9 @@ fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
     }
 }
 
-/// Whether the runtime takes accelerations that follow from chosen speeds, or turns to multipliers: by the
-/// pivots, which stand behind accelerations and multipliers, and what those were before.
+/// Whether the runtime accepts the accelerations from independent speeds, or falls back to multipliers. It
+/// compares the pivots of the elimination, which follow the accelerations and multipliers in `found`, with
+/// their values before the elimination.
 fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
     fn by<const NC: usize>(found: &[f64]) -> bool {
         let part = |first: usize| core::array::from_fn(|k| found[first * NC + k]);
@@ -116,7 +117,7 @@ fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
     }
 }
 
-/// As many as usual, or as the variable `LINKWORK_ORACLE` says.
+/// Returns the number of test cases: `usual`, or the value of the variable `LINKWORK_ORACLE`.
 fn cases(usual: u32) -> u32 {
     std::env::var("LINKWORK_ORACLE").ok().and_then(|n| n.parse().ok()).unwrap_or(usual)
 }
@@ -140,8 +141,8 @@ fn both_formulations_fulfil_the_equations() {
             let at = symbols(model, seed);
             let first = eval(&by_multipliers, &at);
             let second = eval(&by_speeds, &at);
-            // Where the random configuration is close to a singular one, or speeds nearly depend on each
-            // other, both say so.
+            // Close to a singular configuration, or with nearly dependent speeds, small pivots exclude the
+            // solution.
             let regular = (0..nc).all(|k| first[nv + nc + k] > 1e-4 * first[nv + 2 * nc + k]);
             let taken = is_taken(nv, nc, &second);
             let m = eval(&mass.concat(), &at);
@@ -152,7 +153,7 @@ fn both_formulations_fulfil_the_equations() {
                     continue;
                 }
                 let (a, lambda) = (&found[..nv], &found[nv..nv + nc]);
-                // What an equation comes to, and its largest terms, of which rounding leaves a part.
+                // The residual of an equation, and its largest term, which bounds the rounding error.
                 let sum = |terms: &[f64]| {
                     (terms.iter().sum::<f64>().abs(), terms.iter().fold(0.0_f64, |s, x| s.max(x.abs())))
                 };
@@ -180,8 +181,8 @@ fn both_formulations_fulfil_the_equations() {
 proptest! {
     #![proptest_config(config(32))]
 
-    /// The rates are the derivatives of the residuals along the motion, and the biases those of the rates at
-    /// constant `v`.
+    /// Constraint velocities are the derivatives of the residuals along the motion, and biases are the
+    /// derivatives of the constraint velocities at constant `v`.
     #[test]
     fn rates_and_biases_are_derivatives(chain in chains(), seed in 0..1000_u64) {
         with_model(&chain, "", |model| {

@@ -1,8 +1,8 @@
-//! Impacts of constrained mechanisms: the constraints give impulses, too.
+//! Impacts of constrained mechanisms: the constraints cause impulses, too.
 
 use linkwork::prelude::*;
 
-/// A pendulum in plane coordinates.
+/// Pendulum in Cartesian coordinates of the plane.
 #[mechanism(gravity = -9.81 * y)]
 struct Bob {
     #[particle(mass = 1)]
@@ -13,9 +13,9 @@ struct Bob {
     rod: Holonomic,
 }
 
-/// A bob swings against a wall that turns the horizontal velocity round, as a user writes it who does not
-/// think of the rod: that would throw it off, by 0.39 m/s and more. What is left is the part along the
-/// circle.
+/// A bob collides with a wall. The user's reset reverses the horizontal velocity and ignores the rod, which
+/// would violate the rod's constraint by 0.39 m/s and more. The projection preserves the tangential
+/// component.
 #[test]
 fn impacts_leave_the_constraints_alone() {
     let pendulum = Bob {};
@@ -32,7 +32,8 @@ fn impacts_leave_the_constraints_alone() {
             assert!((q.norm() - 1.0).abs() < 1e-12 && q.dot(&v).abs() < 1e-12, "{q} {v}");
             let now = v.norm_squared() / 2.0 + 9.81 * q[1];
             if event.is_some() {
-                // Of (−vx, vy) with the tangent (c, s) at the angle there remains −vx c + vy s = v (s² − c²).
+                // The component of (−vx, vy) along the tangent (c, s) at the angle is −vx c + vy s = v (s² −
+                // c²).
                 let (s, c) = (q[0], -q[1]);
                 let before = -(2.0 * (energy - 9.81 * q[1])).sqrt();
                 let expected = before * (s * s - c * c);
@@ -50,7 +51,7 @@ fn impacts_leave_the_constraints_alone() {
     check(&mut run().method(ImplicitMidpoint::step(1e-4)).sample_every(1e-2));
 }
 
-/// A bob that is stopped by the wall would go on through it.
+/// A bob that the wall stops completely would next move through the wall.
 #[test]
 fn a_plastic_impact_is_an_error() {
     let pendulum = Bob {};

@@ -1,10 +1,11 @@
-//! What holds in every state of every constrained mechanism.
+//! Properties that hold in every state of every constrained mechanism.
 
 use linkwork::prelude::*;
 use linkwork_models::*;
 use support::random::Random;
 
-/// Constraints and equations of motion at accelerations and multipliers, and what projections leave.
+/// Checks that accelerations and multipliers satisfy the constraints and the equations of motion, and that
+/// projections satisfy the constraints.
 fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     guess: &SVector<f64, NQ>,
@@ -29,7 +30,7 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
         assert!((j * a + m.constraint_bias(0.0, &q, &v)).amax() < 1e-9 * scale);
         let missing = Mechanism::inverse_dynamics(m, &q, &v, &a) - tau - j.transpose() * lambda;
         assert!(missing.amax() < 1e-9 * scale.max(lambda.amax()), "{missing}");
-        // The constraints do no work: what the forces hand over is what the energy takes up.
+        // The constraints do no work: the power of the forces is the rate of the energy.
         let (before, after) = (moved(m, &q, &v, &a, -1e-5), moved(m, &q, &v, &a, 1e-5));
         let power = (after - before) / 2e-5;
         let energy = after.abs().max(1.0);
@@ -38,7 +39,8 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
     }
 }
 
-/// What is held stays and the constraints hold; what these leave open takes the least energy.
+/// Checks that completed velocities preserve the fixed components and satisfy the constraints, with the
+/// minimum of kinetic energy in the change.
 fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -51,7 +53,7 @@ fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: us
     let all = m.complete_velocity(0.0, q, &wanted, &[]).expect("a velocity is near");
     let nearest = m.project_velocity(0.0, q, &wanted).expect("a velocity is near");
     assert!((all - nearest).amax() < 1e-9 * nearest.amax().max(1.0), "{all} for {nearest}");
-    // Entries of a velocity that fulfils the constraints never contradict them.
+    // Components of a velocity that satisfies the constraints never contradict them.
     let mut index = || ((random.uniform(1.0) + 1.0) / 2.0 * NV as f64) as usize;
     let pair = [index(), index()];
     for held in [&pair[..1], &pair[..]] {
@@ -61,12 +63,13 @@ fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: us
         assert!(held.iter().all(|k| found[*k] == v[*k]), "{held:?}");
         let size = found.amax().max(1.0);
         assert!(m.constraint_rates(0.0, q, &found).amax() < 1e-10 * size);
-        // The change has no energy in common with what could be moved besides.
+        // The change is orthogonal, in the metric of the mass matrix, to all admissible variations.
         let change = Mechanism::mass_matrix(m, q) * (found - start);
         let mut other = random.vector(1.0);
         held.iter().for_each(|k| other[*k] = v[*k]);
         if held.len() > 1 {
-            // Two together may nearly depend on each other, and what follows from them is large.
+            // Two fixed components may nearly depend on each other; the velocities that they determine are
+            // then large.
             continue;
         }
         let besides = m.complete_velocity(0.0, q, &other, held).expect("they agree") - found;
@@ -77,7 +80,7 @@ fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: us
     assert_eq!(m.assemble(0.0, q, &[0, NV]), outside.map(|_: SVector<f64, NV>| *q));
 }
 
-/// Energy a moment later.
+/// Returns the energy after a short time `h`.
 fn moved<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -92,7 +95,8 @@ where
     m.kinetic_energy(&q, &v) + m.potential_energy(&q)
 }
 
-/// Rates are those of the residuals, and the biases those of the rates, by differences.
+/// Checks by differences that constraint velocities are the rates of the residuals, and biases those of the
+/// constraint velocities.
 fn rates<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -166,7 +170,7 @@ fn rolling_bodies() {
     check(&Bicycle::BENCHMARK, &upright);
 }
 
-/// States that do not fulfil the constraints are refused, and what cannot be assembled says why.
+/// States that violate the constraints are rejected, and an assembly that fails reports the constraint.
 #[test]
 fn states_off_the_constraints_are_errors() {
     let squeezer = AndrewsSqueezer {};
@@ -174,7 +178,7 @@ fn states_off_the_constraints_are_errors() {
     q[2] += 0.01;
     let run = simulate(&squeezer).from(q, [0.0; 7]).duration(0.001).finish();
     assert!(matches!(run, Err(Error::OffConstraints { .. } | Error::Constraint { .. })), "{run:?}");
-    // What would have to move most, and by how much.
+    // The error states the coordinate with the largest correction, and its value.
     let bar = FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let closed = bar.assemble(&[0.8, 0.0, 2.0].into(), &[0]).expect("it is close");
     let open = closed + SVector::from([0.0, 0.01, 0.0]);
@@ -190,10 +194,10 @@ fn states_off_the_constraints_are_errors() {
         panic!("it would break")
     };
     assert!(matches!(error, Error::OffConstraints { by, .. } if by.abs() > 0.1), "{error:?}");
-    // From there it is assembled, the crank where it is.
+    // The linkage is assembled from there; the fixed crank does not move.
     let found = squeezer.assemble(&q, &[0]).expect("it is close");
     assert!((found[0] - q[0]).abs() < 1e-15 && squeezer.constraint_residuals(&found).amax() < 1e-14);
-    // With all angles but one held it cannot be.
+    // With only one free angle it cannot be assembled.
     let held = squeezer.assemble(&q, &[0, 1, 2, 3, 4, 5]);
     assert!(
         matches!(held, Err(ConstraintError::Configuration { constraint, .. }) if constraint.starts_with('e')),
@@ -203,7 +207,7 @@ fn states_off_the_constraints_are_errors() {
     assert_eq!(lost, Err(ConstraintError::NotFinite));
 }
 
-/// A four-bar linkage closes from any guess at the coordinates that are not held, if it closes at all.
+/// A four-bar linkage is assembled from any guess of its free coordinates if a solution exists.
 #[test]
 fn linkages_are_assembled_from_afar() {
     let linkage = FourBar { g: 9.81, density: 1.0, a: 0.2, b: 0.6, c: 0.5, d: 0.6 };
@@ -215,7 +219,7 @@ fn linkages_are_assembled_from_afar() {
     }
 }
 
-/// A bob held on a circle, and two coordinates with a given sum, in any precision.
+/// Bob on a circle with plane coordinates, for any scalar type.
 #[mechanism(gravity = -9.81 * y)]
 struct Held<T: Real> {
     length: T,
@@ -227,8 +231,8 @@ struct Held<T: Real> {
     rod: Holonomic,
 }
 
-/// With half of the digits a constraint must hold, so that in single precision, too, a wrong configuration is
-/// an error.
+/// Constraints must be satisfied to half of the digits, so that a wrong configuration is an error in single
+/// precision, too.
 #[test]
 fn single_precision_knows_what_is_off() {
     fn check<T: Real>(tolerance: T) {
@@ -237,11 +241,11 @@ fn single_precision_knows_what_is_off() {
         let near = SVector::from([one / (one + one), one]);
         let found = held.assemble(&near, &[]).expect("the circle is near");
         assert!((found.norm() - one).abs() < tolerance);
-        // Beside the circle, with one coordinate held.
+        // The fixed coordinate lies outside the circle.
         let beside = SVector::from([one + one + one, one]);
         let lost = held.assemble(&beside, &[0]);
         assert!(matches!(lost, Err(ConstraintError::Configuration { .. })), "{lost:?}");
-        // The other one alone is brought there.
+        // The assembly moves only the free coordinate.
         let found = held.assemble(&SVector::from([T::zero(), one + one]), &[0]).expect("it is above");
         assert!((found[1] - one).abs() < tolerance && found[0] == T::zero());
     }
@@ -249,14 +253,14 @@ fn single_precision_knows_what_is_off() {
     check::<f32>(1e-6);
 }
 
-/// A crank keeps its rate, whatever that is; at its dead centre the piston cannot be told to move, the crank
-/// can.
+/// A completed velocity preserves the rate of the crank. At the dead centre the velocity of the piston cannot
+/// be prescribed, that of the crank can.
 #[test]
 fn velocities_are_completed() {
     let engine = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
     let q = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]).expect("the crank goes round");
     let v = engine.complete_velocity(&q, &[100.0, 0.0, 0.0].into(), &[0]).expect("no dead centre");
-    // Norton, Design of Machinery (2004), § 6.7: the rod turns by ω₃ = −ω₂ (r cos θ) / (l cos φ).
+    // Norton, Design of Machinery (2004), § 6.7: the rod rotates at ω₃ = −ω₂ (r cos θ) / (l cos φ).
     let turn = q[0] + q[1];
     let rod = -100.0 * 0.04 * q[0].cos() / (0.13 * turn.cos());
     let piston = -100.0 * 0.04 * q[0].sin() - rod * 0.13 * turn.sin();

@@ -1,4 +1,4 @@
-//! Mechanisms with constraints; their long motions are in `motions/constraints`.
+//! Mechanisms with constraints. Tests of their long motions are in `motions/constraints`.
 
 mod contacts;
 mod counts;

@@ -1,8 +1,8 @@
-//! A linkage without masses: its loop is closed all the same.
+//! A linkage without inertia is assembled, too.
 
 use linkwork::prelude::*;
 
-/// Crank, rod and piston; the cylinder's axis moves up and down.
+/// Crank, rod and piston; the axis of the cylinder moves up and down as a function of time.
 #[mechanism(inertia = none)]
 struct SliderCrank {
     r: f64,
@@ -33,7 +33,7 @@ fn loops_close_without_inertia() {
     let q = engine.assemble(t, &[0.8, -1.0, 0.1].into(), &[0]).expect("it closes");
     assert_eq!(q[0], 0.8);
     assert!(engine.constraint_residuals(t, &q).amax() < 1e-14);
-    // The rod ends at the height of the cylinder's axis.
+    // The end of the rod is at the height of the cylinder's axis.
     let height = 0.01 * t.sin() - 0.04 * 0.8_f64.sin();
     let reach = 0.04 * 0.8_f64.cos() + (0.13_f64.powi(2) - height * height).sqrt();
     assert!((q[2] - reach).abs() < 1e-12, "{q}");

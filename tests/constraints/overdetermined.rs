@@ -1,11 +1,12 @@
-//! A linkage that moves against Grübler's count, whatever its configuration: constraints that always depend
-//! on each other.
+//! A linkage that is mobile in spite of Grübler's count: its constraints are dependent in every
+//! configuration.
 
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 
-/// Bennett's linkage: four rods in a ring with skew pins. Opposite rods are alike, with lengths `a` and `b`
-/// and twists `α` and `β` of which `a sin β = b sin α` (Bennett, *A new mechanism*, Engineering 76, 1903).
+/// Bennett's linkage: a ring of four rods with skew pins. Opposite rods are identical, with lengths `a` and
+/// `b` and twists `α` and `β` that satisfy `a sin β = b sin α` (Bennett, *A new mechanism*, Engineering 76,
+/// 1903).
 #[mechanism(gravity = -9.81 * z, batch)]
 struct Bennett {
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
@@ -24,7 +25,8 @@ struct Bennett {
     p4: Pin,
 }
 
-/// A configuration with the first pin at an angle, from a guess for the second, and a velocity.
+/// Returns a configuration with the given angle of the first pin, and a velocity. A closed form gives the
+/// guess for the second pin.
 fn state(angle: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let linkage = Bennett {};
     let guess = 2.0 * (-4.0 / (angle / 2.0).tan()).atan();
@@ -33,7 +35,8 @@ fn state(angle: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
     (q, v)
 }
 
-/// What the half angles of two neighbouring pins multiply to.
+/// Returns the product of the tangents of the half angles of two neighbouring pins over its constant ratio:
+/// −1 on the closed form.
 fn bennett(q: &SVector<f64, 3>) -> f64 {
     let (alpha, beta) = (0.8_f64, (0.7 * 0.8_f64.sin()).asin());
     let ratio = ((alpha + beta) / 2.0).sin() / ((alpha - beta) / 2.0).sin();
@@ -71,7 +74,7 @@ fn its_multipliers_are_the_least_that_fulfil_the_equations() {
         let held = linkage.inverse_dynamics(&q, &v, &a) - jacobian.transpose() * lambda;
         assert!((held - tau).norm() < 1e-9 * (1.0 + lambda.norm()), "{held}");
         assert!((jacobian * a + linkage.constraint_bias(&q, &v)).norm() < 1e-9 * (1.0 + a.norm()));
-        // What no multiplier of least norm has: a part along the forces that do no work on any motion of the
+        // The multipliers of minimum norm have no component along forces that do no work in any motion of the
         // tree.
         let column = |k: usize| Vector3::from(jacobian.column(k));
         let idle = column(0).cross(&column(1)).normalize();

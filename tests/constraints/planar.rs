@@ -1,8 +1,9 @@
-//! Vectors that stay equal in a plane: across it they are equal anyway, and say nothing there.
+//! Constraints between vectors of a plane: the component normal to the plane is satisfied identically and
+//! adds no row.
 
 use linkwork::prelude::*;
 
-/// Two carts on a table that keep equal velocities.
+/// Two carts on a table with equal velocities.
 #[mechanism]
 struct Convoy {
     #[body(mass = 1)]
@@ -17,7 +18,7 @@ struct Convoy {
     alike: Nonholonomic,
 }
 
-/// Two carts on a table that keep their distance and its direction.
+/// Two carts on a table with a constant offset between them.
 #[mechanism]
 struct Coupled {
     gap: f64,
@@ -38,7 +39,7 @@ fn equal_velocities_in_a_plane_are_two_conditions() {
     assert_eq!((Convoy::NC, Convoy::NH), (2, 0));
     assert_eq!(Convoy::CONSTRAINTS, ["alike.x", "alike.y"]);
     let a = Convoy {}.forward_dynamics(&SVector::zeros(), &SVector::zeros(), &[4.0, 8.0, 0.0, 0.0].into());
-    // Newton's second law of both together.
+    // Newton's second law for both carts together.
     assert!((a - SVector::from([1.0, 2.0, 1.0, 2.0])).amax() < 1e-12, "{a}");
 }
 

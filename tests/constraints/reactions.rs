@@ -1,9 +1,9 @@
-//! Reactions of joints, against the equations of Newton and Euler for each free body.
+//! Reactions of joints against the Newton-Euler equations of each free body.
 
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 
-/// A slider-crank with a spring between the crank's pin and the ground, and a motor.
+/// Slider-crank with a spring between the crank's pin and the ground, and a motor.
 #[mechanism(gravity = -9.81 * y)]
 struct SliderCrank {
     #[body(mass = 1.5, com = 0.1 * x, inertia = rod(1.5, 0.2, x))]
@@ -73,20 +73,21 @@ fn reactions_balance_every_free_body() {
         let close = |found: Vector3<f64>, expected: Vector3<f64>| {
             assert!((found - expected).norm() < 1e-10 * (1.0 + expected.norm()), "{found} for {expected}");
         };
-        // Forces: what the joints exert, weight and spring give each centre of mass its acceleration.
+        // Forces: the joint reactions, the weight and the spring force give each centre of mass its
+        // acceleration.
         let moved = slider.rod_acceleration(&q, &v, &a);
         close(on_rod - on_piston + spring + weight * 0.8, moved * 0.8);
         let moved = slider.crank_acceleration(&q, &v, &a);
         close(slider.on_crank(&q, &v, &u) - on_rod + weight * 1.5, moved * 1.5);
         close(on_piston + slider.wall(&q, &v, &u) + weight * 0.5, Vector3::new(a[2], 0.0, 0.0) * 0.5);
-        // Moments about the centre of the rod, and about the crank's bearing, where the motor turns it.
+        // Moments about the centre of the rod, and about the crank's bearing, where the motor acts.
         let moment = (rod(0.0) - rod(0.3)).cross(&on_rod) - (rod(0.6) - rod(0.3)).cross(&on_piston)
             + (rod(0.2) - rod(0.3)).cross(&spring);
         close(moment, Vector3::new(0.0, 0.0, 0.8 * 0.36 / 12.0 * (a[0] + a[1])));
         let moment = slider.turning_crank(&q, &v, &u) - rod(0.0).cross(&on_rod)
             + (rod(0.0) * 0.5).cross(&(weight * 1.5));
         close(moment, Vector3::new(0.0, 0.0, 1.5 * 0.04 / 3.0 * a[0]));
-        // Other axes, other scalars.
+        // Outputs in other axes, and as scalars.
         let turned = q[0] + q[1];
         let along = slider.along_rod(&q, &v, &u);
         assert!((along[0] - (on_rod[0] * turned.cos() + on_rod[1] * turned.sin())).abs() < 1e-9);
@@ -94,7 +95,7 @@ fn reactions_balance_every_free_body() {
     }
 }
 
-/// A rod welded to the end of a turning arm: the weld carries its weight, its centripetal force and their
+/// Rod welded to the end of a rotating arm: the weld transmits its weight, the centripetal force and their
 /// moment.
 #[mechanism(gravity = -9.81 * z)]
 struct WeldedArm {

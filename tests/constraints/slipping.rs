@@ -1,11 +1,11 @@
-//! Contacts that slip with dry friction.
+//! Sliding contacts with dry friction.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// A disk on an incline, free in its plane.
+/// Disk on an incline, free to move in its plane.
 #[mechanism(gravity = -9.81 * y)]
 struct Roller {
     slope: f64,
@@ -24,19 +24,20 @@ struct Roller {
 }
 
 impl Roller {
-    /// The centre's place and velocity along the incline, and the rate of turning.
+    /// Returns a state with this velocity of the centre along the incline, m/s, and this angular velocity,
+    /// rad/s.
     fn state(&self, velocity: f64, turning: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
         let (s, c) = self.slope.sin_cos();
         ([0.15 * s, 0.15 * c, 0.0].into(), [velocity * c, -velocity * s, turning].into())
     }
 }
 
-/// Steep inclines: `g (sin θ − μ cos θ)` and `2 μ g cos θ / R`; gentle ones: `⅔ g sin θ`, rolling but for a
-/// creep that does not change.
+/// On steep inclines the accelerations are `g (sin θ − μ cos θ)` and `2 μ g cos θ / R`. On gentle ones the
+/// disk rolls with `⅔ g sin θ`, and creeps at a constant rate.
 #[test]
 fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
     let (mu, v0) = (0.3_f64, 1e-3_f64);
-    // It slides if tan θ > 3 μ.
+    // The disk slides if tan θ > 3 μ.
     for slope in [0.3, 0.6, 0.9, 1.2] {
         let disk = Roller { slope, mu };
         let (s, c) = slope.sin_cos();
@@ -56,7 +57,7 @@ fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
         if share < 1.0 {
             assert!((down(&a) - 2.0 / 3.0 * 9.81 * s).abs() < 1e-11);
         }
-        // From rest to the same state of motion.
+        // From rest, the motion approaches the same steady acceleration.
         let (q, v) = disk.state(0.0, 0.0);
         let method = DormandPrince::new().tolerance(1e-9, 1e-9);
         let end = simulate(&disk).from(q, v).method(method).duration(0.5).finish()?;
@@ -66,7 +67,7 @@ fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
     Ok(())
 }
 
-/// A coin that slips on a table: what it loses is `μ N |s|² / √(|s|² + v₀²)`.
+/// Coin that slips on a table: it dissipates the power `μ N |s|² / √(|s|² + v₀²)`.
 #[mechanism(gravity = -9.81 * z, derivatives, batch)]
 struct Coin {
     mu: f64,
@@ -84,7 +85,7 @@ struct Coin {
 
 const COIN: Coin = Coin { mu: 0.25, v0: 0.02 };
 
-/// On its rim, tilted, with a random motion.
+/// Returns a state with the tilted coin on its rim, and a random velocity.
 fn coin(random: &mut Random) -> (SVector<f64, 7>, SVector<f64, 6>) {
     let axis = Vector3::new(random.uniform(1.0), random.uniform(1.0), 0.3);
     let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.9)
@@ -96,7 +97,7 @@ fn coin(random: &mut Random) -> (SVector<f64, 7>, SVector<f64, 6>) {
     (q, COIN.project_velocity(&q, &v).expect("regular"))
 }
 
-/// Slip in ground axes, from the geometry of a disk.
+/// Returns the slip velocity in ground axes, from the geometry of a disk.
 fn slip(q: &SVector<f64, 7>, v: &SVector<f64, 6>) -> Vector3<f64> {
     let turn = UnitQuaternion::from_quaternion([q[3], q[4], q[5], q[6]].into());
     let (axis, up) = (turn * Vector3::z(), Vector3::z());
@@ -112,11 +113,11 @@ fn friction_dissipates() {
         let s = slip(&q, &v);
         assert!(s.z.abs() < 1e-14);
         let (a, normal) = COIN.constrained_dynamics(&q, &v, &SVector::zeros());
-        // The power of all that is not inertia or gravity.
+        // The power of all forces other than inertia and gravity.
         let power = v.dot(&COIN.inverse_dynamics(&q, &v, &a));
         let expected = -COIN.mu * normal[0].abs() * s.norm_squared() / s.norm().hypot(COIN.v0);
         assert!((power - expected).abs() < 1e-13 + 1e-11 * expected.abs(), "{power}, not {expected}");
-        // Friction alone is along the slip.
+        // Friction is along the slip velocity.
         let held = COIN.inverse_dynamics(&q, &v, &a);
         let turn = UnitQuaternion::from_quaternion([q[3], q[4], q[5], q[6]].into());
         let force = turn * Vector3::new(held[0], held[1], held[2]);
@@ -125,7 +126,8 @@ fn friction_dissipates() {
     }
 }
 
-/// Lifted by more than its weight the coin is held by a pull: friction still resists the slip.
+/// Lifted by more than its weight, the coin is pulled onto the table by the constraint. Friction with a
+/// tensile normal force also opposes the slip.
 #[test]
 fn friction_of_a_pull_resists_as_well() {
     let mut random = Random::new(6);
@@ -143,7 +145,7 @@ fn friction_of_a_pull_resists_as_well() {
     assert_eq!(pulled, 20);
 }
 
-/// Against differences, pressing and pulled.
+/// Derivatives agree with differences, for compressive and tensile normal forces.
 #[test]
 fn derivatives_are_those_of_the_motion() {
     let mut random = Random::new(7);
@@ -167,7 +169,8 @@ fn derivatives_are_those_of_the_motion() {
     }
 }
 
-/// Lanes that press, one that is pulled, and all of them pulled: the bits of single states.
+/// Lanes with compressive normal forces, with one tensile and with all tensile ones have the bits of single
+/// states.
 #[test]
 fn lanes_are_single_states() {
     let mut random = Random::new(8);
@@ -187,7 +190,7 @@ fn lanes_are_single_states() {
     }
 }
 
-/// A ladder on a rough floor against a rough wall; the wall tells what carries it.
+/// Ladder on a rough floor against a rough wall, with the normal force at the wall as an output.
 #[mechanism(gravity = -9.81 * y)]
 struct Ladder {
     #[body(mass = 10, inertia = rod(10, 4, x))]
@@ -200,8 +203,8 @@ struct Ladder {
     wall: Slipping,
 }
 
-/// Three equations for the two normal forces and the acceleration of the angle, from free body and kinematics
-/// by hand.
+/// Three equations, derived by hand from the free body and the kinematics, determine the two normal forces
+/// and the angular acceleration.
 #[test]
 fn a_ladder_slides_down() {
     let (angle, rate) = (1.0_f64, -0.8);
@@ -213,12 +216,13 @@ fn a_ladder_slides_down() {
             && Ladder {}.constraint_rates(&q, &v).amax() < 1e-15
     );
     let (a, forces) = Ladder {}.try_constrained_dynamics(&q, &v, &SVector::zeros()).expect("it slides");
-    // Slips of the balls' points: the floor's runs away from the wall, the wall's down; the balls turn as
-    // well.
+    // Slip velocities of the balls at the ends: away from the wall on the floor, downwards at the wall. The
+    // rotation of the balls contributes.
     let part = |s: f64| s / s.hypot(1e-4);
     let (on_floor, on_wall) = (part(4.0 * s * rate + 0.05 * rate), part(4.0 * c * rate + 0.05 * rate));
     let (mu, nu, inertia) = (0.2 * on_floor, 0.3 * on_wall, 10.0 * 16.0 / 12.0);
-    // m ẍ = −N₂ − μ N₁, m ÿ = N₁ − ν N₂ − m g, and the moments about the middle; ẍ and ÿ by the angle.
+    // m ẍ = −N₂ − μ N₁, m ÿ = N₁ − ν N₂ − m g, and the moments about the centre; ẍ and ÿ are functions of the
+    // angle.
     let floor = [-2.0 * c - mu * (2.0 * s + 0.05), -mu, 1.0];
     let wall = [2.0 * s - nu * (2.0 * c + 0.05), -1.0, -nu];
     let m = Matrix3::new(
@@ -239,7 +243,7 @@ fn a_ladder_slides_down() {
     assert!(forces.iter().all(|f| *f > 0.0));
 }
 
-/// An arm whose end drags over a table, with what its hinge carries.
+/// Arm whose end drags over a table, with the reaction of its hinge as an output.
 #[mechanism(gravity = -9.81 * y)]
 struct DraggingArm {
     #[body(mass = 2, inertia = disk(2, 0.1, z))]
@@ -262,7 +266,7 @@ struct DraggingArm {
     acceleration: Vector,
 }
 
-/// Newton's law for the arm, with the friction of its tip.
+/// Newton's second law for the arm includes the friction of its tip.
 #[test]
 fn reactions_know_friction() {
     let guess = SVector::from([0.3, -0.5]);

@@ -1,4 +1,4 @@
-//! Single bodies: balls, blocks and rods, against closed forms.
+//! Contacts of single bodies (balls, blocks and rods) against closed-form solutions.
 
 use linkwork::contact;
 use linkwork::prelude::*;
@@ -16,19 +16,19 @@ struct Ball {
     bounce: Contact,
 }
 
-/// Heights of the apexes of a ball that is dropped from `height` above where it touches.
+/// Returns the heights of the apexes of a ball that is dropped from `height` above its contact position.
 fn apexes(m: &Ball, height: f64, h: f64, duration: f64) -> Vec<f64> {
     let mut q = m.neutral();
     q[2] = 0.05 + height;
     let run = simulate(m).from(q, [0.0; 6]).method(TimeStepping::step(h)).duration(duration);
     let samples: Vec<_> = run.map(|sample| sample.unwrap()).collect();
     let turns = samples.windows(2).filter(|pair| pair[0].v[2] > 0.0 && pair[1].v[2] <= 0.0);
-    // Between two steps the height is that of a parabola.
+    // Between two steps the height follows a parabola.
     turns.map(|pair| pair[0].q[2] - 0.05 + pair[0].v[2] * pair[0].v[2] / (2.0 * G)).collect()
 }
 
-/// The n-th apex of a ball that is dropped from a height h is e²ⁿ h. Engines miss it: where 0.25 is due they
-/// have 0.25, 0.07 or 0.01 (dimforge/rapier, issue 974).
+/// The n-th apex of a ball that is dropped from a height h is e²ⁿ h. Other engines miss it: for a nominal
+/// value of 0.25 they have 0.25, 0.07 or 0.01 (dimforge/rapier, issue 974).
 #[test]
 fn apexes_are_those_of_the_coefficient_of_restitution() {
     for e in [0.3, 0.5, 0.8, 0.95, 1.0] {
@@ -41,7 +41,7 @@ fn apexes_are_those_of_the_coefficient_of_restitution() {
     }
 }
 
-/// It comes to rest after infinitely many bounces, at √(2h/g)(1 + e)/(1 − e), and there it stays.
+/// A ball comes to rest after infinitely many bounces, at the time √(2h/g)(1 + e)/(1 − e), and stays at rest.
 #[test]
 fn a_ball_comes_to_rest_after_infinitely_many_bounces() {
     let m = Ball { restitution: 0.8 };
@@ -57,7 +57,7 @@ fn a_ball_comes_to_rest_after_infinitely_many_bounces() {
     assert!((end.q[2] - 0.05).abs() < 1e-8 && end.v.norm() < 1e-14, "{end:?}");
 }
 
-/// Without restitution it stays at once.
+/// A ball without restitution is at rest after its first impact.
 #[test]
 fn a_plastic_impact_ends_the_motion() {
     let m = Ball { restitution: 0.0 };
@@ -86,8 +86,8 @@ struct OnASlope {
     slope: Contact,
 }
 
-/// A sphere rolls down 15° with g sin α · 5/7, under a friction of 2/7 m g sin α; figures of the task that
-/// Drake tests.
+/// A sphere rolls down a slope of 15° with g sin α · 5/7, and a friction force of 2/7 m g sin α; the
+/// parameters are those of Drake's test.
 #[test]
 fn a_sphere_rolls_down_a_slope() {
     let tilt = 15.0_f64.to_radians();
@@ -99,8 +99,8 @@ fn a_sphere_rolls_down_a_slope() {
     let end = run.last().unwrap().unwrap();
     let acceleration = 1.813_582_023_182_663_4;
     assert!((acceleration - G * tilt.sin() * 5.0 / 7.0).abs() < 1e-14);
-    // It turns by 0.07 rad in a step at the end, which the method of order 4 for the axes of its velocity
-    // knows to 1e-6.
+    // The sphere rotates by 0.07 rad in the last step. The method has order 4 in the axes of the velocity and
+    // an error of 1e-6.
     let along = end.v.fixed_rows::<3>(0).norm();
     assert!((along - acceleration * t).abs() < 2e-6, "{along}");
     assert!((end.q[0] - acceleration * t * t / 2.0).abs() < 2e-6, "{}", end.q[0]);
@@ -108,13 +108,13 @@ fn a_sphere_rolls_down_a_slope() {
     assert!((force[0] - 0.1 * G * tilt.cos()).abs() < 1e-5, "{force}");
     let friction = (force[1] * force[1] + force[2] * force[2]).sqrt();
     assert!((friction - 0.072_543_280_927_306_54).abs() < 1e-6, "{friction}");
-    // From rest, where nothing turns yet, to rounding.
+    // At rest, without rotation, the forces are exact to rounding.
     let start = contact::forces(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros(), h).unwrap();
     let friction = (start[1] * start[1] + start[2] * start[2]).sqrt();
     assert!((friction * 0.05 - 0.003_627_164_046_365_327).abs() < 1e-13, "{friction}");
 }
 
-/// With too little friction for rolling it slips: g (sin α − μ cos α).
+/// Friction that is too small for rolling lets the sphere slip: g (sin α − μ cos α).
 #[test]
 fn a_sphere_slips_down_a_steep_slope() {
     let (tilt, friction) = (1.0_f64, 0.2);
@@ -148,8 +148,8 @@ impl Block {
     }
 }
 
-/// A block on a slope below the angle of friction does not move: not by a micrometre in an hour. Its four
-/// corners share the force in more ways than one.
+/// A block on a slope below the angle of friction does not move by a micrometre in an hour. The forces at its
+/// four corners are not unique.
 #[test]
 fn a_block_sticks_for_an_hour() {
     let m = Block { tilt: 15.0_f64.to_radians(), friction: 0.5 };
@@ -159,7 +159,7 @@ fn a_block_sticks_for_an_hour() {
     assert!((end.q - q).norm() < 1e-9, "{:e}", (end.q - q).norm());
 }
 
-/// Above it the block slides by g (sin α − μ cos α), flat on its face.
+/// Above the angle of friction the block slides with g (sin α − μ cos α), flat on its face.
 #[test]
 fn a_block_slides_down_a_steep_slope() {
     let (tilt, friction) = (30.0_f64.to_radians(), 0.3);
@@ -171,7 +171,7 @@ fn a_block_slides_down_a_steep_slope() {
     assert!((end.q[2] - 0.05).abs() < 1e-8 && end.q[3].hypot(end.q[4]).hypot(end.q[5]) < 1e-8);
 }
 
-/// A block that slides on a level comes to rest after v²/(2 μ g), and stays.
+/// A block that slides on a level plane comes to rest after v²/(2 μ g), and stays at rest.
 #[test]
 fn a_block_slides_to_rest() {
     let m = Block { tilt: 0.0, friction: 0.3 };
@@ -203,7 +203,8 @@ struct Logs {
     head: Contact,
 }
 
-/// Distances of capsules and of a sphere and a box, against the least over many pairs of their points.
+/// Distances between capsules, and between a sphere and a box, equal the minimum over many pairs of their
+/// points.
 #[test]
 fn distances_are_the_least() {
     let m = Logs {};
@@ -215,7 +216,7 @@ fn distances_are_the_least() {
     for case in 0..60 {
         let moved = SVector::<f64, 18>::from_fn(|k, _| {
             let size = if k % 6 < 3 { 1.0 } else { 3.0 };
-            // Parallel ones, too.
+            // Some of the capsules are parallel.
             if case % 5 == 0 && (3..6).contains(&k) {
                 if k == 4 { core::f64::consts::FRAC_PI_2 } else { 0.0 }
             } else if case % 5 == 0 && (9..12).contains(&k) {
@@ -247,7 +248,7 @@ fn distances_are_the_least() {
         let gaps = m.contact_gaps(&q);
         assert!((gaps[0] - (lines - 0.15)).abs() < 1e-6, "{case}: {} {}", gaps[0], lines - 0.15);
         let center = place(1, [0.0, 0.0, 0.3]);
-        // The box is convex in each of its axes by itself.
+        // The distance to the box is convex along each of its axes.
         let along = |axis: usize, half: f64| {
             let mut unit = [0.0; 3];
             unit[axis] = 1.0;
@@ -256,7 +257,7 @@ fn distances_are_the_least() {
         };
         let cuboid = (along(0, 0.2).powi(2) + along(1, 0.15).powi(2) + along(2, 0.1).powi(2)).sqrt();
         assert!((gaps[1] - (cuboid - 0.05)).abs() < 1e-6, "{case}: {} {}", gaps[1], cuboid - 0.05);
-        // Rates are those of the gaps.
+        // Contact velocities are the rates of the gap functions.
         let v = SVector::<f64, 18>::from_fn(|_, _| random());
         let h = 1e-6;
         let change = (m.contact_gaps(&m.integrate(&q, &(v * h)))

@@ -1,4 +1,5 @@
-//! The two ways of simulating contacts: each obeys its laws, and both lead to the same.
+//! Both methods of simulating contacts (located events and time stepping) satisfy the contact conditions and
+//! converge to the same motion.
 
 use linkwork::contact::Contacts;
 use linkwork::integrate::EventDriven;
@@ -6,8 +7,8 @@ use linkwork::prelude::*;
 
 use crate::laws::{Chain, Pile, Random};
 
-/// Follows a motion whose energy must not grow and whose surfaces must not pass each other; how many steps it
-/// takes.
+/// Follows a motion and checks that its energy does not grow and that surfaces do not penetrate. Returns the
+/// number of samples and the last configuration.
 fn follow<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -55,7 +56,7 @@ struct Tile {
     f: Contact,
 }
 
-/// Tiles that fall into a corner, turning: they strike with corners, tip, slide and come to rest.
+/// Rotating tiles fall into a corner: their corners collide, tip, slide and come to rest.
 #[test]
 fn tiles_fall_into_a_corner() {
     let mut random = Random(7);
@@ -67,7 +68,7 @@ fn tiles_fall_into_a_corner() {
     }
 }
 
-/// Balls of very different masses that fall on each other.
+/// Balls of very different masses fall on each other.
 #[test]
 fn balls_fall_on_each_other() {
     let mut random = Random(8);
@@ -79,7 +80,7 @@ fn balls_fall_on_each_other() {
     }
 }
 
-/// A double pendulum whose tip strikes the floor, slides there and sticks.
+/// The tip of a double pendulum collides with the floor, slides and sticks.
 #[test]
 fn a_double_pendulum_strikes_the_floor() {
     let mut random = Random(9);
@@ -94,8 +95,8 @@ fn a_double_pendulum_strikes_the_floor() {
     }
 }
 
-/// Time stepping leads to where located events do, the nearer the shorter its steps are: to first order where
-/// something strikes.
+/// Time stepping converges to the motion with located events, to first order in the step for motions with
+/// impacts.
 #[test]
 fn time_stepping_leads_to_the_same() {
     let m = Tile { friction: 0.4, restitution: 0.0 };

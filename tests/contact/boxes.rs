@@ -1,4 +1,4 @@
-//! Boxes on boxes, and capsules on boxes: faces, edges and corners.
+//! Contacts between boxes, and between capsules and boxes: faces, edges and corners.
 
 use super::laws::{Random, check};
 use linkwork::contact;
@@ -7,11 +7,11 @@ use linkwork::prelude::*;
 
 const G: f64 = 9.81;
 
-/// Half of the lengths of both boxes.
+/// Half of the edge lengths of both boxes.
 const LOW: [f64; 3] = [0.1, 0.1, 0.05];
 const HIGH: [f64; 3] = [0.15, 0.1, 0.025];
 
-/// A box on a box on the floor.
+/// Box on a box on the floor.
 #[mechanism(gravity = -gravity * z)]
 pub struct Two {
     pub gravity: f64,
@@ -31,7 +31,7 @@ pub struct Two {
     floor: Contact,
 }
 
-/// A box on a box on the floor, with the lower box named first in their contact.
+/// Box on a box on the floor, with the lower box named first in their contact.
 #[mechanism(gravity = -gravity * z)]
 pub struct Swapped {
     pub gravity: f64,
@@ -51,7 +51,7 @@ pub struct Swapped {
     floor: Contact,
 }
 
-/// A log on a beam.
+/// Log on a beam.
 #[mechanism(gravity = -9.81 * z)]
 struct Log {
     friction: f64,
@@ -63,7 +63,7 @@ struct Log {
     beam: Contact,
 }
 
-/// Both boxes, the upper one with its centre at `place` and turned.
+/// Returns the configuration of both boxes, with the upper one's centre at `place` and orientation `turn`.
 pub fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14> {
     let mut q = m.neutral();
     q[2] = LOW[2];
@@ -72,12 +72,13 @@ pub fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f6
     q
 }
 
-/// The distance of two boxes that do not overlap, whose axes times half of their lengths are columns, with
-/// centres apart by `c`: the least of all corners of each from the other, and of all edges from each other.
+/// Returns the distance of two disjoint boxes. The columns of `a` and `b` are the boxes' axes times half of
+/// their lengths; `c` is the offset of their centres. The distance is the minimum over all corners of each
+/// box to the other box, and over all pairs of edges.
 fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
     let signs = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
     let corner = |block: &Matrix3<f64>, k: usize| block * Vector3::from(signs(k));
-    // From the centre of a box.
+    // Distance of a point from a box, relative to its centre.
     let to_box = |block: &Matrix3<f64>, point: Vector3<f64>| {
         let near = block.column_iter().fold(Vector3::zeros(), |sum, axis| {
             let square = axis.norm_squared();
@@ -89,7 +90,7 @@ fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
     for k in 0..8 {
         least = least.min(to_box(b, c + corner(a, k))).min(to_box(a, corner(b, k) - c));
     }
-    // Half of an edge, and its middle.
+    // Half of each edge as a vector, and its midpoint.
     let edges = |block: &Matrix3<f64>| {
         let edge = |axis: usize, k: usize| {
             let half: Vector3<f64> = block.column(axis).into();
@@ -124,7 +125,7 @@ pub fn any_turn(random: &mut Random) -> UnitQuaternion<f64> {
     UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z))
 }
 
-/// The place on the way from `far` to the middle where the least gap is `wanted`.
+/// Returns the position on the line from `far` to the origin at which the minimum of the gaps is `wanted`.
 fn met(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vector3<f64> {
     let mut steps = (0..=200).map(|k| 1.0 - f64::from(k) / 200.0);
     let mut inside = steps.find(|part| gap(far * *part) <= wanted).expect("surfaces meet");
@@ -136,8 +137,8 @@ fn met(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vec
     far * out
 }
 
-/// What a box or a capsule is apart from a box where it nearly touches it is the least distance of their
-/// points; farther away it is positive.
+/// The gap of nearly touching boxes, or of a capsule and a box, is the minimum distance of their points; for
+/// larger distances it is positive.
 #[test]
 fn gaps_are_distances() {
     let (m, mut random) = (Two { gravity: G, friction: 0.0, restitution: 0.0 }, Random(3));
@@ -175,8 +176,8 @@ fn gaps_are_distances() {
     assert!(beside < 4, "{beside}");
 }
 
-/// Face on face, flush, turned, and across each other so that no corner of either is on the other: they lie
-/// still, and all points carry the weight.
+/// Boxes lie on each other face on face: flush, rotated, and crossed such that no corner of either is on the
+/// other. They stay at rest, and their contact points carry the whole weight.
 #[test]
 fn boxes_lie_on_each_other() {
     let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
@@ -194,8 +195,8 @@ fn boxes_lie_on_each_other() {
     }
 }
 
-/// Edge on edge: the impulse is along the normal `n` of both edges,
-/// `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` over both boxes.
+/// For a collision edge on edge, the impulse is along the common normal `n` of both edges,
+/// `(1 + e) v / Σ (1/m + (r × n)·I⁻¹(r × n))` summed over both boxes.
 #[test]
 fn edges_strike_edges() {
     let m = Two { gravity: 0.0, friction: 0.0, restitution: 0.5 };
@@ -203,13 +204,13 @@ fn edges_strike_edges() {
         Matrix3::from_diagonal(&[b * b + c * c, a * a + c * c, a * a + b * b].into()) * (mass / 3.0)
     };
     for (d, lean) in [(0.0, 0.2), (0.03, 0.2), (-0.08, 0.3)] {
-        // The edge of the upper box between its sides −y and −z, over the edge of the lower one at x = 0.1
+        // The edge of the upper box between its faces −y and −z is above the edge of the lower box at x = 0.1
         // along y.
         let lean = UnitQuaternion::from_euler_angles(0.0, lean, 0.0);
         let turn = lean * UnitQuaternion::from_euler_angles(core::f64::consts::FRAC_PI_4, 0.0, 0.0);
         let met = Vector3::new(LOW[0], 0.0, LOW[2]);
         let arm = turn * Vector3::new(d, -HIGH[1], -HIGH[2]);
-        // Of all directions along the lower edge the one from straight above the upper one.
+        // Along the lower edge, the centre of the upper box is directly above its contact point.
         let center = met - arm + Vector3::new(0.0, arm[1], 0.0);
         let met = met + Vector3::new(0.0, arm[1] + center[1], 0.0);
         let mut q = placed(&m, [center[0], center[1], center[2] + 1.0], turn);
@@ -232,8 +233,8 @@ fn edges_strike_edges() {
     }
 }
 
-/// Impacts where they touch somehow obey all laws, and keep the momentum of two boxes that nothing else
-/// touches.
+/// Impacts in random contact positions satisfy the contact conditions. Two boxes without other contacts
+/// preserve their momentum.
 #[test]
 fn boxes_strike_by_the_laws() {
     let mut random = Random(11);
@@ -245,7 +246,7 @@ fn boxes_strike_by_the_laws() {
         };
         let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
         let far = Vector3::from(random.vector::<3>(1.0)).normalize();
-        // Off the floor.
+        // Both boxes are above the floor.
         let at = |place: Vector3<f64>| {
             let mut q = placed(&m, [place[0], place[1], place[2] + 1.0], turn);
             q[2] = 1.0;
@@ -271,8 +272,8 @@ fn boxes_strike_by_the_laws() {
     }
 }
 
-/// A box falls on an edge of another, tips, and comes to rest or slides off: energy never grows, overlaps
-/// stay those of a step, and the order of the two makes no difference.
+/// A box falls on an edge of another box, tips, and comes to rest or slides off. The energy never grows,
+/// overlaps are at most those of one step, and the order of the two surfaces has no effect.
 #[test]
 fn a_box_falls_on_an_edge() {
     let m = Two { gravity: G, friction: 0.5, restitution: 0.0 };
@@ -299,7 +300,7 @@ fn a_box_falls_on_an_edge() {
     assert!(apart < 1e-12, "{apart}");
 }
 
-/// A log across a beam rests on both edges of its face, which carry its weight.
+/// A log across a beam rests on both edges of the beam's face, which carry its weight.
 #[test]
 fn a_log_lies_across_a_beam() {
     let m = Log { friction: 0.5 };

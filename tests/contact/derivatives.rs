@@ -1,4 +1,4 @@
-//! Derivatives of the motion while contacts stay closed, against differences of the motion itself.
+//! Derivatives of motions with fixed contact modes, against differences of the motion itself.
 
 use linkwork::contact::{self, ContactDerivatives, Touch};
 use linkwork::discrete;
@@ -6,7 +6,7 @@ use linkwork::integrate::ImplicitMidpoint;
 use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;
 
-/// A quadruped, with a coefficient of friction for each foot.
+/// Quadruped, with its own coefficient of friction for each foot.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
 struct Solo {
     #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
@@ -19,7 +19,7 @@ struct Solo {
     hind_right: Contact,
 }
 
-/// A ball in a hollow, in wind that changes with time.
+/// Ball in a hollow, in wind that changes with time.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Hollow {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
@@ -32,7 +32,7 @@ struct Hollow {
     rest: Contact,
 }
 
-/// A crank that pushes a piston onto a stop.
+/// Crank that pushes a piston onto a stop.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Engine {
     #[body(mass = 2, com = 0.02 * x, inertia = rod(2, 0.04, x))]
@@ -55,14 +55,14 @@ struct Engine {
     motor: Torque,
 }
 
-/// The derivative of a function at zero: central differences of the sixth order.
+/// Returns the derivative of a function at zero by central differences of sixth order.
 fn slope<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     let h = 2e-3;
     let pair = |k: f64| f(k * h) - f(-k * h);
     (pair(1.0) * 45.0 - pair(2.0) * 9.0 + pair(3.0)) / (60.0 * h)
 }
 
-/// Every column of every derivative.
+/// Checks every column of every derivative against differences.
 pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     t: f64,
@@ -102,7 +102,7 @@ pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usi
     }
 }
 
-/// A state of the quadruped, and forces at its joints.
+/// Returns a configuration and velocity of the quadruped, and joint torques.
 pub fn stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 18>) {
     let mut q = Solo {}.neutral();
     q[2] = 0.26;
@@ -131,7 +131,7 @@ fn a_quadruped_on_its_feet() {
     }
 }
 
-/// Ground of any form, and equations that depend on time.
+/// Derivatives on curved ground, with forces that depend on time.
 #[test]
 fn a_ball_in_a_hollow_in_the_wind() {
     let m = Hollow {};
@@ -144,7 +144,7 @@ fn a_ball_in_a_hollow_in_the_wind() {
     }
 }
 
-/// Through a loop.
+/// Derivatives of a contact force through a closed loop.
 #[test]
 fn a_piston_on_its_stop() {
     let m = Engine {};
@@ -155,7 +155,7 @@ fn a_piston_on_its_stop() {
     }
 }
 
-/// With inputs, the chain rule.
+/// Derivatives with respect to inputs follow from the chain rule.
 #[test]
 fn inputs_move_what_is_held() {
     #[mechanism(gravity = -9.81 * y, derivatives)]
@@ -185,7 +185,8 @@ fn inputs_move_what_is_held() {
     assert!(linear.by_u.amax() > 0.1, "the motor moves it");
 }
 
-/// Four points of one body: twelve forces of which six would do. What they do to the motion is determined.
+/// Four contact points of one rigid body have twelve forces, of which six would be sufficient. Their effect
+/// on the motion is unique.
 #[test]
 fn a_table_shares_its_weight() {
     #[mechanism(gravity = -9.81 * z, derivatives)]
@@ -209,7 +210,7 @@ fn a_table_shares_its_weight() {
     }
     let m = Table {};
     let q = m.integrate(&m.neutral(), &SVector::from_fn(|k, _| 0.2 - 0.05 * k as f64));
-    // All four stay where they are only if the table does not turn.
+    // All four points can stick only if the table does not rotate.
     let v = SVector::from_fn(|k, _| if k == 6 { 2.0 } else { 0.0 });
     let tau = SVector::from_fn(|k, _| 0.3 * k as f64 - 1.0);
     let touches = [Touch::Sticks; 4];
@@ -231,7 +232,7 @@ fn a_table_shares_its_weight() {
     }
 }
 
-/// Points as feet, which other engines know, too.
+/// Quadruped with points as feet, a contact that other engines support, too.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, gravity = -9.81 * z, derivatives)]
 pub struct OnPoints {
     #[contact(FL_FOOT, ground.plane(z), friction = 0.8)]
@@ -240,7 +241,7 @@ pub struct OnPoints {
     hind_right: Contact,
 }
 
-/// Along one direction `wₖ = cos(0.7 k + 0.3)` of all coordinates: Pinocchio 3.4.0,
+/// Derivatives along one direction `wₖ = cos(0.7 k + 0.3)` of all coordinates. Reference: Pinocchio 3.4.0,
 /// `computeConstraintDynamicsDerivatives` with two contacts `CONTACT_3D`, `LOCAL_WORLD_ALIGNED`, without
 /// correctors, in the state of `stance`.
 #[test]
@@ -351,15 +352,15 @@ fn a_quadruped_on_points_as_in_pinocchio() {
     close("∂f/∂τ", &[forces[0], forces[3]], &[5.929825685, 4.95663259]);
 }
 
-/// Steps with held contacts, with their Jacobians: explicit ones and implicit ones, with feedback and
-/// without.
+/// Steps with fixed contact modes have Jacobians that agree with differences, for explicit and implicit
+/// steps, with and without feedback.
 #[test]
 fn steps_of_a_held_quadruped() {
     use discrete::DifferentiableStep;
     let (q, v, _) = stance();
     let m = OnPoints {};
     let touches = [Touch::Sticks, Touch::Slips];
-    // As after touching down: points that stick have no velocity.
+    // The state is that after a touchdown: sticking points have no velocity.
     let mut q = q;
     let v = contact::impact(&m, 0.0, &q, &v).unwrap().v;
     q[2] += 0.01;
@@ -399,7 +400,7 @@ fn steps_of_a_held_quadruped() {
     }
 }
 
-/// Touchdown with given contacts, and its derivatives; through a loop as well.
+/// Touchdown with given contact modes has derivatives, also through a closed loop.
 #[test]
 fn landings_have_derivatives() {
     fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
@@ -412,7 +413,7 @@ fn landings_have_derivatives() {
         let found = contact::land_derivatives(m, 0.0, q, v, touches).unwrap();
         let landed =
             |q: &SVector<f64, NQ>, v: &SVector<f64, NV>| contact::land(m, 0.0, q, v, touches).unwrap();
-        // The balance of momentum, and what stays closed.
+        // Balance of momentum, and velocities of closed contacts after the touchdown.
         let step = found.transition::<NQ, NU>(q);
         assert!(step.q == *q && step.v == found.v && step.v_by_q == found.by_q && step.v_by_v == found.by_v);
         assert!(

@@ -1,4 +1,4 @@
-//! Motion whose events are located: closed forms, to rounding.
+//! Motions with located events against closed-form solutions, to rounding.
 
 use linkwork::integrate::EventDriven;
 use linkwork::prelude::*;
@@ -18,7 +18,8 @@ struct Ball {
     bounce: Contact,
 }
 
-/// The n-th apex of a ball that falls from 1 m is e²ⁿ m high, and at √(2 h / g) (1 + e) / (1 − e) it rests.
+/// The n-th apex of a ball that falls from 1 m is e²ⁿ m high, and the ball rests from the time √(2 h / g) (1
+/// + e) / (1 − e).
 #[test]
 fn a_ball_bounces_until_it_rests() {
     let (g, e) = (9.81_f64, 0.8_f64);
@@ -49,7 +50,7 @@ fn a_ball_bounces_until_it_rests() {
     assert!(end.q[0].abs() < 1e-15 && end.v[0].abs() < 1e-15, "{end:?}");
 }
 
-/// Without loss it bounces for ever, to the same height.
+/// A ball without loss bounces to the same height forever.
 #[test]
 fn an_elastic_ball_keeps_its_energy() {
     let m = Ball { restitution: 1.0 };
@@ -76,7 +77,7 @@ struct Sphere {
     load: Vector,
 }
 
-/// A sphere rolls down 15° from rest with 5/7 g sin 15°, held by 2/7 m g sin 15° of friction.
+/// A sphere rolls down 15° from rest with 5/7 g sin 15°, with a friction force of 2/7 m g sin 15°.
 #[test]
 fn a_sphere_rolls_down() {
     let m = Sphere { tilt: 15.0_f64.to_radians(), friction: 0.3 };
@@ -90,7 +91,7 @@ fn a_sphere_rolls_down() {
     assert!((end.v[4] + a * 2.0 / 0.05).abs() < 1e-10 && (end.q[2] - 0.05).abs() < 1e-14, "{end:?}");
 }
 
-/// A ball that slides without turning at 5 m/s rolls after 2 v / (7 μ g), with 5/7 of its speed.
+/// A ball that slides without rotation at 5 m/s rolls after 2 v / (7 μ g), with 5/7 of its speed.
 #[test]
 fn a_bowling_ball_begins_to_roll() {
     let m = Sphere { tilt: 0.0, friction: 0.2 };
@@ -101,7 +102,7 @@ fn a_bowling_ball_begins_to_roll() {
     let mut found = None;
     for sample in run {
         let sample = sample.unwrap();
-        // In the ground's axes: those of the ball have turned.
+        // The velocity is compared in the ground's axes, since those of the ball have rotated.
         let q = sample.q;
         let turned = linkwork::nalgebra::Quaternion::new(q[6], q[3], q[4], q[5]);
         let axes = linkwork::nalgebra::UnitQuaternion::from_quaternion(turned).to_rotation_matrix();
@@ -134,8 +135,8 @@ struct Block {
     rubs: Contact,
 }
 
-/// A force that grows with time moves the block when it exceeds friction, and that instant is located; when
-/// it is gone the block comes to rest, where it stays.
+/// A force that grows with time moves the block when it exceeds friction, and that instant is located. When
+/// the force ends, the block comes to rest and stays at rest.
 #[test]
 fn a_block_breaks_loose_and_stops() {
     let m = Block { friction: 0.4 };
@@ -193,7 +194,7 @@ fn a_crate_tips() {
     let run = simulate(&m).from(q, [0.0; 6]).inputs(|t, _, _| [rate * t].into()).method(exact());
     let rests = run.clone().duration(tips - 1e-3).finish().unwrap();
     assert!((rests.q - q).amax() < 1e-13, "{rests:?}");
-    // About the edge: I θ̈ = 0.4 rate (t − tips) at first.
+    // Rotation about the edge: initially I θ̈ = 0.4 rate (t − tips).
     let s = 1e-3;
     let end = run.duration(tips + s).finish().unwrap();
     let inertia =
@@ -215,16 +216,16 @@ struct Housner {
     right: Contact,
 }
 
-/// A slender block that rocks from edge to edge: between impacts θ obeys I θ̈ = −m g R sin(α − θ), and an
-/// impact on the other edge leaves 1 − (3/2) sin² α of the rate (Housner, *The behavior of inverted pendulum
-/// structures during earthquakes*, 1963).
+/// A slender block rocks from edge to edge. Between impacts θ satisfies I θ̈ = −m g R sin(α − θ), and an
+/// impact on the other edge leaves the fraction 1 − (3/2) sin² α of the angular velocity (Housner, *The
+/// behavior of inverted pendulum structures during earthquakes*, 1963).
 #[test]
 fn a_block_rocks_as_housner_says() {
     let m = Housner { friction: 5.0 };
     let (half, height) = (0.05_f64, 0.25_f64);
     let (alpha, radius) = ((half / height).atan(), half.hypot(height));
     let tilt = 0.5 * alpha;
-    // Turned about its right edge by −tilt.
+    // The block is rotated about its right edge by −tilt.
     let (sine, cosine) = tilt.sin_cos();
     let q = [half - (half * cosine - height * sine), half * sine + height * cosine, -tilt];
     let inertia = 4.0 / 3.0 * 3.0 * radius * radius;
@@ -249,7 +250,7 @@ fn a_block_rocks_as_housner_says() {
     assert!(impacts >= 6, "{impacts}");
 }
 
-/// A ball that bounces has two samples for each impact: before it and after it, at the same time and place.
+/// A bouncing ball has two samples for each impact, before and after it, at the same time and position.
 #[test]
 fn impacts_have_samples_before_and_after() {
     #[mechanism(gravity = -9.81 * z)]
@@ -265,7 +266,7 @@ fn impacts_have_samples_before_and_after() {
     let run = simulate(&Ball {}).from([1.0], [0.0]).method(EventDriven::new()).duration(2.6 * fall);
     let samples: Vec<_> = run.map(|sample| sample.unwrap()).collect();
     let impacts: Vec<_> = samples.windows(2).filter(|pair| pair[0].t == pair[1].t).collect();
-    // Impacts after the times 1, 2 and 2.5 of the fall, with speeds that halve.
+    // The impacts are at 1, 2 and 2.5 times the duration of the fall, with velocities that halve.
     assert_eq!(impacts.len(), 3);
     for (k, (pair, time)) in impacts.iter().zip([1.0, 2.0, 2.5]).enumerate() {
         let speed = 9.81 * fall * 0.5_f64.powi(k as i32);
@@ -273,7 +274,7 @@ fn impacts_have_samples_before_and_after() {
         assert!((pair[0].v[0] + speed).abs() < 1e-9 && (pair[1].v[0] - 0.5 * speed).abs() < 1e-9);
         assert!(pair[0].q == pair[1].q && pair[0].q[0].abs() < 1e-12);
     }
-    // So do impacts that are declared as events.
+    // Impacts that are declared as events have two samples, too.
     #[mechanism(gravity = -9.81 * z)]
     struct Dropped {
         #[particle(mass = 0.1)]

@@ -1,4 +1,4 @@
-//! Contacts that name the collision geometry of a file's links.
+//! Contacts that refer to the collision geometry of a file's links.
 
 use linkwork::prelude::*;
 
@@ -28,7 +28,8 @@ struct ByHand {
     reach: Contact,
 }
 
-/// What the file says is what one would write, wherever the robot is.
+/// Contacts with the geometry of the file equal the same contacts written by hand, in every configuration of
+/// the robot.
 #[test]
 fn collision_geometry_is_that_of_the_file() {
     assert_eq!((FromTheFile::CONTACTS.len(), FromTheFile::CONTACTS[8]), (19, "below.8"));
@@ -60,8 +61,8 @@ fn last(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
     run.finish().unwrap()
 }
 
-/// On its face it stands on slopes that are less steep than friction and tipping allow: tan 30° is less than
-/// 2/3, the ratio of the diameter to the height, and than 0.7.
+/// A drum stands on its face on slopes below the limits of friction and tipping: tan 30° is less than 2/3,
+/// the ratio of the diameter to the height, and less than 0.7.
 #[test]
 fn a_drum_stands_on_its_face() {
     for slope in [0.0, 20.0_f64.to_radians(), 30.0_f64.to_radians()] {
@@ -72,12 +73,12 @@ fn a_drum_stands_on_its_face() {
             "{slope} {end:?}"
         );
     }
-    // Beyond 2/3 it falls over.
+    // Beyond 2/3 the drum tips over.
     let end = last(&Drum { slope: 34.5_f64.to_radians() }, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0], 1e-3, 2.0);
     assert!(end.q[2] < 0.12, "{end:?}");
 }
 
-/// On its side it rolls down with two thirds of the acceleration of what slides without friction.
+/// A drum rolls on its side with two thirds of the acceleration of frictionless sliding.
 #[test]
 fn a_drum_rolls_on_its_side() {
     let m = Drum { slope: 0.2 };
@@ -99,7 +100,7 @@ struct BallOnDrum {
     top: Contact,
 }
 
-/// The distance to a cylinder with two ends is that to its face, its side or its rim.
+/// The distance to a cylinder with two end faces is the distance to its face, its side or its rim.
 #[test]
 fn a_ball_finds_face_side_and_rim() {
     let gap = |x: f64, y: f64, z: f64| BallOnDrum {}.contact_gaps(&[x, y, z, 0.0, 0.0, 0.0, 1.0].into())[0];

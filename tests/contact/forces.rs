@@ -1,4 +1,4 @@
-//! Forces at contacts in a state, and outputs that name them.
+//! Contact forces in a state, and outputs that refer to them.
 
 use super::laws::Random;
 use linkwork::contact::{self, Touch};
@@ -25,20 +25,20 @@ fn resting() -> SVector<f64, 7> {
     [0.0, 0.0, 0.05, 0.0, 0.0, 0.0, 1.0].into()
 }
 
-/// A sphere on a slope of 15°: the figures of Drake's test of a rolling sphere.
+/// Sphere on a slope of 15°, with the parameters of Drake's test of a rolling sphere.
 #[test]
 fn a_rolling_sphere_is_held_by_friction() {
     let m = Ball { tilt: 15.0_f64.to_radians(), friction: 0.5 };
     let force = m.force(&resting(), &SVector::zeros()).unwrap();
     assert!((force - Vector3::new(-0.072_543_280_927_306_54, 0.0, 0.1 * 9.81 * m.tilt.cos())).amax() < 1e-9);
     assert_eq!(m.press(&resting(), &SVector::zeros()).unwrap(), force[2]);
-    // In the air nothing acts.
+    // No force acts in the air.
     let mut q = resting();
     q[2] += 1e-6;
     assert_eq!(m.force(&q, &SVector::zeros()).unwrap(), Vector3::zeros());
 }
 
-/// Friction acts against the slip, whatever its speed.
+/// Friction opposes the slip velocity, at any speed.
 #[test]
 fn a_sliding_sphere_is_braked() {
     let m = Ball { tilt: 0.0, friction: 0.2 };
@@ -70,7 +70,8 @@ struct Table {
     between: Vector,
 }
 
-/// What the second surface exerts on the first, over all points, in either order of surfaces.
+/// The output is the total force of the second surface on the first over all points, for either order of the
+/// surfaces.
 #[test]
 fn forces_act_on_the_first_surface() {
     let m = Table {};
@@ -115,11 +116,11 @@ struct Piston {
     load: Scalar,
 }
 
-/// Through a loop: the force at the stop does the work that the motor does not.
+/// Through a closed loop, virtual work of the motor equals virtual work of the force at the stop.
 #[test]
 fn a_motor_presses_a_piston_onto_its_stop() {
     let m = Piston {};
-    // The crank's angle where the piston is at its stop.
+    // Angle of the crank with the piston at its stop.
     let angle = ((0.04_f64.powi(2) + 0.165_f64.powi(2) - 0.13_f64.powi(2)) / (2.0 * 0.04 * 0.165)).acos();
     let guess = m.neutral();
     let mut guess = guess;
@@ -127,14 +128,14 @@ fn a_motor_presses_a_piston_onto_its_stop() {
     let start = m.assemble(&guess, &[0]).unwrap();
     assert!(m.contact_gaps(&start)[0].abs() < 1e-9);
     let load = m.load(&start, &SVector::zeros(), &[1.5].into()).unwrap();
-    // Virtual work: the piston's displacement by the crank's angle.
+    // Virtual work: derivative of the piston's position with respect to the crank's angle.
     let far = |angle: f64| 0.04 * angle.cos() + (0.13_f64.powi(2) - (0.04 * angle.sin()).powi(2)).sqrt();
     let slope = (far(-angle + 1e-6) - far(-angle - 1e-6)) / 2e-6;
     assert!((load + 1.5 / slope).abs() < 1e-5 * load.abs(), "{load} {slope}");
 }
 
-/// Chosen contacts: the equations hold, through a loop and with slip, and where nothing slips what acts is
-/// what is chosen.
+/// With prescribed contact modes the equations of motion are satisfied, through a loop and with slip. At
+/// rest, the forces equal those of the complementarity conditions.
 #[test]
 fn chosen_contacts_stay_closed() {
     let m = Table {};
@@ -170,7 +171,7 @@ fn chosen_contacts_stay_closed() {
             }
         }
     }
-    // Of those that rest, what acts.
+    // For a system at rest, the prescribed modes give the acting forces.
     let touches: [Touch; 16] = core::array::from_fn(|k| if k % 8 < 4 { Touch::Sticks } else { Touch::Open });
     let still = SVector::zeros();
     let found = contact::forward_dynamics(&m, 0.0, &q, &still, &SVector::zeros(), &touches).unwrap();
@@ -179,7 +180,7 @@ fn chosen_contacts_stay_closed() {
     assert!(found.a.amax() < 1e-9 && push.amax() < 1e-6, "{push}");
 }
 
-/// A heavy particle on a light one on the floor.
+/// Heavy particle on a light one on the floor.
 #[mechanism(gravity = -9.81 * z)]
 struct Anvil {
     mass: f64,
@@ -197,8 +198,7 @@ struct Anvil {
     face: Contact,
 }
 
-/// Forces are told apart however much heavier one body is than the other, in both orders of the contacts that
-/// it matters for.
+/// Forces are resolved for any mass ratio, in both orders of contacts that matter for the elimination.
 #[test]
 fn heavy_bodies_are_held_on_light_ones() {
     for mass in [1.0, 1e2, 1e3, 1e4, 1e5] {
@@ -208,7 +208,7 @@ fn heavy_bodies_are_held_on_light_ones() {
             let held = contact::forward_dynamics(&m, 0.0, &q, &none, &none, &touches).unwrap();
             assert!((held.forces[1] / (mass * 9.81) - 1.0).abs() < 1e-6, "{mass}: {}", held.forces);
             assert!((held.forces[0] / ((mass + 1e-4) * 9.81) - 1.0).abs() < 1e-6, "{mass}: {}", held.forces);
-            // What rounding leaves of the light one's weight under the heavy one.
+            // Bound of the rounding error of the light particle's weight under the heavy one.
             assert!(held.a.amax() < 1e-15 * mass * 9.81 / 1e-4 + 1e-9, "{mass}: {}", held.a);
         }
         let run = simulate(&m).from([0.0; 2], [0.0; 2]).method(TimeStepping::step(1e-3)).duration(1.0);
@@ -216,7 +216,7 @@ fn heavy_bodies_are_held_on_light_ones() {
     }
 }
 
-/// A stop that is asked to move: the crank is held by another, too.
+/// A stop with a prescribed sticking mode contradicts another condition on the same crank.
 #[test]
 fn contacts_that_contradict_each_other_are_errors() {
     #[mechanism]
@@ -245,7 +245,7 @@ fn contacts_that_contradict_each_other_are_errors() {
     assert_eq!(held.unwrap_err(), ConstraintError::Contact { constraint: "stop.from" });
 }
 
-/// A rod of 1 m and 1 kg that slides on its end, falling against its slip.
+/// Rod of 1 m and 1 kg whose end slides, with the rod falling against the slip.
 #[mechanism(gravity = -9.81 * y)]
 struct Rod {
     friction: f64,
@@ -260,8 +260,8 @@ struct Rod {
 }
 
 /// The normal acceleration of the end of a rod at the angle `θ` that slides with friction `μ` in the
-/// direction `s` is `a + p N` with `p m = 1 + 3 cos θ (cos θ + s μ sin θ)`. Where `p < 0 < −a` no finite
-/// force keeps it from the floor (Painlevé); where `p > 0` the force is `−a / p`.
+/// direction `s` is `a + p N` with `p m = 1 + 3 cos θ (cos θ + s μ sin θ)`. For `p < 0 < −a` no finite force
+/// prevents penetration of the floor (Painlevé); for `p > 0` the force is `−a / p`.
 #[test]
 fn no_finite_force_is_an_error() {
     let mut random = Random(3);
@@ -272,7 +272,7 @@ fn no_finite_force_is_an_error() {
         let m = Rod { friction };
         let (sine, cosine) = angle.sin_cos();
         let (q, v) = ([0.0, 0.0, angle].into(), [slip, 0.0, 0.0].into());
-        // Friction is −s μ N along x: its moment about the centre turns the end up or down.
+        // Friction is −s μ N along x: its moment about the centre moves the end up or down.
         let answer = 1.0 + 3.0 * cosine * (cosine + slip.signum() * friction * sine);
         let found = m.force(&q, &v);
         if answer < -1e-3 {

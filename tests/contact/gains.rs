@@ -1,4 +1,5 @@
-//! Contacts that are held with gains: how gaps and rates decay, and steps by accelerations that are known.
+//! Bilaterally enforced contacts with stabilization gains: decay of gaps and contact velocities, and steps
+//! with given accelerations.
 
 use super::derivatives::{OnPoints, stance};
 use linkwork::contact::{self, Touch};
@@ -6,7 +7,7 @@ use linkwork::discrete;
 use linkwork::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 
-/// What is off by a millimetre is brought back, and stays where it was without.
+/// With gains, a gap of one millimetre decays; without gains it stays constant.
 #[test]
 fn gaps_of_what_is_held_decay() {
     let (mut q, _, _) = stance();
@@ -18,17 +19,17 @@ fn gaps_of_what_is_held_decay() {
     };
     let (free, steady) = (run(0.0), run(100.0));
     assert!((m.contact_gaps(&free.q)[0] - 1e-3).abs() < 1e-8);
-    // Critically damped: (1 + α t) e^(−α t).
+    // Critically damped decay: (1 + α t) e^(−α t).
     assert!((m.contact_gaps(&steady.q)[0] - 11.0 * (-10.0_f64).exp() * 1e-3).abs() < 1e-9);
 }
 
-/// A foot that has not quite landed comes to rest a fiftieth of its speed further on, where nothing draws it
-/// back.
+/// A foot with a remaining contact velocity stops after a fiftieth of its speed (in metres per m/s) if only
+/// the velocity has a gain.
 #[test]
 fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
     let (q, _, _) = stance();
     let m = OnPoints {};
-    // The foot sinks with the whole robot.
+    // The foot moves down together with the whole robot.
     let turned = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
     let down = turned.inverse_transform_vector(&Vector3::new(0.0, 0.0, -0.1));
     let v = SVector::from_fn(|k, _| if k < 3 { down[k] } else { 0.0 });
@@ -40,8 +41,8 @@ fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
     assert!((m.contact_rates(&end.q, &end.v)[0] + 0.1 * (-10.0_f64).exp()).abs() < 1e-7);
 }
 
-/// A step that is made of accelerations which are known is the step, and their forces are those that hold the
-/// feet.
+/// A step with given accelerations equals the step that computes them, and its contact forces enforce the
+/// contacts.
 #[test]
 fn steps_are_made_of_known_accelerations() {
     let (q, v, _) = stance();

@@ -1,4 +1,4 @@
-//! Problems of textbooks on contact, against their closed forms.
+//! Contact problems of textbooks against their closed-form solutions.
 
 use linkwork::contact::{self, Touch};
 use linkwork::integrate::EventDriven;
@@ -10,7 +10,7 @@ fn exact() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
-/// Two balls of billiards.
+/// Two billiard balls.
 #[mechanism]
 struct Billiards {
     friction: f64,
@@ -27,9 +27,9 @@ struct Billiards {
     touch: Contact,
 }
 
-/// The cue ball throws the object ball off the line of centres: across it the object ball gets
-/// `μ (1 + e) v cos φ / 2`, or a seventh of what the surfaces slip at if that is less; with `r ω = v sin φ`
-/// of side spin they do not slip, and it is not thrown.
+/// The cue ball throws the object ball off the line of centres. The transverse velocity of the object ball is
+/// `μ (1 + e) v cos φ / 2`, or a seventh of the slip velocity of the surfaces if that is less. With side spin
+/// `r ω = v sin φ` the surfaces do not slip and the ball is not thrown.
 #[test]
 fn a_ball_is_thrown() {
     let (v, radius) = (2.0, 0.0286);
@@ -54,7 +54,7 @@ fn a_ball_is_thrown() {
     }
 }
 
-/// A ball that may spin, and a floor.
+/// Ball with spin, and a floor.
 #[mechanism(gravity = -9.81 * z)]
 struct Bouncing {
     friction: f64,
@@ -66,9 +66,10 @@ struct Bouncing {
     floor: Contact,
 }
 
-/// A ball that spins about y and strikes the floor leaves it with `(5 vₓ + 2 r ω) / 7` where it grips, and
-/// slower by `μ (1 + e) |v_z|` where it slips: back spin turns it back (Cross, *Grip-slip behavior of a
-/// bouncing ball*, Am. J. Phys. 70, 2002, for a solid sphere that grips at once).
+/// A ball that spins about y and collides with the floor leaves it with the horizontal velocity
+/// `(5 vₓ + 2 r ω) / 7` if it grips, and with a velocity reduced by `μ (1 + e) |v_z|` if it slips; back spin
+/// reverses it (Cross, *Grip-slip behavior of a bouncing ball*, Am. J. Phys. 70, 2002, for a solid sphere
+/// that grips at once).
 #[test]
 fn spin_changes_how_a_ball_bounces() {
     for (friction, spin) in [(1.0, 0.0), (1.0, -150.0), (1.0, 200.0), (0.1, -150.0), (0.1, 250.0)] {
@@ -84,7 +85,7 @@ fn spin_changes_how_a_ball_bounces() {
     }
 }
 
-/// A rod of mass 1 and length 2 that slides on a floor with one end.
+/// Rod of mass 1 and length 2 with one end sliding on a floor.
 #[mechanism(gravity = -9.81 * y)]
 struct Rod {
     friction: f64,
@@ -97,17 +98,16 @@ struct Rod {
 }
 
 impl Rod {
-    /// Leaning by `tilt` over the floor, its tip sliding backwards at 1 m/s.
+    /// Returns a state of the rod at the angle `tilt` to the floor, with its tip sliding backwards at 1 m/s.
     fn sliding(tilt: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
         let (sin, cos) = tilt.sin_cos();
         ([cos, sin, tilt].into(), [-1.0 - rate * sin, rate * cos, rate].into())
     }
 }
 
-/// The tip's normal acceleration is `p N − (g − ω² sin θ)` with `p = 1 + 3 cos θ (cos θ − μ sin θ)`, which
-/// below μ = 4/3 is positive wherever the rod is, so that the force follows (Painlevé, *Sur les lois du
-/// frottement de glissement*, 1895; Génot and Brogliato, *New results on Painlevé paradoxes*, Eur. J. Mech. A
-/// 18, 1999).
+/// The tip's normal acceleration is `p N − (g − ω² sin θ)` with `p = 1 + 3 cos θ (cos θ − μ sin θ)`. Below μ
+/// = 4/3, `p` is positive for every angle, so that the force is unique (Painlevé, *Sur les lois du frottement
+/// de glissement*, 1895; Génot and Brogliato, *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
 #[test]
 fn a_rod_slides_where_no_paradox_is() {
     let m = Rod { friction: 1.3 };
@@ -127,9 +127,9 @@ fn a_rod_slides_where_no_paradox_is() {
     }
 }
 
-/// With μ = 2 at tan θ = 2, `p = −0.8`: no force lets the rod slide on. An impact without a collision stops
-/// its tip at once, with the impulses (0.3, 0.4) N·s, and it turns about the tip from then on. Both ways of
-/// simulating do that.
+/// With μ = 2 at tan θ = 2, `p = −0.8`: no contact force is consistent with continued sliding. An impact
+/// without a collision stops the tip at once, with the impulses (0.3, 0.4) N·s, and the rod rotates about the
+/// tip afterwards. Both methods of simulating contacts give this motion.
 #[test]
 fn a_rod_in_the_paradox_stops() {
     let m = Rod { friction: 2.0 };
@@ -154,7 +154,7 @@ fn a_rod_in_the_paradox_stops() {
     assert!((energy(&events.q, &events.v) - energy(&q, &stopped.v)).abs() < 1e-4);
 }
 
-/// A ladder on a smooth floor and a smooth wall.
+/// Ladder on a smooth floor and a smooth wall.
 #[mechanism(gravity = -9.81 * y)]
 struct Ladder {
     #[body(mass = 8, inertia = rod(8, 4, x))]
@@ -167,8 +167,8 @@ struct Ladder {
     floor: Contact,
 }
 
-/// A ladder that slides down leaves the wall when its top has come down by a third, and goes on with the
-/// velocity along the floor that it has then.
+/// A sliding ladder separates from the wall when its top has descended by a third, and then keeps its
+/// velocity along the floor.
 #[test]
 fn a_ladder_leaves_the_wall() {
     let (m, half, start) = (Ladder {}, 2.0, 1.2_f64);
@@ -194,7 +194,7 @@ fn a_ladder_leaves_the_wall() {
     assert!(nearest < 1e-9 && after > 5, "{nearest} {after}");
 }
 
-/// A valve: a disc that a preloaded spring presses on its seat.
+/// Valve: a preloaded spring presses a disc on its seat.
 #[mechanism]
 struct Valve {
     restitution: f64,
@@ -208,8 +208,8 @@ struct Valve {
     seat: Limit,
 }
 
-/// It chatters: flights last `2/ω atan(v/(ω d))` for a preload of `k d`, each impact leaves `e` of the speed,
-/// and after infinitely many it is closed.
+/// The valve chatters: flights last `2/ω atan(v/(ω d))` for a preload of `k d`, each impact reduces the speed
+/// by the factor `e`, and after infinitely many impacts the valve is closed.
 #[test]
 fn a_valve_chatters() {
     let (omega, preload, restitution) = ((800.0_f64 / 0.02).sqrt(), 0.004, 0.6);
@@ -228,13 +228,13 @@ fn a_valve_chatters() {
     }
     let closed = run(t * 1.001);
     assert!(closed.q[0].abs() < 1e-14 && closed.v[0].abs() < 1e-14, "{closed:?}");
-    // It stays, pressed with k d.
+    // The valve stays closed with the force k d.
     let force = contact::acting(&m, 0.0, &closed.q, &closed.v, &SVector::zeros()).unwrap();
     assert!((force[0] - 800.0 * preload).abs() < 1e-6);
 }
 
-/// A one-way clutch, or a silent ratchet: a strut hinged 0.1 m above a slide, on which a torque of 0.3 N·m
-/// presses its tip.
+/// One-way clutch, or silent ratchet: a strut hinged 0.1 m above a slide, whose tip a torque of 0.3 N·m
+/// presses on the slide.
 #[mechanism]
 struct Clutch {
     friction: f64,
@@ -256,9 +256,9 @@ struct Clutch {
     tip: Contact,
 }
 
-/// Where tan α is less than the coefficient of friction the strut holds the slide against any load one way,
-/// and stops what moves that way at once; the other way it drags with `μ τ / (L (sin α + μ cos α))`. With
-/// less friction it slips either way.
+/// If tan α is less than the coefficient of friction, the strut locks the slide against any load in one
+/// direction, and stops a motion in that direction at once. In the other direction it drags with
+/// `μ τ / (L (sin α + μ cos α))`. With less friction it slips in both directions.
 #[test]
 fn a_strut_is_a_one_way_clutch() {
     let run = |m: &Clutch, load: f64, speed: f64, t: f64| {
@@ -286,7 +286,7 @@ fn a_strut_is_a_one_way_clutch() {
     assert!(run(&slippery, drag - 0.1, 0.0, 0.2).v.amax() < 1e-9);
 }
 
-/// A belt of three links over a drum, which it touches at its joints and ends.
+/// Belt of three links over a drum, with contacts at its joints and ends.
 #[mechanism]
 struct Belt {
     friction: f64,
@@ -322,16 +322,16 @@ struct Belt {
     end: Contact,
 }
 
-/// A belt that turns by `δ` at each of `n` points holds while its tensions are below
-/// `((1 + μ tan δ/2) / (1 − μ tan δ/2))ⁿ` of each other: at a point between the tensions `T` and `T'` the
-/// drum presses with `(T + T') sin δ/2`, and friction holds `(T' − T) cos δ/2`. This is more than the
-/// `e^{μ n δ}` of a belt that touches everywhere (Eytelwein's or Euler's formula).
+/// A belt that bends by `δ` at each of `n` points holds while the ratio of its tensions is below
+/// `((1 + μ tan δ/2) / (1 − μ tan δ/2))ⁿ`. At a point between the tensions `T` and `T'` the normal force is
+/// `(T + T') sin δ/2`, and friction balances `(T' − T) cos δ/2`. The limit is higher than the `e^{μ n δ}` of
+/// a belt with continuous contact (Eytelwein's or Euler's formula).
 #[test]
 fn a_belt_holds_up_to_its_limit() {
     let (friction, radius, slack) = (0.3_f64, 0.1, 10.0);
     for turn in [0.3_f64, core::f64::consts::FRAC_PI_3] {
         let m = Belt { friction, length: 2.0 * radius * (turn / 2.0).sin(), radius };
-        // The first joint, and the way the belt goes from there.
+        // Position of the first joint, and direction of the belt from there.
         let (at, way) = (core::f64::consts::FRAC_PI_2 + 1.5 * turn, turn);
         let q: SVector<f64, 5> = [radius * at.cos(), radius * at.sin(), way, -turn, -turn].into();
         let grip = friction * (turn / 2.0).tan();
@@ -355,7 +355,7 @@ fn a_belt_holds_up_to_its_limit() {
             let (steps, events) = (steps(part, 1e-3, 0.1), events(part));
             assert!(steps < 1e-12 && events < 1e-11, "{turn} {part}: {steps} {events}");
         }
-        // Above it slips, first in proportion to what is too much.
+        // Above the limit the belt slips, at first in proportion to the excess load.
         let (little, more) = (events(1.0 + 1e-6), events(1.0 + 1e-5));
         assert!(little > 1e-8 && (more / little - 10.0).abs() < 0.01, "{little} {more}");
         let slips = steps(1.0 + 1e-5, 1e-4, 0.02);

@@ -1,4 +1,5 @@
-//! Time stepping under lasting contact: order 2 and conservation laws, on mechanisms with closed forms.
+//! Time stepping with lasting contact has order 2 and satisfies conservation laws, on mechanisms with
+//! closed-form solutions.
 
 use super::laws::Random;
 use linkwork::integrate::EventDriven;
@@ -6,7 +7,7 @@ use linkwork::prelude::*;
 
 type Stepping = TimeStepping<f64>;
 
-/// A bob in a smooth bowl of radius 1 m: a spherical pendulum.
+/// Bob in a smooth bowl of radius 1 m: a spherical pendulum.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Bowl {
     #[particle(mass = 1)]
@@ -17,7 +18,7 @@ pub struct Bowl {
     bowl: Contact,
 }
 
-/// A bead between two walls of a smooth tube that rotates freely about the vertical.
+/// Bead between two walls of a smooth tube that rotates freely about the vertical.
 #[mechanism]
 pub struct Tube {
     #[body(mass = 1, inertia = diagonal(0.3, 0.3, 0.3))]
@@ -34,7 +35,7 @@ pub struct Tube {
     far: Contact,
 }
 
-/// A hoop, or a wheel with its centre of mass off its axle, on an inclined floor.
+/// Hoop, or wheel with its centre of mass off its axle, on an inclined floor.
 #[mechanism(gravity = 9.81 * sin(slope) * x - 9.81 * cos(slope) * y)]
 pub struct Hoop {
     pub slope: f64,
@@ -48,7 +49,7 @@ pub struct Hoop {
     floor: Contact,
 }
 
-/// A ball with its centre of mass off its centre.
+/// Ball whose centre of mass is off its geometric centre.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Ball {
     pub offset: f64,
@@ -61,7 +62,7 @@ pub struct Ball {
     floor: Contact,
 }
 
-/// A disk that rolls on its edge: Euler's disk.
+/// Disk that rolls on its edge: Euler's disk.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Disk {
     #[body(mass = 0.4, inertia = disk(0.4, 0.0375, y))]
@@ -72,7 +73,7 @@ pub struct Disk {
     floor: Contact,
 }
 
-/// A pole that stands on its foot.
+/// Pole that stands on its foot.
 #[mechanism(gravity = -9.81 * y)]
 pub struct Pole {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
@@ -83,7 +84,7 @@ pub struct Pole {
     foot: Contact,
 }
 
-/// A block on an inclined plane, pushed along and across it.
+/// Block on an inclined plane, with input forces along and across the slope.
 #[mechanism(gravity = 9.81 * sin(slope) * x - 9.81 * cos(slope) * z)]
 pub struct Slope {
     pub slope: f64,
@@ -100,7 +101,7 @@ pub struct Slope {
     aside: Force,
 }
 
-/// A ball that bounces.
+/// Ball that bounces on the floor.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Bouncing {
     #[particle(mass = 0.1)]
@@ -123,7 +124,7 @@ macro_rules! energy {
     };
 }
 
-/// Relative error of the energy, and error of the angular momentum, of a bob in a bowl.
+/// Returns the relative error of the energy and of the angular momentum of a bob in a bowl.
 fn bowl(method: Stepping) -> f64 {
     let (m, a) = (Bowl {}, 0.8_f64);
     let (q, v) = ([a.sin(), 0.0, -a.cos()].into(), [0.0, 0.5, 0.0].into());
@@ -134,7 +135,7 @@ fn bowl(method: Stepping) -> f64 {
     energy.abs() + momentum.abs() + off.abs()
 }
 
-/// Energy and angular momentum of a bead that slides out of a tube.
+/// Returns the errors of energy and angular momentum of a bead that slides out of a tube.
 fn tube(method: Stepping) -> f64 {
     let m = Tube {};
     let (q, v) = ([0.0, 0.1, 0.0].into(), [3.0, 0.2, 0.3].into());
@@ -146,14 +147,16 @@ fn tube(method: Stepping) -> f64 {
         + across.abs()
 }
 
-/// Distance that a hoop rolls down a slope: half of that of a block without friction.
+/// Returns the error of the distance that a hoop rolls down a slope, which is half of that of a block without
+/// friction.
 fn hoop(method: Stepping) -> f64 {
     let m = Hoop { slope: 0.3, offset: 0.0, friction: 0.5 };
     let s = end!(&m, [0.0, 0.1, 0.0], [0.0; 3], method, 1.0);
     (s.q[0] - 0.25 * 9.81 * 0.3_f64.sin()).abs() + (s.q[2] * 0.1 + s.q[0]).abs()
 }
 
-/// Energy of an unbalanced wheel that rolls without slip, and how far it has slipped.
+/// Returns the energy error of an unbalanced wheel that rolls without slip, and the distance that it has
+/// slipped.
 fn wheel(method: Stepping) -> f64 {
     let m = Hoop { slope: 0.0, offset: 0.05, friction: 5.0 };
     let (q, v) = ([0.0, 0.1, 0.0].into(), [-0.3, 0.0, 3.0].into());
@@ -161,7 +164,7 @@ fn wheel(method: Stepping) -> f64 {
     (energy!(m, &s.q, &s.v) - energy!(m, &q, &v)).abs() + (s.q[0] + 0.1 * s.q[2]).abs()
 }
 
-/// Energy of an unbalanced ball that rolls.
+/// Returns the energy error of an unbalanced rolling ball.
 fn ball(method: Stepping) -> f64 {
     let m = Ball { offset: 0.03, friction: 5.0 };
     let (q, v) = ([0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0].into(), [0.5, 0.0, 0.0, 0.0, 5.0, 1.0].into());
@@ -169,18 +172,18 @@ fn ball(method: Stepping) -> f64 {
     (energy!(m, &s.q, &s.v) - energy!(m, &q, &v)).abs()
 }
 
-/// Energy of Euler's disk, and how far its centre moves, which rests in the steady motion with
-/// `Ω² = 4 g / (r sin α)`.
+/// Returns the energy error of Euler's disk, and the displacement of its centre, which is at rest in the
+/// steady motion with `Ω² = 4 g / (r sin α)`.
 fn disk(method: Stepping) -> f64 {
     let (m, r) = (Disk {}, 0.0375_f64);
-    // The axis of the disk leans by `alpha` from the vertical; the circle turns about a horizontal diameter
-    // of the disk.
+    // The disk's axis leans by `alpha` from the vertical; the circle rotates about a horizontal diameter of
+    // the disk.
     let alpha = 30.0_f64.to_radians();
     let lean = std::f64::consts::FRAC_PI_2 - alpha;
     let (s, c) = (lean / 2.0).sin_cos();
     let q = [0.0, 0.0, r * alpha.sin(), s, 0.0, 0.0, c].into();
     let spin = (4.0 * 9.81 / (r * alpha.sin())).sqrt() * alpha.sin();
-    // The instantaneous axis is the diameter through the point of contact.
+    // The instantaneous axis is the diameter through the contact point.
     let v = [0.0, 0.0, 0.0, 0.0, 0.0, spin].into();
     assert!(m.contact_rates(&q, &v).amax() < 1e-12 && m.contact_gaps(&q)[0].abs() < 1e-12);
     let e = energy!(m, &q, &v);
@@ -188,7 +191,8 @@ fn disk(method: Stepping) -> f64 {
     (energy!(m, &s.q, &s.v) / e - 1.0).abs() + (s.q[0].hypot(s.q[1]) + (s.q[2] - q[2]).abs()) / r
 }
 
-/// Angular velocity of a pole that falls on its foot, and how far the foot moves.
+/// Returns the error of the angular velocity of a pole that falls on its foot, and the displacement of the
+/// foot.
 fn pole(method: Stepping) -> f64 {
     let m = Pole {};
     let start = 1.2_f64;
@@ -197,7 +201,7 @@ fn pole(method: Stepping) -> f64 {
     (s.v[2] - spin).abs() + s.q[0].abs() + s.q[1].abs()
 }
 
-/// Speed of a ball that spins on a smooth floor.
+/// Returns the change of speed of a ball that spins on a smooth floor.
 fn spinning(method: Stepping) -> f64 {
     let m = Ball { offset: 0.0, friction: 0.0 };
     let q = [0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0];
@@ -213,7 +217,7 @@ fn ramp(method: Stepping) -> f64 {
     s.q.norm() + s.v.norm()
 }
 
-/// Velocity and place of a block that slides down a slope along a straight line.
+/// Returns the errors of velocity and position of a block that slides down a slope along a straight line.
 fn slides(method: Stepping) -> f64 {
     let m = Slope { slope: 0.5, friction: 0.3 };
     let s = end!(&m, [0.0; 3], [0.4, 0.0, 0.0], method, 1.0);
@@ -221,8 +225,8 @@ fn slides(method: Stepping) -> f64 {
     (s.v[0] - 0.4 - a).abs() + (s.q[0] - 0.4 - 0.5 * a).abs() + s.v[2].abs()
 }
 
-/// Sum of speed and velocity down a slope of a block that crosses it with the friction `μ = tan α`: a
-/// constant.
+/// Returns the change of a constant of motion: the sum of the speed and of the downhill velocity of a block
+/// that crosses a slope with friction `μ = tan α`.
 fn crosses(method: Stepping) -> f64 {
     let m = Slope { slope: 0.3, friction: 0.3_f64.tan() };
     let s = end!(&m, [0.0; 3], [0.1, 1.0, 0.0], method, 0.6);
@@ -255,8 +259,8 @@ fn the_order_is_two_where_surfaces_stay_together() {
     check_order("block across a slope", 4e-3, 1e-4, crosses);
 }
 
-/// An unbalanced ball that rolls: its energy changes by `8e-6` of it in a second at 2 ms, and by less with
-/// shorter steps.
+/// The energy of an unbalanced rolling ball changes by the fraction `8e-6` in a second with steps of 2 ms,
+/// and by less with shorter steps.
 #[test]
 fn an_unbalanced_ball_keeps_its_energy() {
     for (h, largest) in [(2e-3, 8e-6), (1e-3, 1e-6), (5e-4, 2.5e-7)] {
@@ -265,7 +269,7 @@ fn an_unbalanced_ball_keeps_its_energy() {
     }
 }
 
-/// Constant accelerations are exact.
+/// Motions with constant accelerations are exact.
 #[test]
 fn straight_slides_and_rolls_are_exact() {
     for method in [TimeStepping::step(1e-2), TimeStepping::step(1e-2).midpoint()] {
@@ -273,7 +277,7 @@ fn straight_slides_and_rolls_are_exact() {
     }
 }
 
-/// A block that friction holds does not move under a load that grows, nor under one that oscillates or jumps.
+/// A sticking block does not move under a growing, oscillating or jumping load.
 #[test]
 fn contacts_that_stick_do_not_creep() {
     for method in [TimeStepping::step(1e-3), TimeStepping::step(1e-3).midpoint()] {
@@ -289,7 +293,7 @@ fn contacts_that_stick_do_not_creep() {
     }
 }
 
-/// A ball that moves and spins on a smooth level floor has no horizontal force on it: it keeps its velocity.
+/// A ball that moves and spins on a smooth level floor has no horizontal force on it and keeps its velocity.
 /// (Steps through the midpoint approximate its rotation with order 2; they lost 0.098 m/s.)
 #[test]
 fn a_spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
@@ -306,13 +310,13 @@ fn a_spinning_ball_keeps_its_velocity_on_a_smooth_floor() {
         }
     }
     check_order("spinning ball", 4e-3, 2e-2, |method| {
-        // Four stages have order 4 here.
+        // The method with four stages has order 4 here.
         if method == method.midpoint() { spinning(method) } else { bowl(method) }
     });
 }
 
-/// Bounces of a ball: apices by the coefficient of restitution, with the order 1 of impacts that are not
-/// located.
+/// The apices of a bouncing ball follow from the coefficient of restitution. The error has order 1, since
+/// impacts are not located.
 #[test]
 fn bounces_have_order_one() {
     let fall = (2.0 / 9.81_f64).sqrt();
@@ -324,8 +328,8 @@ fn bounces_have_order_one() {
     }
 }
 
-/// Random bobs in a bowl, rolling balls and blocks on slopes: as [`EventDriven`] moves them with tight
-/// tolerances, and with an error that falls with the square of the step on average.
+/// Random bobs in a bowl, rolling balls and blocks on slopes: the error against [`EventDriven`] with tight
+/// tolerances decreases on average with the square of the step.
 #[test]
 fn random_motions_have_order_two() {
     let mut random = Random(11);
@@ -350,7 +354,7 @@ fn random_motions_have_order_two() {
     }
 }
 
-/// Adds the errors of steps of 2 ms and of 1 ms.
+/// Adds the errors with steps of 2 ms and of 1 ms to `sums`.
 fn add<M, const NQ: usize, const NV: usize, const NU: usize>(
     sums: &mut [f64; 2],
     m: &M,

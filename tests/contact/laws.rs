@@ -1,9 +1,9 @@
-//! Laws that hold in every impact, whatever touches, and what many tests let touch.
+//! Contact conditions that hold in every impact, and mechanisms that several tests use.
 
 use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
 
-/// Reproducible numbers between −1 and 1.
+/// Reproducible pseudo-random numbers between −1 and 1.
 pub struct Random(pub u64);
 
 impl Random {
@@ -21,7 +21,8 @@ impl Random {
     }
 }
 
-/// Checks an impact against its laws; returns whether restitution was lowered so that it gives no energy.
+/// Checks that an impact satisfies the contact conditions. Returns whether restitution was reduced so that
+/// the energy does not grow.
 pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -53,7 +54,7 @@ where
             continue;
         }
         let least = (-laws[k].restitution * before[first]).max(0.0);
-        // Restitution is lowered where it would give energy.
+        // Restitution is reduced if the full coefficient would increase the energy.
         assert!(impulse >= 0.0 && rate >= -5e-8 * speed, "{k}: {rate} {least} at {speed}");
         if impulse > 1e-9 * most {
             assert!(rate <= least + 5e-8 * speed, "{k}: {rate} {least} at {speed}");
@@ -70,7 +71,7 @@ where
     lowered
 }
 
-/// A heavy ball on a light one and another, and a floor.
+/// Heavy ball on a light one and another ball, and a floor.
 #[mechanism(gravity = -9.81 * z)]
 pub struct Pile {
     pub friction: f64,
@@ -99,7 +100,7 @@ pub struct Pile {
     e: Contact,
 }
 
-/// A double pendulum whose tip strikes the floor.
+/// Double pendulum whose tip collides with the floor.
 #[mechanism(gravity = -9.81 * y)]
 pub struct Chain {
     pub friction: f64,

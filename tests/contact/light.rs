@@ -1,11 +1,11 @@
-//! Light feet against closed forms, for feet of any mass.
+//! Light feet against closed-form solutions, for feet of any mass.
 
 use super::laws::Random;
 use linkwork::contact::{self, Touch};
 use linkwork::prelude::*;
 
-/// A hip of 1 kg on a massless leg of 1 m with a foot; the simplest walker in stance (Garcia, Chatterjee,
-/// Ruina and Coleman, 1998).
+/// Hip of 1 kg on a massless leg of 1 m with a foot: the simplest walker in stance (Garcia, Chatterjee, Ruina
+/// and Coleman, 1998).
 #[mechanism(gravity = -9.81 * y)]
 struct Walker {
     foot: f64,
@@ -21,8 +21,8 @@ struct Walker {
     toe: Contact,
 }
 
-/// The leg is an inverted pendulum; its foot also bears its own weight. After touchdown the hip keeps its
-/// velocity across the leg.
+/// The leg is an inverted pendulum, whose foot also supports its own weight. A touchdown preserves the
+/// velocity of the hip normal to the leg.
 #[test]
 fn light_feet_lose_no_digits() {
     let mut random = Random(8);

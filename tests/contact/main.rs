@@ -1,5 +1,5 @@
-//! Contacts that open and close: closed forms, laws that always hold, and what engines get wrong. A tower,
-//! robots and random states are in `motions/contact`.
+//! Contacts that open and close: closed-form solutions, general contact conditions, and cases that engines
+//! simulate incorrectly. A tower, robots and random states are in `motions/contact`.
 
 mod bodies;
 mod both;

@@ -1,4 +1,4 @@
-//! Contacts and stops of mechanisms with joints and loops.
+//! Contacts and joint limits of mechanisms with joints and loops.
 
 use linkwork::contact;
 use linkwork::prelude::*;
@@ -19,7 +19,7 @@ struct Elbow {
     stop: Limit,
 }
 
-/// A constant torque presses the elbow into its stop, where it stays until the torque turns round.
+/// A constant torque presses the elbow onto its stop, where it stays until the torque is reversed.
 #[test]
 fn an_elbow_rests_at_its_stop() {
     let m = Elbow {};
@@ -42,7 +42,7 @@ fn an_elbow_rests_at_its_stop() {
     assert!(reached.is_some_and(|t| t < 0.6), "{reached:?}");
 }
 
-/// The impact at the stop is v − M⁻¹ e (1 + r) vₑ / (M⁻¹)ₑₑ.
+/// The velocity after the impact at the stop is v − M⁻¹ e (1 + r) vₑ / (M⁻¹)ₑₑ.
 #[test]
 fn an_impact_at_a_stop_is_that_of_the_closed_form() {
     let m = Elbow {};
@@ -76,8 +76,9 @@ struct Striking {
     wall: Limit,
 }
 
-/// A piston strikes a stop within a loop: the loop holds, the piston leaves as restitution says, the energy
-/// that is lost is ½ (1 − e²) v² over the inverse mass of the piston under the constraints.
+/// A piston in a closed loop collides with a stop. The loop stays closed, and the piston leaves with the
+/// velocity of restitution. The energy loss is ½ (1 − e²) v² over the inverse mass of the piston under the
+/// constraints.
 #[test]
 fn a_piston_strikes_a_stop() {
     for e in [0.0, 0.3, 1.0] {
@@ -96,7 +97,7 @@ fn a_piston_strikes_a_stop() {
     }
 }
 
-/// A bob on a rope, which may be slack.
+/// Bob on a rope, which may be slack.
 #[mechanism(gravity = -9.81 * y)]
 struct Tethered {
     length: f64,
@@ -108,8 +109,7 @@ struct Tethered {
     rope: Limit,
 }
 
-/// It falls from beside the peg until the rope is taut, which takes the velocity along the rope, and swings
-/// then.
+/// The bob falls until the rope is taut. The impact removes the velocity along the rope; then the bob swings.
 #[test]
 fn a_rope_becomes_taut() {
     let m = Tethered { length: 1.0 };
@@ -120,7 +120,7 @@ fn a_rope_becomes_taut() {
         .sample_every(0.05)
         .duration(2.0);
     let taut = (1.6 / 9.81_f64).sqrt();
-    // Of the speed g t the part 0.6 is across the rope, 0.8 m below the peg.
+    // The component 0.6 of the velocity g t is normal to the rope, 0.8 m below the peg.
     let energy = 0.3 * 9.81 * (0.5 * 0.36 * 1.6 - 0.8);
     let mut swings = 0;
     for sample in run {
@@ -138,7 +138,7 @@ fn a_rope_becomes_taut() {
     assert!(swings > 30);
 }
 
-/// Two weights on a rope over a wheel without mass.
+/// Two weights on a rope over a massless wheel.
 #[mechanism(gravity = -9.81 * z)]
 struct Atwood {
     #[particle(mass = 3)]
@@ -153,8 +153,8 @@ struct Atwood {
     rope: Limit,
 }
 
-/// The rope is slack by 0.1 m: both fall. It pulls both to one speed then, which momentum along it gives, and
-/// the heavy one goes on down with `(m₁ − m₂) g / (m₁ + m₂)`.
+/// The rope is slack by 0.1 m, and both weights fall. When it is taut, momentum along the rope determines
+/// their common speed, and the heavy weight descends with `(m₁ − m₂) g / (m₁ + m₂)`.
 #[test]
 fn weights_on_a_rope_over_a_wheel() {
     let fall = (0.1 / 9.81_f64).sqrt();
@@ -164,12 +164,12 @@ fn weights_on_a_rope_over_a_wheel() {
     let acceleration = 9.81 / 5.0;
     assert!((end.v[0] - (speed + acceleration * 0.2)).abs() < 1e-9, "{}", end.v);
     assert!((end.v[0] + end.v[1]).abs() < 1e-12 && (end.q.sum() - 2.0).abs() < 1e-9, "{} {}", end.q, end.v);
-    // The rope carries 2 m₁ m₂ g / (m₁ + m₂).
+    // The tension of the rope is 2 m₁ m₂ g / (m₁ + m₂).
     let force = contact::acting(&Atwood {}, 0.0, &end.q, &end.v, &SVector::zeros()).unwrap();
     assert!((force[0] - 2.4 * 9.81).abs() < 1e-6, "{force}");
 }
 
-/// A wheel drives another one by teeth with play.
+/// Wheel that drives another one by gear teeth with backlash.
 #[mechanism]
 struct Gears {
     play: f64,
@@ -186,8 +186,9 @@ struct Gears {
     teeth: Limit,
 }
 
-/// The rattle of gears: at each impact the speed of the teeth is turned round by the coefficient of
-/// restitution, while `I₁ ω₁ / r₁ − I₂ ω₂ / r₂` stays. Without restitution they stay together.
+/// The gears rattle: each impact reverses the relative velocity of the teeth and multiplies it by the
+/// coefficient of restitution, while `I₁ ω₁ / r₁ − I₂ ω₂ / r₂` is constant. Without restitution the teeth
+/// stay in contact.
 #[test]
 fn gears_rattle_in_their_play() {
     let kept = |v: &SVector<f64, 2>| 0.02 * v[0] / 0.1 - 0.03 * v[1] / 0.05;
@@ -196,7 +197,8 @@ fn gears_rattle_in_their_play() {
     for (restitution, impacts) in [(1.0, 4), (0.5, 3), (0.0, 1)] {
         let m = Gears { play: 0.004, restitution };
         let method = EventDriven::new().tolerance(1e-12, 1e-12);
-        // From the middle of the play to the first impact, then from side to side ever more slowly.
+        // The first impact follows from the middle of the play; the later ones cross the whole play with
+        // decreasing speed.
         let speed = teeth(&start);
         let (mut t, mut now) = (0.004 / speed, speed);
         for _ in 1..impacts {

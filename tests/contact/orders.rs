@@ -1,5 +1,5 @@
-//! Drops of boxes and balls: the order in which contacts and their surfaces are declared makes no difference,
-//! and contacts give no energy.
+//! Dropped boxes and balls: the order in which contacts and their surfaces are declared has no effect, and
+//! contacts add no energy.
 
 use super::boxes::{Swapped, Two, any_turn, placed};
 use super::laws::Random;
@@ -8,7 +8,8 @@ use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork::simulate::Overlaps;
 
-/// A box and a ball on the floor, at a wall and on each other, with their contacts in some order.
+/// Declares a box and a ball on the floor, at a wall and on each other, with their contacts in the given
+/// order.
 macro_rules! heap {
     ($name:ident: $($contact:ident = ($($surface:expr),*);)*) => {
         #[mechanism(gravity = -9.81 * z)]
@@ -41,8 +42,8 @@ heap!(Backwards:
     floor = (block.cuboid(0.3, 0.2, 0.1), ground.plane(z));
 );
 
-/// What differs after a step of `h` seconds from each state on the way of the first, m/s and rad/s: the most
-/// of `steps`.
+/// Returns the maximum difference between the two mechanisms after one step of `h` seconds, m/s and rad/s,
+/// over `steps` states of the first mechanism's motion.
 fn difference<A, B, const N: usize, const NV: usize, const NK: usize, const NR: usize>(
     (one, other): (&A, &B),
     (mut q, mut v): (SVector<f64, N>, SVector<f64, NV>),
@@ -55,7 +56,7 @@ where
     let method = TimeStepping::step(h);
     let mut most = 0.0_f64;
     for _ in 0..steps {
-        // A step leaves what has met in each other.
+        // Surfaces may overlap slightly after a step; the next step starts from there.
         let goes_on = Overlaps::Keep;
         let to = simulate(one).from(q, v).overlaps(goes_on).method(method).duration(h).finish().unwrap();
         let same = simulate(other).from(q, v).overlaps(goes_on).method(method).duration(h).finish().unwrap();
@@ -65,7 +66,8 @@ where
     most
 }
 
-/// Where surfaces share impulses that the motion does not tell apart, all of them are found in the same way.
+/// Where the motion does not determine the distribution of impulses between surfaces, the distribution is
+/// independent of the order of declaration.
 #[test]
 fn orders_of_declaration_make_no_difference() {
     let (mut random, run) = (Random(5), (2e-3, 60));
@@ -92,8 +94,9 @@ fn orders_of_declaration_make_no_difference() {
     assert!(most[0].max(most[1]) < 1e-8, "{most:?}");
 }
 
-/// Nor does the order of contacts with strong friction. (Which surface of a contact is named first may, where
-/// impulses that slip are shared: `Two` and `Swapped` differ by more than `1e-8` in about 1 of 3000 steps.)
+/// The order of contacts with strong friction has no effect either. (The choice of a contact's first surface
+/// may have one if slipping contacts share impulses: `Two` and `Swapped` differ by more than `1e-8` in about
+/// 1 of 3000 steps.)
 #[test]
 fn orders_with_strong_friction_make_no_difference() {
     let mut random = Random(2);
@@ -113,8 +116,8 @@ fn orders_with_strong_friction_make_no_difference() {
     assert!(most < 1e-8, "{most}");
 }
 
-/// Of a drop the most that the energy grows by in a step, J, and the deepest overlap, m, with steps of `h`
-/// seconds.
+/// Simulates a drop with steps of `h` seconds. Returns the maximum growth of the energy in a step, J, and the
+/// deepest overlap, m.
 fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     let mut random = Random(seed);
     let m = Two { gravity: 9.81, friction: 0.5, restitution };
@@ -135,9 +138,9 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     (gain, least)
 }
 
-/// Neither impulses nor the removal of overlaps give energy. What is left is what a step of order 2 makes of
-/// bodies that turn about their edges: `½ m g r ω² h²` with about 3 kg, 0.15 m and 3 rad/s. Corners that
-/// strike at 4 m/s overlap by what they approach in a step.
+/// Neither impulses nor the removal of overlaps add energy. The remaining gain is the error of a second-order
+/// step for bodies that rotate about their edges: `½ m g r ω² h²` with about 3 kg, 0.15 m and 3 rad/s.
+/// Corners that collide at 4 m/s overlap by at most their approach in one step.
 #[test]
 fn drops_gain_no_energy() {
     let h = 2e-3;

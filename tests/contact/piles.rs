@@ -1,9 +1,9 @@
-//! Bodies that lie, lean and strike on each other.
+//! Bodies that lie, lean and collide on each other.
 
 use linkwork::prelude::*;
 use std::thread;
 
-/// Four boxes, each on the faces of the one below.
+/// Four boxes, each on the face of the one below.
 #[mechanism(gravity = -9.81 * z)]
 struct Stack {
     #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
@@ -16,7 +16,8 @@ struct Stack {
     seat: [Contact; 3],
 }
 
-/// 47 points of which 16 touch, whose places follow from where the boxes are: none moves.
+/// Checks that a stack stays at rest: it has 47 contact points, of which 16 are closed, and their positions
+/// follow from those of the boxes.
 fn stack() {
     let m = Stack {};
     let mut q = m.neutral();
@@ -34,7 +35,7 @@ fn boxes_stand_on_boxes() {
     thread::Builder::new().stack_size(32 << 20).spawn(stack).unwrap().join().unwrap();
 }
 
-/// Two cards lean on each other: the edge of the left one touches the face of the right one.
+/// Two cards that lean on each other: the edge of the left one touches the face of the right one.
 #[mechanism(gravity = -9.81 * y)]
 struct Cards {
     floor: f64,
@@ -55,9 +56,9 @@ struct Cards {
     edge: Contact,
 }
 
-/// A card that leans by `φ` is pushed by `(m g / 2) tan φ` at its edge, horizontally by symmetry. The floor,
-/// which carries `m g`, holds it where its coefficient is at least `tan φ / 2`, and the face, on which the
-/// push is inclined by `φ`, where its is at least `tan φ`.
+/// A card that leans by `φ` has the horizontal force `(m g / 2) tan φ` at its edge, by symmetry. The floor
+/// carries `m g` and needs a coefficient of at least `tan φ / 2`. The face, to whose normal the force is
+/// inclined by `φ`, needs at least `tan φ`.
 #[test]
 fn cards_lean_on_each_other() {
     let lean = 0.35_f64;
@@ -81,7 +82,7 @@ fn cards_lean_on_each_other() {
     assert!(moved(1.02, 0.98) > 1e-3, "{:e}", moved(1.02, 0.98));
 }
 
-/// A house of seven cards: two pairs that lean on each other carry a roof, on which a third pair stands.
+/// House of seven cards: two pairs that lean on each other support a roof, on which a third pair stands.
 #[mechanism(gravity = -9.81 * y)]
 struct House {
     friction: f64,
@@ -111,8 +112,8 @@ struct House {
     right_sill: Contact,
 }
 
-/// Eleven contacts with 22 forces on 21 velocities. Of the ten millinewtons that the upper pair and the roof
-/// press with none moves a card by a nanometre where friction is strong; where it is weak the house falls.
+/// Eleven contacts have 22 forces for 21 velocities. With strong friction no card moves by a nanometre under
+/// the ten millinewtons of the upper pair and the roof; with weak friction the house falls.
 #[test]
 fn a_house_of_cards_stands() {
     let lean = 0.35_f64;
@@ -133,7 +134,7 @@ fn a_house_of_cards_stands() {
     assert!(moved(0.1) > 1e-2, "{:e}", moved(0.1));
 }
 
-/// Newton's cradle: balls on threads of one length.
+/// Newton's cradle: balls on threads of equal length.
 #[mechanism(gravity = -9.81 * y)]
 struct Cradle {
     /// Distance between balls at rest, m.
@@ -146,8 +147,8 @@ struct Cradle {
     touch: [Contact; 4],
 }
 
-/// Impacts one after the other hand the velocity on from ball to ball: the last one rises to where the first
-/// one came from, the others rest.
+/// Successive impacts transfer the velocity from ball to ball. The last ball rises to the initial height of
+/// the first one; the others stay at rest.
 #[test]
 fn a_cradle_hands_the_velocity_on() {
     let m = Cradle { gap: 1e-6 };
@@ -167,12 +168,12 @@ fn a_cradle_hands_the_velocity_on() {
         highest = highest.max(sample.q[4]);
         moved = moved.max(sample.q.fixed_rows::<3>(1).amax());
     }
-    // What is left to the others follows from the gaps.
+    // The remaining motion of the other balls results from the gaps.
     assert!((highest - 0.3).abs() < 1e-3, "{highest}");
     assert!(moved < 1e-3, "{moved}");
 }
 
-/// A box on its way down a slope and over its edge, its contacts declared in two orders.
+/// Declares a box that tumbles down a slope over its edge, with its contacts in the given order.
 macro_rules! tumbling {
     ($name:ident, $first:ident = $point:expr, $second:ident = $other:expr) => {
         #[mechanism(gravity = -9.81 * y)]
@@ -198,11 +199,11 @@ fn the_order_of_declaration_does_not_matter() {
     let one = simulate(&LeftFirst {}).from(q, v).method(step).duration(0.5).finish().unwrap();
     let other = simulate(&RightFirst {}).from(q, v).method(step).duration(0.5).finish().unwrap();
     assert!((one.q - other.q).amax() < 1e-10, "{}", (one.q - other.q).amax());
-    // It has come to rest on both corners.
+    // The box has come to rest on both corners.
     assert!(one.v.amax() < 1e-10 && (one.q[1] - 0.1).abs() < 1e-9, "{} {}", one.q, one.v);
 }
 
-/// A box on a slope, in single precision.
+/// Box on a slope, in single precision.
 #[mechanism(gravity = -9.81 * z, scalar = f32)]
 struct Small {
     tilt: f32,
@@ -222,7 +223,7 @@ fn single_precision_sticks_too() {
     let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(0.01_f32)).duration(60.0);
     let moved = (run.finish().unwrap().q - SVector::from(q)).norm();
     assert!(moved < 1e-5, "{moved:e}");
-    // At 0.5 it slides, at g (sin 0.5 − 0.5 cos 0.5).
+    // At a slope of 0.5 rad the box slides with g (sin 0.5 − 0.5 cos 0.5).
     let m = Small { tilt: 0.5 };
     let (sine, cosine) = (m.tilt / 2.0).sin_cos();
     let q = [0.05 * m.tilt.sin(), 0.0, 0.05 * m.tilt.cos(), 0.0, sine, 0.0, cosine];

@@ -1,11 +1,11 @@
-//! Restitution as a ratio of impulses (Poisson): where it differs from that of velocities (Newton), and the
-//! laws of both.
+//! Restitution as a ratio of impulses (Poisson): impacts in which it differs from restitution as a ratio of
+//! velocities (Newton), and conditions that both satisfy.
 
 use super::laws::Random;
 use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
 
-/// A rod that strikes the floor with one end.
+/// Declares a rod that collides with the floor at one end.
 macro_rules! rod {
     ($name:ident, $e:expr) => {
         #[mechanism(gravity = -gravity * y)]
@@ -25,15 +25,15 @@ macro_rules! rod {
 rod!(Impulses, poisson(e));
 rod!(Velocities, e);
 
-/// The rates of gap and slip after an impact of a rod with its centre at rest but for `rates`, those of the
-/// end.
+/// Returns the normal and slip velocity of the end after an impact of a rod that does not rotate, and the
+/// energy ratio. The argument `rates` holds the velocities of the end before the impact.
 fn after<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
 where
     M: Contacts<3, 3, 0, 1, 2, Scalar = f64>,
 {
     let q = SVector::from([0.0, angle.sin(), angle]);
     let jacobian = m.contact_jacobian(0.0, &q);
-    // No turning, so that the end moves as the centre does.
+    // The rod does not rotate, so that its end moves with the velocity of its centre.
     let moves = jacobian.fixed_columns::<2>(0).into_owned();
     let v = moves.try_inverse().unwrap() * SVector::from([gap, slip]);
     let found = contact::impact(m, 0.0, &q, &[v[0], v[1], 0.0].into()).unwrap();
@@ -42,12 +42,12 @@ where
     ([rates[0], rates[1]], taken)
 }
 
-/// The oblique impact of a rod whose slip stops during compression (Wang and Mason, *Two-dimensional
-/// rigid-body collisions with friction*, J. Appl. Mech. 59, 1992: sticking in the phase of compression). With
-/// `W = G M⁻¹ Gᵀ` compression ends with no rates at all, so its impulses are `−W⁻¹ u`; restitution sticks
-/// too, so that the end leaves with `−e (uₙ − Wₙₜ uₜ / Wₜₜ)` by Poisson's law and with `−e uₙ` by Newton's.
-/// Of a rod of mass `m` and length `2 l` at an angle `θ`, `m Wₙₙ = 1 + 3 cos² θ`, `m Wₜₜ = 1 + 3 sin² θ` and
-/// `m |Wₙₜ| = 3 sin θ cos θ`.
+/// Oblique impact of a rod whose slip stops during compression (Wang and Mason, *Two-dimensional rigid-body
+/// collisions with friction*, J. Appl. Mech. 59, 1992: sticking in the phase of compression). With
+/// `W = G M⁻¹ Gᵀ`, all contact velocities are zero at the end of compression, so its impulses are `−W⁻¹ u`.
+/// Restitution sticks, too, so that the end leaves with `−e (uₙ − Wₙₜ uₜ / Wₜₜ)` by Poisson's law and with
+/// `−e uₙ` by Newton's. For a rod of mass `m` and length `2 l` at an angle `θ`, `m Wₙₙ = 1 + 3 cos² θ`,
+/// `m Wₜₜ = 1 + 3 sin² θ` and `m |Wₙₜ| = 3 sin θ cos θ`.
 #[test]
 fn an_oblique_rod_leaves_faster_than_by_newton() {
     let (friction, e, gravity) = (2.0, 0.6, 0.0);
@@ -62,7 +62,7 @@ fn an_oblique_rod_leaves_faster_than_by_newton() {
         assert!((w[(0, 1)].abs() * 3.0 - nt).abs() < 1e-12);
         let share = nt / tt * w[(0, 1)].signum();
         for slip in [-0.4, -0.1, 0.0, 0.1, 0.4] {
-            // Impulses of compression, of which friction bears no more than it can.
+            // Impulses of compression, with the tangential one inside the friction cone.
             let pressed = (tt + nt * w[(0, 1)].signum() * slip) / (nn * tt - nt * nt);
             let along = (-nt * w[(0, 1)].signum() - nn * slip) / (nn * tt - nt * nt);
             assert!(along.abs() < friction * pressed && share.abs() < friction);
@@ -76,8 +76,8 @@ fn an_oblique_rod_leaves_faster_than_by_newton() {
     }
 }
 
-/// Where slip goes on both laws are one: the end leaves with `−e uₙ`, and slip is braked by `μ` times the
-/// impulse.
+/// Both laws agree while the slip continues: the end leaves with `−e uₙ`, and the slip is reduced by `μ`
+/// times the impulse.
 #[test]
 fn while_a_rod_slips_both_laws_are_one() {
     let (friction, e, gravity) = (0.1, 0.6, 0.0);
@@ -94,7 +94,7 @@ fn while_a_rod_slips_both_laws_are_one() {
     }
 }
 
-/// Steps in time through the oblique impact come to its velocity as they get shorter.
+/// Time stepping through the oblique impact converges to the velocity of the impact as the steps get shorter.
 #[test]
 fn steps_strike_as_impacts_do() {
     let m = Impulses { gravity: 9.81, friction: 1.0, e: 0.6 };
@@ -103,7 +103,7 @@ fn steps_strike_as_impacts_do() {
     let q = SVector::from([0.0, sine + 1e-3, angle]);
     let v = SVector::from([0.3, -1.0, 0.0]);
     let located = simulate(&m).from(q, v).method(EventDriven::new()).duration(0.02).finish().unwrap();
-    // It falls by a millimetre first, and strikes with this speed.
+    // The rod falls by a millimetre before the impact, and collides with this velocity.
     let speed = (1.0 + 2.0 * 9.81 * 1e-3_f64).sqrt();
     let struck = (speed - 1.0) / 9.81;
     let gap = m.contact_rates(&located.q, &located.v)[0];
@@ -114,7 +114,7 @@ fn steps_strike_as_impacts_do() {
         (jacobian * m.mass_matrix(&q).try_inverse().unwrap() * jacobian.transpose())[(0, 1)].signum()
     };
     let leaves = 0.6 * (speed + sign * nt / tt * slip);
-    // The end moves on a curve after it.
+    // After the impact the end moves on a curve.
     assert!((gap - leaves).abs() < 0.6, "{gap} {leaves}");
     let early = simulate(&m).from(q, v).method(EventDriven::new()).duration(struck + 1e-7).finish().unwrap();
     let found = m.contact_rates(&early.q, &early.v)[0];
@@ -128,8 +128,8 @@ fn steps_strike_as_impacts_do() {
     }
 }
 
-/// A ball that bounces by Poisson's law comes to rest when that by Newton's does, in both ways of simulating,
-/// and stays: at rest there is no compression that would lift it.
+/// A ball with Poisson's restitution comes to rest at the same time as one with Newton's, with both methods
+/// of simulating contacts. It stays at rest, since without compression no impulse of restitution lifts it.
 #[mechanism(gravity = -9.81 * z)]
 struct Ball {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.1))]
@@ -163,7 +163,7 @@ fn a_ball_bounces_and_rests() {
     assert!(highest < 1e-9, "{highest}");
 }
 
-/// A block in a corner, and a double pendulum whose tip strikes the floor, with Poisson's restitution.
+/// Block in a corner with Poisson's restitution.
 #[mechanism(gravity = -9.81 * z)]
 struct Block {
     friction: f64,
@@ -195,7 +195,7 @@ struct Pendulum {
     tip: Contact,
 }
 
-/// Checks an impact against what both laws have in common.
+/// Checks the conditions on an impact that both laws of restitution share.
 fn check<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -221,8 +221,9 @@ fn check<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     }
 }
 
-/// Energy never grows, impulses press, stay within their cones and keep surfaces apart: with many contacts at
-/// once, beside Newton's law, and where that alone would give energy.
+/// Energy never grows, normal impulses are nonnegative, friction stays in its cone, and surfaces do not
+/// approach. The cases have many simultaneous contacts, contacts with Newton's law at the same time, and
+/// impacts in which Newton's law alone would add energy.
 #[test]
 fn impacts_obey_the_laws() {
     let mut random = Random(31);
@@ -245,7 +246,7 @@ fn impacts_obey_the_laws() {
     }
 }
 
-/// A slider-crank whose slide strikes a stop, with Poisson's restitution.
+/// Slider-crank whose slide collides with a stop, with Poisson's restitution.
 #[mechanism]
 struct Crank {
     e: f64,
@@ -267,8 +268,8 @@ struct Crank {
     stop: Limit,
 }
 
-/// Through a loop the slide leaves with `e` of its speed, the energy falls by `1 − e²`, and velocities stay
-/// on the constraints.
+/// In a closed loop the slide leaves with the fraction `e` of its speed, the energy decreases by the fraction
+/// `1 − e²`, and velocities satisfy the constraints.
 #[test]
 fn loops_stay_closed() {
     let m = Crank { e: 0.7 };

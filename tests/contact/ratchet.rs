@@ -1,4 +1,4 @@
-//! A ratchet with teeth: a pawl that its weight presses on a rack.
+//! Ratchet with teeth: a pawl rests on a rack by its weight.
 
 use linkwork::contact;
 use linkwork::prelude::*;
@@ -28,7 +28,8 @@ struct Ratchet {
 
 const WEIGHT: f64 = 0.5 * 9.81;
 
-/// Where the rack is after 0.05 s, from rest with the pawl on a flank at the place `u` of the rack, `z` high.
+/// Returns the displacement of the rack after 0.05 s from rest, with the pawl on a flank at the position `u`
+/// of the rack and at the height `z`.
 fn moves(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
     let m = Ratchet { friction, load };
     let q = SVector::from([-u, z]);
@@ -37,9 +38,8 @@ fn moves(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
     end.unwrap().q[0] - q[0]
 }
 
-/// A flank of slope `s = tan α` is climbed by a load of `m g tan(α + φ) = m g (s + μ) / (1 − s μ)` with
-/// `μ = tan φ`, and by none where `s μ > 1`: there the ratchet holds whatever pulls, and where it does not
-/// move it does not creep.
+/// The pawl climbs a flank of slope `s = tan α` under a load of `m g tan(α + φ) = m g (s + μ) / (1 − s μ)`
+/// with `μ = tan φ`. For `s μ > 1` no load moves the rack. A locked rack does not creep.
 #[test]
 fn a_pawl_holds_one_way() {
     let climbs = |s: f64, friction: f64| WEIGHT * (s + friction) / (1.0 - s * friction);
@@ -48,7 +48,7 @@ fn a_pawl_holds_one_way() {
         let load = -climbs(0.5, friction);
         assert!(moves(friction, load * 1.001, gentle) < -1e-7, "{friction}");
         if friction > 0.5 {
-            // The flank holds the pawl by itself, and the load up to its limit.
+            // The flank supports the pawl without a load, and with a load up to the limit.
             assert!(moves(friction, load * 0.999, gentle).abs() < 1e-12);
         }
     }
@@ -61,10 +61,11 @@ fn a_pawl_holds_one_way() {
     }
 }
 
-/// Pulled the other way the rack runs under the pawl, which falls into one gap between teeth after another.
+/// Pulled in the other direction, the rack moves under the pawl, which falls into one tooth gap after
+/// another.
 #[test]
 fn a_rack_runs_one_way() {
-    // A little more than climbs the gentle flanks.
+    // The load is slightly above the limit of the gentle flanks.
     let m = Ratchet { friction: 0.3, load: -1.1 * WEIGHT };
     let run = simulate(&m).from([-0.03, 0.015], [0.0; 2]).method(TimeStepping::step(2e-4)).duration(3.0);
     let (mut falls, mut before) = (0, 0.0);

@@ -1,4 +1,4 @@
-//! Contacts whose surfaces yield.
+//! Compliant contacts.
 
 use linkwork::prelude::*;
 
@@ -32,7 +32,7 @@ struct Round {
     floor: Contact,
 }
 
-/// They stand as deep as their weight presses them in, and the contact's force is the weight.
+/// At rest the penetration follows from the weight, and the contact force is the weight.
 #[test]
 fn bodies_stand_as_deep_as_they_are_heavy() {
     let m = Ball { g: 9.81, mass: 2.0, stiffness: 5e4, dissipation: 0.3 };
@@ -40,14 +40,15 @@ fn bodies_stand_as_deep_as_they_are_heavy() {
     assert!(m.forward_dynamics(&[-depth].into(), &[0.0].into(), &[0.0].into())[0].abs() < 1e-12);
     assert!((m.load(&[-depth].into(), &[0.0].into())[2] - m.mass * m.g).abs() < 1e-12);
     assert_eq!(m.load(&[1e-9].into(), &[-1.0].into()).norm(), 0.0);
-    // Pulled out fast, it is let go and not held.
+    // A body that is pulled out fast has no tensile contact force.
     assert_eq!(m.load(&[-depth].into(), &[10.0].into())[2], 0.0);
     let m = Round { g: 9.81, mass: 2.0, stiffness: 5e6, dissipation: 0.3 };
     let depth = (m.mass * m.g / m.stiffness).powf(2.0 / 3.0);
     assert!(m.forward_dynamics(&[-depth].into(), &[0.0].into(), &[0.0].into())[0].abs() < 1e-11);
 }
 
-/// When it leaves the ground which it struck at one metre a second, and how fast.
+/// Returns the time at which a body leaves the ground after an impact at one metre per second, and its
+/// velocity.
 fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64) {
     let (mut early, mut late) = (longest * 0.3, longest);
     for _ in 0..50 {
@@ -58,7 +59,7 @@ fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64)
 }
 
 /// An impact lasts half a period of the spring, and 2.9432 times the depth over the speed for round bodies
-/// (Johnson, *Contact Mechanics*, 1985, § 11.4); without dissipation it is elastic.
+/// (Johnson, *Contact Mechanics*, 1985, § 11.4). Without dissipation it is elastic.
 #[test]
 fn impacts_last_as_long_as_closed_forms_say() {
     let method = || DormandPrince::new().tolerance(1e-12, 1e-14);
@@ -78,8 +79,8 @@ fn impacts_last_as_long_as_closed_forms_say() {
     );
 }
 
-/// The coefficient of restitution falls with the speed, by two thirds of the dissipation to first order (Hunt
-/// and Crossley, 1975).
+/// The coefficient of restitution decreases with the speed, by two thirds of the dissipation to first order
+/// (Hunt and Crossley, 1975).
 #[test]
 fn restitution_falls_with_the_speed() {
     for dissipation in [0.003, 0.03] {
@@ -107,7 +108,7 @@ struct Bowling {
     lane: Contact,
 }
 
-/// A ball that slides begins to roll, with 5/7 of its speed.
+/// A sliding ball begins to roll, with 5/7 of its speed.
 #[test]
 fn a_ball_begins_to_roll() {
     let m = Bowling { friction: 0.2 };
@@ -122,7 +123,7 @@ fn a_ball_begins_to_roll() {
     assert!((speed - 10.0 / 7.0).abs() < 1e-3, "{speed}");
 }
 
-/// Its derivatives are those of its accelerations, in the ground and above it.
+/// Derivatives of the accelerations agree with differences, in contact with the ground and above it.
 #[test]
 fn derivatives_see_what_yields() {
     let m = Bowling { friction: 0.2 };

@@ -1,4 +1,4 @@
-//! Surfaces that overlap where a motion is to begin, and coefficients that are none.
+//! Surfaces that overlap at the start of a motion, and invalid contact coefficients.
 
 use linkwork::contact;
 use linkwork::prelude::*;
@@ -24,8 +24,8 @@ struct Channel {
     high: Contact,
 }
 
-/// Balls that overlap by `d` part by `d m₂ / (m₁ + m₂)` and `d m₁ / (m₁ + m₂)` along the line of their
-/// centres: their centre of mass stays where it is.
+/// Balls that overlap by `d` separate by `d m₂ / (m₁ + m₂)` and `d m₁ / (m₁ + m₂)` along the line of their
+/// centres: their common centre of mass does not move.
 #[test]
 fn balls_part_in_proportion_to_their_masses() {
     let m = Channel { gap: 1.0 };
@@ -46,7 +46,8 @@ fn balls_part_in_proportion_to_their_masses() {
     assert_eq!(contact::project(&m, 0.0, &apart).unwrap(), apart);
 }
 
-/// Where the walls are nearer than the ball is wide no place is free: the error names a wall.
+/// If the distance of the walls is less than the ball's diameter, no configuration is free of overlaps, and
+/// the error names a wall.
 #[test]
 fn what_has_no_room_is_refused() {
     let m = Channel { gap: 0.18 };
@@ -58,9 +59,9 @@ fn what_has_no_room_is_refused() {
     assert!(text.starts_with("the surfaces of the contact `high` overlap by 0.013"), "{text}");
 }
 
-/// Simulations of both kinds, and those of lanes, refuse balls that overlap and name the contact, start from
-/// where [`contact::project`] takes them where they are asked to, and leave them where they are where that is
-/// said.
+/// Simulations of both kinds, and in lanes, reject overlapping balls and report the contact. With the option
+/// to project, they start from the result of [`contact::project`]; with the option to keep overlaps, they
+/// start unchanged.
 #[test]
 fn simulations_look_at_their_start() {
     let m = Channel { gap: 1.0 };
@@ -78,7 +79,7 @@ fn simulations_look_at_their_start() {
     let parted = located.overlaps(Overlaps::Part).duration(0.1).finish().unwrap();
     assert!((parted.q[2] - 0.01).abs() < 1e-9 && (parted.q[0] - apart[0]).abs() < 1e-9, "{}", parted.q);
     assert_eq!(stepping.overlaps(Overlaps::Keep).finish().unwrap().q, q);
-    // One lane of four overlaps.
+    // One of four lanes has an overlap.
     let lanes = SVector::from_fn(|i, _| Lanes([apart[i], apart[i], q[i], apart[i]]));
     let four = m.lanes::<4>();
     let start = |parts| linkwork::Rheonomic::contact_start(&four, Lanes([0.0; 4]), &lanes, parts);
@@ -86,7 +87,7 @@ fn simulations_look_at_their_start() {
     assert_eq!(start(true).unwrap(), SVector::<_, 14>::from_fn(|i, _| Lanes([apart[i]; 4])));
 }
 
-/// A slider-crank whose slide may not pass a stop.
+/// Slider-crank whose slide is limited by a stop.
 #[mechanism]
 struct Crank {
     #[body(mass = 1, com = 0.05 * x, inertia = rod(1, 0.1, x))]
@@ -107,8 +108,8 @@ struct Crank {
     stop: Contact,
 }
 
-/// The slide is taken back to the stop, and the loop stays closed: of the crank's angle `cos θ` follows from
-/// the law of cosines.
+/// The projection moves the slide to the stop, and the loop stays closed: `cos θ` of the crank's angle
+/// follows from the law of cosines.
 #[test]
 fn loops_stay_closed() {
     let m = Crank {};
@@ -124,7 +125,7 @@ fn loops_stay_closed() {
     assert!((q[0] - cosine.acos()).abs() < 1e-8, "{q}");
 }
 
-/// A box that is turned and sunk in a corner of three planes comes to rest on them without overlaps, and a
+/// Rotated box that penetrates a corner of three planes. It comes to rest on them without overlaps, and a
 /// motion from there begins without a jump.
 #[mechanism(gravity = -9.81 * z)]
 struct Corner {
@@ -151,7 +152,7 @@ fn a_box_leaves_a_corner() {
     let apart = contact::project(&m, 0.0, &q).unwrap();
     let gaps = m.contact_gaps(&apart);
     assert!(gaps.min() > -1.1e-10, "{}", gaps.min());
-    // It touches each plane.
+    // The box touches each plane.
     for plane in 0..3 {
         assert!(gaps.fixed_rows::<8>(8 * plane).min() < 1e-3, "{gaps}");
     }
@@ -159,7 +160,7 @@ fn a_box_leaves_a_corner() {
     assert!(end.finish().unwrap().v.amax() < 0.2);
 }
 
-/// A ball on a floor whose coefficients are parameters.
+/// Ball on a floor whose coefficients are parameters.
 #[mechanism(gravity = -9.81 * z)]
 struct Ball {
     friction: f64,
@@ -172,8 +173,8 @@ struct Ball {
     floor: Contact,
 }
 
-/// Friction that is negative or endless, and restitution that takes or gives too much, are named by
-/// everything that contacts act in.
+/// Negative or infinite friction, and restitution outside its range, are reported by all functions of
+/// contacts.
 #[test]
 fn coefficients_that_are_none_are_named() {
     let wrong = [(-0.1, 0.0, -0.1), (f64::INFINITY, 0.0, f64::INFINITY), (0.5, -0.2, -0.2), (0.5, 1.1, 1.1)];

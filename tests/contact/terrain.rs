@@ -1,4 +1,4 @@
-//! Ground whose height is an expression or a table.
+//! Terrain whose height is an expression or a table.
 
 use linkwork::prelude::*;
 
@@ -16,7 +16,7 @@ struct BallOnHills {
     hills: Contact,
 }
 
-/// The least distance of a place from the hills, by looking.
+/// Returns the minimum distance of a point from the hills by a numerical search.
 fn looked(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
     let square = |u: f64, w: f64| {
         let height = m.height * (u / m.length).cos() * (w / m.length).sin();
@@ -34,8 +34,8 @@ fn looked(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
     square(best[0], best[1]).sqrt()
 }
 
-/// Near the ground the distance of a ball is the least of all; far above it is no less than a part of the
-/// height.
+/// Near the ground the distance of a ball is the global minimum; far above the ground it is at least a
+/// fraction of the height.
 #[test]
 fn distances_from_hills_are_the_least() {
     let m = BallOnHills { g: 9.81, radius: 0.1, height: 0.15, length: 0.4 };
@@ -71,8 +71,8 @@ struct BallInHollow {
     hollow: Contact,
 }
 
-/// At the bottom of a hollow a ball swings as a pendulum whose length is the difference of the radii, and 7/5
-/// of it where it rolls.
+/// At the bottom of a hollow a ball swings as a pendulum whose length is the difference of the radii, times
+/// 7/5 if it rolls.
 #[test]
 fn a_ball_swings_in_a_hollow() {
     for (friction, share) in [(0.0, 1.0), (0.5, 1.4)] {
@@ -82,7 +82,7 @@ fn a_ball_swings_in_a_hollow() {
         let start = [1e-3, 0.0, 0.05 + 0.625e-6 * (1.0 + m.radius * m.curvature), 0.0, 0.0, 0.0, 1.0];
         let run = simulate(&m).from(start, [0.0; 6]).method(TimeStepping::step(1e-3)).duration(quarter);
         let end = run.finish().unwrap();
-        // It passes the bottom, with the speed of a harmonic oscillation.
+        // The ball passes the bottom with the speed of a harmonic oscillation.
         assert!(end.q[0].abs() < 5e-6, "{friction}: {}", end.q[0]);
         let speed = end.v.fixed_rows::<3>(0).norm();
         assert!((speed - 1e-3 * (m.g / (length * share)).sqrt()).abs() < 1e-5, "{friction}: {speed}");
@@ -100,7 +100,7 @@ struct BoxOnSteps {
     field: Contact,
 }
 
-/// A box that falls on a field of heights comes to rest on it, on three corners at least.
+/// A box that falls on a height field comes to rest on at least three corners.
 #[test]
 fn a_box_rests_on_a_field_of_heights() -> Result<(), Box<dyn core::error::Error>> {
     const AXIS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];

@@ -1,4 +1,4 @@
-//! Moments of friction: against spin about the normal, and against rolling.
+//! Moments of friction: torsional friction about the normal, and rolling friction.
 
 use crate::derivatives::check;
 use crate::laws::Random;
@@ -46,7 +46,8 @@ fn moments_follow_their_contact() {
     assert_eq!(counts, [[0, 3], [3, 1], [4, 2]]);
 }
 
-/// A ball that spins stops after ω I / (a m g), having turned by half of ω times that, and rests.
+/// A spinning ball stops after the time ω I / (a m g), having rotated by half of ω times that time, and stays
+/// at rest.
 #[test]
 fn a_spinning_ball_stops() {
     let (m, q) = (LEVEL, LEVEL.laid());
@@ -67,7 +68,8 @@ fn a_spinning_ball_stops() {
     assert!(end.v.amax() < 1e-13 && (angle(&end.q) - turned).abs() < 1e-4, "{end:?} {turned}");
 }
 
-/// A ball that rolls is braked by 5/7 ρ g / r, stops after half of v² by that, and rests for an hour.
+/// A rolling ball is decelerated by 5/7 ρ g / r, stops after half of v² over this deceleration, and stays at
+/// rest for an hour.
 #[test]
 fn a_rolling_ball_stops() {
     let (m, q) = (LEVEL, LEVEL.laid());
@@ -86,8 +88,8 @@ fn a_rolling_ball_stops() {
     assert!((rests.q - steps.q).amax() < 1e-9, "{:e}", (rests.q - steps.q).amax());
 }
 
-/// On a slope it stays where tan α is less than ρ / r, and rolls down by 5/7 g (sin α − ρ / r cos α) where it
-/// is more.
+/// On a slope a ball stays at rest if tan α is less than ρ / r. On steeper slopes it rolls down with 5/7 g
+/// (sin α − ρ / r cos α).
 #[test]
 fn a_ball_stays_on_a_gentle_slope() {
     let rolling = 0.1 * RADIUS;
@@ -112,8 +114,8 @@ fn moments_act_against_what_turns() {
     let weight = MASS * G;
     let spins = contact::acting(&m, 0.0, &q, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0].into(), &u).unwrap();
     assert!((spins - SVector::from([weight, 0.0, 0.0, -0.002 * weight, 0.0, 0.0])).amax() < 1e-7, "{spins}");
-    // Of what rolls and spins both moments are at their most; friction along the plane brakes what the moment
-    // against rolling turns.
+    // The ball rolls and spins: both moments are at their maxima, and friction in the plane decelerates the
+    // centre together with the rotation.
     let v = SVector::from([0.3, 0.0, 0.0, 0.0, 0.3 / RADIUS, -2.0]);
     let rolls =
         contact::forward_dynamics(&m, 0.0, &q, &v, &none, &[Touch::Sticks, Touch::Slips, Touch::Slips]);
@@ -124,7 +126,7 @@ fn moments_act_against_what_turns() {
     assert!((rolls.forces.rows(4, 2).norm() - 0.001 * weight).abs() < 1e-12, "{rolls:?}");
     let found = contact::acting(&m, 0.0, &q, &v, &u).unwrap();
     assert!((found - rolls.forces).amax() < 1e-6, "{found} {}", rolls.forces);
-    // Held against turning it does not roll at all.
+    // With sticking moments the ball does not roll at all.
     let held = contact::forward_dynamics(&m, 0.0, &q, &none, &none, &[Touch::Sticks; 3]).unwrap();
     assert!(held.a.amax() < 1e-13 && (held.forces[0] - weight).abs() < 1e-12);
 }
@@ -147,7 +149,7 @@ fn derivatives_know_moments() {
     }
 }
 
-/// Impacts on a ball that spins and rolls: moments stay in their bounds, act against what turns, and no
+/// Impacts on a ball that spins and rolls: moments stay within their bounds, oppose the rotation, and no
 /// energy is gained.
 #[test]
 fn impacts_obey_the_laws() {
@@ -190,7 +192,7 @@ struct OnFelt {
     felt: Contact,
 }
 
-/// What yields brakes alike: spin by a m g / I, and rolling by 5/7 ρ g / r.
+/// Compliant surfaces have the same decelerations: spin by a m g / I, and rolling by 5/7 ρ g / r.
 #[test]
 fn surfaces_that_yield_brake_what_turns() {
     let m = OnFelt {};
@@ -208,7 +210,7 @@ fn surfaces_that_yield_brake_what_turns() {
     assert!((rolls.q[0] - way).abs() < 1e-4, "{rolls:?} {way}");
 }
 
-/// A ball on felt, whose output reads the moments.
+/// Ball on felt, with the contact moments as an output.
 #[mechanism(gravity = -9.81 * z)]
 struct Felt {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
@@ -223,7 +225,7 @@ struct Felt {
     taken: Scalar,
 }
 
-/// One whose surfaces yield.
+/// Ball on a compliant surface, with the contact moments as an output.
 #[mechanism(gravity = -9.81 * z)]
 struct Soft {
     #[body(mass = 0.5, inertia = sphere(0.5, 0.05))]
@@ -238,8 +240,9 @@ struct Soft {
     taken: Scalar,
 }
 
-/// A ball that rolls along x and spins about z is braked by `ρ m g` about y and by `a m g` about z, and loses
-/// these times its angular velocities; what the first surface is decides whose moments the output reads.
+/// A ball that rolls along x and spins about z has the contact moments `ρ m g` about y and `a m g` about z,
+/// and dissipates these times its angular velocities. The output is the moment on the first surface of the
+/// contact.
 #[test]
 fn outputs_read_moments() {
     let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();

@@ -1,4 +1,4 @@
-//! Mechanisms of the gallery for a million steps, and the longest of its examples.
+//! Mechanisms of the gallery over a million steps, and the longest of its examples.
 
 #[path = "../../models/src/four_bar.rs"]
 mod four_bar;
@@ -11,9 +11,9 @@ use four_bar::FourBar;
 use linkwork::prelude::*;
 use rolling_disk::RollingDisk;
 
-/// Takes steps of `Rk4`, and holds the constraints after every one to the tolerance of the projection: 16
-/// times the machine's precision, relative to entries of the state beyond one. Gives the largest change of
-/// the energy, in a first tenth and in all, J.
+/// Integrates with `Rk4` and checks the constraints after each step to the tolerance of the projection: 16
+/// times the machine precision, relative to entries of the state above one. Returns the largest change of the
+/// energy in the first tenth and in the whole run, J.
 pub fn drift<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -45,8 +45,8 @@ where
     Ok(changes)
 }
 
-/// A million steps leave the loop as closed as the first one. The energy drifts in proportion to time, and
-/// less by the power of the step that the order says.
+/// The loop is closed after a million steps as accurately as after the first one. The energy drifts linearly
+/// in time, and decreases with the step as the order of the method predicts.
 #[test]
 fn a_linkage() -> Result<(), Error> {
     let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
@@ -60,7 +60,8 @@ fn a_linkage() -> Result<(), Error> {
     Ok(())
 }
 
-/// Nodding about the steady circle, a million steps long: it keeps touching the table and does not slip.
+/// A disk that nods about its steady circle keeps its contact with the table and does not slip for a million
+/// steps.
 #[test]
 fn a_disk() -> Result<(), Error> {
     let m = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };

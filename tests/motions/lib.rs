@@ -1,1 +1,1 @@
-//! Tests that integrate long motions: they stand in files of their own, and are optimised.
+//! Tests that integrate long motions, in a package of their own that is optimised.

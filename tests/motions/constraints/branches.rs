@@ -1,6 +1,6 @@
-//! Random closed chains in singular positions and driven through them, against the few coordinates that their
-//! branches have: masses over twelve powers of ten, springs of up to a million N·m/rad, and planes that are
-//! tilted at random.
+//! Random closed chains in singular configurations and driven through them, against the minimal coordinates
+//! of their assembly modes. Masses range over twelve powers of ten, springs up to a million N·m/rad, and
+//! planes are tilted at random.
 
 mod branch;
 mod machines;
@@ -12,7 +12,7 @@ use machines::{FourBar, Row, Stacked, Style, Tilted};
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// How far the acceleration is off, in shares of what to expect.
+/// Returns the error of the acceleration in units of the expected error.
 fn off<M, const NV: usize, const N: usize>(m: &M, branch: &Branch<NV, N>) -> f64
 where
     M: Mechanism<NV, NV, 0, Scalar = f64>,
@@ -25,8 +25,8 @@ where
     if off.is_nan() { f64::INFINITY } else { off }
 }
 
-/// Which seeds of each kind are looked at: as many as usual, or as the variable `LINKWORK_ORACLE` says,
-/// `20000` or `400..405`.
+/// Returns the seeds of the test cases: `0..usual`, or the value of the variable `LINKWORK_ORACLE`, `20000`
+/// or `400..405`.
 fn cases(usual: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
     let (from, to) = asked.split_once("..").unwrap_or(("0", &asked));
@@ -40,23 +40,24 @@ const STYLES: [Style; 4] = [
     Style { masses: 6.0, springs: 6.0 },
 ];
 
-/// Far from a flat position, near, in it but for rounding, or exactly there; and a rate, one in eight at
-/// rest.
+/// Returns an angle and its rate. The angle is far from the singular configuration, near it, in it up to
+/// rounding, or exactly in it. One state in eight is at rest.
 fn approach(random: &mut Random, flat: f64) -> (f64, f64) {
     let distance = 10_f64.powf(-8.0 - random.uniform(8.0)) * random.uniform(1.0).signum();
     let distance = if random.uniform(1.0) > 0.9 { 0.0 } else { distance };
     let rate = 10_f64.powf(random.uniform(1.5)) * random.uniform(1.0).signum();
-    // At rest in a flat position nothing tells the branches from each other.
+    // At rest in a singular configuration the assembly mode is not determined.
     let still = random.uniform(1.0) > 0.75 && distance.abs() > 1e-6;
     (flat + distance, if still { 0.0 } else { rate })
 }
 
-/// Lengths of a linkage that is flat at `π` or at zero, which of the two, and the angle.
+/// Returns the lengths of a linkage that is singular at a crank angle of `π` or zero, whether it is `π`, and
+/// the angle.
 fn flat_lengths(random: &mut Random) -> ([f64; 4], bool, f64) {
     let mut length = || 1.0 + random.uniform(0.7);
     let (base, l1, l2) = (length(), length(), length());
     let (outer, inner) = (base + l1 - l2, l2 - (l1 - base).abs());
-    // In a kite that is folded the coupler turns alone, or coupler and crank, and the others stand still.
+    // In a folded kite the coupler rotates alone, or coupler and crank, while the other links are at rest.
     if random.uniform(1.0) > 0.5 {
         return ([base, l1, l1, base], true, PI);
     }
@@ -80,12 +81,13 @@ fn flat(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Bra
     Branch { q: part(0), by: part(1), bend: part(2) * rate * rate, rate: [rate].into() }
 }
 
-/// Seeds of later cases that were hard: a kite with a heavy body at rest, windows of which one turns much
-/// faster, linkages whose lengths differ by parts of 1e-5 from those of a kite that folds, and short cranks
-/// at the edge of what is near a flat position, where weak rows share much with strong ones.
+/// Seeds of later cases that were difficult: a kite with a heavy body at rest, windows of which one rotates
+/// much faster, linkages whose lengths differ by relative 1e-5 from those of a folding kite, and short cranks
+/// at the limit of being near a singular configuration, where nearly dependent rows have large components
+/// along well-conditioned ones.
 const HARD: [u64; 8] = [4_647, 4_958, 17_407, 66_896, 862_310, 962_679, 1_187_227, 1_242_381];
 
-/// Accelerations everywhere on the branches, in all styles.
+/// Checks accelerations at random points of the assembly modes, with all styles of masses and springs.
 fn check(kind: &str, usual: u64, case: impl Fn(&mut Random, &Style) -> (f64, String)) {
     for seed in cases(usual).chain(HARD) {
         let mut random = Random::new(seed);
@@ -118,7 +120,7 @@ fn flat_linkages_accelerate_along_their_branch() {
             let (theta, rate) = approach(random, angle);
             (theta, rate, flat(lengths, at_pi, side, theta, rate))
         };
-        // A crank that is longer than the others together allow does not reach every angle.
+        // A crank that is too long for the other lengths does not reach every angle.
         let (theta, rate, branch) = std::iter::repeat_with(&mut approach)
             .find(|(.., branch)| branch.q.iter().chain(&branch.bend).all(|x| x.is_finite()))
             .expect("the flat position itself is reached");
@@ -162,11 +164,12 @@ fn stack(angles: [f64; 2], rates: [f64; 2]) -> Branch<6, 2> {
     Branch { q: by * SVector::from(angles), by, bend: SVector::zeros(), rate: rates.into() }
 }
 
-/// One of the windows is flat, or both are.
+/// One of the windows is in a singular configuration, or both are.
 #[test]
 fn stacked_windows_accelerate_as_two_pendulums() {
     check("stack", 2000, |random, style| {
-        // Posts in line with each other move heavy bodies alike: two coordinates are as good as one then.
+        // If the posts are in line, the heavy bodies move almost equally: two coordinates are then nearly
+        // dependent.
         let style = &Style { masses: style.masses.min(1.0), springs: style.springs };
         let (low, first) = approach(random, 0.0);
         let (near, second) = approach(random, PI);
@@ -182,8 +185,7 @@ fn stacked_windows_accelerate_as_two_pendulums() {
     });
 }
 
-/// What every method makes of a motion that leads through flat positions: how far it is off at its end,
-/// beside another method with short steps on the same machine with its own coordinates, where there is one.
+/// Returns the change of the energy over a motion through singular configurations.
 fn gain<M, S, const NV: usize>(
     m: &M,
     (q, v): (SVector<f64, NV>, SVector<f64, NV>),
@@ -200,12 +202,12 @@ where
     Ok((energy(&end.q, &end.v) - start).abs())
 }
 
-/// Seeds of later motions that were hard: steps that end within 1e-6 of a flat position and beside their
-/// branch, heavy and light bodies so near to one that rounding decided on the order of constraints, branches
-/// that bend within a step.
+/// Seeds of later motions that were difficult: steps that end within 1e-6 of a singular configuration and off
+/// their assembly mode, heavy and light bodies so close to each other that rounding determined the order of
+/// constraints, and assembly modes that curve within a step.
 const HARD_MOTIONS: [u64; 6] = [836, 2_353, 7_612, 10_079, 14_783, 17_831];
 
-/// Motions that go through flat positions at random places of their steps keep their energy.
+/// Motions that pass singular configurations at random fractions of their steps conserve their energy.
 #[test]
 fn random_linkages_keep_their_energy_through_flat_positions() {
     for seed in cases(60).chain(HARD_MOTIONS) {
@@ -218,11 +220,12 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
         let branch = flat(lengths, at_pi, side, angle - 0.3 - random.uniform(0.1), rate);
         let state = (branch.q, branch.velocity());
         let end = 0.1_f64;
-        // Steps that resolve the fastest turn on the way, and how quickly each velocity changes beside the
-        // largest that it has: by a stiff swing, or where the branch bends.
+        // The steps resolve the fastest rotation of the motion, and the rate of change of each velocity
+        // relative to its maximum, which results from a stiff spring or from the curvature of the assembly
+        // mode.
         let (mut fast, mut whole) = (SVector::<f64, 3>::repeat(1e-9), 0.0_f64);
         let mut change = SVector::<f64, 3>::zeros();
-        // Adaptive steps see what is faster than a grid of samples.
+        // Adaptive steps resolve changes that are faster than a grid of samples.
         for sample in simulate(&m).from(state.0, state.1).duration(end) {
             let Sample { q, v, .. } = sample.unwrap_or_else(|e| panic!("seed {seed}: {e} with {m:?}"));
             whole = whole.max(m.kinetic_energy(&q, &v));
@@ -245,9 +248,9 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
     }
 }
 
-/// A state that a step has left a little beside its branch, at a distance from the flat position that is no
-/// larger, keeps the velocity of the branch: where the place is off by as much as branches are apart,
-/// constraints have any direction.
+/// A state that a step has left slightly off its assembly mode keeps the velocity of the mode, if its
+/// deviation is no larger than its distance from the singular configuration. For a deviation as large as the
+/// distance between assembly modes, the directions of the constraints are arbitrary.
 #[test]
 fn states_beside_their_branch_keep_its_velocity() {
     for seed in cases(300) {
@@ -260,7 +263,7 @@ fn states_beside_their_branch_keep_its_velocity() {
         let branch = flat(lengths, at_pi, side, angle + distance, 3.0);
         let v = branch.velocity();
         let size = v.amax();
-        // In any direction, by nearly as much as the place is away.
+        // The deviation has a random direction and nearly the magnitude of the distance.
         let beside = random.vector::<3>(0.5) * (distance * size / 3.0);
         let (_, kept) = m
             .project_state(0.0, &(branch.q + beside), &v)

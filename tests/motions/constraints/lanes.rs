@@ -1,11 +1,11 @@
-//! Several states of a linkage side by side: they pass singular positions as single states do.
+//! Several states of a linkage in SIMD lanes pass singular configurations in the same way as single states.
 
 use linkwork::batch::{Lockstep, Rollout, unwatched};
 use linkwork::prelude::*;
 
-/// Two cranks of equal length with a coupler as long as their distance, in the horizontal plane: the coupler
-/// moves without turning, and the cranks keep their speed. On the line through both pivots the constraints
-/// lose rank.
+/// Two cranks of equal length with a coupler as long as the distance of their pivots, in the horizontal
+/// plane. The coupler moves without rotation, and the cranks keep their speed. With all links on the line
+/// through both pivots, the constraints lose rank.
 #[mechanism(batch)]
 struct Parallelogram {
     #[body(mass = 1, com = x / 2, inertia = rod(1, 1, x))]
@@ -24,13 +24,14 @@ struct Parallelogram {
     d: Pin,
 }
 
-/// The farthest that a crank is from where it should be after two turns and a half, of eight states.
+/// Returns the largest error of a crank's angle after two and a half revolutions, over eight states.
 fn farthest<S: Lockstep<f64>>(method: S, steps: usize, time: f64) -> f64 {
     const COUNT: usize = 8;
     let rate = |k: usize| 5.0 * core::f64::consts::PI / time + 0.01 * k as f64;
     let start = |k: usize| 0.3 + 0.05 * k as f64;
     let column = |f: &dyn Fn(usize) -> f64| {
-        // Coordinates by coordinates: cranks turn alike, and the coupler turns back by as much.
+        // The array is grouped by coordinate. Both cranks rotate by the same angle, and the coupler's
+        // relative angle is its negative.
         [1.0, 1.0, -1.0].iter().flat_map(|sign| (0..COUNT).map(move |k| sign * f(k))).collect::<Vec<f64>>()
     };
     let (mut q, mut v) = (column(&start), column(&rate));

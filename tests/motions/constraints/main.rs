@@ -1,4 +1,4 @@
-//! Long motions of mechanisms with constraints, near singular positions and through them among them.
+//! Long motions of mechanisms with constraints, near singular configurations and through them.
 
 mod branches;
 mod lanes;

@@ -1,12 +1,12 @@
-//! Where constraints nearly depend on each other, or seem to: light bodies between heavy ones, and positions
-//! in which a linkage loses rank.
+//! Nearly dependent constraints: light bodies between heavy ones, and singular configurations, in which a
+//! linkage loses rank.
 
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
 use linkwork_models::TwoWindows;
 use std::f64::consts::FRAC_PI_2;
 
-/// Two heavy slides that are held together by way of a light one: a force on one moves both alike.
+/// Two heavy slides that a light one couples: a force on one accelerates both equally.
 #[mechanism]
 struct Slides<T> {
     heavy: T,
@@ -47,13 +47,14 @@ fn light_bodies_between_heavy_ones_hold_them() {
 
 const WINDOWS: TwoWindows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
 
-/// All posts at an angle from the upward vertical, with the clock, and at its rate.
+/// Returns the configuration and velocity with all posts at this clockwise angle from the upward vertical,
+/// and at this rate.
 fn posts(angle: f64, rate: f64) -> (SVector<f64, 5>, SVector<f64, 5>) {
     let all = |x: f64| SVector::from([-x, x, -x, x, -x]);
     (all(angle), all(rate))
 }
 
-/// How far accelerations are from those of the pendulum that the parallelograms are:
+/// Returns the error of the accelerations against those of a pendulum with the same motion:
 /// `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
 fn off(angle: f64, rate: f64) -> f64 {
     let (q, v) = posts(angle, rate);
@@ -61,7 +62,8 @@ fn off(angle: f64, rate: f64) -> f64 {
     (a - posts(0.0, 3.5 / 3.0 * 9.81 * angle.sin()).1).amax()
 }
 
-/// All links are on one line at a quarter turn, where the constraints lose two of their rank of four.
+/// Accelerations are continuous through the singular configuration. At 90° all links are on one line, and the
+/// rank of the constraints decreases from four to two.
 #[test]
 fn accelerations_go_on_through_singular_positions() {
     for exponent in 1..=16 {
@@ -76,20 +78,21 @@ fn accelerations_go_on_through_singular_positions() {
         }
     }
     assert!(off(FRAC_PI_2, 6.0) < 1e-7 && off(-FRAC_PI_2, 6.0) < 1e-7);
-    // On the branch up to rounding, as states are that an integrator arrives at.
+    // The state deviates from the assembly mode by rounding, as after a step of an integrator.
     let (q, v) = posts(FRAC_PI_2 + 1e-6, 6.0);
     let aside = SVector::from([1e-13, -2e-13, 5e-14, -1e-13, 7e-14]);
     let a = WINDOWS.forward_dynamics(&(q + aside), &(v + aside * 100.0), &SVector::zeros());
     assert!((a - WINDOWS.forward_dynamics(&q, &v, &SVector::zeros())).amax() < 1e-6);
 }
 
-/// The distance of a top at this angle from where that of the first post is after ten seconds.
+/// Returns the distance between the top of a post at this angle and the exact position of the first post's
+/// top after ten seconds.
 fn off_top(angle: f64) -> f64 {
     // IFToMM benchmark A02, integrated in 160 bits.
     (angle.sin() + 0.328_458_111_540_815).hypot(angle.cos() - 0.944_518_538_078_601)
 }
 
-/// The distance of the first post's top from where it is after ten seconds, and what energy is gained.
+/// Returns the error of the first post's top after ten seconds, and the change of the energy.
 fn turned<M: Method<f64>>(method: M) -> (f64, f64) {
     let (q, v) = posts(0.0, 1.0);
     let energy =
@@ -106,7 +109,8 @@ fn runge_kutta_keeps_its_order_through_singular_positions() {
     }
 }
 
-/// The pendulum that the windows are: as much inertia, and as much moment of its weight.
+/// Pendulum that is dynamically equivalent to the windows: it has the same inertia and the same moment of its
+/// weight.
 #[mechanism(gravity = -9.81 * y)]
 struct Swing {
     #[body(mass = 49 / 9, com = 9 / 14 * y, inertia = rod(49 / 9, 9 / 7, y))]
@@ -115,7 +119,7 @@ struct Swing {
     pin: Pin,
 }
 
-/// What [`turned`] tells of the windows, for the pendulum.
+/// Returns the same errors as [`turned`], for the equivalent pendulum.
 fn swung<M: Method<f64>>(method: M) -> (f64, f64) {
     let swing = Swing {};
     let energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
@@ -124,7 +128,8 @@ fn swung<M: Method<f64>>(method: M) -> (f64, f64) {
     (off_top(end.q[0]), (energy(&end.q, &end.v) - energy(&q, &v)).abs())
 }
 
-/// The windows go through their line eight times in ten seconds.
+/// Implicit methods have the accuracy of the equivalent pendulum while the windows pass their singular
+/// configuration eight times in ten seconds.
 #[test]
 fn implicit_steps_are_as_good_in_singular_positions_as_without() {
     fn check<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
@@ -147,7 +152,8 @@ fn adaptive_steps_go_through_singular_positions() {
     }
 }
 
-/// Released near the line the linkage lingers there, and swings back along its branch.
+/// Released at rest near the singular configuration, the linkage moves slowly away and swings back on its
+/// assembly mode.
 #[test]
 fn linkages_are_released_near_singular_positions() {
     for (exponent, side) in [(2, 1.0), (4, -1.0), (6, 1.0), (8, -1.0)] {
@@ -161,8 +167,8 @@ fn linkages_are_released_near_singular_positions() {
         };
         let run = || simulate(&WINDOWS).from(q, v).duration(2.0);
         check(run().method(Rk4::step(2e-3)).finish().expect("it swings"), 1e-7);
-        // By the order of the method: h ω, with ω ≈ 3/s, to its power beside 30 J, or as much as Rosenbrock
-        // damps.
+        // Bounds from the order of the method: h ω, with ω ≈ 3/s, to this power times 30 J, or the damping of
+        // Rosenbrock.
         check(run().method(ImplicitMidpoint::step(2e-3)).finish().expect("it swings"), 1e-5);
         check(run().method(Rosenbrock::step(2e-3)).finish().expect("it swings"), 1e-3);
         check(run().method(SemiImplicitEuler::step(2e-3)).finish().expect("it swings"), 0.2);
@@ -174,7 +180,7 @@ fn linkages_are_released_near_singular_positions() {
     }
 }
 
-/// A four-bar linkage of slender rods that can be laid flat.
+/// Declares a four-bar linkage of slender rods that can lie flat on one line.
 macro_rules! flat {
     ($name:ident, [$ground:tt, $crank:tt, $coupler:tt, $rocker:tt]) => {
         #[mechanism(gravity = -9.81 * y)]
@@ -198,11 +204,12 @@ macro_rules! flat {
 }
 
 flat!(Parallelogram, [1, 1, 1, 1]);
-// The shortest and the longest are as long together as the others; accelerations of the joints are not alike
-// here.
+// The shortest and the longest link have the total length of the other two. The accelerations of its joints
+// differ.
 flat!(ChangePoint, [2, 1, 3, 2]);
 
-/// Every method goes straight on where a linkage is flat, turn after turn, at its order.
+/// Every method passes singular configurations without a change of direction, in each revolution, with an
+/// error of its order.
 #[test]
 fn cranks_turn_through_flat_positions() {
     fn check<M: Mechanism<3, 3, 0, Scalar = f64>>(m: &M, q: SVector<f64, 3>, v: SVector<f64, 3>, name: &str) {
@@ -233,7 +240,7 @@ fn cranks_turn_through_flat_positions() {
     }
 }
 
-/// A four-bar linkage, solved by multipliers or by the speed of its rocker.
+/// Declares a four-bar linkage that is solved by multipliers or by the velocity of its rocker.
 macro_rules! four_bar {
     ($name:ident $(, $word:ident = $value:tt)*) => {
         #[mechanism(gravity = -9.81 * y $(, $word = $value)*)]
@@ -259,8 +266,8 @@ macro_rules! four_bar {
 four_bar!(ByMultipliers);
 four_bar!(BySpeeds, formulation = speeds, independent = (third));
 
-/// Where crank and coupler are on one line, the rocker stands still while they move: its speed determines
-/// nothing.
+/// With crank and coupler on one line, the rocker is instantaneously at rest while they move, so its velocity
+/// determines no other. The runtime then falls back to multipliers.
 #[test]
 fn speeds_are_left_where_others_do_not_follow_from_them() {
     let (plain, speeds) = (ByMultipliers {}, BySpeeds {});
@@ -276,7 +283,7 @@ fn speeds_are_left_where_others_do_not_follow_from_them() {
     }
 }
 
-/// A parallelogram of bars of 0.1 kg whose coupler a spring turns against the crank.
+/// Parallelogram of bars of 0.1 kg, with a spring between coupler and crank.
 #[mechanism(gravity = -9.81 * y)]
 struct Sprung<T> {
     stiffness: T,
@@ -298,7 +305,8 @@ struct Sprung<T> {
     spring: Spring,
 }
 
-/// The parallelogram is a pendulum with the spring at its pin: `(1 + 2/3) m l² θ̈ = −2 m g l cos θ − k θ`.
+/// The parallelogram is equivalent to a pendulum with the spring at its pin:
+/// `(1 + 2/3) m l² θ̈ = −2 m g l cos θ − k θ`.
 #[test]
 fn stiff_springs_act_in_singular_positions() {
     for stiffness in [0.0, 1e3, 1e6] {
@@ -320,7 +328,7 @@ fn stiff_springs_act_in_singular_positions() {
     }
 }
 
-/// What a run gains of the energy at most, in shares of what it has.
+/// Returns the maximum change of the energy in a run, relative to the initial energy.
 fn swing<T: Real, M: Method<T>>(stiffness: f64, (angle, rate): (f64, f64), time: f64, method: M) -> f64 {
     let to = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
     let m = Sprung { stiffness: to(stiffness) };
@@ -336,7 +344,7 @@ fn swing<T: Real, M: Method<T>>(stiffness: f64, (angle, rate): (f64, f64), time:
     linkwork::nalgebra::try_convert::<T, f64>(most / start.abs()).expect("a number")
 }
 
-/// Six swings of a stiff spring through the flat position, in either precision.
+/// A stiff spring oscillates six times through the singular configuration, in double and in single precision.
 #[test]
 fn stiff_springs_swing_through_singular_positions() {
     for stiffness in [1e4, 1e6] {
@@ -351,22 +359,23 @@ fn stiff_springs_swing_through_singular_positions() {
                     swing::<$scalar, _>(k, s, t, Rosenbrock::step(h)),
                     swing::<$scalar, _>(k, s, t, SemiImplicitEuler::step(h)),
                 ];
-                // By their orders; Rosenbrock damps, and Euler's energy oscillates with h ω / 2.
+                // Bounds from the orders of the methods. Rosenbrock damps, and Euler's energy oscillates with
+                // h ω / 2.
                 for (found, most) in found.iter().zip([1e-6, 1e-6, 5e-2, 3e-2]) {
                     assert!(*found < most + $more, "{found:?} of the energy with {k} N·m/rad from {s:?}");
                 }
             };
         }
         all!(f64, 0.05, 0.0);
-        // What rounding makes of a place in the flat position is chance: of 81 starts from 0.04 to 0.06 half
-        // gain less than 3e-3, all less than 1.2e-2.
+        // The effect of rounding near the singular configuration is random: of 81 starts from 0.04 to 0.06,
+        // half gain less than 3e-3, all less than 1.2e-2.
         for start in [0.045, 0.048, 0.05, 0.054] {
             all!(f32, start, 1.3e-2);
         }
     }
 }
 
-/// In single precision every method passes as it does in double precision.
+/// In single precision every method passes singular configurations with the accuracy of double precision.
 #[test]
 fn single_precision_passes_singular_positions() {
     for start in [(1.0, 6.0), (1.0, 12.0), (0.7, 0.0)] {
@@ -389,8 +398,9 @@ fn single_precision_passes_singular_positions() {
     }
 }
 
-/// Angles of many turns are known less well, and fast turns are thrown farther by what is left of the
-/// constraints: a linkage whose bars miss each other by a drift is none with a flat position.
+/// Over many revolutions, angles lose absolute accuracy in single precision. At high rates, residuals of the
+/// constraints cause larger errors: bars that miss each other by the drift form a linkage without the
+/// singular configuration.
 #[test]
 fn single_precision_turns_through_singular_positions_again_and_again() {
     for start in [(1.0, 12.0), (1.0, 37.0), (1.0, -37.0), (0.9, 40.0)] {
@@ -406,7 +416,8 @@ fn single_precision_turns_through_singular_positions_again_and_again() {
     }
 }
 
-/// Steps that turn a linkage by up to a radian keep to their branch, in either precision.
+/// Steps that rotate a linkage by up to a radian stay on its assembly mode, in double and in single
+/// precision.
 #[test]
 fn fast_turns_keep_to_their_branch() {
     let first =
@@ -420,7 +431,7 @@ fn fast_turns_keep_to_their_branch() {
                 assert!(found < $most, "{what}: {found} of the energy at {rate} rad/s");
             )+};
         }
-        // Euler's energy oscillates with the step.
+        // The energy of Euler's method oscillates with the step.
         all! {
             f64, ImplicitMidpoint: 3e-3;
             f32, ImplicitMidpoint: 5e-3;

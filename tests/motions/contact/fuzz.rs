@@ -1,4 +1,4 @@
-//! States at random, hostile ones among them: whatever comes, answers are numbers that obey the laws, or
+//! Random states, including pathological ones: results are finite and satisfy the contact conditions, or are
 //! errors.
 
 use super::laws::{Chain, Pile, Random};
@@ -6,8 +6,8 @@ use linkwork::contact::{self, Contacts};
 use linkwork::prelude::*;
 use linkwork::simulate::Overlaps;
 
-/// A block between two walls that are one and the same, and a floor that is there twice: more contacts than
-/// can be told apart.
+/// Block with the same floor and the same wall declared twice: the distribution of forces over contacts is
+/// not unique.
 #[mechanism(gravity = -9.81 * z)]
 struct Twice {
     friction: f64,
@@ -26,7 +26,7 @@ struct Twice {
     smooth: Contact,
 }
 
-/// A pendulum between stops that meet, so that it cannot move, or that nearly do.
+/// Pendulum between stops at the same angle, so that it cannot move, or nearly at the same angle.
 #[mechanism(gravity = -9.81 * y)]
 struct Jammed {
     gap: f64,
@@ -39,7 +39,7 @@ struct Jammed {
     stops: Limit,
 }
 
-/// A ball on a floor that is there twice, and at a wall, all of which resist spin and rolling.
+/// Ball on a floor that is declared twice, and at a wall, all with torsional or rolling friction.
 #[mechanism(gravity = -9.81 * z)]
 struct Rubbed {
     friction: f64,
@@ -59,7 +59,7 @@ struct Rubbed {
     wall: Contact,
 }
 
-/// What a state gives, and half a dozen steps from it. Returns how many answers were errors.
+/// Checks an impact in a state, and half a dozen steps from it. Returns the number of errors.
 fn attack<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: SVector<f64, NQ>,
@@ -89,7 +89,7 @@ where
                 let speed = m.contact_rates(0.0, &q, &v).amax()
                     + m.contact_rates(0.0, &sample.q, &sample.v).amax()
                     + 1.0;
-                // Bodies deep in each other are let go on ways of which nothing is promised.
+                // For deeply penetrating bodies the path of separation is not specified.
                 let reached = first.min(0.0) - 2e-3 * speed;
                 assert!(first < -5e-3 || gaps.min() >= reached, "{} {first} {speed}", gaps.min());
             }
@@ -99,13 +99,14 @@ where
     errors
 }
 
-/// A coefficient of friction from none to a million, and one of restitution with both ends.
+/// Returns a coefficient of friction from zero to a million, and one of restitution in its range, including
+/// both ends.
 fn laws(random: &mut Random) -> (f64, f64) {
     let friction = if random.next() > 0.7 { 0.0 } else { 10.0_f64.powf(1.5 + 4.5 * random.next()) };
     (friction, random.one_of([0.0, 0.0, 1.0, 1.0, 0.5, 1e-9]))
 }
 
-/// Attacks with `count` states of each mechanism; returns how many answers were errors.
+/// Checks `count` random states of each mechanism. Returns the number of errors.
 pub fn attacks(seed: u64, count: usize) -> usize {
     let (mut random, mut errors) = (Random(seed), 0);
     for _ in 0..count {
@@ -147,8 +148,8 @@ pub fn attacks(seed: u64, count: usize) -> usize {
     errors
 }
 
-/// A block in a corner of surfaces that are there twice, with a friction of 54 254: it turns about two of
-/// sixteen points, which neither gradients nor friction that grows by degrees find.
+/// Block in a corner of surfaces that are declared twice, with a friction of 54 254. It rotates about two of
+/// sixteen points; neither gradient methods nor a gradual increase of friction find this solution.
 #[test]
 fn a_block_turns_about_two_of_many_points() {
     let m = Twice { friction: 54254.21780149019, restitution: 1.0 };
@@ -166,9 +167,8 @@ fn a_block_turns_about_two_of_many_points() {
     super::laws::check(&m, &q, &v);
 }
 
-/// A heavy ball that falls between two others forces a light one away. What takes overlaps away has pushed
-/// the light one 14 mm through the floor that it was just leaving; nothing overlaps by more than a ball moves
-/// in a step.
+/// A heavy ball that falls between two others pushes a light one away. The removal of overlaps once moved the
+/// light ball 14 mm through the floor. No overlap exceeds the motion of a ball in one step.
 #[test]
 fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
     let m = Pile { friction: 24.6, restitution: 0.0 };
@@ -188,9 +188,9 @@ fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
     }
 }
 
-/// All have answers but one in ten thousand, whose error is said. `LINKWORK_ORACLE` is how many blocks of a
-/// hundred states of each of the five mechanisms are tried, or which ones: `20`, or `20..40`; 2000 blocks are
-/// a million states.
+/// At most one state in ten thousand returns an error. `LINKWORK_ORACLE` is the number of blocks of a hundred
+/// states of each of the five mechanisms, or their range: `20`, or `20..40`; 2000 blocks are a million
+/// states.
 #[test]
 fn states_at_random_have_answers() {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();

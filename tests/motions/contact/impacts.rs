@@ -1,4 +1,4 @@
-//! Random impacts obey the laws: complementarity, cones, energy, momentum.
+//! Random impacts satisfy complementarity, friction cones, energy and momentum conditions.
 
 use super::laws::{Chain, Pile, Random, check};
 use linkwork::prelude::*;
@@ -17,8 +17,8 @@ struct Dice {
     wall: Contact,
 }
 
-/// A block on its face and against a wall: up to eight corners at once, some in both, with more impulses than
-/// the motion can tell apart; friction from none to more than anything has.
+/// A block on its face and against a wall has up to eight corners in contact, some of them in two contacts.
+/// The impulses are not unique; friction ranges from zero to values beyond those of any material.
 #[test]
 fn a_block_in_a_corner_obeys_the_laws() {
     let mut random = Random(1);
@@ -35,7 +35,7 @@ fn a_block_in_a_corner_obeys_the_laws() {
     }
 }
 
-/// A heavy ball on a light one and another, all of which touch, as do two of them and the floor.
+/// Heavy ball on a light one and another: all pairs and two of the contacts with the floor are closed.
 #[test]
 fn balls_in_a_pile_obey_the_laws() {
     let mut random = Random(2);
@@ -49,8 +49,8 @@ fn balls_in_a_pile_obey_the_laws() {
     }
 }
 
-/// The double pendulum whose tip strikes the floor: with Newton's restitution and friction it could gain
-/// energy (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8), and must not.
+/// For a double pendulum whose tip collides with the floor, Newton's restitution with friction could increase
+/// the energy (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8); the impact must not.
 #[test]
 fn a_double_pendulum_that_strikes_the_floor_gains_no_energy() {
     let mut random = Random(3);
@@ -67,6 +67,6 @@ fn a_double_pendulum_that_strikes_the_floor_gains_no_energy() {
         let v = random.vector(3.0);
         tempered += usize::from(check(&m, &q, &v));
     }
-    // The paradox is met.
+    // The paradox occurs in some of the cases.
     assert!(tempered > 5, "{tempered}");
 }

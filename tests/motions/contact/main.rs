@@ -1,4 +1,4 @@
-//! Contacts that open and close, where thousands of states or steps are looked at.
+//! Contacts that open and close, tested with thousands of states or steps.
 
 mod fuzz;
 mod impacts;

@@ -1,10 +1,10 @@
-//! Time stepping through the midpoint: orders, energy, and the same laws at contacts.
+//! Time stepping with the midpoint rule: order, energy, and the contact conditions.
 
 use super::laws::Chain;
 use linkwork::contact;
 use linkwork::prelude::*;
 
-/// A tumbling block with unequal moments of inertia, and a floor.
+/// Tumbling block with unequal moments of inertia, and a floor.
 #[mechanism(gravity = -9.81 * z)]
 struct Block {
     #[body(mass = 2, com = 0.02 * x, inertia = cuboid(2, 0.3, 0.2, 0.1))]
@@ -15,7 +15,7 @@ struct Block {
     floor: Contact,
 }
 
-/// A cart on a spring, and a stop that it does not reach.
+/// Cart on a spring, with a stop that it does not reach.
 #[mechanism]
 struct Cart {
     #[body(mass = 2)]
@@ -28,7 +28,8 @@ struct Cart {
     stops: Limit,
 }
 
-/// How far `duration` seconds in steps of `h` lead from where tight tolerances lead without contacts.
+/// Evaluates the error of `duration` seconds in steps of `h` against a motion without contacts with tight
+/// tolerances.
 macro_rules! error {
     ($m:expr, $start:expr, $duration:expr, $h:expr) => {{
         let (m, (q, v)) = (&$m, $start);
@@ -58,8 +59,8 @@ fn between_impacts_the_order_is_two() {
     assert!(errors[2][0].max(errors[2][1]) < 1e-3, "{errors:?}");
 }
 
-/// Of a cart on a spring with `ω = 4 rad/s` the leapfrog keeps `(1 − ω² h²/4) v² + ω² x²`, so that its energy
-/// is off by `ω² h²/4` of it at most, after however many oscillations.
+/// For a cart on a spring with `ω = 4 rad/s` the leapfrog method conserves `(1 − ω² h²/4) v² + ω² x²`, so
+/// that the relative error of the energy is at most `ω² h²/4`, for any number of oscillations.
 #[test]
 fn the_energy_of_oscillations_does_not_drift() {
     let (m, h) = (Cart {}, 0.01);
@@ -75,8 +76,8 @@ fn the_energy_of_oscillations_does_not_drift() {
     assert_eq!(samples.len(), 41);
 }
 
-/// A block that falls on its face slides, comes to rest where Coulomb's law says, and stays there to
-/// rounding.
+/// A block that falls on its face slides, comes to rest at the distance of Coulomb's law, and stays at rest
+/// to rounding.
 #[test]
 fn a_block_slides_and_rests() {
     let m = Block {};

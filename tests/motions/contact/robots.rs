@@ -1,4 +1,4 @@
-//! A robot on its feet.
+//! Robots that stand on their feet.
 
 use super::laws::Random;
 use linkwork::contact::{self, Contacts};
@@ -22,7 +22,7 @@ struct Solo {
     hind_right: Contact,
 }
 
-/// Springs and dampers at the joints, as drives have them.
+/// Returns joint torques of springs and dampers, as from servo drives.
 fn hold(q: &SVector<f64, 19>, v: &SVector<f64, 18>) -> SVector<f64, 12> {
     SVector::from_fn(|k, _| {
         let wanted = [0.0, 0.8, -1.6][k % 3];
@@ -30,8 +30,8 @@ fn hold(q: &SVector<f64, 19>, v: &SVector<f64, 18>) -> SVector<f64, 12> {
     })
 }
 
-/// It falls on its feet, and stands: on a slope of 10° it neither sinks nor creeps, where other engines creep
-/// by millimetres a second.
+/// A quadruped falls on its feet and stands on a slope of 10°: it neither sinks nor creeps, while other
+/// engines creep by millimetres a second.
 #[test]
 fn a_quadruped_stands() {
     let m = Solo { slope: 10.0_f64.to_radians() };
@@ -52,7 +52,7 @@ fn a_quadruped_stands() {
     assert!(creep < 1e-6, "{creep:e}");
     let gaps = m.contact_gaps(&after.q);
     assert!(gaps.amax() < 1e-8, "{gaps}");
-    // The feet carry the robot, along and across the slope.
+    // The contact forces of the feet balance the weight, along and across the slope.
     let u = hold(&after.q, &after.v);
     let forces = contact::forces(&m, after.t, &after.q, &after.v, &u, 1e-3).unwrap();
     let normal: f64 = (0..4).map(|k| forces[3 * k]).sum();
@@ -62,7 +62,8 @@ fn a_quadruped_stands() {
     assert!((along[0].hypot(along[1]) - weight * m.slope.sin()).abs() < 1e-6 * weight, "{along:?}");
 }
 
-/// On the corners of its soles: eight contacts, of which the motion cannot tell the impulses apart.
+/// Humanoid on the corners of its soles: eight contacts, whose impulses the motion does not determine
+/// uniquely.
 #[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, limits = ignore, gravity = -9.81 * z)]
 struct Humanoid {
     #[contact(l_ankle.at(0.16 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
@@ -75,8 +76,8 @@ struct Humanoid {
     right_heel: [Contact; 2],
 }
 
-/// It drops onto its soles and stands, its joints held by springs and dampers: it does not creep, all of its
-/// weight is on its soles, and what presses does so below its centre of mass.
+/// A humanoid drops onto its soles and stands, with springs and dampers at its joints. It does not creep, its
+/// soles carry the whole weight, and the centre of pressure is below its centre of mass.
 #[test]
 fn a_humanoid_stands() {
     let m = Humanoid {};
@@ -96,7 +97,7 @@ fn a_humanoid_stands() {
     let weight = m.total_mass() * 9.81;
     let normal: f64 = (0..8).map(|k| forces[3 * k]).sum();
     assert!((0..8).all(|k| forces[3 * k] >= 0.0) && (normal - weight).abs() < 1e-5 * weight, "{forces}");
-    // Places of the corners, in the order of declaration.
+    // Positions of the corners, in the order of declaration.
     let center = m.center_of_mass(&after.q);
     let feet = [
         m.frame_placement(frame!(Humanoid, "l_ankle"), &after.q),
@@ -113,7 +114,7 @@ fn a_humanoid_stands() {
     }
 }
 
-/// A trunk on four alike legs with two joints each, and with four alike arms.
+/// Trunk on four identical legs with two joints each, and with four identical arms.
 #[mechanism]
 struct Crab {
     #[body(mass = 3, inertia = cuboid(3, 0.3, 0.2, 0.1))]
@@ -138,7 +139,7 @@ struct Crab {
     hand: [Contact; 4],
 }
 
-/// Differences of `M⁻¹ Gᵀ` and `G M⁻¹ Gᵀ` from those by a general factorisation, as a part of their largest
+/// Returns the errors of `M⁻¹ Gᵀ` and `G M⁻¹ Gᵀ` against a general factorisation, relative to their largest
 /// entries.
 fn response_errors<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
@@ -160,7 +161,8 @@ where
     [error(found.velocities.as_slice(), &velocities), error(found.rates.as_slice(), &rates)]
 }
 
-/// With limbs as lanes, legs that carry and arms that are carried along, and contacts of two groups of limbs.
+/// The contact-space inverse inertia with limbs as SIMD lanes equals that of the mass matrix. The cases have
+/// legs with contacts, arms without contacts, and contacts between two groups of limbs.
 #[test]
 fn responses_of_limbs_are_those_of_the_mass_matrix() {
     let mut random = Random(11);

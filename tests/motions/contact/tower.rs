@@ -1,9 +1,9 @@
-//! Boxes on each other.
+//! Tower of boxes on each other.
 
 use linkwork::prelude::*;
 use std::thread;
 
-/// Ten boxes; each stands with the corners of its base on the top of the one below.
+/// Ten boxes, each with the corners of its base on the top of the one below.
 #[mechanism(gravity = -9.81 * z)]
 struct Tower {
     #[body(mass = 1, inertia = cuboid(1, 0.2, 0.2, 0.1))]
@@ -16,7 +16,8 @@ struct Tower {
     seat: [Contact; 9],
 }
 
-/// Eighty corners of which forty touch, ten more impulses than the bodies' equilibrium determines.
+/// Checks that the tower stands: of eighty corners forty are in contact, with ten more normal forces than the
+/// equilibrium of the bodies determines.
 fn tower() {
     let m = Tower {};
     let mut q = m.neutral();
@@ -36,8 +37,8 @@ fn tower() {
     assert_eq!(samples, 5);
 }
 
-/// The matrices of 240 rates are on the stack: an unoptimised build takes more than the two megabytes of a
-/// test's thread.
+/// The matrices of 240 contact velocities are on the stack: an unoptimised build needs more than the two
+/// megabytes of a test's thread.
 #[test]
 fn a_tower_of_ten_boxes_stands() {
     thread::Builder::new().stack_size(32 << 20).spawn(tower).unwrap().join().unwrap();

@@ -1,13 +1,14 @@
-//! The branches of a linkage that has flat positions, by its lengths, and motions on them.
+//! Assembly modes of a linkage with singular configurations, as functions of its lengths, and motions on
+//! them.
 
 use linkwork::prelude::*;
 
-/// A number with its first and second derivative.
+/// Number with its first and second derivative.
 #[derive(Clone, Copy)]
 pub struct Jet(pub [f64; 3]);
 
 impl Jet {
-    /// A function of it with these derivatives.
+    /// Returns the composition with a function that has this value and these derivatives.
     fn map(self, f: [f64; 3]) -> Jet {
         let [_, d, dd] = self.0;
         Jet([f[0], f[1] * d, f[2] * d * d + f[1] * dd])
@@ -60,19 +61,21 @@ impl Jet {
     }
 }
 
-/// Angles of coupler, against the crank, and rocker of a four-bar linkage that is flat where its crank is at
-/// `π` (`l1 + base = l2 + l3`) or at zero (`±(l1 − base) = l2 − l3`), over the angle of the crank.
+/// Returns the angles of crank, coupler (relative to the crank) and rocker of a four-bar linkage as functions
+/// of the crank's angle. The linkage is singular at the crank angle `π` (`l1 + base = l2 + l3`) or zero
+/// (`±(l1 − base) = l2 − l3`).
 ///
 /// With the distance `D` between the crank's tip and the rocker's foot, the height of the triangle of coupler
-/// and rocker over it is a root of `((l2 + l3)² − D²)(D² − (l2 − l3)²)`. One of the factors is a square:
-/// `4 base l1 cos²(θ/2)` or `4 base l1 sin²(θ/2)`, and the branch goes on where its root changes sign.
+/// and rocker over this line is a root of `((l2 + l3)² − D²)(D² − (l2 − l3)²)`. One of the factors is a
+/// square: `4 base l1 cos²(θ/2)` or `4 base l1 sin²(θ/2)`. The assembly mode continues smoothly where the
+/// root of this square changes sign.
 pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: f64) -> [Jet; 3] {
     let theta = Jet([theta, 1.0, 0.0]);
     let half = theta.scaled(0.5);
-    // Lengths that nearly agree are subtracted first: their squares would leave few digits.
+    // Nearly equal lengths are subtracted first: the difference of their squares would lose digits.
     let (apart, versine) = (base - l1, half.sin().times(half.sin()).scaled(2.0));
     let difference = if at_pi { l2 - l3 } else { apart.abs() };
-    // From the crank's tip to the rocker's foot.
+    // Vector from the crank's tip to the rocker's foot.
     let (dx, dy) = (versine.scaled(l1).add(apart), theta.sin().scaled(-l1));
     let square = versine.scaled(2.0 * base * l1).add(apart * apart);
     let width = 2.0 * (base * l1).sqrt();
@@ -80,7 +83,7 @@ pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: 
         true => half.cos().scaled(width).times(square.add(-difference * difference).root()),
         false => half.sin().scaled(width).times(square.scaled(-1.0).add((l2 + l3) * (l2 + l3)).root()),
     };
-    // Twice D times the triangle's foot and height.
+    // Twice D times the foot point and the height of the triangle.
     let (along, across) = (square.add(difference * (l2 + l3)), height.scaled(side));
     let over = square.scaled(2.0).inverse();
     let tip = |a: Jet, b: Jet, c: Jet, d: Jet| a.times(b).plus(c.times(d)).times(over);
@@ -90,8 +93,8 @@ pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: 
     [theta, coupler.plus(theta.scaled(-1.0)), rocker]
 }
 
-/// A branch at a point: where it is, how all coordinates change with `N` of them, and second derivatives
-/// along the motion.
+/// Assembly mode at a point: the configuration, the derivatives of all coordinates with respect to the `N`
+/// independent ones, and the second derivatives along the motion.
 pub struct Branch<const NV: usize, const N: usize> {
     pub q: SVector<f64, NV>,
     pub by: SMatrix<f64, NV, N>,
@@ -104,8 +107,8 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
         self.by * self.rate
     }
 
-    /// The acceleration on the branch by Lagrange's equations for its own coordinates, and what to expect of
-    /// rounding.
+    /// Returns the acceleration on the assembly mode by Lagrange's equations for the independent coordinates,
+    /// and a bound for the rounding error.
     pub fn acceleration<M>(&self, m: &M) -> (SVector<f64, NV>, f64)
     where
         M: Mechanism<NV, NV, 0, Scalar = f64>,
@@ -115,7 +118,7 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
         let own = self.by.transpose() * mass * self.by;
         let force = bias + mass * self.bend;
         let solve = |f: SVector<f64, N>| {
-            // One or two coordinates.
+            // The system has one or two unknowns.
             let mut x = SVector::<f64, N>::zeros();
             if N == 1 {
                 x[0] = f[0] / own[(0, 0)];
@@ -127,15 +130,15 @@ impl<const NV: usize, const N: usize> Branch<NV, N> {
             x
         };
         let a = self.by * solve(-(self.by.transpose() * force)) + self.bend;
-        // What single forces would do, by how much their bodies move, which is known to a part of 1e-11 m or
-        // rad, not better.
+        // Accelerations that each force alone would cause, through the motion of its body, which is known
+        // only to 1e-11 m or rad.
         let moved = |k: usize| {
             let by = self.by.row(k).map(|by| by.signum() * by.abs().max(1e-2)).transpose();
             (self.by * solve(by * bias[k])).amax()
         };
         let most = (0..NV).map(moved).fold(0.0, f64::max);
-        // Light bodies with stiff springs would do much if nothing held them: what holds them rounds as that
-        // does.
+        // Light bodies with stiff springs would have large accelerations without constraints. The constraint
+        // forces have the rounding errors of these accelerations.
         let free = mass.cholesky().map_or(0.0, |mass| mass.solve(&bias).amax());
         (a, most + free * 1e-3)
     }

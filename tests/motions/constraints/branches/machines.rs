@@ -1,10 +1,11 @@
-//! Machines with singular positions, and random ones of them.
+//! Linkages with singular configurations, and random instances of them.
 
 use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// A four-bar linkage of rods along `$along` in the plane across `$about`, with springs on its pins.
+/// Declares a four-bar linkage of rods along `$along` in the plane normal to `$about`, with springs on its
+/// pins.
 macro_rules! four_bar {
     ($name:ident, $about:expr, $along:expr, $gravity:expr) => {
         #[mechanism(gravity = down * $gravity + aside * $along)]
@@ -46,7 +47,7 @@ macro_rules! four_bar {
         }
 
         impl $name {
-            /// Of random masses, springs and gravity.
+            /// Returns an instance with these lengths and random masses, springs and gravity.
             pub fn random(random: &mut Random, style: &Style, lengths: [f64; 4]) -> Self {
                 let [base, l1, l2, l3] = lengths;
                 let (mut mass, angle) = (|| style.mass(random), 2.0);
@@ -65,7 +66,7 @@ macro_rules! four_bar {
 four_bar!(FourBar, z, x, y);
 four_bar!(Tilted, unit(x + 2 * y + 2 * z), (2 * x + y - 2 * z) / 3, (2 * x - 2 * y + z) / 3);
 
-/// A window that stands on another, of posts of equal length each.
+/// Window that stands on another one, each with posts of equal length.
 #[mechanism(gravity = down * y + aside * x)]
 #[derive(Clone, Copy, Debug)]
 pub struct Stacked {
@@ -182,7 +183,7 @@ pub struct Row {
     s3: Spring,
 }
 
-/// How masses and springs are spread, in powers of ten.
+/// Ranges of masses and springs, in powers of ten.
 pub struct Style {
     pub masses: f64,
     pub springs: f64,
@@ -193,7 +194,7 @@ impl Style {
         10_f64.powf(random.uniform(self.masses))
     }
 
-    /// One spring in three is none.
+    /// Returns a random stiffness, which is zero for one spring in three.
     pub fn stiffness(&self, random: &mut Random) -> f64 {
         if random.uniform(1.0) < -0.33 { 0.0 } else { 10_f64.powf(random.uniform(self.springs)) }
     }
