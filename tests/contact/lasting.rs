@@ -124,7 +124,7 @@ macro_rules! energy {
     };
 }
 
-/// Returns the relative error of the energy and of the angular momentum of a bob in a bowl.
+/// Returns the sum of the errors of energy, angular momentum and radius of a bob in a bowl.
 fn bowl(method: Stepping) -> f64 {
     let (m, a) = (Bowl {}, 0.8_f64);
     let (q, v) = ([a.sin(), 0.0, -a.cos()].into(), [0.0, 0.5, 0.0].into());
@@ -135,7 +135,8 @@ fn bowl(method: Stepping) -> f64 {
     energy.abs() + momentum.abs() + off.abs()
 }
 
-/// Returns the errors of energy and angular momentum of a bead that slides out of a tube.
+/// Returns the sum of the errors of energy, angular momentum and lateral position of a bead that slides out
+/// of a tube.
 fn tube(method: Stepping) -> f64 {
     let m = Tube {};
     let (q, v) = ([0.0, 0.1, 0.0].into(), [3.0, 0.2, 0.3].into());

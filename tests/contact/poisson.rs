@@ -25,8 +25,8 @@ macro_rules! rod {
 rod!(Impulses, poisson(e));
 rod!(Velocities, e);
 
-/// Returns the normal and slip velocity of the end after an impact of a rod that does not rotate, and the
-/// energy ratio. The argument `rates` holds the velocities of the end before the impact.
+/// Returns the normal and slip velocities of the end after an impact of a rod that does not rotate, and the
+/// loss of kinetic energy. The argument `rates` holds the velocities of the end before the impact.
 fn after<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
 where
     M: Contacts<3, 3, 0, 1, 2, Scalar = f64>,

@@ -1,5 +1,4 @@
-//! Steps that are implicit in momenta, and steps under constraints: their Jacobians against differences of
-//! steps, and those of multipliers.
+//! Jacobians of implicit midpoint steps, of steps under constraints and of multipliers, against differences.
 
 use super::{Carrier, Driven, Linkage, assert_columns, check_step, check_steps, slopes};
 use linkwork::nalgebra::SVector;
@@ -7,8 +6,8 @@ use linkwork::prelude::*;
 use linkwork::{ConstrainedDerivatives, Rheonomic, discrete};
 use support::random::Random;
 
-/// A ball that rolls on a tilted plane, pushed and turned, with a pendulum inside: constraints on velocities
-/// and on a configuration.
+/// Ball that rolls on a tilted plane, with an input force and torque and a pendulum inside. It has
+/// constraints on velocities and on the configuration.
 #[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
 struct Ballbot {
     radius: f64,
@@ -29,8 +28,7 @@ struct Ballbot {
     push: Force,
 }
 
-/// Two arms on ball joints whose ends are held together by a rod that becomes longer and shorter: a spatial
-/// loop, in time.
+/// Two arms on ball joints whose ends are connected by a rod of time-dependent length: a spatial loop.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
 struct Arms {
     span: f64,
@@ -50,7 +48,7 @@ struct Arms {
     motor: Torque,
 }
 
-/// A loop of four pins in space: two of the constraints of each pin are redundant.
+/// Spatial loop of four pins, in which two constraints of each pin are redundant.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct FourBar {
     base: f64,
@@ -82,8 +80,8 @@ fn implicit_steps_change_as_their_jacobians_say() {
     }
 }
 
-/// All methods on a mechanism with constraints, at states that fulfil them: also along directions that they
-/// forbid.
+/// Checks the Jacobians of all methods on a mechanism with constraints, at a state that satisfies them. The
+/// directions of the derivatives include inadmissible ones.
 pub(super) fn check_constrained<
     M,
     const NQ: usize,
@@ -152,7 +150,8 @@ fn constrained_steps_change_as_their_jacobians_say() {
     }
 }
 
-/// What a step takes away: its end fulfils the constraints whatever moves its start.
+/// The projection at the end of a step removes changes that violate the constraints: the end satisfies them
+/// to first order for any change of the start.
 #[test]
 fn ends_stay_on_constraints_to_first_order() {
     let linkage = Linkage {};

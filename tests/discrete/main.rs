@@ -1,5 +1,5 @@
-//! Single steps and their Jacobians: against differences of steps, against the linear system, and for what
-//! they are used.
+//! Single steps and their Jacobians against differences of steps and against the linear system, and examples
+//! of their use.
 
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::prelude::*;
@@ -9,7 +9,7 @@ use support::random::Random;
 mod implicit;
 mod speeds;
 
-/// A flying body with four rotors, of which two also turn it by drag, and a pendulum on a ball joint below.
+/// Flying body with four rotors, two of which also exert a drag torque, and a pendulum on a ball joint below.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
 struct Carrier {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
@@ -28,7 +28,7 @@ struct Carrier {
     drag: Torque,
 }
 
-/// A pendulum on a pivot that is driven up and down, with a motor.
+/// Pendulum with a motor, on a pivot that is driven up and down.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct Driven {
     rate: f64,
@@ -42,11 +42,11 @@ struct Driven {
     motor: Torque,
 }
 
-/// Plain coordinates alone.
+/// Arm whose coordinates are all joint angles.
 #[mechanism(urdf = "../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives)]
 struct Panda;
 
-/// A loop: its derivatives hold the constraints' forces.
+/// Closed loop, whose derivatives include the constraint forces.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct Linkage {
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
@@ -67,12 +67,14 @@ struct Linkage {
     motor: Torque,
 }
 
-/// A state in the tangent space: displacements, changes of velocity, changes of the inputs.
+/// Returns a unit direction times `size` in the tangent space of displacements, changes of velocity and
+/// changes of inputs: the component `k − first`, or zero.
 fn direction<const N: usize>(k: usize, first: usize, size: f64) -> SVector<f64, N> {
     SVector::from_fn(|i, _| if first + i == k { size } else { 0.0 })
 }
 
-/// How `f` changes along each direction of state and inputs: central differences of eighth order.
+/// Returns the derivatives of `f` along each direction of state and inputs, by central differences of eighth
+/// order.
 fn slopes<const NV: usize, const NU: usize, const R: usize>(
     f: impl Fn(&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> SVector<f64, R>,
 ) -> Vec<SVector<f64, R>> {
@@ -93,7 +95,7 @@ fn assert_columns(what: &str, found: &[&[f64]], expected: &[f64], scale: f64) {
     assert!(worst < 1e-10 * scale, "{what}: off by {worst:e}, {found:?} instead of {expected:?}");
 }
 
-/// The Jacobians of steps at random states against differences of steps.
+/// Compares the Jacobians of steps at random states with differences of steps.
 fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
@@ -113,7 +115,7 @@ fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     }
 }
 
-/// The Jacobians of one step against differences of steps.
+/// Compares the Jacobians of one step with differences of steps.
 fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
@@ -128,7 +130,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let step = |q: &_, v: &_, u: &_| discrete::step(m, method, t, q, v, u).expect("it is regular");
     let found = discrete::transition(m, method, t, q, v, u).expect("it is regular");
     let (next_q, next_v) = step(q, v, u);
-    // Accelerations follow from other expressions than those with derivatives: rounding grows with them.
+    // The accelerations with derivatives come from other expressions, whose rounding errors differ.
     let off = (m.difference(&next_q, &found.q).amax(), (next_v - found.v).amax());
     let change = (found.v - v).amax().max(1.0);
     assert!(off.0 < 1e-14 && off.1 < 2e-14 * change, "{name}: {off:?}, {change}");
@@ -143,7 +145,7 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let scale = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
     assert_columns(&format!("{name}: configuration"), &q_blocks, &by_q, scale(&q_blocks));
     assert_columns(&format!("{name}: velocity"), &v_blocks, &by_v, scale(&v_blocks));
-    // Adjoint products are those of the transposed blocks.
+    // Adjoint products equal products with the transposed blocks.
     let (a, b) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
     let (back_q, back_v, back_u) = found.adjoint(&a, &b);
     let (dq, dv) =
@@ -167,7 +169,7 @@ fn steps_change_as_their_jacobians_say() {
     check_steps("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 1.0, 0.0);
 }
 
-/// The linear motion of the trait against differences of accelerations, on loops too.
+/// Compares the linear motion of the trait with differences of accelerations, also for loops.
 fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
@@ -196,7 +198,7 @@ fn motions_change_as_the_linear_system_says() {
     let q = carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform(1.0)));
     let (v, u) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(4.0)));
     check_motion("carrier", &carrier, &q, &v, &u);
-    // In one matrix it is what the mechanism's own function says.
+    // The matrix of the linear motion equals that of the mechanism's `linearize`.
     let (a, b) = carrier.linearize(&q, &v, &u);
     let found = carrier.linear_motion(&q, &v, &u);
     assert!((found.a::<{ 2 * Carrier::NV }>() - a).amax() < 1e-11 * a.amax());
@@ -211,7 +213,7 @@ fn motions_change_as_the_linear_system_says() {
     check_motion("linkage", &linkage, &q, &v, &[3.0].into());
 }
 
-/// A single step is a simulation of that length, for every method and with constraints.
+/// A single step equals a simulation of that duration, for every method and with constraints.
 #[test]
 fn single_steps_are_those_of_simulations() {
     fn check<M, S, const NQ: usize, const NV: usize>(
@@ -255,7 +257,7 @@ fn bad_periods_are_errors() {
     assert!(matches!(found, Err(Error::NotFinite { .. })), "{found:?}");
 }
 
-/// Frames by number are those by name.
+/// Frames found by index have the placements of those found by name.
 #[test]
 fn frames_are_found_by_number() {
     let mut random = Random::new(3);
@@ -272,7 +274,7 @@ fn frames_are_found_by_number() {
     );
     assert_eq!(carrier.jacobian_of(load, 0.0, &q), Some(carrier.frame_jacobian(named, &q)));
     assert_eq!(carrier.placement_of(Carrier::FRAMES.len(), 0.0, &q), None);
-    // Time counts where something is driven in it.
+    // Frames of a driven mechanism depend on time.
     let driven = Driven { rate: 2.0 };
     let pivot = index_of(&Driven::FRAMES, "pivot").expect("it is one");
     let height = driven.placement_of(pivot, 0.4, &[0.1].into()).map(|p| p.translation.y);

@@ -1,5 +1,5 @@
-//! Steps of mechanisms with declared speeds, under constraints too: their Jacobians against differences of
-//! steps.
+//! Jacobians of steps of mechanisms with declared generalized speeds, also under constraints, against
+//! differences of steps.
 
 use super::check_steps;
 use super::implicit::check_constrained;
@@ -7,7 +7,7 @@ use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// A body on Cardan's angles, in its angular velocity along its own axes, with a slider.
+/// Body on Cardan angles with a slider. The generalized speeds are the angular velocity in body axes.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
 struct Gimbal {
     #[body(mass = 0, inertia = 0)]
@@ -40,8 +40,8 @@ struct Gimbal {
     wz: Speed,
 }
 
-/// A ball that rolls on a tilted plane, with a pendulum inside, in the velocity of its centre along the axes
-/// of the ground.
+/// Ball that rolls on a tilted plane, with a pendulum inside. The generalized speeds are the velocity of its
+/// centre in ground axes.
 #[mechanism(gravity = -9.81 * z + 2 * x, momentum_derivatives)]
 struct Ballbot {
     radius: f64,
@@ -74,7 +74,7 @@ struct Ballbot {
     wz: Speed,
 }
 
-/// Two arms whose ends are held together by a rod that becomes longer and shorter: a spatial loop, in time.
+/// Two arms whose ends are connected by a rod of time-dependent length: a spatial loop.
 #[mechanism(gravity = -9.81 * z, momentum_derivatives)]
 struct Arms {
     span: f64,
@@ -101,8 +101,8 @@ struct Arms {
     swing: Speed,
 }
 
-/// A loop of four pins in space, in the angular velocities of its bars and the speed of one end along the bar
-/// that it belongs to.
+/// Spatial loop of four pins. The generalized speeds are the angular velocities of its bars, and the velocity
+/// of one end along its bar.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct FourBar {
     base: f64,

@@ -1,12 +1,12 @@
-//! Assembly from partial guesses: within half a turn, in the assembly mode next to the guess, or in the one
-//! that is asked for.
+//! Assembly from partial guesses: the result is within half a turn of the guess, in the nearest or in the
+//! requested assembly mode.
 
 use super::jansen;
 use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// Declares a four-bar with further fields.
+/// Declares a four-bar linkage with additional fields.
 macro_rules! four_bar {
     ($(#[$about:meta])* $visibility:vis $name:ident, { $($more:tt)* }) => {
         $(#[$about])*
@@ -39,7 +39,7 @@ pub(super) use four_bar;
 four_bar!(pub FourBar, {});
 
 impl FourBar {
-    /// Angles of the joints.
+    /// Returns the angles of the joints.
     pub fn angles(&self, side: f64, angle: f64) -> SVector<f64, 3> {
         let bars = [self.base, self.first, self.second, self.third];
         let [pin, end] = corners(bars, side, angle);
@@ -48,13 +48,14 @@ impl FourBar {
     }
 }
 
-/// Pin of the crank and end of the coupler of a four-bar, by circles.
+/// Returns the pin of the crank and the end of the coupler of a four-bar linkage, by intersection of circles.
 pub fn corners([base, first, second, third]: [f64; 4], side: f64, angle: f64) -> [[f64; 2]; 2] {
     let pin = [first * angle.cos(), first * angle.sin()];
     [pin, jansen::corner(pin, [base, 0.0], second, third, side)]
 }
 
-/// Bars, a side and an angle of a random four-bar; its transmission angle has a sine of at least `least`.
+/// Returns the bars, a side and an angle of a random four-bar linkage. The sine of its transmission angle is
+/// at least `least`.
 pub fn random(source: &mut Random, least: f64) -> ([f64; 4], f64, f64) {
     loop {
         let bars = [(); 4].map(|()| 0.6 + source.uniform(0.4));
@@ -73,13 +74,13 @@ fn wrapped(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
-/// Returns the difference of angles modulo whole turns.
+/// Returns the largest difference of angles modulo whole turns.
 fn distance(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
     (a - b).iter().fold(0.0, |most, off| most.max(wrapped(*off).abs()))
 }
 
-/// From a guess of the crank alone, whole turns off or not: one of the two ways that circles give, within
-/// half a turn.
+/// From a guess of the crank's angle alone, with or without additional whole turns, the result is one of the
+/// two intersections of circles, within half a turn of the guess.
 #[test]
 fn partial_guesses_stay_within_half_a_turn() {
     let mut source = Random::new(5);
@@ -97,15 +98,15 @@ fn partial_guesses_stay_within_half_a_turn() {
         let found = m.assembly_mode(&q, &[0]).unwrap();
         let own = usize::from(found != modes[0]);
         assert!(distance(&q, &ways[own]) < 1e-9, "{bars:?}: {q}");
-        // The other one, from the same guess.
+        // The same guess leads to the other mode if it is requested.
         let other = m.assemble_in_mode(&guess, &[0], -found).unwrap();
         assert!(distance(&other, &ways[1 - own]) < 1e-9 && (other - guess).amax() <= PI + 1e-12);
         assert_eq!(m.assemble_in_mode(&guess, &[0], found), Ok(q));
     }
 }
 
-/// Along the straight way from its residuals to none (Davidenko's homotopy, in small steps) a guess leads to
-/// what assembly finds, unless assembly finds something that is nearer.
+/// Davidenko's homotopy reduces the residuals of a guess linearly to zero, in small steps. Its end equals the
+/// result of the assembly, unless the assembly finds a nearer configuration.
 #[test]
 fn guesses_near_a_mode_lead_to_it() {
     let mut source = Random::new(6);
@@ -128,7 +129,7 @@ fn guesses_near_a_mode_lead_to_it() {
     assert!(same > 800, "{same}");
 }
 
-/// The end of the homotopy; `None` where it gets near a singular position on its way.
+/// Returns the end of the homotopy, or `None` if its path comes near a singular configuration.
 fn followed(m: &FourBar, guess: SVector<f64, 3>) -> Option<SVector<f64, 3>> {
     let (mut q, mode) = (guess, m.assembly_mode(&guess, &[0]));
     let start = m.constraint_residuals(&q);
@@ -161,7 +162,7 @@ struct Gears {
     mesh: Holonomic,
 }
 
-/// Gears turn farther than half a turn where they have to; a mode that is not there is an error.
+/// Gears rotate by more than half a turn if necessary; an assembly mode that does not exist is an error.
 #[test]
 fn gears_turn_as_far_as_they_must() {
     let gears = Gears {};
@@ -172,7 +173,7 @@ fn gears_turn_as_far_as_they_must() {
     assert_eq!(gears.assembly_mode(&q, &[]), None);
 }
 
-/// In line, the two modes of a parallelogram meet.
+/// With all bars in line, the two assembly modes of a parallelogram coincide.
 #[test]
 fn singular_positions_have_no_mode() {
     let m = FourBar { base: 1.0, first: 0.5, second: 1.0, third: 0.5 };

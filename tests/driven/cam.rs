@@ -1,9 +1,9 @@
-//! A cam at a given speed lifts a follower against a spring.
+//! Cam with a given speed that lifts a follower against a spring.
 
 use linkwork::prelude::*;
 use support::compare::assert_close;
 
-/// A round disk on an eccentric shaft under a flat follower.
+/// Round disk on an eccentric shaft under a flat follower.
 #[mechanism(gravity = -9.81 * y)]
 struct Cam {
     speed: f64,
@@ -25,8 +25,8 @@ struct Cam {
     bearing: Vector,
 }
 
-/// `s = 0.05 + e sin φ`: the follower presses with `m s̈ + k s + m g`, the torque is that times `e cos φ`,
-/// and the weight of the cam.
+/// With `s = 0.05 + e sin φ`, the normal force of the follower is `m s̈ + k s + m g`. The torque is this
+/// force times `e cos φ`, and the moment of the cam's weight.
 #[test]
 fn the_cam_carries_spring_weight_and_inertia() {
     let (speed, e, mass) = (40.0, 0.02, 0.4);

@@ -1,5 +1,5 @@
-//! Random four-bars at random speeds and accelerations of the crank: d'Alembert's principle on corners by
-//! circles.
+//! Random four-bar linkages with random velocities and accelerations of the crank, against d'Alembert's
+//! principle with corners from intersections of circles.
 
 use super::assembly::{FourBar, corners, four_bar, random};
 use super::derivative;
@@ -8,7 +8,7 @@ use support::compare::assert_close;
 use support::random::Random;
 
 four_bar!(
-    /// The linkage with a crank that time drives.
+    /// Four-bar linkage whose crank is driven as a function of time.
     Driven,
     {
         start: f64,
@@ -27,7 +27,7 @@ fn differences(f: impl Fn(f64) -> f64) -> [f64; 2] {
     [derivative(f, 0.0), second]
 }
 
-/// The torque on the crank.
+/// Returns the torque on the crank.
 fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64 {
     let [base, first, second, third] = bars;
     let body = |k: usize, angle: f64| -> [f64; 3] {
@@ -72,7 +72,7 @@ fn drives_of_random_four_bars_follow_dalembert() {
         let [base, first, second, third] = bars;
         let (speed, growth) = (source.uniform(5.0), source.uniform(20.0));
         let expected = torque(bars, side, angle, speed, growth);
-        // Differences may go beyond where the coupler and the rocker are in line.
+        // The differences may use angles beyond the position with coupler and rocker in line.
         if !expected.is_finite() {
             continue;
         }

@@ -1,10 +1,11 @@
-//! Bodies on frames that move in time: without any coordinate, on each other, and several on one frame.
+//! Bodies on frames that move as functions of time: without any coordinate, on each other, and several on one
+//! frame.
 
 use linkwork::prelude::*;
 use support::compare::assert_close;
 
-/// An arm that turns at a given speed, on it a second one that turns with respect to the first, and a weight
-/// on that.
+/// Arm that rotates at a given speed, a second arm that rotates relative to the first one, and a weight on
+/// the second.
 #[mechanism(gravity = -9.81 * y)]
 struct Robot {
     first_speed: f64,
@@ -54,7 +55,7 @@ fn arms_on_frames_tell_their_torques() {
         let a = m.acceleration(t, &q);
         let by_hand = |l: f64| [-0.5 * w1 * w1 * c1 - l * w * w * c2, -0.5 * w1 * w1 * s1 - l * w * w * s2];
         assert_close("acceleration", &a.data.0[0][..2], &by_hand(0.4), 1e-12);
-        // The arm holds the forearm at its elbow.
+        // Force that the arm exerts on the forearm at its elbow.
         let a = by_hand(0.2);
         let force = [a[0], a[1] + 9.81];
         let elbow = 0.2 * (c2 * force[1] - s2 * force[0]);
@@ -62,7 +63,7 @@ fn arms_on_frames_tell_their_torques() {
         let place = on_forearm.get("forearm.place").unwrap();
         assert_close("force", &place.force.data.0[0][..2], &force, 1e-11);
         assert_close("torque", &[place.torque[2]], &[elbow], 1e-11);
-        // The frame holds the arm, the forearm pulls at it; the lamp hangs from the frame.
+        // The frame exerts a force on the arm, and the forearm a reaction; the lamp hangs from the frame.
         let on_arm = m.on_arm(t, &q, &v);
         let names: Vec<&str> = on_arm.actions.iter().map(|action| action.name).collect();
         assert_eq!(names, ["gravity", "arm.place", "forearm.place"]);
@@ -75,7 +76,7 @@ fn arms_on_frames_tell_their_torques() {
         let lamp = m.on_lamp(t, &q, &v);
         let expected = [0.7 * 0.1 * w1 * w1 * s1, 0.7 * (9.81 - 0.1 * w1 * w1 * c1)];
         assert_close("lamp", &lamp.get("lamp.place").unwrap().force.data.0[0][..2], &expected, 1e-11);
-        // All torques about the shoulder together change the angular momentum.
+        // The sum of all torques about the shoulder is the rate of the angular momentum.
         let rate = super::derivative(|t| m.spin(t, &q)[2], t);
         let weights = 9.81 * (2.0 * 0.25 * c1 + 0.5 * c1 + 0.2 * c2 - 0.7 * 0.1 * s1);
         let lamp = lamp.get("lamp.place").unwrap();

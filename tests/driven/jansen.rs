@@ -1,5 +1,5 @@
-//! A leg of Jansen's beast on a crank at a given speed: eleven bars, six loops' conditions, no degree of
-//! freedom.
+//! Leg of Jansen's Strandbeest on a crank with a given speed: eleven bars, the conditions of six loops, no
+//! degree of freedom.
 
 use linkwork::prelude::*;
 use support::compare::assert_close;
@@ -11,7 +11,7 @@ struct Leg {
     turned: Frame,
     #[body(mass = 0.1, com = 0.075 * x, inertia = rod(0.1, 0.15, x), frame = turned)]
     crank: Body,
-    /// From the fixed pivot along the upper bar; the left corner by its sides.
+    /// The x axis is along the upper bar from the fixed pivot; the left corner follows from its distances.
     #[body(mass = 0.9, com = 0.2 * x + 0.13 * y, inertia = diagonal(0.02, 0.02, 0.03))]
     upper: Body,
     #[body(mass = 0.4, com = 0.1965 * x, inertia = rod(0.4, 0.393, x))]
@@ -50,8 +50,8 @@ struct Leg {
 
 pub type Point = [f64; 2];
 
-/// The corner of a triangle over two others, at distances from them; to the left of the way from the first to
-/// the second where `side` is 1.
+/// Returns the third corner of a triangle over `a` and `b`, at the given distances from them. It is to the
+/// left of the direction from `a` to `b` if `side` is 1.
 pub fn corner(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
     let d = [b[0] - a[0], b[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];
@@ -60,17 +60,18 @@ pub fn corner(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point 
     [a[0] + along * d[0] - across * d[1], a[1] + along * d[1] + across * d[0]]
 }
 
-/// A point of a body by its axis from `a` to `b`.
+/// Returns the ground coordinates of a body's point (`x`, `y`), in the body's frame with origin `a` and x
+/// axis towards `b`.
 fn on(a: Point, b: Point, x: f64, y: f64) -> Point {
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);
     let e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
     [a[0] + x * e[0] - y * e[1], a[1] + x * e[1] + y * e[0]]
 }
 
-/// Bars by their ends: mass, centre of mass and moment of inertia, and where the leg's corners are.
+/// Bars with their masses, centres of mass, moments of inertia and ends.
 struct Skeleton(Vec<(f64, Point, f64, [Point; 2])>);
 
-/// The corners by circles alone.
+/// Returns the corners of the leg by intersections of circles.
 fn skeleton(angle: f64) -> Skeleton {
     let (pivot, centre) = ([-0.38, -0.078], [0.0, 0.0]);
     let pin = [0.15 * angle.cos(), 0.15 * angle.sin()];
@@ -102,14 +103,14 @@ impl Skeleton {
     }
 }
 
-/// Energy by differences of the corners.
+/// Returns the energy, with velocities from differences of the corners.
 fn energy(speed: f64, t: f64) -> f64 {
     let rate = |f: &dyn Fn(f64) -> f64| super::derivative(|t| f(speed * t), t);
     let here = skeleton(speed * t);
     let mut sum = 0.0;
     for (k, (mass, _, inertia, _)) in here.0.iter().enumerate() {
         let v = [0, 1].map(|i| rate(&|angle| skeleton(angle).centre(k)[i]));
-        // From the angle at this instant, so that no jump of a turn is between.
+        // The difference starts at the current angle, so that no jump by a whole turn occurs.
         let base = here.angle(k);
         let w = rate(&|angle| {
             let turned = skeleton(angle).angle(k) - base;
@@ -120,7 +121,8 @@ fn energy(speed: f64, t: f64) -> f64 {
     sum
 }
 
-/// The power of the crank is the rate of the energy, all along a turn in which the leg keeps its form.
+/// The power of the crank equals the rate of the energy over a whole turn in which the leg stays in its
+/// assembly mode.
 #[test]
 fn the_power_of_the_crank_is_the_rate_of_energy() {
     assert_eq!((Leg::NV, Leg::NC, Leg::NS), (6, 6, 0));
@@ -134,7 +136,7 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
             let angle = s.angle(k) - of;
             angle.sin().atan2(angle.cos())
         };
-        // From the corners at first, then from the instant before.
+        // The first guess follows from the corners, each later one from the previous instant.
         let turned = speed * t;
         let corners = [
             s.angle(1),

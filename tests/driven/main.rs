@@ -1,4 +1,4 @@
-//! Mechanisms that are driven at given positions, rates and accelerations: loops without a degree of freedom,
+//! Mechanisms with prescribed positions, velocities and accelerations: loops without a degree of freedom,
 //! forces of drives and bearings over a turn, and the assembly of linkages.
 
 mod assembly;
@@ -10,7 +10,7 @@ mod prelude;
 mod slider_crank;
 mod yoke;
 
-/// Derivative of a function of time, by central differences of order six.
+/// Returns the derivative of a function of time, by central differences of order six.
 fn derivative(f: impl Fn(f64) -> f64, t: f64) -> f64 {
     let h = 2e-3;
     let odd = |k: f64| f(t + k * h) - f(t - k * h);

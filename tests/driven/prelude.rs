@@ -1,5 +1,5 @@
-//! The prelude is enough for wrapped mechanisms: with contacts enforced, stabilised constraints, states of
-//! first order, and without contacts.
+//! The prelude is sufficient for wrapped mechanisms: with enforced contacts, stabilised constraints,
+//! first-order states, and without contacts.
 
 use linkwork::constraint::stabilized;
 use linkwork::contact::{Touch, apart, hold};

@@ -1,4 +1,4 @@
-//! A slider-crank whose crank turns at a given speed, in four declarations, against d'Alembert's principle by
+//! Slider-crank with a given speed of the crank, in four declarations, against d'Alembert's principle by
 //! hand.
 
 use linkwork::prelude::*;
@@ -77,7 +77,8 @@ slider_crank!(Whole, (, derivatives, second_derivatives, batch, prepare, sensiti
     gas: Force,
 });
 
-/// Declares a slider-crank whose crank is placed by time, with an argument of its last joint and further fields.
+/// Declares a slider-crank whose crank is placed as a function of time. The arguments add options of its last
+/// joint and further fields.
 macro_rules! placed_by_time {
     ($(#[$about:meta])* $name:ident, ($($joint:tt)*), { $($more:tt)* }) => {
         $(#[$about])*
@@ -106,13 +107,13 @@ macro_rules! placed_by_time {
 }
 
 placed_by_time!(
-    /// The loop is a constraint.
+    /// Slider-crank whose loop is a constraint.
     Framed,
     (),
     {}
 );
 placed_by_time!(
-    /// The loop is solved in closed form as well: no coordinate is left.
+    /// Slider-crank whose loop is solved in closed form: it has no coordinate.
     ClosedForm,
     (, branch = 1),
     {
@@ -123,8 +124,9 @@ placed_by_time!(
     }
 );
 
-/// Angle of the rod, its rate and acceleration; place, rate and acceleration of the piston; torque on the
-/// crank and the force of the crank's bearing on it, at a constant speed of the crank.
+/// Solution by hand at a constant speed of the crank. `rod` holds the rod's angle, angular velocity and
+/// angular acceleration; `piston` holds the piston's position, velocity and acceleration. The other fields
+/// are the torque on the crank and the force of the crank's bearing on it.
 struct ByHand {
     rod: [f64; 3],
     piston: [f64; 3],
@@ -135,7 +137,7 @@ struct ByHand {
 impl ByHand {
     fn at(theta: f64, omega: f64) -> ByHand {
         let (s, c) = theta.sin_cos();
-        // r sin θ + l sin β = 0.
+        // The closure condition is r sin θ + l sin β = 0.
         let beta = (-R * s / L).asin();
         let (sb, cb) = beta.sin_cos();
         let by = -R * c / (L * cb);
@@ -146,7 +148,8 @@ impl ByHand {
             -R * s * omega - L * sb * rate,
             -R * c * omega * omega - L * (cb * rate * rate + sb * bend),
         ];
-        // Acceleration of the rod's centre of mass, and its displacement by the angle of the crank.
+        // Acceleration of the rod's centre of mass, and derivative of its position with respect to the
+        // crank's angle.
         let half = L / 2.0;
         let a = [
             -R * c * omega * omega - half * (cb * rate * rate + sb * bend),
@@ -158,10 +161,10 @@ impl ByHand {
             + inertia * bend * by
             + PISTON * piston[2] * (-R * s - L * sb * by)
             + CRANK * G * R / 2.0 * c;
-        // The cylinder carries what keeps the rod from turning otherwise: moments about the crank pin.
+        // The cylinder's side force follows from the moments on the rod about the crank pin.
         let wall = {
             let moment = inertia * bend + ROD * half * (cb * (a[1] + G) - sb * a[0]);
-            // Forces on the rod at the small end: −m a of the piston along x, the wall across.
+            // Forces on the rod at the small end: −m a of the piston along x, and the side force across.
             (moment - L * sb * PISTON * piston[2]) / (L * cb)
         };
         let crank = [-R / 2.0 * c * omega * omega, -R / 2.0 * s * omega * omega];
@@ -175,7 +178,7 @@ impl ByHand {
 
 const OMEGA: f64 = 35.0;
 
-/// Times over a turn.
+/// Returns instants over one revolution.
 fn turn() -> impl Iterator<Item = f64> {
     (0..24).map(|k| f64::from(k) * std::f64::consts::TAU / OMEGA / 24.0)
 }
@@ -200,12 +203,12 @@ macro_rules! check {
         assert_close("bearing", &bearing.data.0[0][..2], &hand.bearing, 1e-9);
         assert_close("turning", &[m.turning(t, &q, &v)[2]], &[hand.torque], 1e-9);
         assert_close("shaking", &[m.shaking(t, &q, &v, &a)], &[hand.piston[2]], 1e-9);
-        // All that acts on the crank.
+        // The sum of all forces and torques on the crank.
         let sum = m.on_crank(t, &q, &v);
         let crank =
             [-0.5 * R * OMEGA * OMEGA * (OMEGA * t).cos(), -0.5 * R * OMEGA * OMEGA * (OMEGA * t).sin()];
         assert_close("crank", &sum.force().data.0[0][..2], &crank.map(|a| CRANK * a), 1e-9);
-        // The joint transmits what drives it.
+        // The joint transmits the drive torque.
         let joint = sum.get("main").unwrap();
         assert_close("joint", &[joint.torque[2]], &[hand.torque], 1e-9);
     }};
@@ -219,7 +222,7 @@ fn drives_over_a_turn_balance_inertia() {
     }
 }
 
-/// A rate that is given by a parameter drives without time: functions take none.
+/// A rate that a parameter prescribes needs no time: functions have no time argument.
 #[test]
 fn a_given_rate_drives() {
     assert_eq!((Rated::NP, Rated::NS, Rated::NC), (1, 0, 3));
@@ -235,7 +238,8 @@ fn a_given_rate_drives() {
     }
 }
 
-/// Inverse dynamics of the mechanism with one degree of freedom: from the motion of the crank to its torque.
+/// Inverse dynamics of the mechanism with one degree of freedom returns the torque of the crank for its
+/// motion.
 #[test]
 fn inverse_dynamics_find_the_torque_of_a_motion() {
     let m = Motorised {};
@@ -247,7 +251,7 @@ fn inverse_dynamics_find_the_torque_of_a_motion() {
         assert_close("a", &a.data.0[0], &[0.0, hand.rod[2], hand.piston[2]], 1e-9);
         let (tau, lambda) = m.constrained_inverse_dynamics(&q, &v, &a, &[0]).unwrap();
         assert_close("torque", &tau.data.0[0], &[hand.torque, 0.0, 0.0], 1e-9);
-        // The same motion under this torque.
+        // This torque reproduces the motion.
         let (again, multipliers) = m.constrained_dynamics(&q, &v, &tau);
         assert_close("motion", &again.data.0[0], &a.data.0[0], 1e-8);
         assert_close("multipliers", &multipliers.data.0[0], &lambda.data.0[0], 1e-8);
@@ -260,7 +264,7 @@ fn inverse_dynamics_find_the_torque_of_a_motion() {
     assert!(matches!(by(&v, &SVector::zeros(), &[0]), Err(ConstraintError::Acceleration { .. })));
     assert!(matches!(by(&[1.0, 1.0, 1.0].into(), &a, &[0]), Err(ConstraintError::Velocity { .. })));
     assert_eq!(by(&v, &a, &[3]), Err(ConstraintError::Held { index: 3, velocities: 3 }));
-    // The piston may drive as well as the crank: the same power.
+    // Crank or piston may be the actuated joint: the power is equal.
     let (by_crank, by_piston) = (by(&v, &a, &[0]).unwrap().0, by(&v, &a, &[2]).unwrap().0);
     assert_close("power", &[by_piston.dot(&v)], &[by_crank.dot(&v)], 1e-10);
     assert_eq!((by_piston[0], by_piston[1]), (0.0, 0.0));
@@ -293,7 +297,7 @@ fn frames_drive_loops() {
     }
 }
 
-/// Simulations follow what is given, also where nothing is left to integrate.
+/// Simulations follow the prescribed motion, also without any coordinate to integrate.
 #[test]
 fn simulations_follow_the_drive() {
     let end = 2.2 * std::f64::consts::TAU / OMEGA;
@@ -312,8 +316,8 @@ fn simulations_follow_the_drive() {
     assert_close("stroke", &[closed.stroke(found.t, &found.q)], &[hand.piston[0]], 1e-12);
 }
 
-/// A mechanism without a degree of freedom has no independent states: its linear system has inputs and
-/// outputs alone.
+/// A mechanism without degrees of freedom has no independent states: its linear system has only inputs and
+/// outputs.
 #[test]
 fn linear_systems_are_empty() {
     let m = Positioned { omega: OMEGA };
@@ -325,8 +329,8 @@ fn linear_systems_are_empty() {
     assert_eq!(linear.a.shape(), (0, 0));
 }
 
-/// Two drives of one coordinate that disagree leave no configuration but at the time zero; none of them is
-/// left out.
+/// Two contradictory drives of one coordinate have a common configuration only at the time zero; neither is
+/// ignored.
 #[test]
 fn drives_that_disagree_are_reported() {
     assert_eq!((Twice::NC, Twice::NS), (4, 0));
@@ -336,8 +340,8 @@ fn drives_that_disagree_are_reported() {
     assert!(matches!(found, Err(ConstraintError::Configuration { .. })), "{found:?}");
 }
 
-/// With everything that can be asked for: derivatives along a motion that is given, and the force of a drive
-/// against a gas.
+/// All options of generated functions work without degrees of freedom: derivatives along a prescribed motion,
+/// and the force of a drive against a gas.
 #[test]
 fn functions_that_are_asked_for_hold_without_a_degree_of_freedom() {
     let m = Whole { omega: OMEGA, stiffness: 250.0 };
@@ -352,7 +356,7 @@ fn functions_that_are_asked_for_hold_without_a_degree_of_freedom() {
     let torque = hand.torque + (250.0 * hand.piston[0] - 70.0) * by_crank;
     assert_close("torque", &[lambda[2]], &[torque], 1e-9);
     let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(t, &q, &v, &tau);
-    // Forces change nothing but multipliers.
+    // Forces have no effect except on the multipliers.
     assert!(by_tau.amax() < 1e-9 && by_q.iter().chain(&by_v).all(|x| x.is_finite()));
     let by_gas = m.multiplier_derivatives(t, &q, &v, &tau).2 * SVector::from([0.0, 0.0, 1.0]);
     assert_close("torque by force", &[by_gas[2]], &[-by_crank], 1e-9);

@@ -1,4 +1,4 @@
-//! A Scotch yoke: a pin of the crank in a slot of the slider, which goes to and fro as a cosine.
+//! Scotch yoke: a pin of the crank moves in a slot of the slider, which oscillates as a cosine.
 
 use linkwork::prelude::*;
 use support::compare::assert_close;
@@ -21,7 +21,8 @@ struct ScotchYoke {
     motor: Holonomic,
 }
 
-/// `x = r cos φ`, the slot presses with `m ẍ`, and the torque is `m r² ω² sin φ cos φ`: twice the turns.
+/// With `x = r cos φ`, the force of the slot is `m ẍ`, and the torque is `m r² ω² sin φ cos φ`, at twice the
+/// frequency of the rotation.
 #[test]
 fn the_yoke_follows_a_cosine() {
     assert_eq!((ScotchYoke::NS, ScotchYoke::NP), (0, 0));

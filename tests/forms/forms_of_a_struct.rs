@@ -1,11 +1,11 @@
-//! What a struct may look like.
+//! Forms of a struct that the macro accepts.
 
 #![deny(warnings)]
 #![deny(missing_docs)]
 
 use linkwork::prelude::*;
 
-/// Without parameters.
+/// Mechanism without parameters.
 #[mechanism]
 pub struct Plain {
     #[body(mass = 1)]
@@ -14,7 +14,7 @@ pub struct Plain {
     rail: Sleeve,
 }
 
-/// With everything that Rust allows around.
+/// Mechanism with all attributes and visibilities that Rust allows on a struct and its fields.
 #[mechanism(gravity = [0, -9.81, 0],)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
@@ -24,19 +24,19 @@ pub struct Adorned {
     /// Mass, kg.
     #[doc(alias = "weight")]
     pub mass: f64,
-    /// Kept for whoever uses the struct.
+    /// Field for the user's own purposes.
     pub(crate) _serial: f64,
-    /// A cart.
+    /// Cart with a mass that is a parameter.
     #[doc(hidden)]
     #[allow(dead_code, reason = "only its form counts")]
     #[body(mass = mass, inertia = 0, com = 0,)]
     pub cart: linkwork::elements::Body,
-    /// A rail.
+    /// Rail along a diagonal direction.
     #[joint(ground.at(2.5 * x).rotated(z(pi / 2)) -> cart, along = unit(x + y),)]
     pub rail: linkwork::elements::Sleeve,
 }
 
-/// Over single precision.
+/// Mechanism in single precision.
 #[mechanism(scalar = f32)]
 struct Single {
     #[body(mass = 0.1)]
@@ -45,7 +45,7 @@ struct Single {
     rail: Sleeve,
 }
 
-/// Over any scalar, with bounds of its own.
+/// Mechanism that is generic over any scalar type, with additional bounds.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug)]
 pub struct Generic<Scalar: Copy>

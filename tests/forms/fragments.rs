@@ -1,4 +1,4 @@
-//! Types that a macro puts into a mechanism.
+//! Types that a macro substitutes into a mechanism.
 
 macro_rules! cart {
     ($number:ty, $body:path, $joint:ty) => {

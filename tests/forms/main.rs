@@ -1,5 +1,5 @@
-//! What a mechanism may look like, and what its program may call its own things: all of this compiles without
-//! a warning.
+//! Forms of a mechanism, and names that a program may use for its own items. All of this compiles without a
+//! warning.
 
 mod forms_of_a_struct;
 mod fragments;

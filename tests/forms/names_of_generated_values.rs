@@ -1,4 +1,4 @@
-//! Names that generated code might use for itself.
+//! Names that generated code could use for its own values.
 
 #![deny(warnings)]
 

@@ -1,5 +1,5 @@
-//! The prelude stands in nobody's way: beside a program's own items of its names, beside names that are
-//! imported one by one, and beside everything of nalgebra.
+//! The prelude does not conflict with a program's own items of the same names, with names that are imported
+//! one by one, or with a glob import of nalgebra.
 
 mod both {
     use linkwork::nalgebra::*;
@@ -70,7 +70,7 @@ mod own {
         }
     }
 
-    /// The traits are these, not those of the prelude.
+    /// Requires the traits of this module, not those of the prelude.
     fn takes(_: impl Mechanism + Real) {}
 
     pub fn run() -> usize {
@@ -83,7 +83,7 @@ mod own {
     }
 }
 
-/// A crate that re-exports the library.
+/// Crate that re-exports the library.
 pub mod other {
     pub use linkwork as mechanisms;
 }

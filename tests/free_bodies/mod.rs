@@ -1,11 +1,11 @@
-//! Compiled mechanisms with free bodies and inertia that sees the ground: their derivatives are limits of
-//! differences, with prepared parameters and in the linearisation too.
+//! Compiled mechanisms with free bodies whose inertia depends on the ground's motion: their derivatives are
+//! limits of differences, also with prepared parameters and in the linearisation.
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{SMatrix, SVector};
 use support::random::Random;
 
-/// An inerter between the ground and a body.
+/// Inerter between the ground and a body.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
 struct Moored {
     inertance: f64,
@@ -19,7 +19,7 @@ struct Moored {
     engine: Force,
 }
 
-/// A particle that is placed along an axis of the ground, on a body.
+/// Particle on a body, placed along an axis of the ground.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
 struct Loaded {
     mass: f64,
@@ -34,7 +34,7 @@ struct Loaded {
     winch: Force,
 }
 
-/// An inerter between two bodies, large enough for functions that call each other.
+/// Inerter between two bodies, large enough that generated functions call each other.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
 struct Pair {
     inertance: f64,
@@ -56,7 +56,7 @@ struct Pair {
     motor: Torque,
 }
 
-/// A column of differences for each of the directions.
+/// Returns the derivatives of `f` by differences, a column for each direction.
 fn differences<const N: usize>(f: impl Fn(&SVector<f64, N>) -> SVector<f64, N>) -> SMatrix<f64, N, N> {
     const STEP: f64 = 1e-5;
     let column = |k: usize| {

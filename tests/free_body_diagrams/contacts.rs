@@ -1,4 +1,5 @@
-//! Bodies that contacts push: their diagrams under the forces of held contacts, and under those that act.
+//! Free-body diagrams of bodies with contacts, under prescribed contact forces and under the forces of the
+//! complementarity conditions.
 
 use super::check;
 use linkwork::contact::{self, Touch};
@@ -6,7 +7,7 @@ use linkwork::free_body::Origin;
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// A trunk with a leg, on a foot and a heel.
+/// Trunk with a leg, on a foot and a heel.
 #[mechanism(gravity = -9.81 * z)]
 struct Walker {
     #[body(mass = 4, com = 0.05 * x, inertia = diagonal(0.1, 0.15, 0.2))]
@@ -43,7 +44,8 @@ struct Walker {
     c_leg: Vector,
 }
 
-/// With contacts that are taken to hold, slip or be open, whatever that takes.
+/// Under the forces of prescribed contact modes (sticking, sliding, separated), the diagrams equal the rates
+/// of the momenta.
 #[test]
 fn given_forces_of_contacts_change_momenta() {
     use Touch::{Open, Slips, Sticks};
@@ -71,13 +73,14 @@ fn given_forces_of_contacts_change_momenta() {
     }
 }
 
-/// What stands is carried by its contacts, at their points.
+/// The contacts of a body at rest carry its weight, with forces at their contact points.
 #[test]
 fn contacts_carry_what_stands() {
     let m = Walker {};
     let mut q = m.neutral();
     q[2] = 0.42;
-    // The motor holds the hip: half of the weight of both, by their arms about the foot.
+    // The motor holds the hip: the force of the heel is half of the weight of both, by their arms about the
+    // foot.
     let (v, arm) = (SVector::zeros(), 0.6);
     let heel = 9.81 * (4.0 * 0.25) / arm;
     for push in [0.0, 0.2] {
@@ -100,7 +103,7 @@ fn contacts_carry_what_stands() {
         assert!((on_heel.force[2] - heel).abs() < 1e-6, "{}", on_heel.force);
         assert!((foot.force[2] + on_heel.force[2] - 5.0 * 9.81).abs() < 1e-6);
     }
-    // In the air nothing pushes.
+    // No contact force acts in the air.
     q[2] = 1.0;
     let on_leg = m.on_leg(&q, &v, &SVector::zeros()).expect("nothing touches");
     assert!(on_leg.get("foot").is_some_and(|foot| foot.force.norm() == 0.0));

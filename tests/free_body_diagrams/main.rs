@@ -1,5 +1,5 @@
-//! Free-body diagrams: the sum of all that acts on a body is the rate of its momentum, and its moment that of
-//! the angular momentum, both by differences along the motion.
+//! Free-body diagrams: the sum of all forces on a body is the rate of its momentum, and their moment is the
+//! rate of its angular momentum, both by differences along the motion.
 
 use linkwork::free_body::{Diagram, Origin};
 use linkwork::nalgebra::Vector3;
@@ -10,14 +10,14 @@ use support::random::Random;
 mod contacts;
 mod places;
 
-/// Differences of order two over 2e-4 s.
+/// Error of differences of order two over 2e-4 s.
 const DIFFERENCE: f64 = 2e-6;
 
-/// A point on the path of a motion: what acts, and momentum, angular momentum about the ground's origin,
-/// centre of mass.
+/// Momentum, angular momentum about the ground's origin, and centre of mass of a body at an instant.
 type Seen = [SVector<f64, 3>; 3];
 
-/// Compares the sum with the rates of the momenta, of those `seen` at a time.
+/// Compares the sums of the diagram with the rates of the momenta, of which `seen` gives the values at a
+/// time.
 fn check<const N: usize>(diagram: &Diagram<f64, N>, seen: impl Fn(f64) -> Seen) {
     let h = 1e-4;
     let (before, now, after) = (seen(-h), seen(0.0), seen(h));
@@ -34,7 +34,7 @@ fn check<const N: usize>(diagram: &Diagram<f64, N>, seen: impl Fn(f64) -> Seen) 
     );
 }
 
-/// Checks the diagram of an output against the outputs of the same name with endings.
+/// Checks the diagram of an output against the outputs of the body's momenta and centre of mass.
 macro_rules! check {
     ($m:expr, $state:expr, $u:expr, $body:ident, $momentum:ident, $angular:ident, $center:ident) => {{
         let (q, v, a) = $state;
@@ -46,7 +46,7 @@ macro_rules! check {
     }};
 }
 
-/// Three bodies in space with all that can act on them.
+/// Three bodies in space with every kind of force element.
 #[mechanism(gravity = -9.81 * z)]
 struct Arm {
     stiffness: f64,
@@ -144,7 +144,7 @@ fn what_acts_on_a_body_changes_its_momenta() {
         check!(m, (q, v, a), &u, on_first, p_first, h_first, c_first);
         check!(m, (q, v, a), &u, on_third, p_third, h_third, c_third);
         check!(m, (q, v, a), &u, on_free, p_free, h_free, c_free);
-        // Axes change components alone.
+        // A change of axes changes only components.
         let (here, there) = (m.on_third(&q, &v, &u), m.on_third_there(&q, &v, &u));
         assert_close("a force", &[there.force().norm()], &[here.force().norm()], 1e-12);
         assert_close("a torque", &[there.torque().norm()], &[here.torque().norm()], 1e-12);
@@ -175,7 +175,7 @@ fn each_action_is_what_its_element_says() {
     let action = |name: &str| on_second.get(name).copied().unwrap_or_else(|| panic!("no {name}"));
     assert!((action("gravity").force - Vector3::new(0.0, 0.0, -2.5 * 9.81)).norm() < 1e-12);
     assert_eq!((action("gravity").point, action("jet").origin), (Vector3::zeros(), Origin::Input));
-    // Forces at points have no torque about them, a torque no force.
+    // Forces at points have no torque about them, and torques have no force.
     for name in ["stay", "cylinder", "attraction", "inerter", "jet"] {
         assert_eq!(action(name).torque, Vector3::zeros(), "{name}");
     }
@@ -188,7 +188,7 @@ fn each_action_is_what_its_element_says() {
     let pull = apart * (60.0 * (apart.norm() - 0.4) / apart.norm());
     assert!((action("stay").force - pull).norm() < 1e-12);
     assert!((action("stay").point + m.c_second(&q) - end).norm() < 1e-14);
-    // What one body does to the other is opposite, at one line.
+    // Forces between two bodies are opposite and have a common line of action.
     let on_free = m.on_free(&q, &v, &u);
     for name in ["cylinder", "attraction", "inerter", "field"] {
         let other = on_free.get(name).unwrap_or_else(|| panic!("no {name}"));
@@ -200,7 +200,7 @@ fn each_action_is_what_its_element_says() {
     assert!(on_free.get("flight").is_none());
 }
 
-/// A slider-crank, and a disk that rolls while it carries a pendulum.
+/// Slider-crank, and a rolling disk that carries a pendulum.
 #[mechanism(gravity = -9.81 * y)]
 struct Machine {
     slope: f64,
@@ -270,7 +270,7 @@ fn constraints_and_loops_act_on_their_bodies() {
         let on_disk = m.on_disk(&q, &v, &u);
         let names: Vec<&str> = on_disk.actions.iter().map(|action| action.name).collect();
         assert_eq!(names, ["gravity", "pose", "hook", "ground_contact"]);
-        // The plane pushes where it touches, a radius below the centre, and gives no torque there.
+        // The plane's force acts at the contact point, a radius below the centre, with no torque about it.
         let below = Vector3::new(-0.15 * s, -0.15 * c, 0.0);
         let plane = on_disk.actions[3];
         assert!((plane.point - below).norm() < 1e-9 && plane.torque == Vector3::zeros());
@@ -284,7 +284,7 @@ fn constraints_and_loops_act_on_their_bodies() {
     }
 }
 
-/// A disk that slips down an incline with dry friction, shaken by a force that depends on time.
+/// Disk that slips down an incline with dry friction, under a force that depends on time.
 #[mechanism(gravity = -9.81 * y)]
 struct Driven {
     #[body(mass = 0.8, inertia = disk(0.8, 0.15, z))]

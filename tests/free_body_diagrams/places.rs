@@ -1,13 +1,13 @@
-//! Bodies and particles that move by `at` and `frame`: what holds them on their places acts on them, and on
-//! what carries them.
+//! Bodies and particles placed by `at` and `frame`: the forces that enforce their placement act on them and,
+//! in reverse, on the bodies that carry them.
 
 use super::check;
 use linkwork::free_body::Origin;
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// An arm with a bead that a coordinate moves along it, and on the bead a pendulum; a plate on a path that is
-/// given in time and by a coordinate, with a weight on it.
+/// Arm with a bead that a coordinate moves along it, and a pendulum on the bead. A plate moves on a path that
+/// depends on time and a coordinate, with a weight on it.
 #[mechanism(gravity = -9.81 * z)]
 struct Places {
     slide: Coordinate,
@@ -87,12 +87,13 @@ fn places_hold_what_moves_on_them() {
         assert_eq!(names(&on_arm.actions), ["gravity", "base", "bead.place"]);
         assert_eq!(names(&on_bead.actions), ["gravity", "cord", "hook", "bead.place"]);
         assert_eq!(names(&m.on_plate(t, &q, &v, &u).actions), ["gravity", "push", "plate.place"]);
-        // What the arm does to the bead the bead does to the arm; a place of a point gives no torque.
+        // The bead's reaction on the arm is opposite to the arm's force on the bead; the placement of a point
+        // has no torque.
         let (here, there) =
             (on_bead.get("bead.place").expect("it is held"), on_arm.get("bead.place").expect("it is held"));
         assert_eq!(here.origin, Origin::Constraint);
         assert!((here.force + there.force).norm() < 1e-9 && here.torque.norm() < 1e-9);
-        // Along the way that is left to the bead nothing holds it.
+        // Along the bead's free direction the placement exerts no force.
         let along = |x: f64| m.c_bead(t, &(q + SVector::from_fn(|k, _| if k == 0 { x } else { 0.0 })));
         let tangent = (along(1e-5) - along(-1e-5)).normalize();
         assert!(here.force.dot(&tangent).abs() < 1e-6 * (1.0 + here.force.norm()));

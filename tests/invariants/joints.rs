@@ -1,4 +1,4 @@
-//! What joints obey: names, order, and that they are chains of simpler ones.
+//! Properties of joints: names, order, and equivalence to chains of simpler joints.
 
 use super::{IDENTITY, check_undamped};
 use linkwork::nalgebra::{SMatrix, SVector, Vector3};
@@ -29,7 +29,7 @@ fn names_of_coordinates() {
     assert_eq!(OnWeld::CONFIGURATION, ["pivot"]);
 }
 
-/// Coordinates come in the order in which joints are declared, whatever the order along the tree.
+/// Coordinates are in the order in which joints are declared, for any order along the tree.
 #[test]
 fn joints_may_be_declared_in_any_order() {
     macro_rules! arm {
@@ -84,7 +84,7 @@ fn joints_may_be_declared_in_any_order() {
     assert_close("motor", turned_motor.as_slice(), motor.as_slice(), IDENTITY);
 }
 
-/// A free joint moves by the exponential of SE(3), for small and for large motions.
+/// A free joint moves by the exponential map of SE(3), for small and for large motions.
 #[test]
 fn free_joint_moves_on_a_screw() {
     let mut random = Random::new(16);
@@ -110,7 +110,8 @@ fn free_joint_moves_on_a_screw() {
     }
 }
 
-/// Joints with several coordinates are chains of pins and sleeves with nothing between them.
+/// Joints with several coordinates are equivalent to chains of pins and sleeves with massless bodies between
+/// them.
 #[test]
 fn joints_are_chains_of_pins_and_sleeves() {
     assert_same_dynamics(&OnCollar {}, &ChainedCollar {}, 10, IDENTITY);
@@ -122,7 +123,7 @@ fn joints_are_chains_of_pins_and_sleeves() {
     assert_same_dynamics(&OnStage3 {}, &ChainedStage3 {}, 10, IDENTITY);
 }
 
-/// A screw is a collar whose slide is the pitch times the turn.
+/// Checks that a screw is equivalent to a collar whose displacement is the pitch times the angle.
 macro_rules! check_screw {
     ($screw:expr, $pitch:expr) => {
         let (screw, collar, pitch): (_, _, f64) = ($screw, OnCollar {}, $pitch);
@@ -155,8 +156,8 @@ fn screw_is_a_collar_with_a_pitch() {
     check_screw!(OnScrewWithLead {}, 0.3 / std::f64::consts::TAU);
 }
 
-/// The state and acceleration of a ball or free joint that moves as a chain does: found from the chain's
-/// frames.
+/// Checks a ball or free joint against an equivalent chain, whose frames give the state and acceleration of
+/// the joint.
 macro_rules! check_against_chain {
     ($joint:ident, $chain:ident, $first:literal) => {
         let (joint, chain) = ($joint {}, $chain {});
@@ -165,8 +166,7 @@ macro_rules! check_against_chain {
         for _ in 0..10 {
             let (q, v, a) = (random.vector(1.0), random.vector(1.0), random.vector(1.0));
             let relative = chain.frame_placement(socket, &q).inv_mul(&chain.frame_placement(last, &q));
-            // Motion relative to the socket: that of the chain with the pivot at rest, in axes of the last
-            // body.
+            // Motion relative to the socket: that of the chain with a fixed pivot, in axes of the last body.
             let (mut v_only, mut a_only) = (v, a);
             (v_only[0], a_only[0]) = (0.0, 0.0);
             let back = chain.frame_placement(last, &q).rotation.inverse();
@@ -215,8 +215,8 @@ fn free_is_a_stage_and_three_pins() {
     check_against_chain!(OnFree, ChainedFree, 4);
 }
 
-/// What is welded together is one body, here with its mass in three particles at the same places as a
-/// triangle's.
+/// Bodies that are welded together are one rigid body. Here the mass is in three particles at the corners of
+/// a triangle.
 #[test]
 fn welded_bodies_are_one() {
     #[mechanism(gravity = -9.81 * y)]

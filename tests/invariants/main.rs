@@ -1,4 +1,4 @@
-//! What every mechanism obeys, whatever its equations are.
+//! Properties of every mechanism, independent of its equations.
 
 mod joints;
 
@@ -10,23 +10,25 @@ use support::mechanisms::*;
 use support::random::Random;
 use support::robots::*;
 
-/// Derivative at zero by central differences of fourth order; for motions of order one good to about 1e-11.
+/// Returns the derivative at zero by central differences of fourth order; for motions of unit magnitude the
+/// error is about 1e-11.
 fn rate<const R: usize, const C: usize>(f: impl Fn(f64) -> SMatrix<f64, R, C>) -> SMatrix<f64, R, C> {
     let h = 1e-3;
     ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
 }
 
-/// The same for a number.
+/// Returns the derivative of a scalar function at zero by central differences of fourth order.
 fn slope(f: impl Fn(f64) -> f64) -> f64 {
     rate(|s| SMatrix::<f64, 1, 1>::new(f(s)))[0]
 }
 
-/// Differences.
+/// Tolerance against finite differences.
 const RATE: f64 = 1e-8;
-/// Identities between generated functions.
+/// Tolerance of identities between generated functions.
 const IDENTITY: f64 = 1e-11;
 
-/// What follows from the trait alone. `dissipation` is the power that dashpots take at velocity `v`.
+/// Checks consequences of the trait alone. `dissipation` is the power that dashpots dissipate at velocity
+/// `v`.
 fn check<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     dissipation: impl Fn(&SVector<f64, NV>) -> f64,
@@ -114,7 +116,7 @@ fn check_configurations<M, const NQ: usize, const NV: usize, const NU: usize>(
     assert_close("difference", m.difference(q, &moved).as_slice(), dv.as_slice(), 1e-13);
 }
 
-/// Without dashpots, what depends on the velocity in the bias forces is quadratic in it.
+/// Checks that the velocity-dependent bias forces are quadratic in the velocity if there are no dashpots.
 fn check_undamped<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
@@ -166,7 +168,7 @@ undamped! {
     spacecraft: Spacecraft {},
 }
 
-/// Dashpots take `c v²`.
+/// Dashpots dissipate `c v²`.
 #[test]
 fn dashpots() {
     let m = workshop();
@@ -178,8 +180,8 @@ fn dashpots() {
 // ---- Frames and the mechanism as a
 // whole -------------------------------------------------------------------------
 
-/// Placement, velocity, acceleration and Jacobian of a frame, centre of mass and momentum: each is the rate
-/// of the one before it.
+/// Checks placement, velocity, acceleration and Jacobian of a frame, and centre of mass and momentum: each is
+/// the rate of the one before it.
 macro_rules! check_kinematics {
     ($mechanism:expr, $type:ident, $frame:literal) => {
         let m = $mechanism;
@@ -231,7 +233,7 @@ fn frames_move_as_they_say() {
     check_kinematics!(workshop(), Workshop, "tip");
 }
 
-/// A robot in the air: whatever its motors do, its momentum changes by its weight alone.
+/// Motors do not change the momentum of a robot in the air: it changes only by the robot's weight.
 #[test]
 fn motors_do_not_change_the_momentum() {
     let mut random = Random::new(6);
@@ -248,7 +250,7 @@ fn motors_do_not_change_the_momentum() {
 // ----
 // Inputs ------------------------------------------------------------------------------------------------------
 
-/// The power of an input is its force times the velocity of the point that it acts on.
+/// The power of an input is its force times the velocity of the point on which it acts.
 #[test]
 fn inputs_work_where_they_act() {
     let m = workshop();
@@ -286,8 +288,8 @@ fn inputs_work_where_they_act() {
 // ----
 // Motion ------------------------------------------------------------------------------------------------------
 
-/// Without anything outside that acts on it, a mechanism keeps its momentum and its energy, and its centre of
-/// mass moves straight on.
+/// Without external forces, a mechanism conserves its momentum and its energy, and its centre of mass moves
+/// uniformly.
 #[test]
 fn spacecraft_keeps_momentum_and_energy() {
     let m = Spacecraft {};
@@ -307,7 +309,8 @@ fn spacecraft_keeps_momentum_and_energy() {
     }
 }
 
-/// Along a driven and damped motion the energy changes by the work of the inputs less what the dashpots take.
+/// Along a driven and damped motion, the energy changes by the work of the inputs minus the energy that the
+/// dashpots dissipate.
 #[test]
 fn workshop_balances_its_energy() {
     let m = workshop();
@@ -328,7 +331,7 @@ fn workshop_balances_its_energy() {
     assert_eq!(samples.len(), 2001);
     let energy =
         |k: usize| m.kinetic_energy(&samples[k].q, &samples[k].v) + m.potential_energy(&samples[k].q);
-    // Simpson's rule.
+    // Integration by Simpson's rule.
     let weight = |k: usize| [1.0, 4.0, 2.0][if k == 0 || k == 2000 { 0 } else { 2 - k % 2 }];
     let work: f64 =
         samples.iter().enumerate().map(|(k, s)| weight(k) * power(s.t, &s.q, &s.v)).sum::<f64>() / 3e3;
@@ -338,7 +341,7 @@ fn workshop_balances_its_energy() {
 // ----
 // Scalars -----------------------------------------------------------------------------------------------------
 
-/// One struct for every scalar type.
+/// Mechanism that is generic over the scalar type.
 #[mechanism(gravity = -g * y)]
 struct Robot<T> {
     g: T,
@@ -391,8 +394,8 @@ fn scalar_types_agree() {
     }
 }
 
-/// A light arm that carries a heavy load: about parallel pins, so that two of three pivots of its mass matrix
-/// are small beside the first.
+/// Light arm with a heavy load, on parallel pins: two of the three pivots of its mass matrix are small
+/// relative to the first one.
 #[mechanism]
 struct Loaded {
     load: f64,
@@ -410,9 +413,9 @@ struct Loaded {
     wrist: Pin,
 }
 
-/// Accelerations under forces fulfil the equations of motion to rounding of their largest terms, whatever the
-/// load: by elimination of one pivot after another their error is that of a matrix that differs from it by
-/// rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, th. 10.4).
+/// Accelerations satisfy the equations of motion to rounding of the largest terms, for any load. The error of
+/// an elimination with successive pivots is that of a matrix with a perturbation of the magnitude of rounding
+/// (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, th. 10.4).
 #[test]
 fn heavy_loads_on_light_arms_leave_the_digits() {
     let (v, tau) = (Vector3::zeros(), Vector3::new(0.3, -0.2, 0.7));

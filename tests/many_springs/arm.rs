@@ -1,4 +1,5 @@
-//! An arm with a row of springs, compiled in process: what is derived and written of few springs and of many.
+//! Arm with a row of springs, compiled in process: derivation and generated code for few springs and for
+//! many.
 
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
@@ -11,7 +12,8 @@ use std::path::Path;
 use support::compare::assert_similar;
 use support::random::Random;
 
-/// An arm of three spatial pins with those springs of a row, and dashpots beside some.
+/// Returns the source of an arm of three spatial pins with a range of springs from a row, some of them with
+/// dashpots in parallel.
 fn arm(springs: Range<usize>) -> [TokenStream; 2] {
     let mut item = "struct Arm {".to_string();
     let mut parent = "ground".to_string();
@@ -49,7 +51,7 @@ fn compiled([arguments, item]: [TokenStream; 2]) -> Output {
     output
 }
 
-/// What a function gives at a state and an acceleration, with those that it calls.
+/// Returns the result of a function at a state and an acceleration, including the functions that it calls.
 fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
     let f = output.functions.iter().find(|f| f.name == name)?;
     let called = ["__passive_forces", "__passive_derivatives"].map(|other| match other == name {
@@ -68,7 +70,8 @@ fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
     Some(f.program.run(&at))
 }
 
-/// Forces of springs add up: few of them stand in every function, all of them in one that the others call.
+/// Forces of springs add up. With few springs every function contains their forces; with many springs one
+/// shared function does.
 #[test]
 fn many_springs_are_the_sum_of_few() {
     const EACH: usize = 20;
@@ -93,8 +96,8 @@ fn many_springs_are_the_sum_of_few() {
     }
 }
 
-/// Twice as many springs are twice as many operations, and twice as much text: they stand once in the forces,
-/// once in their derivatives and once in the energy.
+/// The numbers of operations and the length of the code are linear in the number of springs: they occur once
+/// in the forces, once in their derivatives and once in the energy.
 #[test]
 fn what_is_written_grows_as_springs_do() {
     let sizes = |springs: usize| {

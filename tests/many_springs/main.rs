@@ -1,5 +1,5 @@
-//! Mechanisms with so many springs that their forces are a function that the others call: energies, powers
-//! and differences know nothing of that.
+//! Mechanisms with so many springs that their forces are a shared function, which other functions call.
+//! Energies, powers and differences are consistent with it.
 
 mod arm;
 mod tent;
@@ -9,7 +9,7 @@ mod web;
 use linkwork::Mechanism;
 use linkwork::nalgebra::SVector;
 
-/// Derivative at zero by central differences of fourth order.
+/// Returns the derivative at zero by central differences of fourth order.
 fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
     let h = 1e-3;
     ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
@@ -19,7 +19,7 @@ fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
     SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
 }
 
-/// `∂U/∂q`, column by column.
+/// Returns `∂U/∂q`, component by component.
 fn gradient<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,

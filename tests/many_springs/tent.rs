@@ -1,4 +1,4 @@
-//! A tent: constraints, and springs that are driven in time.
+//! Tent: constraints, and springs whose ends are driven as functions of time.
 
 use super::gradient;
 use linkwork::nalgebra::SVector;
@@ -7,7 +7,7 @@ use linkwork::{Rheonomic, at};
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 
-/// Four bars in a plane, held by springs out of it and driven in time.
+/// Four bars in a plane, with springs out of the plane and a drive in time.
 #[mechanism(gravity = -9.81 * y)]
 struct Tent {
     k: f64,

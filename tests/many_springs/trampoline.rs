@@ -1,4 +1,4 @@
-//! A trampoline: its energies, its motion and its derivatives.
+//! Energies, motion and derivatives of a trampoline.
 
 use super::{gradient, slope, unit};
 use linkwork::nalgebra::SVector;
@@ -6,7 +6,7 @@ use linkwork::prelude::*;
 use support::compare::{assert_close, assert_same_dynamics, assert_similar};
 use support::random::Random;
 
-/// A deck on springs and dashpots around it, with a swinging arm.
+/// Deck on springs and dashpots around it, with a swinging arm.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare)]
 struct Trampoline<T> {
     k: T,
@@ -152,10 +152,10 @@ fn springs_pull_against_the_energy_that_they_store() {
             gradient(&m, &q).as_slice(),
             1e-9,
         );
-        // What is odd in the velocities is damping alone.
+        // Only the damping forces are odd in the velocities.
         let odd = (m.bias_forces(&q, &v) - m.bias_forces(&q, &-v)) * 0.5;
         assert_close("power", &[v.dot(&odd)], &[m.dissipated_power(&q, &v)], 1e-10);
-        // The function that the others call.
+        // The shared function of passive forces agrees.
         let passive = (m.__passive_forces(&q, &v) - m.__passive_forces(&q, &-v)) * 0.5;
         assert_close("dashpots", passive.as_slice(), odd.as_slice(), 1e-10);
     }

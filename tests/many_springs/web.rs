@@ -1,10 +1,10 @@
-//! A web: the function in lanes.
+//! Shared function of spring forces in SIMD lanes.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// Two links in a plane between springs out of it.
+/// Two links in a plane, with springs out of the plane.
 #[mechanism(derivatives, batch)]
 struct Web {
     k: f64,

@@ -1,5 +1,5 @@
-//! Published problems and closed forms. The numbers of `data/problems` name their sources; each test has the
-//! tolerance that its problem states.
+//! Published problems and closed-form solutions. The values of `data/problems` state their sources; each test
+//! has the tolerance that its problem states.
 
 mod pendulums;
 mod puma;

@@ -7,7 +7,7 @@ use support::compare::assert_close;
 use support::simulate::advance;
 use support::table::Record;
 
-/// Complete elliptic integral of the first kind of modulus `k`, by the arithmetic-geometric mean.
+/// Returns the complete elliptic integral of the first kind of modulus `k`, by the arithmetic-geometric mean.
 fn elliptic_k(k: f64) -> f64 {
     let (mut a, mut b) = (1.0_f64, (1.0 - k * k).sqrt());
     while (a - b).abs() > 1e-15 {
@@ -16,7 +16,7 @@ fn elliptic_k(k: f64) -> f64 {
     PI / (a + b)
 }
 
-/// A point mass on a massless rod.
+/// Point mass on a massless rod.
 #[mechanism(gravity = -9.81 * y)]
 struct Pendulum {
     #[body]
@@ -63,8 +63,8 @@ struct TwoPendulums {
     elbow: Pin,
 }
 
-/// Follows a trajectory given in absolute angles, to a hundred times the error that another program's
-/// integration in double precision was seen to have (DOP853): `errors` at the times of the table.
+/// Follows a trajectory in absolute angles, to a hundred times the error of another program's integration in
+/// double precision (DOP853): `errors` at the times of the table.
 fn check_two_pendulums<const N: usize>(name: &str, errors: [f64; N]) {
     let rows = Record::load("problems/pendulums.json").rows::<5>(name);
     assert_eq!(rows.len(), N + 1);
@@ -88,7 +88,7 @@ fn double_pendulum_with_small_angles() {
     check_two_pendulums("double_small", [4.7e-14, 2.8e-14, 2.2e-14, 2.2e-13]);
 }
 
-/// Five point masses.
+/// Chain of five point masses.
 #[mechanism(gravity = -9.81 * y)]
 struct FivePendulums {
     #[body]
@@ -123,7 +123,7 @@ struct FivePendulums {
     pin5: Pin,
 }
 
-/// In absolute angles θ: `M_ij = n_ij cos(θi − θj)` and `h_i = Σ_j n_ij sin(θi − θj) θ̇j² + n_ii g sin θi`,
+/// In absolute angles θ, `M_ij = n_ij cos(θi − θj)` and `h_i = Σ_j n_ij sin(θi − θj) θ̇j² + n_ii g sin θi`,
 /// where `n_ij` is the number of masses beyond both joints.
 #[test]
 fn chain_of_pendulums_by_its_closed_form() {
@@ -145,7 +145,7 @@ fn chain_of_pendulums_by_its_closed_form() {
     assert_close("potential energy", &[FivePendulums {}.potential_energy(&q)], &[energy], 1e-13);
 }
 
-/// A uniform rod on a pin at its end.
+/// Uniform rod on a pin at its end.
 #[mechanism(gravity = -g * y)]
 struct SwingingRod {
     g: f64,
@@ -157,7 +157,7 @@ struct SwingingRod {
     pin: Pin,
 }
 
-/// Period with amplitude: `4 K(sin(θ0 / 2)) √(I / (m g d))`.
+/// The period at the amplitude `θ0` is `4 K(sin(θ0 / 2)) √(I / (m g d))`.
 #[test]
 fn physical_pendulum_returns_after_its_period() {
     let rod = SwingingRod { g: 9.81, m: 2.3, l: 1.4 };
@@ -169,7 +169,7 @@ fn physical_pendulum_returns_after_its_period() {
     }
 }
 
-/// The pole's angle is measured clockwise from upright.
+/// Cart with a pole whose angle is measured clockwise from upright.
 #[mechanism(gravity = -9.81 * y)]
 struct CartWithPole {
     #[body(mass = 1)]

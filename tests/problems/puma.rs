@@ -1,4 +1,4 @@
-//! The arm PUMA 560.
+//! Dynamics of the PUMA 560 arm.
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{Matrix6, SVector, Vector6};
@@ -6,9 +6,9 @@ use std::f64::consts::FRAC_PI_2;
 use support::compare::assert_close;
 use support::table::Record;
 
-/// Standard Denavit–Hartenberg parameters: the joint turns about z of the link before, and its place on the
-/// link after is the inverse of `Tz(d) Tx(a) Rx(α)`. Inertias are parameters, since two of them are
-/// impossible.
+/// Arm with standard Denavit–Hartenberg parameters: each joint rotates about z of the previous link, and its
+/// pose on the next link is the inverse of `Tz(d) Tx(a) Rx(α)`. Inertias are parameters, since two of them
+/// are physically inconsistent.
 #[mechanism(gravity = -9.81 * z)]
 struct Puma560 {
     i1: f64,
@@ -59,7 +59,7 @@ fn puma560() {
     let turning = robot.bias_forces(&q, &v) - load;
     assert_close("Coriolis forces", turning.as_slice(), coriolis.as_slice(), 1e-12);
 
-    // Published to four decimals, with the motors' inertias Jm G² on the diagonal.
+    // Published to four decimals, with the reflected motor inertias Jm G² on the diagonal.
     let motor = Vector6::new(200e-6, 200e-6, 200e-6, 33e-6, 33e-6, 33e-6);
     let gear = Vector6::new(-62.6111, 107.815, -53.7063, 76.0364, 71.923, 76.686);
     let with_motors = mass_matrix + Matrix6::from_diagonal(&motor.component_mul(&gear).component_mul(&gear));

@@ -1,11 +1,11 @@
-//! Springs, dashpots, screws and blows.
+//! Springs, dashpots, screws and impulses.
 
 use linkwork::nalgebra::{Matrix2, SVector, Vector2, Vector3};
 use linkwork::{frame, mechanism};
 use support::compare::assert_close;
 use support::simulate::advance;
 
-/// A mass on a rail, and a wheel on a pin, each with a spring and a dashpot.
+/// Mass on a rail, and wheel on a pin, each with a spring and a dashpot.
 #[mechanism]
 struct Oscillators {
     m: f64,
@@ -32,7 +32,8 @@ struct Oscillators {
     torsion_dashpot: Dashpot,
 }
 
-/// `m ẍ + c ẋ + k x = 0` from `x0`, `v0` at time `t`, less than critically damped.
+/// Returns position and velocity at time `t` of `m ẍ + c ẋ + k x = 0` from `x0`, `v0`, for subcritical
+/// damping.
 fn damped(m: f64, c: f64, k: f64, [x0, v0]: [f64; 2], t: f64) -> [f64; 2] {
     let (decay, rate) = (c / (2.0 * m), (k / m - c * c / (4.0 * m * m)).sqrt());
     let (sin, cos) = (rate * t).sin_cos();
@@ -44,7 +45,7 @@ fn damped(m: f64, c: f64, k: f64, [x0, v0]: [f64; 2], t: f64) -> [f64; 2] {
 
 #[test]
 fn mass_spring_dashpot() {
-    // An inerter of 0.5 kg to the ground is half a kilogram more: the published number has both.
+    // An inerter of 0.5 kg to the ground acts as another half kilogram: the published value includes both.
     for (m, published) in [(2.5, Some(-0.223_423_268_884_342_75)), (2.0, None)] {
         let oscillators = Oscillators { m, j: 0.3, k: 50.0, c: 3.0, k_turn: 8.0, c_turn: 0.1 };
         let (q, v) = (Vector2::new(1.0, 0.5), Vector2::new(0.0, -2.0));
@@ -57,7 +58,7 @@ fn mass_spring_dashpot() {
     }
 }
 
-/// `v = v0 exp(−c t / m)`; the stopping distance is `m v0 / c`.
+/// A dashpot alone gives `v = v0 exp(−c t / m)`; the stopping distance is `m v0 / c`.
 #[test]
 fn dashpot_alone() {
     let oscillators = Oscillators { m: 2.0, j: 0.3, k: 0.0, c: 3.0, k_turn: 0.0, c_turn: 0.4 };
@@ -68,8 +69,8 @@ fn dashpot_alone() {
     assert_close("distances", q.as_slice(), &distances, 1e-13);
 }
 
-/// wall, k1 = 100, m1 = 2, k2 = 40, m2 = 1: the second mass slides on the first, so the second spring is on
-/// its joint.
+/// Wall, k1 = 100, m1 = 2, k2 = 40, m2 = 1. The second mass slides on the first one, so that the second
+/// spring acts on its joint.
 #[mechanism]
 struct TwoMasses {
     #[body(mass = 2)]
@@ -101,7 +102,7 @@ fn natural_frequencies_of_two_masses() {
     assert_close("ω²", squares.as_slice(), &[(220.0 - root) / 4.0, (220.0 + root) / 4.0], 1e-13);
 }
 
-/// A rod on a table, struck at a distance from its centre.
+/// Rod on a table that an impulse hits at a distance from its centre.
 #[mechanism]
 struct StruckRod {
     m: f64,
@@ -115,7 +116,7 @@ struct StruckRod {
     blow: Force,
 }
 
-/// The rod begins to turn about a point at `l² / (12 d)` on the other side of its centre.
+/// The rod starts to rotate about a point at `l² / (12 d)` on the other side of its centre.
 #[test]
 fn centre_of_percussion() {
     let rod = StruckRod { m: 1.2, l: 0.9, distance: 0.25 };
@@ -130,8 +131,9 @@ fn centre_of_percussion() {
     assert_close("change of velocity", change.as_slice(), &expected, 1e-14);
 }
 
-/// Falling flat at speed `v` on a stop at its end, with restitution e: an impulse of `m v (1 + e) / 4`, after
-/// which it turns at `1.5 (1 + e) v / l` and its centre falls at `v (3 − e) / 4`.
+/// A rod falls flat at the speed `v` on a stop at its end, with the restitution e. The impulse is
+/// `m v (1 + e) / 4`; afterwards the rod rotates at `1.5 (1 + e) v / l` and its centre falls at
+/// `v (3 − e) / 4`.
 #[test]
 fn falling_rod_strikes_a_stop() {
     let (m, l, speed, restitution) = (1.2, 0.9, 2.0, 0.6);
@@ -147,7 +149,7 @@ fn falling_rod_strikes_a_stop() {
     assert_close("restitution", &[end], &[speed * restitution], 1e-14);
 }
 
-/// A nut that slides down a fixed screw as it turns.
+/// Nut that slides down a fixed screw as it rotates.
 #[mechanism(gravity = -9.81 * z)]
 struct Nut {
     m: f64,
@@ -159,7 +161,7 @@ struct Nut {
     thread: Screw,
 }
 
-/// `θ̈ = −m g p / (J + m p²)`.
+/// The acceleration is `θ̈ = −m g p / (J + m p²)`.
 #[test]
 fn nut_on_a_screw() {
     let nut = Nut { m: 0.8, j: 0.002, p: 0.01 };

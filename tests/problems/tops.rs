@@ -1,4 +1,4 @@
-//! Tops and bodies that fly.
+//! Tops and bodies in free flight.
 
 use linkwork::mechanism;
 use linkwork::nalgebra::{SVector, Vector3, Vector6};
@@ -6,7 +6,7 @@ use support::compare::assert_close;
 use support::simulate::advance;
 use support::table::Record;
 
-/// Brüls, Cardona and Arnold's heavy top.
+/// Heavy top of Brüls, Cardona and Arnold.
 #[mechanism(gravity = -9.81 * z)]
 struct HeavyTop {
     #[body(mass = 15, com = y, inertia = diagonal(0.234375, 0.46875, 0.234375))]
@@ -15,7 +15,8 @@ struct HeavyTop {
     tip: Ball,
 }
 
-/// Two unit quaternions, the first x y z w and the second w x y z, are the same rotation.
+/// Checks that two unit quaternions are the same rotation. The components of the first are x y z w, those of
+/// the second w x y z.
 #[track_caller]
 fn assert_same_rotation(what: &str, actual: &[f64], [w, x, y, z]: [f64; 4], tolerance: f64) {
     let expected = [x, y, z, w];
@@ -50,7 +51,7 @@ fn heavy_top() {
     }
 }
 
-/// Euler's angles: precession, nutation, spin.
+/// Top in gimbals with Euler angles: precession, nutation, spin.
 #[mechanism(gravity = -10 * z)]
 struct TopOnGimbals {
     #[body]
@@ -88,11 +89,12 @@ fn steady_precession() {
         let spin = w3 - precession * angle.cos();
         let (q, v) = (Vector3::new(0.7, angle, 0.2), Vector3::new(precession, 0.0, spin));
         let acceleration = TopOnGimbals {}.forward_dynamics(&q, &v, &SVector::zeros());
-        // Forces of the order of I3 ω3 Ω cancel.
+        // Terms of the order of I3 ω3 Ω cancel.
         let rounding = 1e-13 * i3 * w3 * precession.max(1.0) / (i1 * angle.sin());
         assert_close("Euler's angles", acceleration.as_slice(), &[0.0; 3], rounding);
 
-        // The body turns about its axis faster than its angular velocity does, by the spin.
+        // The rotation of the body about its axis is faster than the component of its angular velocity, by
+        // the spin.
         let axis = Vector3::x() * angle;
         let orientation = linkwork::nalgebra::UnitQuaternion::from_scaled_axis(axis);
         let q = SVector::from_column_slice(orientation.coords.as_slice());
@@ -103,7 +105,7 @@ fn steady_precession() {
     }
 }
 
-/// A body on a ball joint at its centre of mass.
+/// Body on a ball joint at its centre of mass.
 #[mechanism]
 struct RigidBody {
     #[body(mass = 1, inertia = diagonal(1, 2, 3))]
@@ -112,7 +114,7 @@ struct RigidBody {
     center: Ball,
 }
 
-/// Rotation about the intermediate axis.
+/// Rotation about the intermediate axis is unstable.
 #[test]
 fn dzhanibekov() {
     let table = Record::load("problems/dzhanibekov.json");
@@ -128,7 +130,7 @@ fn dzhanibekov() {
     assert_close("after one period", v.as_slice(), start.as_slice(), 1e-9);
 }
 
-/// A body thrown into the air: its centre of mass on a parabola, its angular momentum constant.
+/// Body thrown into the air: its centre of mass moves on a parabola, and its angular momentum is constant.
 #[mechanism(gravity = -9.81 * z)]
 struct ThrownBody {
     #[body(mass = 1.5, com = [0.1, -0.2, 0.3], inertia = diagonal(0.2, 0.3, 0.4))]

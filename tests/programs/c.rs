@@ -1,4 +1,4 @@
-//! A controller without the standard library in a program in C: `models/examples/controller_for_c`.
+//! Controller without the standard library in a C program: `models/examples/controller_for_c`.
 #![cfg(unix)]
 
 use linkwork_programs::cargo;

@@ -1,4 +1,5 @@
-//! The choice of instructions at run time: the program in `tests/dispatch` compares both ways.
+//! Selection of instructions at run time: the program in `tests/dispatch` compares it with compile-time
+//! selection.
 #![cfg(unix)]
 
 use linkwork_programs::cargo;

@@ -1,11 +1,11 @@
-//! Packages of their own, in the folders beside this one, that tests build or run.
+//! Runs cargo for the packages in the neighbouring folders, which tests build or run.
 
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Calls cargo with a command for a package in release mode; it builds in the folder `packages` of `target`,
-/// which is `env!("CARGO_TARGET_TMPDIR")`: all packages share the compiler there. Without network, unless
-/// something is missing.
+/// Calls cargo with a command for a package in release mode. It builds in the folder `packages` of `target`,
+/// which is `env!("CARGO_TARGET_TMPDIR")`, so that all packages share the compiler. It uses the network only
+/// if a dependency is missing.
 pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("Cargo.toml");
     let cargo = |network: &[&str]| {
@@ -22,6 +22,6 @@ pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
     };
     let offline = cargo(&["--offline"]);
     let text = String::from_utf8_lossy(&offline.stderr);
-    // A crate that nothing else of the workspace needs may not have been fetched yet.
+    // A crate that no other package of the workspace needs may not have been downloaded yet.
     if offline.status.success() || !text.contains("--offline") { offline } else { cargo(&[]) }
 }

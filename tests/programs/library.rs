@@ -1,5 +1,5 @@
-//! A library of a mechanism under constraints, written by the command `linkwork`, in a program in C:
-//! `library/main.c`.
+//! C program (`library/main.c`) that uses a library of a constrained mechanism, which the command `linkwork`
+//! generates.
 #![cfg(unix)]
 
 use linkwork_programs::cargo;
@@ -15,7 +15,7 @@ fn is_done(what: &str, output: &Output) {
 #[test]
 fn a_program_in_c_moves_a_bead_on_a_wire() {
     let (target, own) = (Path::new(env!("CARGO_TARGET_TMPDIR")), Path::new(env!("CARGO_MANIFEST_DIR")));
-    // Beside these tests: without optimisation it is there sooner.
+    // The command is built next to these tests; without optimisation the build is faster.
     let mut build = Command::new(env!("CARGO"));
     let beside = target.parent().expect("it is in a folder for what is built");
     build.args(["build", "--offline", "-p", "linkwork-cli", "--target-dir"]).arg(beside);
@@ -29,7 +29,7 @@ fn a_program_in_c_moves_a_bead_on_a_wire() {
         "the library is written",
         &export.args(arguments).arg(&folder).current_dir(&home).output().unwrap(),
     );
-    // With the versions that the other programs have, so that they share the compiler.
+    // The versions are those of the other programs, so that all share the compiler.
     std::fs::copy(own.join("../../Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     let crate_of_it = folder.to_str().expect("a path of this machine");
     is_done("the library is built", &cargo(&["build"], crate_of_it, env!("CARGO_TARGET_TMPDIR")));

@@ -1,5 +1,5 @@
-//! Generated code needs no standard library and no allocator, and there is no way to a panic in it: the
-//! program in `tests/no_std` has a panic handler that cannot be linked.
+//! Generated code needs no standard library and no allocator, and contains no panic: the program in
+//! `tests/no_std` has a panic handler that cannot be linked.
 #![cfg(unix)]
 
 use linkwork_programs::cargo;

@@ -1,43 +1,43 @@
-//! Random mechanisms with alike limbs, in the words of the language; some with elements between the limbs, or
-//! between a limb and what carries it or the ground.
+//! Random mechanisms with isomorphic limbs, in the language of the macro. Some have elements between the
+//! limbs, or between a limb and the trunk or the ground.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::fmt::Write;
 
-/// A mechanism whose limbs have the same joints, and figures of their own.
+/// Mechanism whose limbs have the same joints, with parameters of their own.
 #[derive(Clone, Debug)]
 pub struct Creature {
-    /// What carries the limbs.
+    /// Index into `TRUNKS` of the body that carries the limbs.
     trunk: usize,
     limbs: usize,
-    /// The joints of every limb, by index into `KINDS`, each with its axis.
+    /// Joints of each limb, by index into `KINDS`, each with its axis.
     joints: Vec<(usize, usize)>,
-    /// The last two joints of a limb hang side by side.
+    /// Whether the last two joints of a limb have the same parent.
     forked: bool,
-    /// Limbs are mirror images of each other, or differ in all figures.
+    /// Whether limbs are mirror images of each other; otherwise all their values differ.
     mirrored: bool,
-    /// Masses are parameters: some of all limbs, some of each.
+    /// Whether masses are parameters: some shared by all limbs, some of each limb.
     symbolic: bool,
-    /// Joints have springs and dashpots.
+    /// Whether joints have springs and dashpots.
     sprung: bool,
-    /// What acts between limbs.
+    /// Elements between limbs.
     interactions: Vec<Interaction>,
     numbers: Vec<f64>,
 }
 
-/// An element between two places.
+/// Element between two points.
 #[derive(Clone, Debug)]
 struct Interaction {
     /// Index into `INTERACTIONS`.
     kind: usize,
-    /// Limb and joint of the first end, by which its body is named too.
+    /// Limb and joint of the first end, which also determine its body.
     first: (usize, usize),
-    /// Those of the second end; the ground, or what carries the limbs, for a limb that there is not.
+    /// Limb and joint of the second end. A limb index out of range means the ground or the trunk.
     second: (usize, usize),
 }
 
-/// Elements between places `@a` and `@b`, or between coordinates `@p` and `@q` with one velocity.
+/// Elements between points `@a` and `@b`, or between coordinates `@p` and `@q` with one velocity each.
 const INTERACTIONS: [&str; 13] = [
     "#[acts(between = (@a, @b), stiffness = 3, free_length = 0.2)] #: Spring,",
     "#[acts(between = (@a, @b), force = 2 * stretch + pow(stretch, 3), free_length = 0.3)] #: Spring,",
@@ -54,13 +54,13 @@ const INTERACTIONS: [&str; 13] = [
     "#[constraint(norm(r(@a / @b)) = 1.3)] #: Holonomic,",
 ];
 
-/// From here on elements act on coordinates.
+/// Range of the elements that act on coordinates.
 const ON_COORDINATES: std::ops::Range<usize> = 8..12;
 
 const TRUNKS: [&str; 4] = ["ground", "free body", "pinned body", "arm on a free body"];
 const KINDS: [&str; 4] = ["Pin", "Sleeve", "Screw", "Ball"];
 
-/// Creatures with two to five limbs of up to `joints` joints.
+/// Returns creatures with two to five limbs of up to `joints` joints.
 pub fn creatures(joints: usize) -> impl Strategy<Value = Creature> {
     let kinds = vec((0..KINDS.len(), 0..3_usize), 1..=joints);
     let end = || (0..7_usize, 0..4_usize);
@@ -77,7 +77,7 @@ pub fn creatures(joints: usize) -> impl Strategy<Value = Creature> {
 }
 
 impl Creature {
-    /// The attribute's arguments and the struct.
+    /// Returns the attribute's arguments and the struct.
     pub fn source(&self) -> (String, String) {
         let mut fields = String::new();
         if self.symbolic {
@@ -100,7 +100,7 @@ impl Creature {
         ("gravity = [0.3, -1.2, -9.0]".to_string(), format!("pub struct Creature {{\n{fields}}}"))
     }
 
-    /// Name and kind of joint `k` of a limb.
+    /// Returns name and kind of joint `k` of a limb.
     fn joint(&self, (limb, k): (usize, usize)) -> (String, &'static str) {
         let k = k % self.joints.len();
         (format!("joint{}_{k}", limb % self.limbs), KINDS[self.joints[k].0])
@@ -146,7 +146,7 @@ impl Creature {
         "trunk"
     }
 
-    /// A figure of joint `k`: of all limbs, or of this one.
+    /// Returns a random number for joint `k`, shared by all limbs if they are mirrored.
     fn number(&self, limb: usize, k: usize, which: usize) -> f64 {
         let own = if self.mirrored { 0 } else { 17 * limb };
         self.numbers[(own + 7 * k + which) % self.numbers.len()]
@@ -155,7 +155,7 @@ impl Creature {
     fn write_joint(&self, limb: usize, k: usize, parent: &str, out: &mut String) {
         let (kind, axis) = self.joints[k];
         let n = |which: usize| self.number(limb, k, which);
-        // Left and right, front and back.
+        // Signs of mirrored limbs: left and right, front and back.
         let side = if limb.is_multiple_of(2) { 1.0 } else { -1.0 };
         let end = if limb / 2 == 0 { 1.0 } else { -1.0 };
         let mass = match (self.symbolic, k % 2) {

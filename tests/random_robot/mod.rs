@@ -1,16 +1,16 @@
-//! Random robots as exporters write them: frames by right angles and a few other angles, all figures with
-//! noise.
+//! Random robots with the rounding noise of exporters: frames rotated by right angles and a few other angles,
+//! with noise in all values.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 
-/// A tree of pins and sleeves.
+/// Tree of pins and sleeves.
 #[derive(Clone, Debug)]
 pub struct Robot {
     links: Vec<Link>,
-    /// Noise of angles, of axes, and of lengths beside the length itself.
+    /// Magnitudes of the noise of angles, axes and lengths (absolute).
     noise: [f64; 3],
 }
 
@@ -18,17 +18,17 @@ pub struct Robot {
 struct Link {
     parent: usize,
     slides: bool,
-    /// By how many right angles it is turned about each axis of its parent; the last counts of four means
-    /// another angle.
+    /// Number of right angles of the rotation about each axis of the parent; the value four means another
+    /// angle.
     turns: [usize; 3],
-    /// Which components of its place, and of its centre of mass, are there at all.
+    /// Components of the position and of the centre of mass that are not zero.
     present: [bool; 6],
-    /// Lengths are of this size.
+    /// Magnitude of lengths, m.
     size: f64,
     numbers: Vec<f64>,
 }
 
-/// Robots with up to `joints` joints, with noise of 1e-16 to 1e-3 in angles and axes, none, or some of each.
+/// Returns robots with up to `joints` joints. The noise in angles, axes and lengths is 0, or 1e-16 to 1e-3.
 pub fn robots(joints: usize) -> impl Strategy<Value = Robot> {
     let noise = || prop_oneof![1 => Just(0.0), 4 => (-16.0..-3.0_f64).prop_map(|e| 10.0_f64.powf(e))];
     let link =
@@ -48,7 +48,7 @@ pub fn robots(joints: usize) -> impl Strategy<Value = Robot> {
 }
 
 impl Robot {
-    /// The attribute's arguments and the struct.
+    /// Returns the attribute's arguments and the struct.
     pub fn source(&self) -> (String, String) {
         let mut fields = String::new();
         for (k, link) in self.links.iter().enumerate() {
@@ -59,7 +59,7 @@ impl Robot {
 }
 
 impl Link {
-    /// Three lengths, some of them noise alone.
+    /// Returns three lengths, some of which consist only of noise.
     fn vector(&self, first: usize, noise: f64) -> String {
         let component = |i: usize| {
             let there = self.present[first + i];

@@ -1,5 +1,5 @@
-//! Random mechanisms in random generalized speeds: all functions are those in the velocities of the joints,
-//! exchanged by `u = Y(q) v` as Kane's definitions say, and derivatives are limits of differences.
+//! Random mechanisms with random generalized speeds. All functions equal those in joint velocities,
+//! transformed by Kane's definition `u = Y(q) v`, and derivatives are limits of differences.
 
 use super::random_tree::{Tree, trees};
 use linkwork_compiler::derive::Output;
@@ -15,16 +15,16 @@ use std::fmt::Write;
 use std::path::Path;
 use support::random::{Random, config};
 
-/// Words whose functions are compared.
+/// Options whose functions are compared.
 const WORDS: &str = "derivatives, momentum_derivatives, centroidal, hamilton, regressor, sensitivities";
-/// Relative to the largest entry.
+/// Tolerance relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
-/// Of differences of order six.
+/// Tolerance against differences of order six.
 const DIFFERENCES: f64 = 1e-7;
 
 type Vector = Vec<f64>;
 
-/// A state with everything that functions may depend on.
+/// State with all other arguments of the functions.
 #[derive(Clone, Default)]
 struct State {
     q: Vector,
@@ -49,7 +49,7 @@ impl State {
     }
 }
 
-/// A compiled mechanism.
+/// Compiled mechanism: its model and its generated functions.
 struct Compiled<'g> {
     model: Model<'g>,
     output: Output,
@@ -76,7 +76,7 @@ impl<'g> Compiled<'g> {
         function.program.run(&|s| state.value(s))
     }
 
-    /// Rates of the configuration where the joints have the velocities `v`.
+    /// Returns the rates of the configuration at the joint velocities `v`.
     fn moving(&self, q: &[f64], v: &[f64]) -> Vector {
         let native = Model { speeds: None, ..self.model.clone() };
         let rates: Vec<Expr<'_>> = (0..native.nq()).map(|k| configuration_rate(native.space(), k)).collect();
@@ -85,7 +85,7 @@ impl<'g> Compiled<'g> {
     }
 }
 
-/// Matrices of the exchange at a configuration: `Y` and `Z`, row by row.
+/// Returns the matrices `Y` and `Z` of the transformation at a configuration, as lists of rows.
 fn exchange(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
     let speeds = model.speeds.as_ref().expect("there are speeds");
     let state = State { q: q.to_vec(), ..State::default() };
@@ -100,7 +100,7 @@ fn transposed(m: &[Vector]) -> Vec<Vector> {
     (0..m[0].len()).map(|j| m.iter().map(|row| row[j]).collect()).collect()
 }
 
-/// A matrix of `rows` rows that is given column by column.
+/// Returns the rows of a matrix with `rows` rows from its column-major entries.
 fn matrix(e: &[f64], rows: usize) -> Vec<Vector> {
     (0..rows).map(|i| e.chunks(rows).map(|column| column[i]).collect()).collect()
 }
@@ -119,7 +119,7 @@ fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
     }
 }
 
-/// The derivative of a vector along a line by central differences of order six.
+/// Returns the derivative of a vector function at zero by central differences of order six.
 fn slope(f: impl Fn(f64) -> Vector) -> Vector {
     let h = 4e-3;
     let mut sum = vec![0.0; f(0.0).len()];
@@ -135,8 +135,9 @@ fn along(x: &[f64], e: f64, d: &[f64]) -> Vector {
     x.iter().zip(d).map(|(x, d)| x + e * d).collect()
 }
 
-/// Speeds for some of the velocities: combinations of neighbours with coefficients of coordinates, and
-/// angular velocities of bodies on ball joints in the axes of the ground.
+/// Returns declarations of generalized speeds for some of the velocities: combinations of neighbouring rates
+/// with coefficients that depend on coordinates, and angular velocities of bodies on ball joints in the axes
+/// of their parents.
 fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     let names: Vec<&String> = plain
         .charts
@@ -173,14 +174,14 @@ fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     text
 }
 
-/// False for trees that have no plain coordinates or balls to choose speeds of, and those that do not
-/// compile.
+/// Checks a tree with random generalized speeds. Returns `false` for trees without plain coordinates or ball
+/// joints, and for trees that do not compile.
 fn check(tree: &Tree, seed: u64) -> bool {
     let (arguments, item) = tree.source();
     let arguments = format!("{arguments}, {WORDS}");
     let graph = Graph::new();
     let plain = Compiled::of(&(arguments.clone(), item.clone()), &graph);
-    // Trees with too much, or without inertia somewhere, are others' matter.
+    // Other tests cover trees that the compiler rejects.
     let Ok(plain) = plain else { return false };
     let mut random = Random::new(seed);
     let speeds = declared(&plain.model, &item, &mut random);
@@ -258,7 +259,7 @@ fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Rando
     check_derivatives(plain, with, &ours, &z);
 }
 
-/// What is a rate along the motion.
+/// Checks the functions that are rates along the motion.
 fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: &State) {
     let n = plain.model.nv();
     let way = plain.moving(&ours.q, &theirs.v);
@@ -272,7 +273,7 @@ fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: 
     let steady = |e: f64| State { v: ours.v.clone(), ..at(e) };
     let bias = slope(|e| times(&matrix_of("centroidal_momentum_matrix", &steady(e), 6), &ours.v));
     assert_close("centroidal bias", &with.run("centroidal_momentum_bias", &still), &bias, DIFFERENCES);
-    // The Coriolis matrix: `Ṁ − 2 C` is skew.
+    // `Ṁ − 2 C` is skew-symmetric for the Coriolis matrix `C`.
     let mass_rate = matrix(&slope(|e| with.run("mass_matrix", &at(e))), n);
     let coriolis = matrix_of("coriolis_matrix", ours, n);
     let skew = |i: usize, j: usize| mass_rate[i][j] - 2.0 * coriolis[i][j];
@@ -280,7 +281,8 @@ fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: 
     assert_close("skew", &sums, &vec![0.0; n * n], DIFFERENCES * 10.0);
 }
 
-/// Derivatives along the configurations that move with a speed, by speeds and by parameters.
+/// Checks the derivatives with respect to the configuration (along unit generalized speeds) and to the
+/// speeds.
 fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z: &[Vector]) {
     let n = plain.model.nv();
     let column = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
@@ -301,7 +303,7 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
     {
         assert_close(function, &with.run(function, ours), &expected(name), DIFFERENCES);
     }
-    // `∂u̇/∂x = −M⁻¹ ∂τ/∂x` at the accelerations: what the outputs are made of.
+    // `∂u̇/∂x = −M⁻¹ ∂τ/∂x` at fixed accelerations: the function returns the factors of this product.
     let outputs = with.run("forward_dynamics_derivatives", ours);
     let inverse = matrix(&outputs[2 * n * n..3 * n * n], n);
     let found: Vector = outputs[..2 * n * n]
@@ -321,7 +323,7 @@ proptest! {
     }
 }
 
-/// The equations of a mechanism with these fields.
+/// Returns the printed equations of a mechanism with these fields.
 fn printed(arguments: &str, fields: &str) -> String {
     let graph = Graph::new();
     let source = (arguments.to_string(), format!("pub struct Printed {{ {fields} }}"));
@@ -329,7 +331,7 @@ fn printed(arguments: &str, fields: &str) -> String {
     found.output.equations.plain
 }
 
-/// Three hinges that turn a body by Euler's angles about its centre of mass.
+/// Three hinges that rotate a body by Euler angles about its centre of mass.
 const BODY: &str = "a: f64, b: f64, c: f64,
     #[body(mass = 0, inertia = 0)] first: Body, #[body(mass = 0, inertia = 0)] second: Body,
     #[body(mass = 1, inertia = diagonal(a, b, c))] rotor: Body,
@@ -337,7 +339,7 @@ const BODY: &str = "a: f64, b: f64, c: f64,
     #[joint(first -> second, about = x)] theta: Pin,
     #[joint(second -> rotor, about = z)] phi: Pin,";
 
-/// Euler's equations, as Kane and Levinson (1985) and every textbook print them.
+/// The printed equations are Euler's, in the form of Kane and Levinson (1985) and other textbooks.
 #[test]
 fn a_rigid_body_in_body_axes_prints_eulers_equations() {
     let speeds = "#[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))] wx: Speed,
@@ -355,7 +357,7 @@ fn a_rigid_body_in_body_axes_prints_eulers_equations() {
     assert!(!text.contains("psi''"), "{text}");
 }
 
-/// Kane's rolling disk.
+/// The printed equations of a rolling disk are Kane's.
 #[test]
 fn a_rolling_disk_prints_kanes_equations() {
     let fields = "m: f64, g: f64, radius: f64,
@@ -371,8 +373,8 @@ fn a_rolling_disk_prints_kanes_equations() {
         #[speed(dot(omega(disk / ground), leaning.y))] u2: Speed,
         #[speed(dot(omega(disk / ground), leaning.z))] u3: Speed,";
     let text = printed("gravity = -g * z", fields);
-    // About the axis of lean nothing but inertia acts: `I u3' + J u1 u2 − I u1 u3 tan(lean)` with
-    // `I = m r²/4`, `J = m r²/2`.
+    // About the lean axis only inertia acts: `I u3' + J u1 u2 − I u1 u3 tan(lean)` with `I = m r²/4`,
+    // `J = m r²/2`.
     for line in [
         "heading' = u3/cos(lean)\n",
         "roll' = u2 - sin(lean) u3/cos(lean)\n",

@@ -1,35 +1,34 @@
-//! Random mechanisms in the words of the language.
+//! Random mechanisms in the language of the macro.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::fmt::Write;
 
-/// A joint with its child body.
+/// Joint with its child body.
 #[derive(Clone, Debug)]
 struct Limb {
     kind: usize,
     parent: usize,
-    /// Numbers that decide axes, places, masses.
+    /// Random numbers that determine axes, positions and masses.
     numbers: Vec<f64>,
-    /// Axes are coordinate axes, as in most machines, or general directions.
+    /// Whether axes are coordinate axes, as in most machines, instead of general directions.
     plain_axes: bool,
-    /// Masses and lengths are parameters instead of numbers.
+    /// Whether masses and lengths are parameters instead of numbers.
     symbolic: bool,
 }
 
-/// A random tree of bodies.
+/// Random tree of bodies.
 #[derive(Clone, Debug)]
 pub struct Tree {
     limbs: Vec<Limb>,
-    /// Elements between two bodies, by index into `TIES`; the ground stands for the first body where the
-    /// second is the same.
+    /// Elements between two bodies: index into `TIES`, first body, second body. If both bodies are the same,
+    /// one end is on the ground.
     ties: Vec<(usize, usize, usize)>,
     gravity: [f64; 3],
 }
 
-/// Elements between places `@a` and `@b` of bodies or the ground, of which the first is a body: what has
-/// inertia, stores, dissipates and drives, and particles that are placed along axes of the body or the
-/// ground.
+/// Elements between points `@a` and `@b` of bodies or the ground, of which the first is on a body. They have
+/// inertia, store, dissipate or supply energy, or are particles placed along axes of the body or the ground.
 const TIES: [&str; 9] = [
     "#[acts(between = (@b, @a), stiffness = 3, free_length = 0.2)] #: Spring,",
     "#[acts(between = (@b, @a), damping = 0.6)] #: Dashpot,",
@@ -42,8 +41,8 @@ const TIES: [&str; 9] = [
     "#[acts(on = @o, value = 0.3 * @o.x - 0.4 * omega(@o / ground))] #: Torque,",
 ];
 
-/// Trees with up to `joints` joints, of which more than usual move freely, with elements between their bodies
-/// and the ground.
+/// Returns trees with up to `joints` joints, with more free joints than `trees` has, and with elements
+/// between their bodies and the ground.
 #[allow(dead_code, reason = "not every test that has trees has tied ones")]
 pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
     let ties = vec((0..TIES.len(), 0..8_usize, 0..8_usize), 0..=3);
@@ -56,7 +55,7 @@ pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
     })
 }
 
-/// Trees with up to `joints` joints of any kind.
+/// Returns trees with up to `joints` joints of any kind.
 pub fn trees(joints: usize) -> impl Strategy<Value = Tree> {
     let limb = (0..KINDS.len(), 0_usize..8, vec(-1.0..1.0_f64, 24), any::<bool>(), any::<bool>()).prop_map(
         |(kind, parent, numbers, plain_axes, symbolic)| Limb { kind, parent, numbers, plain_axes, symbolic },
@@ -68,7 +67,7 @@ pub fn trees(joints: usize) -> impl Strategy<Value = Tree> {
 const KINDS: [&str; 11] =
     ["Pin", "Sleeve", "Screw", "Collar", "Slot", "Universal", "Ball", "Planar", "Stage", "Free", "Weld"];
 
-/// Coordinates of each kind that a spring or an input can act on, with true for an angle.
+/// Returns the suffixes of the coordinates on which a spring or an input can act, with `true` for an angle.
 fn coordinates(kind: &str) -> &'static [(&'static str, bool)] {
     match kind {
         "Pin" | "Screw" => &[("", true)],
@@ -82,10 +81,10 @@ fn coordinates(kind: &str) -> &'static [(&'static str, bool)] {
 }
 
 impl Tree {
-    /// The attribute's arguments and the struct.
+    /// Returns the attribute's arguments and the struct.
     pub fn source(&self) -> (String, String) {
         let mut fields = String::new();
-        // The first joint moves, so that there is something to do.
+        // The first joint must be movable, so that the mechanism has a degree of freedom.
         for (k, limb) in self.limbs.iter().enumerate() {
             limb.write(k, &mut fields);
         }
@@ -139,7 +138,8 @@ impl Limb {
             self.number(6)
         );
         let parent = if k == 0 { "ground".to_string() } else { format!("body{}", self.parent % k) };
-        // A joint off its parent's centre, turned on both sides; sometimes plainly placed.
+        // The joint is off its parent's centre, with rotations on both sides; with plain axes it has only an
+        // offset.
         let parent_end = match self.plain_axes {
             true => format!("{parent}.at({l} * x)"),
             false => format!(
@@ -187,7 +187,7 @@ impl Limb {
                 self.number(18).abs()
             );
         }
-        // What hangs on the ground by welds alone does not move, and the language refuses to push it.
+        // A body that only welds connect to the ground does not move, and the language rejects forces on it.
         if kind == "Weld" {
             return;
         }

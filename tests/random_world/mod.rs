@@ -1,19 +1,20 @@
-//! Random mechanisms with every element of the language that is not a joint: free coordinates, frames and
-//! points that move by coordinates and time, bodies and particles placed by them, some of them alike, springs
-//! and inerters between points, potentials, dissipation functions, forces with a value, and outputs.
+//! Random mechanisms with every element of the language that is not a joint. They contain free coordinates,
+//! frames and points that move as functions of coordinates and time, bodies and particles placed by them
+//! (some of them identical), springs and inerters between points, potentials, dissipation functions, forces
+//! with a value, and outputs.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::fmt::Write;
 
-/// A mechanism.
+/// Random mechanism with all elements other than joints.
 #[derive(Clone, Debug)]
 pub struct World {
     root: usize,
     numbers: Vec<f64>,
-    /// Which of the elements that act are there.
+    /// Whether each element of `ACTIONS` is present.
     chosen: Vec<bool>,
-    /// Something is driven in time.
+    /// Whether the mechanism depends on time.
     time: bool,
 }
 
@@ -29,14 +30,14 @@ const ROOTS: [&str; 8] = [
     "Planar, about = z",
 ];
 
-/// Random mechanisms.
+/// Returns random mechanisms.
 pub fn worlds() -> impl Strategy<Value = World> {
     (0..ROOTS.len(), vec(-1.0..1.0_f64, 24), vec(any::<bool>(), ACTIONS.len()), any::<bool>())
         .prop_map(|(root, numbers, chosen, time)| World { root, numbers, chosen, time })
 }
 
-/// What places the others. `#` is a random number, `@` an expression of time, or a number if nothing is
-/// driven.
+/// Bodies, frames and points of the mechanism. `#` is a random number, `@` an expression of time, or a number
+/// if the mechanism does not depend on time.
 const PLACES: &str = "
     throttle: Input,
     first: Coordinate,
@@ -65,7 +66,7 @@ const PLACES: &str = "
     #[define(dot(drift, drift) + # * first)] measure: Scalar,
 ";
 
-/// What acts.
+/// Force elements, each of which may be absent.
 const ACTIONS: [&str; 21] = [
     "#[acts(between = (bead, base.at([#, #, 0.3])), stiffness = 3, free_length = 0.4)] e0: Spring,",
     "#[acts(between = (hook, pendant), force = 3 * stretch + 2 * pow(stretch, 3) + 0.4, free_length = 0.2)] e1: Spring,",
@@ -90,7 +91,7 @@ const ACTIONS: [&str; 21] = [
     "#[acts(on = pendant, along = turning.x + y)] e20: Force,",
 ];
 
-/// What is looked at: a name, whether it is a vector, the expression, the axes.
+/// Outputs: the name, the expression, and the frame of its axes.
 pub const OUTPUTS: [(&str, &str, &str); 18] = [
     ("r1", "r(pendant / hook)", "carried"),
     ("v1", "v(pendant / hook / carried)", "carried"),
@@ -113,7 +114,7 @@ pub const OUTPUTS: [(&str, &str, &str); 18] = [
 ];
 
 impl World {
-    /// The attribute's arguments and the struct.
+    /// Returns the attribute's arguments and the struct.
     pub fn source(&self) -> (String, String) {
         let mut template = PLACES.to_string();
         for (action, _) in ACTIONS.iter().zip(&self.chosen).filter(|(_, chosen)| **chosen) {

@@ -1,12 +1,12 @@
-//! Second derivatives under constraints: against automatic differentiation of equations that are written by
-//! hand, and against differences of first ones on loops and rolling in space.
+//! Second derivatives under constraints, against automatic differentiation of hand-written equations, and
+//! against differences of first derivatives for loops and spatial rolling.
 
 use super::hyper::{Hyper, solve};
 use super::{TOLERANCE, assert_block, check, check_steps_from};
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// A four-bar linkage with a motor on its crank and a spring across.
+/// Four-bar linkage with a motor on its crank and a spring across the loop.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
 struct FourBar {
     #[body(mass = 1.0, com = 0.2 * x, inertia = diagonal(0.01, 0.02, 0.03))]
@@ -29,7 +29,7 @@ struct FourBar {
     spring: Spring,
 }
 
-/// A flying body and a rod on a ball joint, which a ball joint ties to each other.
+/// Flying body with a rod on a ball joint; a second ball joint closes the loop.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
 pub struct Tied {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.05, 0.06, 0.07))]
@@ -46,7 +46,7 @@ pub struct Tied {
     rotor: Force,
 }
 
-/// A marble with its centre of mass off its middle, on a plane.
+/// Marble on a plane, with its centre of mass off its geometric centre.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
 pub struct Marble {
     #[body(mass = 0.5, com = 0.05 * x, inertia = diagonal(0.01, 0.012, 0.013))]
@@ -59,8 +59,8 @@ pub struct Marble {
     fan: Force,
 }
 
-/// Two arms with point masses on a cart, whose hand stays at a distance from a peg that is driven, while one
-/// rate follows another.
+/// Two arms with point masses on a cart. The hand stays at a constant distance from a driven peg, while one
+/// rate is a function of another.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
 struct Driven {
     sway: f64,
@@ -86,14 +86,15 @@ struct Driven {
     push: Force,
 }
 
-/// Its accelerations by Lagrange's equations with multipliers: `x` has configuration, velocity and forces.
+/// Returns the accelerations of `Driven` by Lagrange's equations with multipliers; `x` has configuration,
+/// velocity and forces.
 fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
     let ([_, q1, q2, v0, v1, v2, ..], number) = (*x, Hyper::of);
     let (masses, reach, gravity) =
         ([number(0.8), number(0.7), number(0.4)], [0.9, 0.7].map(number), number(9.81));
     let ((s, c), (s2, c2), zero) = (q1.sin_cos(), (q1 + q2).sin_cos(), number(0.0));
     let (turn, both) = (v1 * v1, (v1 + v2) * (v1 + v2));
-    // Columns of the Jacobian of each mass, and its acceleration without v̇.
+    // Columns of the Jacobian of each mass, and its acceleration for zero v̇.
     let (along, across) = ([reach[0] * c, reach[0] * s], [reach[1] * c2, reach[1] * s2]);
     let hand = [[number(1.0), zero], [along[0] + across[0], along[1] + across[1]], across];
     let columns =
@@ -105,7 +106,7 @@ fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
     let over = |f: &dyn Fn(usize) -> Hyper| masses.iter().zip(0..).fold(zero, |sum, (m, k)| sum + *m * f(k));
     let mass = |i: usize, j: usize| over(&|k| dot(columns[k][i], columns[k][j]));
     let bias = |i: usize| over(&|k| dot(columns[k][i], own[k]) + gravity * columns[k][i][1]);
-    // The distance from the peg, squared.
+    // Squared distance from the peg.
     let (wave, slope) = (sway * t).sin_cos();
     let peg = [number(1.0), number(0.2 * wave - 1.1)];
     let place = [x[0] + reach[0] * s + reach[1] * s2, -(reach[0] * c + reach[1] * c2)];
@@ -129,7 +130,7 @@ fn accelerations(sway: f64, t: f64, x: &[Hyper; 9]) -> [Hyper; 3] {
     [a, b, c]
 }
 
-/// Second derivatives of `λᵀ v̇` by all that it depends on.
+/// Returns the second derivatives of `λᵀ v̇` with respect to configuration, velocity and forces.
 fn hessian(sway: f64, t: f64, x: &SVector<f64, 9>, lambda: &SVector<f64, 3>) -> SMatrix<f64, 9, 9> {
     SMatrix::from_fn(|i, j| {
         let along = |k: usize, direction: usize| if k == direction { 1.0 } else { 0.0 };
@@ -178,7 +179,7 @@ fn jacobians_of_constrained_steps_change_as_second_derivatives_say() {
     let q = m.assemble(&[0.9, -0.5, 1.6].into(), &[0]).expect("it can be assembled");
     let v = m.project_velocity(&q, &[1.5, 0.0, 0.0].into()).expect("it moves");
     check_steps_from("linkage", &m, &Rk4::step(0.02), 2.0, q, v);
-    // Off the constraints, where the projection has more to do.
+    // The state violates the constraints, so that the projection has a larger effect.
     check_steps_from("torn linkage", &m, &Rk4::step(0.02), 2.0, q.add_scalar(0.05), v.add_scalar(0.3));
 
     let m = Driven { sway: 2.0 };
@@ -187,7 +188,7 @@ fn jacobians_of_constrained_steps_change_as_second_derivatives_say() {
     check_steps_from("driven", &m, &Rk4::step(0.02), 1.0, q, v);
 }
 
-/// Without constraints' forces on the way, what is tied moves as a pendulum: `v̇ = −g / l sin q`.
+/// A bead on a circular wire is a pendulum: `v̇ = −g / l sin q`.
 #[test]
 fn a_bead_on_a_wire_is_a_pendulum() {
     #[mechanism(gravity = -9.81 * y, second_derivatives)]
@@ -199,12 +200,13 @@ fn a_bead_on_a_wire_is_a_pendulum() {
         #[constraint(plane.x * plane.x + plane.y * plane.y = 0.25)]
         wire: Holonomic,
     }
-    // Along the wire, q(s) = l (sin s, −cos s), at rest: the second derivative of v̇ ∥ by s.
+    // Second derivative of the tangential v̇ with respect to s, along the wire q(s) = l (sin s, −cos s), at
+    // rest.
     let (l, s) = (0.5, 0.7_f64);
     let (along, inwards) = (SVector::from([s.cos(), s.sin()]), SVector::from([-s.sin(), s.cos()]));
     let q = inwards * -l;
     let (none, m) = (SVector::zeros(), Bead {});
-    // λ = along + δλ turns as the wire does: d²/ds² (e·v̇) = e·v̇ₛₛ + 2 eₛ·v̇ₛ + eₛₛ·v̇.
+    // The direction e rotates along the wire: d²/ds² (e·v̇) = e·v̇ₛₛ + 2 eₛ·v̇ₛ + eₛₛ·v̇.
     let a = m.forward_dynamics(&q, &none, &none);
     let (by_q, ..) = m.forward_dynamics_derivatives(&q, &none, &none);
     let (qq, ..) = m.forward_dynamics_second_derivatives(&q, &none, &none, &along);

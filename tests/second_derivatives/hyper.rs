@@ -4,7 +4,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `x + a ε₁ + b ε₂ + c ε₁ ε₂`.
+/// Hyper-dual number `x + a ε₁ + b ε₂ + c ε₁ ε₂`.
 #[derive(Clone, Copy, Debug)]
 pub struct Hyper {
     pub value: f64,
@@ -13,12 +13,12 @@ pub struct Hyper {
 }
 
 impl Hyper {
-    /// A constant.
+    /// Returns a constant.
     pub fn of(value: f64) -> Hyper {
         Hyper { value, first: [0.0; 2], second: 0.0 }
     }
 
-    /// A function by its value and its first two derivatives.
+    /// Returns the composition with a function that has this value and these first two derivatives.
     fn map(self, [value, first, second]: [f64; 3]) -> Hyper {
         let [a, b] = self.first;
         Hyper { value, first: [first * a, first * b], second: first * self.second + second * a * b }
@@ -70,7 +70,7 @@ impl Div for Hyper {
     }
 }
 
-/// `A x = b`, by elimination with interchanges.
+/// Solves `A x = b` by Gaussian elimination with row interchanges.
 pub fn solve<const N: usize>(mut a: [[Hyper; N]; N], mut b: [Hyper; N]) -> [Hyper; N] {
     for k in 0..N {
         let best = (k..N).max_by(|i, j| a[*i][k].value.abs().total_cmp(&a[*j][k].value.abs()));

@@ -1,5 +1,5 @@
-//! Second derivatives of the dynamics: against differences of first ones along the tangent space, on
-//! mechanisms with turning axes, driven motion, and inputs in body axes; constrained ones stand in
+//! Second derivatives of the dynamics against differences of first derivatives along the tangent space. The
+//! mechanisms have rotating axes, driven motion, and inputs in body axes; constrained ones are in
 //! `constrained`.
 
 mod constrained;
@@ -16,8 +16,8 @@ use linkwork_compiler::{compile, read};
 use std::path::Path;
 use support::random::Random;
 
-/// A flying body with rotors, of which two also turn it by drag, and a pendulum on a ball joint below; forces
-/// along lines that the motion moves.
+/// Flying body with rotors, two of which also exert a drag torque, and a pendulum on a ball joint below.
+/// Forces act along lines that the motion moves.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
 struct Carrier {
     #[body(mass = 1.2, com = 0.02 * z, inertia = diagonal(0.01, 0.012, 0.02))]
@@ -38,7 +38,7 @@ struct Carrier {
     spring: Spring,
 }
 
-/// A pendulum on a pivot that is driven up and down, with a motor and a second pendulum.
+/// Pendulum with a motor and a second pendulum, on a pivot that is driven up and down.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
 struct Driven {
     rate: f64,
@@ -56,18 +56,18 @@ struct Driven {
     motor: Torque,
 }
 
-/// An arm.
+/// Arm with seven axes and a gripper.
 #[mechanism(urdf = "../models/urdf/panda.urdf", second_derivatives)]
 struct Panda;
 
-/// A quadruped on its legs.
+/// Quadruped with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, second_derivatives)]
 struct Solo;
 
 /// Largest difference, relative to the largest entry.
 const TOLERANCE: f64 = 2e-9;
 
-/// Derivatives of a matrix along every direction by differences of sixth order: a row of slopes for each.
+/// Returns the derivatives of a matrix function along every direction by differences of sixth order.
 fn slopes<const N: usize, const R: usize, const C: usize>(
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, R, C>,
 ) -> Vec<SMatrix<f64, R, C>> {
@@ -80,8 +80,8 @@ fn slopes<const N: usize, const R: usize, const C: usize>(
     (0..N).map(along).collect()
 }
 
-/// The same for `λᵀ` of a matrix of derivatives: entry `(i, j)` is the slope along `j` of the derivative
-/// along `i`.
+/// Returns the derivatives of `λᵀ A` by differences: entry `(i, j)` is the derivative along `j` of the
+/// derivative along `i`.
 fn contracted<const NV: usize, const N: usize, const C: usize>(
     lambda: &SVector<f64, NV>,
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, NV, C>,
@@ -112,7 +112,7 @@ where
         let (u, t) = (random.vector::<NU>(push), random.uniform(1.0));
         let (v, a, tau, lambda): (SVector<f64, NV>, SVector<f64, NV>, _, _) = (v, a, tau, lambda);
         let at_q = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
-        // How motions of `q ⊕ dq` follow from those of `dq`.
+        // Maps changes of `dq` to changes of `q ⊕ dq`.
         let moved = |dq: &SVector<f64, NV>| m.integrate_derivatives_at(&q, dq).1;
         let scale = |blocks: &[f64]| blocks.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
 
@@ -166,7 +166,7 @@ where
     }
 }
 
-/// All entries of several matrices.
+/// Concatenates the entries of several matrices.
 trait ConcatSlices {
     fn concat_slices(&self) -> Vec<f64>;
 }
@@ -185,7 +185,7 @@ fn first_derivatives_change_as_second_ones_say() {
     check("quadruped", &Solo, 5.0);
 }
 
-/// Second derivatives of steps against differences of their Jacobians.
+/// Checks second derivatives of steps against differences of their Jacobians.
 fn check_steps<M, S, const NV: usize, const NU: usize>(name: &str, m: &M, method: &S, push: f64)
 where
     M: RheonomicSecondDerivatives<NV, NV, NU, Scalar = f64>,
@@ -196,7 +196,7 @@ where
     check_steps_from(name, m, method, push, q, v);
 }
 
-/// Second derivatives of steps against differences, from a given state at the time 0.3 s.
+/// Checks second derivatives of steps against differences, from a given state at the time 0.3 s.
 fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
@@ -240,7 +240,7 @@ fn jacobians_of_steps_change_as_second_derivatives_say() {
     check_steps("arm, Euler", &Panda, &SemiImplicitEuler::step(0.01), 5.0);
 }
 
-/// Operations of first and second derivatives of inverse dynamics.
+/// Returns the numbers of operations of first and second derivatives of inverse dynamics.
 fn operations(arguments: &str) -> [usize; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let tokens = |text: &str| text.parse().expect("the source is Rust");
@@ -255,7 +255,8 @@ fn operations(arguments: &str) -> [usize; 2] {
     })
 }
 
-/// They follow from a recursion, so that they cost a small multiple of the first ones.
+/// Second derivatives follow from a recursion, so that their cost is a small multiple of that of the first
+/// derivatives.
 #[test]
 fn second_derivatives_cost_about_twice_the_first() {
     let fingers = "lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";

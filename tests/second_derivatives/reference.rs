@@ -13,7 +13,7 @@ struct Gen3;
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, second_derivatives)]
 struct Solo;
 
-/// Relative to the largest entry of a reference.
+/// Tolerance relative to the largest entry of a reference value.
 const REFERENCE: f64 = 1e-9;
 
 macro_rules! robot {

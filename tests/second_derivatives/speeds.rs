@@ -1,9 +1,10 @@
-//! Second derivatives in declared speeds.
+//! Second derivatives of mechanisms with declared generalized speeds.
 
 use super::check;
 use linkwork::prelude::*;
 
-/// A body on Cardan's angles, in its angular velocity along its own axes, pushed along them.
+/// Body on Cardan angles with forces along its axes. The generalized speeds are the angular velocity in body
+/// axes.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
 struct Gimbal {
     #[body(mass = 0, inertia = 0)]
@@ -30,7 +31,7 @@ struct Gimbal {
     wz: Speed,
 }
 
-/// A body in space with a pendulum, in velocities along the axes of the ground.
+/// Body in space with a pendulum. The generalized speeds are velocities in ground axes.
 #[mechanism(gravity = -9.81 * z, second_derivatives)]
 struct Satellite {
     #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
@@ -57,7 +58,8 @@ struct Satellite {
     wz: Speed,
 }
 
-/// A sleigh whose blade is pulled sideways by a driven point, in its speeds along and across the blade.
+/// Sleigh with a blade that a driven point pulls sideways. The generalized speeds are the velocities along
+/// and across the blade.
 #[mechanism(second_derivatives)]
 struct Sleigh {
     #[body(mass = 3, com = 0.2 * x, inertia = diagonal(0.3, 0.3, 0.4))]

@@ -1,6 +1,6 @@
-//! Second derivatives of steps where displacements turn: ball and free joints, also under constraints. They
-//! are held against second differences of the steps themselves, along the tangent space at the start and
-//! measured in that at the end.
+//! Second derivatives of steps with rotational displacements (ball and free joints), also under constraints.
+//! The reference is second differences of the steps themselves, with displacements in the tangent spaces at
+//! the start and at the end.
 
 use super::constrained::{Marble, Tied};
 use super::{Carrier, Solo};
@@ -8,11 +8,12 @@ use linkwork::prelude::*;
 use linkwork::{RheonomicSecondDerivatives, discrete};
 use support::random::Random;
 
-/// Weights of the second difference of tenth order at one step, two and so on to both sides, of what is zero
-/// at none.
+/// Weights of the central second difference of tenth order at the multiples 1, 2, … of the step to both
+/// sides, for a function that is zero at the origin.
 const WEIGHTS: [f64; 5] = [5.0 / 3.0, -5.0 / 21.0, 5.0 / 126.0, -5.0 / 1008.0, 1.0 / 3150.0];
 
-/// Quadratic forms of the second derivatives along random changes of state and inputs, next to differences.
+/// Compares quadratic forms of the second derivatives along random changes of state and inputs with
+/// differences.
 fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     m: &M,
@@ -31,7 +32,7 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
         assert!((symmetric - symmetric.transpose()).amax() < 1e-11 * (1.0 + symmetric.amax()), "{name}");
     }
     let end = discrete::step(m, method, t, q, v, &u).expect("it moves");
-    // Each block by itself, then all at once.
+    // Each block separately, then all at once.
     for (case, weights) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3], [1.0; 3]]
         .into_iter()
         .cycle()
@@ -64,7 +65,7 @@ fn steps_of_turning_bodies_curve_as_second_derivatives_say() {
     let mut random = Random::new(3);
     let m = Carrier {};
     let q = m.integrate(&m.neutral(), &random.vector(1.2));
-    // Fast turns, so that displacements of a step turn what comes after.
+    // Fast rotations, so that displacements rotate considerably within a step.
     let v = random.vector(4.0);
     check_along("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
     check_along("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
@@ -80,7 +81,7 @@ fn constrained_steps_of_turning_bodies_curve_as_second_derivatives_say() {
     let q = m.assemble(&start, &[]).expect("it can be assembled");
     let v = m.project_velocity(&q, &SVector::from_fn(|k, _| 0.4 + 0.1 * k as f64)).expect("it moves");
     check_along("tied bodies", &m, &Rk4::step(0.02), (&q, &v));
-    // Off the constraints, where the projection has more to do.
+    // The state violates the constraints, so that the projection has a larger effect.
     let torn = m.integrate(&q, &SVector::from_element(0.03));
     check_along("torn bodies", &m, &Rk4::step(0.02), (&torn, &v.add_scalar(0.2)));
 

@@ -1,5 +1,5 @@
-//! Contacts that open and close, and limits, beside declared speeds: against the same mechanisms in the
-//! velocities of their joints.
+//! Contacts and limits of mechanisms with declared generalized speeds, against the same mechanisms in joint
+//! velocities.
 
 use super::{DIFFERENCE, slopes};
 use linkwork::contact::{self, Contacts, Touch};
@@ -12,7 +12,7 @@ use linkwork::{Frames, index_of};
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
 
-/// Three feet below a body, of which one is a ball, and a wind.
+/// Body on three feet, one of which is a ball, in wind.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Tripod {
     #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
@@ -29,7 +29,8 @@ struct Tripod {
     wind: Force,
 }
 
-/// The tripod in the velocity of its hull's origin and its angular velocity along the axes of the ground.
+/// Tripod whose generalized speeds are the velocity of its hull's origin and the angular velocity, in ground
+/// axes.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct TripodInSpeeds {
     #[body(mass = 2, com = 0.05 * x + 0.2 * z, inertia = diagonal(0.03, 0.04, 0.05))]
@@ -58,7 +59,7 @@ struct TripodInSpeeds {
     wz: Speed,
 }
 
-/// A leg whose knee has stops.
+/// Leg whose knee has limits.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Leg {
     #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
@@ -73,7 +74,8 @@ struct Leg {
     stop: Limit,
 }
 
-/// The leg in the angular velocity of its shank, times a length, and the speed of its foot across the thigh.
+/// Leg whose generalized speeds are the angular velocity of its shank, times a length, and the velocity of
+/// its foot across the thigh.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct LegInSpeeds {
     #[body(mass = 2, com = -0.2 * y, inertia = rod(2, 0.4, y))]
@@ -102,7 +104,7 @@ fn tripod() -> (SVector<f64, 7>, SVector<f64, 6>) {
     (q, [0.6, -0.3, -0.8, 0.5, -1.2, 2.0].into())
 }
 
-/// `Z(q)`, by which the velocities of joints follow from speeds.
+/// Returns `Z(q)`, which maps generalized speeds to joint velocities.
 fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
     let unit = |i: usize| SVector::<f64, 6>::from_fn(|j, _| if i == j { 1.0 } else { 0.0 });
     SMatrix::from_columns(&std::array::from_fn::<_, 6, _>(|i| TripodInSpeeds {}.rates_of_speeds(q, &unit(i))))
@@ -121,7 +123,7 @@ fn contacts_are_the_same_in_speeds() {
     );
     let jacobian = plain.contact_jacobian(&q);
     assert_close("Jacobian", m.contact_jacobian(&q).as_slice(), (jacobian * z).as_slice(), 1e-13);
-    // Accelerations that belong together, and what they make of the rates.
+    // Equivalent accelerations, and the accelerations of the contacts that they cause.
     let tau: SVector<f64, 6> = Random::new(4).vector(5.0);
     let a = plain.forward_dynamics(&q, &rates, &tau);
     let du = m.forward_dynamics(&q, &u, &(z.transpose() * tau));
@@ -156,7 +158,7 @@ fn contacts_are_the_same_in_speeds() {
     assert_close("struck", (rates_of(&down) * struck.v).as_slice(), expected.v.as_slice(), 1e-11);
 }
 
-/// With all events located the motions are the same; steps of fixed length come to it as they become short.
+/// Motions with located events are equal; time stepping converges to the same motion as the step decreases.
 #[test]
 fn a_tripod_falls_and_slides_alike_in_speeds() {
     let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod());
@@ -205,7 +207,7 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
     let push = [0.7].into();
     let motion = contact::linear_motion(&m, 0.0, &q, &u, &push, &touches).unwrap();
     check("turning", motion.turning.as_slice(), m.turning(&q, &u).as_slice());
-    // Steps while contacts hold.
+    // Steps with enforced contacts.
     let stance = contact::hold(&m, touches).stabilized(20.0);
     fn steps<S: discrete::DifferentiableStep<f64>>(
         stance: &contact::Holding<'_, TripodInSpeeds, f64, 4, 8>,
@@ -229,7 +231,7 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
     steps(&stance, &ImplicitMidpoint::step(0.01), (&q, &u));
 }
 
-/// Stops of a coordinate whose rate is no velocity any more.
+/// Limits of a coordinate whose rate is not a generalized speed cause the same impacts.
 #[test]
 fn a_leg_strikes_its_stops_alike_in_speeds() {
     let (plain, m) = (Leg {}, LegInSpeeds {});
@@ -246,21 +248,21 @@ fn a_leg_strikes_its_stops_alike_in_speeds() {
     assert_eq!(<LegInSpeeds as Contacts<2, 2, 0, 2, 2>>::CONTACTS, ["stop.from", "stop.to"]);
 }
 
-/// Bounds of a coordinate hold whatever its velocity is, and inverse kinematics finds its way along them.
+/// Limits of coordinates apply for any choice of generalized speeds, and inverse kinematics respects them.
 #[test]
 fn limits_of_coordinates_stay_with_speeds() {
     let m = LegInSpeeds {};
     assert_eq!(m.lower_limits().as_slice(), [f64::NEG_INFINITY, 0.0]);
     assert_eq!(m.upper_limits().as_slice(), Leg {}.upper_limits().as_slice());
     assert_eq!(m.clamp_configuration(&[5.0, -0.3].into()).as_slice(), [5.0, 0.0]);
-    // Two configurations put the foot there; one of them bends the knee the wrong way.
+    // Two configurations place the foot there; one of them bends the knee in the wrong direction.
     let foot = index_of(<LegInSpeeds as Frames<2, 2>>::FRAMES, "foot").expect("it is a frame");
     let wanted = m.placement_of(foot, 0.0, &[0.5, 0.7].into()).unwrap();
     let found = InverseKinematics::new()
         .reach(&m, 0.0, &[Target::position(foot, wanted.translation.vector)], &[1.2, -0.7].into())
         .expect("it is in reach");
     assert_close("reached", found.q.as_slice(), &[0.5, 0.7], 1e-5);
-    // Straight is as far as it goes.
+    // The straight leg is the limit of its reach.
     let beyond = Target::position(foot, [0.1, -0.9, 0.0].into());
     let stretched = InverseKinematics::new().reach(&m, 0.0, &[beyond], &[0.6, 0.4].into()).unwrap_err();
     let Unreached::OutOfReach { q, .. } = stretched else { panic!("{stretched}") };

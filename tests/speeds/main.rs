@@ -1,4 +1,4 @@
-//! Mechanisms in declared generalized speeds against the same ones in the velocities of their joints.
+//! Mechanisms with declared generalized speeds against the same mechanisms in joint velocities.
 
 use linkwork::discrete;
 use linkwork::frame;
@@ -11,10 +11,10 @@ use support::simulate::advance;
 mod contacts;
 mod singular;
 
-/// Against differences of order four.
+/// Tolerance against differences of order four.
 const DIFFERENCE: f64 = 1e-8;
 
-/// A rigid body about a fixed point, by Euler's angles.
+/// Rigid body about a fixed point, in Euler angles.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Angles {
     #[body(mass = 0, inertia = 0)]
@@ -35,7 +35,8 @@ struct Angles {
     motor: Torque,
 }
 
-/// A rigid body in the components of its angular velocity along its own axes.
+/// Rigid body about a fixed point. The generalized speeds are the components of its angular velocity in body
+/// axes.
 #[mechanism(gravity = -9.81 * z, derivatives, prepare, batch)]
 struct Speeds {
     axial: f64,
@@ -65,8 +66,8 @@ struct Speeds {
     spin: Scalar,
 }
 
-/// A body in space with a pendulum on it: the velocity of the body's origin and its angular velocity in axes
-/// of the ground.
+/// Body in space with a pendulum on it. The generalized speeds are the velocity of the body's origin and the
+/// angular velocity in ground axes.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Satellite {
     #[body(mass = 2, com = 0.1 * x, inertia = diagonal(0.2, 0.3, 0.45))]
@@ -95,7 +96,7 @@ struct Satellite {
     wz: Speed,
 }
 
-/// A disk that rolls on a table.
+/// Disk that rolls on a table, in joint velocities.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Disk {
     #[body(mass = 0, inertia = 0)]
@@ -118,8 +119,8 @@ struct Disk {
     contact: Rolling,
 }
 
-/// A rolling disk with the components of its angular velocity in the leaning axes (Kane and Levinson 1985,
-/// ch. 4).
+/// Rolling disk whose generalized speeds are the components of its angular velocity in the leaning axes (Kane
+/// and Levinson 1985, ch. 4).
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct DiskInSpeeds {
     #[body(mass = 0, inertia = 0)]
@@ -152,7 +153,8 @@ fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
     SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
 }
 
-/// Columns by central differences of order four along unit vectors.
+/// Returns the derivatives of `f` along unit vectors, a column for each, by central differences of order
+/// four.
 fn slopes<const R: usize, const C: usize>(
     f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
 ) -> SMatrix<f64, R, C> {
@@ -163,7 +165,8 @@ fn slopes<const R: usize, const C: usize>(
     SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| along(unit(i))))
 }
 
-/// The configuration space in speeds: inverses, rates, and all derivatives.
+/// Checks the operations of the configuration space in generalized speeds: inverses, rates, and all
+/// derivatives.
 fn check_space<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M, q: &SVector<f64, NQ>)
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
@@ -173,7 +176,7 @@ where
         let (dv, v): (SVector<f64, NV>, SVector<f64, NV>) = (random.vector(0.3), random.vector(1.0));
         let there = m.integrate(q, &dv);
         assert_close("difference", m.difference(q, &there).as_slice(), dv.as_slice(), 1e-12);
-        // The rate of a displacement is that of its end.
+        // A displacement that changes at this rate has an end that moves with `v`.
         let rate = m.displacement_rate(q, &dv, &v);
         let back = slopes::<NV, 1>(|e| m.difference(&there, &m.integrate(q, &(dv + rate * e[0]))));
         assert_close("displacement rate", back.as_slice(), v.as_slice(), DIFFERENCE);
@@ -201,11 +204,11 @@ where
     }
 }
 
-/// Configuration and velocity after a step from those before it.
+/// Function from configuration and velocity before a step to those after it.
 type Step<'a, const NQ: usize, const NV: usize> =
     &'a dyn Fn(&SVector<f64, NQ>, &SVector<f64, NV>) -> (SVector<f64, NQ>, SVector<f64, NV>);
 
-/// A step by differences of the step itself, in displacements and speeds.
+/// Checks the Jacobians of a step against differences of the step, in displacements and generalized speeds.
 fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
@@ -237,7 +240,8 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
         assert_similar("q by v", found.q_by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
         assert_similar("v by q", found.v_by_q.as_slice(), faster.as_slice(), DIFFERENCE);
     }
-    // Two neighbouring motions with the same speeds: φ(h) = (1 + h T) φ + O(h²).
+    // Displacement φ between two neighbouring motions with the same generalized speeds: φ(h) = (1 + h T) φ +
+    // O(h²).
     let (h, turning) = (1e-5, m.linear_motion(q, v, &u).turning);
     let later = |q: &SVector<f64, NQ>| discrete::step(m, &Rk4::step(h), 0.0, q, v, &u).unwrap().0;
     let grown = slopes(|e| m.difference(&later(q), &later(&m.integrate(q, &e))));
@@ -272,7 +276,7 @@ fn names_and_conversions() {
     let m = speeds();
     let u = m.speeds_of_rates(&q, &rates);
     assert_close("rates", m.rates_of_speeds(&q, &u).as_slice(), rates.as_slice(), 1e-14);
-    // The mass matrix of the body about its fixed point, in its own axes.
+    // Mass matrix of the body about its fixed point, in body axes.
     let fixed = 2.0 * 0.3 * 0.3;
     let expected = SMatrix::<f64, 3, 3>::from_diagonal(&[0.2 + fixed, 0.3 + fixed, 0.45].into());
     assert_close("mass matrix", m.mass_matrix(&q).as_slice(), expected.as_slice(), 1e-14);
@@ -314,7 +318,7 @@ fn frames_move_alike() {
     assert_close("prepared", prepared.integrate(&q, &u).as_slice(), m.integrate(&q, &u).as_slice(), 1e-14);
 }
 
-/// The end of a run in speeds, as the joints have it.
+/// Returns the end of a run in generalized speeds, transformed to joint velocities.
 fn end<S: linkwork::integrate::Method<f64>>(method: S) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let (q, rates) = euler_start();
     let m = speeds();
@@ -323,7 +327,7 @@ fn end<S: linkwork::integrate::Method<f64>>(method: S) -> (SVector<f64, 3>, SVec
     (end.q, m.rates_of_speeds(&end.q, &end.v))
 }
 
-/// How much smaller errors are with steps half as long: 16 for order four, 4 for order two.
+/// Halving the step divides the errors by 16 for order four, and by 4 for order two.
 #[test]
 fn methods_keep_their_orders() {
     let (q, rates) = euler_start();
@@ -375,7 +379,7 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
         1e-13,
     );
     let tau: SVector<f64, 6> = Random::new(2).vector(1.0);
-    // Generalized forces of the joints that do the same power: `Yᵀ τ`.
+    // Generalized forces in joint velocities with the same power: `Yᵀ τ`.
     let forces = SVector::<f64, 6>::from_fn(|k, _| tau.dot(&m.speeds_of_rates(&q, &unit(k))));
     let expected = plain.forward_dynamics(&q, &rates, &forces);
     let du = m.forward_dynamics(&q, &u, &tau);
@@ -393,7 +397,7 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
     assert_close("rates", m.rates_of_speeds(&end.q, &end.v).as_slice(), exact.1.as_slice(), 1e-9);
     let energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
     assert_close("energy", &[energy(&end.q, &end.v)], &[energy(&q, &u)], 1e-9);
-    // Derivatives under constraints, along displacements in speeds.
+    // Derivatives under constraints, along displacements in generalized speeds.
     let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(&q, &u, &tau);
     let expected = slopes(|e| m.forward_dynamics(&q, &(u + e), &tau));
     assert_similar("∂u̇/∂u", by_v.as_slice(), expected.as_slice(), 1e-7);
@@ -403,7 +407,7 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
     assert_similar("∂u̇/∂τ", by_tau.as_slice(), expected.as_slice(), 1e-7);
 }
 
-/// Implicit steps under constraints: their order, and energy that does not drift.
+/// Implicit steps under constraints have their order of convergence, and the energy does not drift.
 #[test]
 fn constrained_methods_keep_their_orders() {
     let (plain, m) = (Disk {}, DiskInSpeeds {});

@@ -1,12 +1,13 @@
-//! Speeds that do not determine the rates of coordinates in single configurations: nothing moves there, and
-//! errors say so.
+//! Isolated configurations in which generalized speeds do not determine the rates of coordinates: integration
+//! is impossible there and returns an error.
 
 use super::{DiskInSpeeds, Satellite, Speeds, speeds};
 use linkwork::discrete;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 
-/// `ψ` and `φ` turn about one axis where `sin θ = 0`.
+/// Returns a gimbal-lock configuration, in which `ψ` and `φ` rotate about the same axis (`sin θ = 0`), and
+/// generalized speeds.
 fn lock() -> (SVector<f64, 3>, SVector<f64, 3>) {
     ([0.3, 0.0, -0.4].into(), [0.5, -0.7, 6.0].into())
 }
@@ -16,7 +17,8 @@ fn rates_are_not_finite_where_speeds_do_not_determine_them() {
     let (m, (q, u)) = (speeds(), lock());
     assert!(m.rates_of_speeds(&q, &u).iter().any(|x| !x.is_finite()));
     assert!(m.forward_dynamics(&q, &u, &SVector::zeros()).iter().any(|x| !x.is_finite()));
-    // What needs no rates is what it is elsewhere: the other way, inertia and energies.
+    // Functions that do not need the rates are still correct: the inverse transformation, inertia and
+    // energies.
     let back = m.speeds_of_rates(&q, &[1.0, 2.0, 3.0].into());
     assert!((back - SVector::from([2.0 * (-0.4_f64).cos(), 2.0 * 0.4_f64.sin(), 4.0])).norm() < 1e-14);
     let energy = m.kinetic_energy(&[0.3, 1e-4, -0.4].into(), &u);
@@ -52,12 +54,12 @@ fn motions_that_begin_there_are_errors() {
     assert!(matches!(step, Err(Error::NotFinite { .. })));
 }
 
-/// A body in space has no such configuration; a rolling disk that lies flat has.
+/// A rolling disk that lies flat has such a configuration; a body in space has none.
 #[test]
 fn constraints_do_not_hide_it() {
     let flat: SVector<f64, 6> = [0.0, 0.0, 0.0, 0.2, std::f64::consts::FRAC_PI_2, 0.1].into();
     let run = simulate(&DiskInSpeeds {}).from(flat, [0.1, 0.0, 0.0, 0.3, 0.2, 0.1]).duration(0.1);
-    // Where `cos` of a right angle is 6e-17, rates are finite, and too large for any step.
+    // The cosine of a right angle is 6e-17 in floating point: rates are finite, but too large for any step.
     assert!(run.method(Rk4::step(1e-3)).finish().is_err());
     let m = Satellite {};
     let upside_down = m.integrate(&m.neutral(), &[0.0, 0.0, 0.0, 0.0, std::f64::consts::PI, 0.0, 0.0].into());

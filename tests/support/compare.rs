@@ -1,4 +1,4 @@
-//! Comparing numbers with references.
+//! Comparison of numbers with reference values.
 
 use linkwork::Mechanism;
 use linkwork::nalgebra::SVector;
@@ -6,7 +6,7 @@ use std::fmt::Display;
 
 use crate::random::Random;
 
-/// Fails unless every `|actual − expected| ≤ tolerance · (1 + |expected|)`. Not-a-number fails.
+/// Panics unless every entry satisfies `|actual − expected| ≤ tolerance · (1 + |expected|)`. NaN fails.
 #[track_caller]
 pub fn assert_close(what: impl Display, actual: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(actual.len(), expected.len(), "{what}: number of entries");
@@ -19,7 +19,7 @@ pub fn assert_close(what: impl Display, actual: &[f64], expected: &[f64], tolera
     }
 }
 
-/// Fails unless all entries agree, relative to the largest expected one.
+/// Panics unless all entries agree, relative to the largest expected one.
 #[track_caller]
 pub fn assert_similar(what: &str, actual: &[f64], expected: &[f64], tolerance: f64) {
     let scale = expected.iter().fold(1.0_f64, |m, e| m.max(e.abs()));
@@ -27,7 +27,7 @@ pub fn assert_similar(what: &str, actual: &[f64], expected: &[f64], tolerance: f
     assert_close(what, &scaled(actual), &scaled(expected), tolerance);
 }
 
-/// Fails unless two mechanisms with the same coordinates have the same equations of motion and energies, to
+/// Panics unless two mechanisms with the same coordinates have the same equations of motion and energies, to
 /// `tolerance`, at `states` random states.
 #[track_caller]
 pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: usize, const NB: usize>(
@@ -52,7 +52,8 @@ pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: us
         close("mass matrix", one.mass_matrix(&q).as_slice(), other.mass_matrix(&q).as_slice());
         same("bias forces", one.bias_forces(&q, &v), other.bias_forces(&q, &v));
         same("inverse dynamics", one.inverse_dynamics(&q, &v, &a), other.inverse_dynamics(&q, &v, &a));
-        // The condition of M enters: what is compared is the force that the difference stands for.
+        // The condition of M enters: the comparison is of the forces that correspond to the difference of
+        // accelerations.
         let acceleration = other.forward_dynamics(&q, &v, &tau);
         same("forward dynamics", one.inverse_dynamics(&q, &v, &acceleration), tau);
         same("forward dynamics", one.forward_dynamics(&q, &v, &one.inverse_dynamics(&q, &v, &a)), a);

@@ -1,5 +1,5 @@
-//! What the tests share: reference tables, comparisons, models, random states, mechanisms that several of
-//! them look at.
+//! Shared parts of the tests: reference tables, comparisons, models, random states, and mechanisms that
+//! several tests use.
 
 pub mod compare;
 pub mod mechanisms;

@@ -1,10 +1,10 @@
-//! Mechanisms in the struct language: one for every joint, the same from pins and sleeves alone, one with
-//! every element that acts, and one that floats.
+//! Mechanisms in the struct language: one for every joint, the equivalent chains of pins and sleeves, one
+//! with every force element, and one with a free base.
 
 use linkwork::mechanism;
 
-/// Two bodies: a carrier on a pin, and one carried on the joint in question. Nothing is aligned with
-/// anything.
+/// Declares two bodies: a carrier on a pin, and a body on the carrier with the given joint. No axes or points
+/// are aligned.
 macro_rules! carried {
     ($(#[$doc:meta])* $name:ident: $joint:ident $(, $argument:ident = $value:tt)*) => {
         $(#[$doc])*
@@ -34,7 +34,8 @@ macro_rules! carried {
     };
 }
 
-/// The same two bodies with massless bodies between them, the last of which is called `last`.
+/// Declares the same two bodies with a chain of massless bodies between them, the last of which is called
+/// `last`.
 macro_rules! chained {
     ($(#[$doc:meta])* $name:ident: $($between:tt)*) => {
         $(#[$doc])*
@@ -68,89 +69,89 @@ macro_rules! chained {
 }
 
 carried! {
-    /// Carried on a pin.
+    /// Body on a pin.
     OnPin: Pin, about = x
 }
 carried! {
-    /// Carried on a pin about a slanted axis.
+    /// Body on a pin about a slanted axis.
     OnSlantedPin: Pin, about = [0.6, 0, -0.8]
 }
 carried! {
-    /// Carried on a sleeve.
+    /// Body on a sleeve.
     OnSleeve: Sleeve, along = y
 }
 carried! {
-    /// Carried on a screw that advances 0.05 m per radian.
+    /// Body on a screw that advances 0.05 m per radian.
     OnScrew: Screw, about = z, pitch = 0.05
 }
 carried! {
-    /// Carried on a screw that advances 0.3 m per turn.
+    /// Body on a screw that advances 0.3 m per turn.
     OnScrewWithLead: Screw, along = z, lead = 0.3
 }
 carried! {
-    /// Carried on a collar.
+    /// Body on a collar.
     OnCollar: Collar, about = z
 }
 carried! {
-    /// Carried on a slot.
+    /// Body on a slot.
     OnSlot: Slot, along = x, about = z
 }
 carried! {
-    /// Carried on a universal joint.
+    /// Body on a universal joint.
     OnUniversal: Universal, about = (x, y)
 }
 carried! {
-    /// Carried on a ball joint.
+    /// Body on a ball joint.
     OnBall: Ball
 }
 carried! {
-    /// Carried on a planar joint, given by its normal.
+    /// Body on a planar joint, given by its normal.
     OnPlanar: Planar, about = z
 }
 carried! {
-    /// Carried on a planar joint, given by its two directions of sliding.
+    /// Body on a planar joint, given by its two directions of translation.
     OnPlanarAlong: Planar, along = (x, y)
 }
 carried! {
-    /// Carried on a stage with two axes.
+    /// Body on a stage with two axes.
     OnStage: Stage, along = (x, y)
 }
 carried! {
-    /// Carried on a stage with three axes.
+    /// Body on a stage with three axes.
     OnStage3: Stage, along = (x, y, z)
 }
 carried! {
-    /// Free to leave its carrier.
+    /// Body that moves freely relative to its carrier.
     OnFree: Free
 }
 carried! {
-    /// Welded to its carrier.
+    /// Body welded to its carrier.
     OnWeld: Weld
 }
 
 chained! {
-    /// A collar from a sleeve and a pin.
+    /// Collar as a chain of a sleeve and a pin.
     ChainedCollar:
     #[body] slider: Body,
     #[joint(socket -> slider, along = z)] slide: Sleeve,
     #[joint(slider -> last, about = z)] turn: Pin,
 }
 chained! {
-    /// A slot from a sleeve and a pin.
+    /// Slot as a chain of a sleeve and a pin.
     ChainedSlot:
     #[body] slider: Body,
     #[joint(socket -> slider, along = x)] slide: Sleeve,
     #[joint(slider -> last, about = z)] turn: Pin,
 }
 chained! {
-    /// A universal joint from two pins.
+    /// Universal joint as a chain of two pins.
     ChainedUniversal:
     #[body] cross: Body,
     #[joint(socket -> cross, about = x)] first: Pin,
     #[joint(cross -> last, about = y)] second: Pin,
 }
 chained! {
-    /// A planar joint from two sleeves and a pin.
+    /// Planar joint as a chain of two sleeves and a pin.
     ChainedPlanar:
     #[body] slide1: Body,
     #[body] slide2: Body,
@@ -159,14 +160,14 @@ chained! {
     #[joint(slide2 -> last, about = z)] angle: Pin,
 }
 chained! {
-    /// A stage from two sleeves.
+    /// Stage as a chain of two sleeves.
     ChainedStage:
     #[body] slide1: Body,
     #[joint(socket -> slide1, along = x)] sx: Sleeve,
     #[joint(slide1 -> last, along = y)] sy: Sleeve,
 }
 chained! {
-    /// A stage from three sleeves.
+    /// Stage as a chain of three sleeves.
     ChainedStage3:
     #[body] slide1: Body,
     #[body] slide2: Body,
@@ -175,7 +176,7 @@ chained! {
     #[joint(slide2 -> last, along = z)] sz: Sleeve,
 }
 chained! {
-    /// A ball joint from three pins.
+    /// Ball joint as a chain of three pins.
     ChainedBall:
     #[body] ring1: Body,
     #[body] ring2: Body,
@@ -184,7 +185,7 @@ chained! {
     #[joint(ring2 -> last, about = x)] roll: Pin,
 }
 chained! {
-    /// All motions from a stage and three pins.
+    /// Free joint as a chain of a stage and three pins.
     ChainedFree:
     #[body] table: Body,
     #[body] ring1: Body,
@@ -195,28 +196,29 @@ chained! {
     #[joint(ring2 -> last, about = x)] roll: Pin,
 }
 
-/// Springs and dashpots on every kind of coordinate, inputs on joints, bodies and points of bodies.
+/// Mechanism with springs and dashpots on every kind of coordinate, and inputs on joints, bodies and points
+/// of bodies.
 #[mechanism(gravity = -g * y)]
 pub struct Workshop {
-    /// Gravity.
+    /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass of the arm.
+    /// Mass of the arm, kg.
     pub m: f64,
-    /// Length of the arm.
+    /// Length of the arm, m.
     pub l: f64,
-    /// Stiffness and rest of the spring in the shoulder.
+    /// Stiffness of the spring in the shoulder, N·m/rad.
     pub shoulder_stiffness: f64,
-    /// Angle at which that spring is slack.
+    /// Angle at which the spring in the shoulder is slack, rad.
     pub shoulder_rest: f64,
-    /// Damping in the shoulder.
+    /// Damping in the shoulder, N·m·s/rad.
     pub shoulder_damping: f64,
-    /// Stiffness of the spring along the track.
+    /// Stiffness of the spring along the track, N/m.
     pub track_stiffness: f64,
-    /// Its free length.
+    /// Free length of the spring along the track, m.
     pub track_length: f64,
-    /// Damping of sliding along the track.
+    /// Damping of translation along the track, N·s/m.
     pub slide_damping: f64,
-    /// Damping of turning on the track.
+    /// Damping of rotation on the track, N·m·s/rad.
     pub turn_damping: f64,
 
     #[body(mass = m, com = l / 2 * x, inertia = rod(m, l, x))]
@@ -257,7 +259,7 @@ pub struct Workshop {
     gust: Torque,
 }
 
-/// A workshop with no two numbers alike.
+/// Returns a workshop all of whose parameters differ.
 pub fn workshop() -> Workshop {
     Workshop {
         g: 9.7,
@@ -273,7 +275,7 @@ pub fn workshop() -> Workshop {
     }
 }
 
-/// A free base with a pin, a ball and a slot, without gravity; a spring inside.
+/// Free base with a pin, a ball joint, a slot and an internal spring, without gravity.
 #[mechanism]
 pub struct Spacecraft {
     #[body(mass = 3, inertia = cuboid(3, 0.4, 0.3, 0.5))]

@@ -10,10 +10,11 @@ use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::Description;
 use std::path::Path;
 
-/// Arguments of the attribute and the struct that it stands on.
+/// Arguments of the attribute, and the struct to which it applies.
 pub type Source = (String, String);
 
-/// Looks at the model of a source and at what was read, unless there is none: then the messages say why.
+/// Calls `check` with the description and the model of a source. Returns the error messages if the source has
+/// no model.
 pub fn try_model(
     (arguments, item): &Source,
     check: impl FnOnce(&Description, &Model<'_>),
@@ -31,14 +32,14 @@ pub fn try_model(
     Ok(())
 }
 
-/// Looks at the model of a source, which has one.
+/// Calls `check` with the description and the model of a source, and panics if it has none.
 pub fn with_model(source: &Source, check: impl FnOnce(&Description, &Model<'_>)) {
     if let Err(messages) = try_model(source, check) {
         panic!("{}\n{}", messages.join("\n"), source.1);
     }
 }
 
-/// Numbers for all symbols at a random state: parameters around one, what changes around zero.
+/// Returns numbers for all symbols at a random state: parameters near one, variables near zero.
 pub fn symbols(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 {
     let q = random_configuration(model, seed);
     move |s| match Quantity::of(s) {

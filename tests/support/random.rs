@@ -1,24 +1,24 @@
-//! Random states and property tests, the same in every run.
+//! Random states and property tests that are reproducible in every run.
 
 use linkwork::Mechanism;
 use linkwork::nalgebra::SVector;
 use proptest::test_runner::{Config, RngSeed};
 
-/// Settings of a property test: how many cases, always the same ones, and no file of those that failed.
+/// Returns the settings of a property test: the number of cases, a fixed seed, and no file of failed cases.
 pub fn config(cases: u32) -> Config {
     Config { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(20_261_121), ..Default::default() }
 }
 
-/// SplitMix64 (Steele, Lea and Flood, 2014).
+/// Random generator SplitMix64 (Steele, Lea and Flood, 2014).
 pub struct Random(u64);
 
 impl Random {
-    /// Another seed is another sequence.
+    /// Creates the generator of the sequence with this seed.
     pub fn new(seed: u64) -> Random {
         Random(seed)
     }
 
-    /// Uniform in `[-bound, bound)`.
+    /// Returns a number that is uniform in `[-bound, bound)`.
     pub fn uniform(&mut self, bound: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -28,12 +28,13 @@ impl Random {
         bound * ((z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
     }
 
-    /// Entries uniform in `[-bound, bound)`.
+    /// Returns a vector with entries uniform in `[-bound, bound)`.
     pub fn vector<const N: usize>(&mut self, bound: f64) -> SVector<f64, N> {
         SVector::from_fn(|_, _| self.uniform(bound))
     }
 
-    /// A configuration anywhere: every coordinate within 2 of zero, every orientation within reach.
+    /// Returns a random configuration: each coordinate is within 2 of zero, and orientations cover all
+    /// rotations.
     pub fn configuration<M, const NQ: usize, const NV: usize, const NU: usize>(
         &mut self,
         mechanism: &M,

@@ -1,11 +1,10 @@
-//! The robots of `models/urdf`: those of the gallery, and others. Where they are from stands at the top of
-//! each file.
+//! Robots of `models/urdf`: those of the gallery, and others. The top of each file states its source.
 
 use linkwork::mechanism;
 
 pub use linkwork_models::{AnymalB, Panda as PandaMimic, PandaArm, SimpleHumanoid as Humanoid, Solo12, Ur5};
 
-/// A cart on a rail with a slightly asymmetric pole.
+/// Cart on a rail with a slightly asymmetric pole.
 #[mechanism(urdf = "../models/urdf/cartpole.urdf")]
 pub struct CartPole;
 
@@ -13,18 +12,18 @@ pub struct CartPole;
 #[mechanism(urdf = "../models/urdf/double_pendulum.urdf")]
 pub struct DoublePendulum;
 
-/// A six-axis arm with joints that turn for ever.
+/// Arm with six axes and continuous joints.
 #[mechanism(urdf = "../models/urdf/kinova.urdf")]
 pub struct Kinova;
 
-/// A seven-axis arm with a gripper, both fingers free.
+/// Arm with seven axes and a gripper, with two independent fingers.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent)]
 pub struct Panda;
 
-/// A seven-axis arm, every other joint of which turns for ever.
+/// Arm with seven axes, every other joint of which is continuous.
 #[mechanism(urdf = "../models/urdf/gen3.urdf")]
 pub struct Gen3;
 
-/// A humanoid whose hips and shoulders are inclined.
+/// Humanoid with inclined hips and shoulders.
 #[mechanism(urdf = "../models/urdf/g1.urdf", base = free)]
 pub struct G1;

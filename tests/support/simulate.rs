@@ -4,7 +4,7 @@ use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::SVector;
 use linkwork::{Rheonomic, simulate};
 
-/// The state after `duration` from t = 0, integrated to the last digits of `f64`.
+/// Returns the state after `duration` from t = 0, integrated to the precision of `f64`.
 pub fn advance<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: &SVector<f64, NQ>,
@@ -17,7 +17,7 @@ where
     advance_from(mechanism, 0.0, q, v, duration)
 }
 
-/// The same from the time `start`.
+/// Returns the state after `duration` from the time `start`, integrated to the precision of `f64`.
 pub fn advance_from<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     start: f64,

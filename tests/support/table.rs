@@ -1,13 +1,13 @@
-//! Reference tables of `tests/data`: JSON objects whose header says where the numbers are from.
+//! Reference tables of `tests/data`: JSON objects whose header states the source of the values.
 
 use linkwork::nalgebra::{SMatrix, SVector};
 use serde_json::Value;
 
-/// An object of a table.
+/// JSON object of a reference table.
 pub struct Record(Value);
 
 impl Record {
-    /// Reads `tests/data/<path>`.
+    /// Reads the file `tests/data/<path>`.
     pub fn load(path: &str) -> Record {
         let path = format!("{}/data/{path}", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -18,61 +18,61 @@ impl Record {
         self.0.get(key).unwrap_or_else(|| panic!("the table has no `{key}`"))
     }
 
-    /// Whether there is such an entry.
+    /// Whether the object has an entry with this key.
     pub fn has(&self, key: &str) -> bool {
         self.0.get(key).is_some()
     }
 
-    /// The objects of a list.
+    /// Returns the objects of a list.
     pub fn records(&self, key: &str) -> Vec<Record> {
         list(self.entry(key)).iter().cloned().map(Record).collect()
     }
 
-    /// The strings of a list.
+    /// Returns the strings of a list.
     pub fn strings(&self, key: &str) -> Vec<String> {
         list(self.entry(key)).iter().map(|item| item.as_str().expect("a string").to_string()).collect()
     }
 
-    /// A string.
+    /// Returns the string with this key.
     pub fn string(&self, key: &str) -> &str {
         self.entry(key).as_str().unwrap_or_else(|| panic!("`{key}` is not a string"))
     }
 
-    /// A number.
+    /// Returns the number with this key.
     pub fn number(&self, key: &str) -> f64 {
         number(self.entry(key))
     }
 
-    /// A list of numbers.
+    /// Returns a list of numbers.
     pub fn numbers(&self, key: &str) -> Vec<f64> {
         numbers(self.entry(key))
     }
 
-    /// A list of rows of numbers.
+    /// Returns a list of rows of `N` numbers.
     pub fn rows<const N: usize>(&self, key: &str) -> Vec<[f64; N]> {
         list(self.entry(key)).iter().map(|row| array(&numbers(row))).collect()
     }
 
-    /// A list of `N` numbers.
+    /// Returns a list of `N` numbers as a vector.
     pub fn vector<const N: usize>(&self, key: &str) -> SVector<f64, N> {
         SVector::from(array(&self.numbers(key)))
     }
 
-    /// A matrix given as one list, row by row.
+    /// Returns a matrix that is stored as one list in row-major order.
     pub fn matrix<const R: usize, const C: usize>(&self, key: &str) -> SMatrix<f64, R, C> {
         let numbers = self.numbers(key);
         assert_eq!(numbers.len(), R * C, "`{key}`");
         SMatrix::from_row_slice(&numbers)
     }
 
-    /// A symmetric matrix given by its lower triangle, row by row.
+    /// Returns a symmetric matrix that is stored as the rows of its lower triangle.
     pub fn symmetric<const N: usize>(&self, key: &str) -> SMatrix<f64, N, N> {
         let numbers = self.numbers(key);
         assert_eq!(numbers.len(), N * (N + 1) / 2, "`{key}`");
         SMatrix::from_fn(|i, j| numbers[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)])
     }
 
-    /// The entries of an object of lists of numbers, each under its name.
+    /// Returns the entries of an object of lists of numbers, with their names.
     pub fn named(&self, key: &str) -> Vec<(String, Vec<f64>)> {
         let object = self.entry(key).as_object().unwrap_or_else(|| panic!("`{key}` is not an object"));
         object.iter().map(|(name, value)| (name.clone(), numbers(value))).collect()

@@ -1,4 +1,4 @@
-//! Particles in coordinates of one's own.
+//! Particles in user-defined coordinates.
 
 use super::{EXACT, MOTION};
 use linkwork::mechanism;
@@ -21,7 +21,7 @@ struct ElasticPendulum {
     spring: Spring,
 }
 
-/// `r̈ = r θ̇² + g cos θ − (k / m) (r − l)`, `θ̈ = −(g sin θ + 2 ṙ θ̇) / r`.
+/// The equations of motion are `r̈ = r θ̇² + g cos θ − (k / m) (r − l)`, `θ̈ = −(g sin θ + 2 ṙ θ̇) / r`.
 #[test]
 fn elastic_pendulum() {
     let (g, m, k, l) = (9.81, 0.8, 60.0, 0.7);
@@ -116,7 +116,7 @@ fn spherical_pendulum_in_two_charts() {
     assert_close("place", one.place(&end).as_slice(), other.place(&end_angles).as_slice(), MOTION);
 }
 
-/// In angles from the vertical, the lower particle placed from the upper one.
+/// Two particles in angles from the vertical; the lower one is placed relative to the upper one.
 #[mechanism(gravity = -9.81 * y)]
 struct TwoParticles {
     first: Coordinate,

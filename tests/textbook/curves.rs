@@ -1,11 +1,11 @@
 //! Frames along curves and towards points, curvature and torsion, gradients of fields, cables around bodies,
-//! elements on lengths.
+//! and elements on lengths.
 
 use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// A bead on a helix.
+/// Bead on a helix.
 #[mechanism(gravity = -9.81 * z)]
 struct Helix {
     a: f64,
@@ -29,9 +29,9 @@ struct Helix {
     turning: Vector,
 }
 
-/// Of a helix with the radius `a` and the pitch `b` per radian they are `a / (a² + b²)` and `b / (a² + b²)`;
-/// along the tangent the acceleration is that of the speed, along the normal `κ v²`; the frame turns by
-/// `v (τ T + κ B)` (Frenet and Serret).
+/// A helix with the radius `a` and the pitch `b` per radian has the curvature `a / (a² + b²)` and the torsion
+/// `b / (a² + b²)`. The acceleration is `v̇` along the tangent and `κ v²` along the normal; the frame rotates
+/// with `v (τ T + κ B)` (Frenet and Serret).
 #[test]
 fn a_helix_has_constant_curvature_and_torsion() {
     let (m, mut random) = (Helix { a: 0.5, b: 0.2 }, Random::new(4));
@@ -50,8 +50,8 @@ fn a_helix_has_constant_curvature_and_torsion() {
     }
 }
 
-/// A point on the twisted cubic `(s, s², s³)` on a table that turns with its own angle, and an ellipse by
-/// another coordinate.
+/// Point on the twisted cubic `(s, s², s³)` on a table that rotates with its own angle, and an ellipse as a
+/// function of another coordinate.
 #[mechanism]
 struct Cubic {
     #[body(mass = 1, inertia = sphere(1, 0.1))]
@@ -76,8 +76,8 @@ struct Cubic {
     flat: Scalar,
 }
 
-/// Of the twisted cubic: `κ² = 4 (9 s⁴ + 9 s² + 1) / (9 s⁴ + 4 s² + 1)³`, `τ = 3 / (9 s⁴ + 9 s² + 1)`; of an
-/// ellipse `κ = a b / (a² sin² e + b² cos² e)^(3/2)` (any table of differential geometry).
+/// The twisted cubic has `κ² = 4 (9 s⁴ + 9 s² + 1) / (9 s⁴ + 4 s² + 1)³`, `τ = 3 / (9 s⁴ + 9 s² + 1)`; an
+/// ellipse has `κ = a b / (a² sin² e + b² cos² e)^(3/2)` (any table of differential geometry).
 #[test]
 fn cubics_and_ellipses_bend_as_geometry_says() {
     for (s, e) in [(0.3_f64, 0.4_f64), (-0.8, 2.0), (1.2, -1.0)] {
@@ -91,7 +91,7 @@ fn cubics_and_ellipses_bend_as_geometry_says() {
     }
 }
 
-/// A particle by its distance, azimuth and elevation, with the frames that belong to its place.
+/// Particle in distance, azimuth and elevation, with the local frames of these coordinates.
 #[mechanism]
 struct Radar {
     range: Coordinate,
@@ -113,7 +113,7 @@ struct Radar {
     along: Vector,
 }
 
-/// The components of an acceleration in spherical and cylindrical coordinates, as tables have them.
+/// Components of an acceleration in spherical and cylindrical coordinates have the textbook expressions.
 #[test]
 fn accelerations_in_spherical_and_cylindrical_frames() {
     let mut random = Random::new(9);
@@ -138,7 +138,7 @@ fn accelerations_in_spherical_and_cylindrical_frames() {
     }
 }
 
-/// A particle in a field, by its energy and by a force that is the gradient of the same field.
+/// Particle in a field, given by its energy and by a force that is the gradient of the same field.
 #[mechanism]
 struct Field {
     mu: f64,
@@ -171,7 +171,7 @@ fn a_force_is_the_gradient_of_its_field() {
     }
 }
 
-/// Two particles and a cable between them, around a drum and around a ball.
+/// Two particles with a cable between them, around a drum and around a ball.
 #[mechanism(derivatives)]
 struct Cables {
     radius: f64,
@@ -195,8 +195,8 @@ struct Cables {
     pull: Force,
 }
 
-/// Shortest path of straight lines and a helix, by trying where it comes onto the cylinder and where it
-/// leaves: at places that are seen from the ends.
+/// Returns the length of the shortest path of two straight lines and a helix, by search over the points of
+/// contact with the cylinder that are visible from the ends.
 fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
     let length = |[alpha, beta, za, zb]: [f64; 4]| {
         let point = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
@@ -224,7 +224,8 @@ fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
 fn cables_take_the_shortest_way_around() {
     let m = Cables { radius: 0.5 };
     let at = |a: [f64; 3], b: [f64; 3]| SVector::from([a[0] + 0.1, a[1], a[2], b[0] + 0.1, b[1], b[2]]);
-    // From below to above on the far side, level and rising; more than half of a turn.
+    // The cable passes the far side from below to above, level and rising, with more than half a turn of
+    // contact.
     for (a, b) in [
         ([0.2, -0.9, 0.0], [-0.1, 1.2, 0.0]),
         ([0.2, -0.9, 0.3], [-0.1, 1.2, 1.1]),
@@ -236,10 +237,11 @@ fn cables_take_the_shortest_way_around() {
         assert!((m.back(&q) - found).abs() < 1e-14);
         assert!(found > m.straight(&q));
     }
-    // Half a turn of a level cable whose ends hang straight down: the weights over a pulley.
+    // Half a turn of a level cable with ends that hang straight down: two weights over a pulley.
     let q = at([0.5, -2.0, 0.0], [-0.5, -3.0, 0.0]);
     assert!((m.drum(&q) - (2.0 + 3.0 + 0.5 * PI)).abs() < 1e-14);
-    // Free of the drum it is straight; so it is around the ball.
+    // A cable without contact with the drum is straight; a cable without contact with the ball is straight,
+    // too.
     let free = at([0.7, -1.0, 0.2], [0.9, 1.0, 0.4]);
     assert!((m.drum(&free) - m.straight(&free)).abs() < 1e-14);
     let q = SVector::from([1.0, 0.0, 0.0, 0.0, 0.8, 0.6]);
@@ -249,7 +251,7 @@ fn cables_take_the_shortest_way_around() {
     assert!((m.ball(&q) - (2.0 * 0.75_f64.sqrt() + 0.5 * angle)).abs() < 1e-14);
 }
 
-/// The slopes of a length are those of its values, on the surface and off it, and a force has their
+/// Derivatives of a cable's length equal differences, with and without contact, and its force has their
 /// directions.
 #[test]
 fn cables_have_exact_derivatives() {
@@ -269,7 +271,7 @@ fn cables_have_exact_derivatives() {
         let (drum, ball) = (m.drum_jacobian(&q).transpose(), m.ball_jacobian(&q).transpose());
         assert!((drum - differences(Cables::drum)).amax() < 1e-9);
         assert!((ball - differences(Cables::ball)).amax() < 1e-9);
-        // A taut cable pulls its ends with one force along its own directions, which have unit length.
+        // A taut cable exerts one force on both ends along its own directions, which are unit vectors.
         assert!((drum.fixed_rows::<3>(0).norm() - 1.0).abs() < 1e-12);
         let forces = m.generalized_forces(&q, &[2.0].into());
         assert!((forces - ball * 2.0).amax() < 1e-14);
@@ -277,8 +279,7 @@ fn cables_have_exact_derivatives() {
     }
 }
 
-/// A lever on a pin with a drum around the pin, which a cable turns; a weight that hangs from a rope over two
-/// pegs.
+/// Lever with a cable drum around its pin, and a weight that hangs from a rope over two pegs.
 #[mechanism(gravity = -9.81 * y)]
 struct Tackle {
     drum: f64,
@@ -311,8 +312,8 @@ struct Tackle {
 #[test]
 fn elements_act_on_any_length() {
     let m = Tackle { drum: 0.25, stiffness: 40.0, slack: 5.0 };
-    // Wound around the drum, the cable has the drum's radius for an arm, whatever the angle; free of it, that
-    // of the line.
+    // The lever arm of a cable wound on the drum is the drum's radius, for any angle. Without contact, it is
+    // the lever arm of the straight line.
     for angle in [1.4, 1.9, 2.3] {
         let q = [angle, 0.3, -1.0].into();
         let torque = m.generalized_forces(&q, &[-10.0].into())[0];
@@ -324,7 +325,8 @@ fn elements_act_on_any_length() {
     let arm = (tip[0] * line[1] - tip[1] * line[0]) / line[0].hypot(line[1]);
     assert!(arm.abs() > 0.25);
     assert!((m.generalized_forces(&q, &[-10.0].into())[0] - 10.0 * arm).abs() < 1e-13);
-    // Under the middle of the pegs: two parts of the rope at an angle to the vertical, each with its tension.
+    // The weight is midway below the pegs: each of the two parts of the rope pulls with its tension at an
+    // angle to the vertical.
     let y: f64 = 2.0;
     let q = [0.0, 0.0, -y].into();
     let length = y.hypot(2.0);
@@ -333,7 +335,7 @@ fn elements_act_on_any_length() {
     let bias = m.bias_forces(&q, &SVector::zeros());
     let tension = 40.0 * (2.0 * length - 5.0);
     let holds = 3.0 * 9.81 - 2.0 * tension * y / length;
-    // The balloon draws along one part of the rope towards its peg with 7 N.
+    // The balloon pulls along one part of the rope towards its peg with 7 N.
     assert!((bias[2] - (holds - 7.0 * y / length)).abs() < 1e-12);
     assert!((bias[1] - 7.0 * 2.0 / length).abs() < 1e-12);
     let v = [0.0, 0.4, -1.0].into();

@@ -1,4 +1,4 @@
-//! Mechanisms that are driven in time, and bases that move as they like.
+//! Mechanisms driven as functions of time, and bases with a prescribed motion.
 
 use super::{EXACT, MOTION};
 use linkwork::nalgebra::{Vector1, Vector2, Vector3};
@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 use support::compare::assert_close;
 use support::simulate::{advance, advance_from};
 
-/// Landau and Lifshitz, *Mechanics*, §§ 5 and 30: `m l² θ̈ + m l (g + ÿ) sin θ = 0`; the upper equilibrium is
-/// stable if `a² γ² > 2 g l`.
+/// With a vibrating pivot `m l² θ̈ + m l (g + ÿ) sin θ = 0`, and the upper equilibrium is stable if
+/// `a² γ² > 2 g l` (Landau and Lifshitz, *Mechanics*, §§ 5 and 30).
 #[test]
 fn kapitza_pendulum() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.04, 160.0);
@@ -52,8 +52,9 @@ struct PendulumOnCrank {
     pin: Pin,
 }
 
-/// Landau and Lifshitz, *Mechanics*, § 5, problem 3 a. The pivot has the axes of the ground from which it is
-/// placed, so the angle is that from the vertical although the crank turns.
+/// Pendulum on a rotating crank (Landau and Lifshitz, *Mechanics*, § 5, problem 3 a). The pivot's axes are
+/// those of the ground, relative to which it is placed. The angle is therefore measured from the vertical
+/// although the crank rotates.
 #[test]
 fn pendulum_on_crank() {
     let (g, m, l, radius, speed) = (9.81, 0.3, 0.5, 0.2, 3.0);
@@ -100,8 +101,8 @@ struct Turntable {
     velocity: Vector,
 }
 
-/// In the rotating frame Coriolis and centrifugal forces appear; seen from the ground the plane of the
-/// oscillation stays, as Foucault's does.
+/// In the rotating frame Coriolis and centrifugal forces appear; in the ground frame the plane of oscillation
+/// is constant, as that of Foucault's pendulum.
 #[test]
 fn foucault_pendulum_at_the_pole() {
     let (m, k, spin) = (1.4, 20.0, 0.7);
@@ -120,7 +121,7 @@ fn foucault_pendulum_at_the_pole() {
     let bias = (up.cross(&three(&v)) * 2.0 + up.cross(&up.cross(&three(&q)))) * m + three(&q) * k;
     assert_close("bias", table.bias_forces(t, &q, &v).as_slice(), &[bias.x, bias.y], EXACT);
 
-    // Released at rest relative to the ground, it goes on swinging along one line there.
+    // Released at rest relative to the ground, the particle oscillates along one line of the ground frame.
     let (q0, v0) = (Vector2::new(0.5, 0.0), Vector2::new(0.0, -spin * 0.5));
     let end = 7.0;
     let (q, _) = advance(&table, &q0, &v0, end);
@@ -164,8 +165,8 @@ fn forced_oscillator() {
     assert_close("from another time", &[later[0]], &expected[..1], MOTION);
 }
 
-/// A pendulum on a base that is shaken up and down, whatever the pendulum does, and tilted by a quaternion
-/// for good.
+/// Pendulum on a base with a prescribed vertical oscillation and a constant tilt (a quaternion), which the
+/// pendulum does not affect.
 #[mechanism(gravity = -g * y)]
 struct ShakenBase {
     g: f64,
@@ -185,7 +186,7 @@ struct ShakenBase {
     pin: Pin,
 }
 
-/// As gravity that changes with the base's acceleration (Landau and Lifshitz, *Mechanics*, § 5, problem 3 c).
+/// The base's acceleration acts as a change of gravity (Landau and Lifshitz, *Mechanics*, § 5, problem 3 c).
 #[test]
 fn massive_base() {
     let (g, m, l, amplitude, speed) = (9.81, 0.3, 0.5, 0.02, 30.0);

@@ -1,4 +1,4 @@
-//! Force elements with their laws, where their points meet, and their powers together.
+//! Force elements with their force laws, their behaviour at coincident points, and their power balance.
 
 use super::{EXACT, MOTION};
 use linkwork::nalgebra::{Vector1, Vector2, Vector3, Vector6};
@@ -29,8 +29,8 @@ fn mass_with_inerter() {
     assert_close("displacement", q.as_slice(), &[-0.2234232688843427], 1e-12);
 }
 
-/// A moving-coil loudspeaker: the charge through its coil is a coordinate that moves no body, whose inertia
-/// is the inductance.
+/// Moving-coil loudspeaker. The electric charge through its coil is a coordinate without a body, whose
+/// inertia is the inductance.
 #[mechanism(derivatives)]
 struct Loudspeaker {
     mass: f64,
@@ -83,8 +83,8 @@ fn a_coil_is_the_inertia_of_its_charge() {
     assert_close("resistances", &rates.map(|[i, j]| by_v[(i, j)]), &expected, EXACT);
 }
 
-/// Writes the same two bodies with another law for the springs: between two of their points, on a length, on
-/// an angle.
+/// Declares two bodies with a given force law of the springs: between two of their points, on a length, and
+/// on an angle.
 macro_rules! duffing {
     ($name:ident: [$($law:tt)*], [$($turning:tt)*]) => {
         #[mechanism(gravity = -9.81 * y)]
@@ -155,7 +155,7 @@ fn springs_by_force_and_by_energy() {
     assert_same_dynamics(&LinearByForce { k }, &LinearByStiffness { k }, 4, 1e-12);
 }
 
-/// A cart between buffers that begin to act at a distance.
+/// Cart between buffers that act beyond a gap.
 #[mechanism]
 struct Buffers {
     k: f64,
@@ -179,7 +179,7 @@ fn stops() {
     for (x, expected) in cases {
         assert_close(format!("at {x}"), &[force(x)], &[expected], 1e-12);
     }
-    // Across and back, half an oscillation in each buffer.
+    // One period: across the gap and back, with half an oscillation in each buffer.
     let period = 4.0 * gap / 2.0 + 2.0 * PI / k.sqrt();
     let (q, v) = advance(&cart, &Vector1::zeros(), &Vector1::new(2.0), period);
     assert_close("after a period", &[q[0], v[0]], &[0.0, 2.0], 1e-9);
@@ -253,7 +253,7 @@ fn projectile_with_linear_drag() {
     assert_close("flight", &[q[0], q[1], v[0], v[1]], &expected, MOTION);
 }
 
-/// A pendulum whose weight is a potential, and a spring written as one.
+/// Pendulum whose weight is a potential, with a spring as a potential, too.
 #[mechanism]
 struct PendulumByPotential {
     m: f64,
@@ -290,7 +290,7 @@ fn potential() {
     assert_same_dynamics(&PendulumByPotential { m, g, k }, &PendulumByGravity { m, g, k }, 4, 1e-13);
 }
 
-/// Charges of one sign in a magnetic field.
+/// Electric charges of the same sign in a magnetic field.
 #[mechanism]
 struct Charges {
     field: f64,
@@ -322,7 +322,7 @@ fn charged_particles() {
     assert_close("second", a.fixed_rows::<3>(3).as_slice(), (-repulsion / 0.7).as_slice(), EXACT);
     assert_close("energy", &[charges.potential_energy(&q)], &[0.09 / apart.norm()], EXACT);
 
-    // Without charge on the other, a circle with the cyclotron's period: 2 π m / (q B).
+    // Without charge on the other particle, the motion is a circle with the cyclotron period 2 π m / (q B).
     let start = Vector6::new(0.0, 0.0, 0.0, 1e8, 0.0, 0.0);
     let turning = Vector6::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let (q, v) = advance(&charges, &start, &turning, 2.0 * PI * 0.5 / 0.6);
@@ -347,8 +347,8 @@ struct Meeting {
     inerter: Inerter,
 }
 
-/// A distance of zero has no direction, and what acts along it does nothing there; one with the free length
-/// zero has the limit zero.
+/// Elements between coincident points have no direction and exert no force there; an element of zero free
+/// length has the limit zero.
 #[test]
 fn points_that_coincide() {
     for l in [0.0, 0.3] {
@@ -369,7 +369,8 @@ fn points_that_coincide() {
     }
 }
 
-/// Gravity between particles at one place has no limit: the forces are not finite, and an integrator says so.
+/// Gravity between coincident particles has no limit: the forces are not finite, and an integrator reports
+/// it.
 #[test]
 fn particles_that_coincide() {
     let bodies = TwoBodies { constant: 1.0, m1: 1.0, m2: 1.0 };
@@ -379,7 +380,7 @@ fn particles_that_coincide() {
     assert!(simulate(&bodies).from(q, Vector6::zeros()).duration(1.0).finish().is_err());
 }
 
-/// Something of every class: conservative, dissipative, control, disturbance, inertial.
+/// Mechanism with force elements of every class: conservative, dissipative, control, disturbance, inertial.
 #[mechanism(gravity = -9.81 * y)]
 struct Workbench {
     wind: f64,
@@ -415,7 +416,8 @@ struct Workbench {
     push: Force,
 }
 
-/// `d(T + U)/dt = control + disturbance − dissipated`, the left side by central differences along the motion.
+/// `d(T + U)/dt = control + disturbance − dissipated`, with the left side by central differences along the
+/// motion.
 #[test]
 fn power_balance() {
     let m = Workbench { wind: 0.8 };
@@ -429,7 +431,7 @@ fn power_balance() {
             m.kinetic_energy(&q, &v) + m.potential_energy(&q)
         };
         let h = 1e-4;
-        // Fourth order.
+        // Differences of fourth order.
         let rate = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
         let power = m.control_power(&q, &v, &u) + m.disturbance_power(&q, &v) - m.dissipated_power(&q, &v);
         assert_close("power", &[rate], &[power], 1e-8);

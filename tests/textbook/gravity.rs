@@ -1,4 +1,4 @@
-//! Central gravity, of points and of bodies.
+//! Central gravity of points and of bodies.
 
 use super::EXACT;
 use linkwork::nalgebra::{Matrix3, SVector, Vector1, Vector2, Vector3, Vector6};
@@ -46,7 +46,7 @@ fn kepler_orbit() {
     }
 }
 
-/// Period `2 π √(a³ / (G (m₁ + m₂)))` of the relative motion, whatever the centre of mass does.
+/// The period of the relative motion is `2 π √(a³ / (G (m₁ + m₂)))`, for any motion of the centre of mass.
 #[test]
 fn two_bodies() {
     let (constant, m1, m2) = (0.8, 3.0, 1.2);
@@ -70,7 +70,7 @@ fn two_bodies() {
     assert_close("speed", (v.fixed_rows::<3>(3) - v.fixed_rows::<3>(0)).as_slice(), speed.as_slice(), 1e-9);
 }
 
-/// The particles and the pairs of them that attract each other.
+/// Declares particles, and the pairs of them that attract each other.
 macro_rules! attracting {
     ($name:ident: $($x:ident $y:ident $body:ident $mass:literal,)* ; $($pair:ident $a:ident $b:ident,)*) => {
         #[mechanism]
@@ -105,7 +105,7 @@ fn pleiades() {
     }
 }
 
-/// Pitch of a satellite on a circular orbit, about the normal of the orbit.
+/// Pitch motion of a satellite on a circular orbit, about the normal of the orbit.
 #[mechanism]
 struct Satellite {
     n: f64,
@@ -125,8 +125,9 @@ struct Satellite {
     earth: Gravity,
 }
 
-/// Torque `−(3/2) n² (B − A) sin 2θ` with the pitch θ from the local vertical, and so small librations with
-/// `3 n² (B − A) / C` (Hughes, *Spacecraft Attitude Dynamics*, ch. 9).
+/// The gravity-gradient torque is `−(3/2) n² (B − A) sin 2θ` with the pitch θ from the local vertical, so
+/// that small librations have the squared frequency `3 n² (B − A) / C` (Hughes, *Spacecraft Attitude
+/// Dynamics*, ch. 9).
 #[test]
 fn gravity_gradient_libration() {
     let (n, radius, a, b, c) = (0.9, 50.0, 1.0, 1.7, 2.2);
@@ -144,7 +145,7 @@ fn gravity_gradient_libration() {
     assert_close("libration", &[(q[0] - n * end) / small], &[(libration * end).cos()], 1e-6);
 }
 
-/// The potential of MacCullagh's formula, with the body anywhere and turned anyhow.
+/// Satellite with the potential of MacCullagh's formula, in any position and orientation.
 #[mechanism]
 struct FreeSatellite {
     #[body(mass = 2, inertia = [[0.5, 0.02, -0.01], [0.02, 0.7, 0.03], [-0.01, 0.03, 0.9]])]
@@ -155,7 +156,7 @@ struct FreeSatellite {
     earth: Gravity,
 }
 
-/// The same body and a planet that is free too: each feels the other, and the planet is a sphere.
+/// The satellite and a free planet attract each other; the planet is a sphere.
 #[mechanism]
 struct PlanetAndSatellite {
     #[body(mass = 1.5, inertia = sphere(1.5, 0.3))]
@@ -170,7 +171,7 @@ struct PlanetAndSatellite {
     mutual: Gravity,
 }
 
-/// A sphere's inertia has no gradient, so the potential is that of the satellite near a centre with
+/// A sphere has no gravity-gradient torque, so that the potential is that of the satellite near a centre with
 /// `mu = G M`.
 #[test]
 fn gravity_gradient_between_bodies() {

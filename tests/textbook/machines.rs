@@ -1,4 +1,4 @@
-//! Whole mechanisms against their closed forms.
+//! Complete mechanisms against their closed-form solutions.
 
 use super::{EXACT, MOTION};
 use linkwork::nalgebra::{Matrix2, Matrix3, Rotation3, Vector1, Vector2, Vector3, Vector6};
@@ -32,7 +32,7 @@ fn double_pendulum() {
     assert_close("bias", pendulum.bias_forces(&q, &v).as_slice(), &bias, EXACT);
 }
 
-/// Goldstein, *Classical Mechanics*, ch. 2: beyond `g / (R Ω²)` the bead leaves the bottom.
+/// Beyond `Ω² = g / R` the bead leaves the bottom of the hoop (Goldstein, *Classical Mechanics*, ch. 2).
 #[test]
 fn bead_on_spinning_hoop() {
     let (g, m, radius, spin) = (9.81, 2.0, 0.5, 6.0);
@@ -60,7 +60,7 @@ fn bead_on_spinning_hoop() {
 fn tuned_suspension() {
     let cart = TunedSuspension { m1: 2.0, m2: 1.0, k1: 100.0, k2: 40.0, damping: 0.3, inertance: 0.5 };
     let origin = Vector2::zeros();
-    // The carts meet at the origin: nothing special happens there.
+    // The carts coincide at the origin, which is no singularity.
     assert_eq!(cart.bias_forces(&origin, &origin), origin);
     let mass = cart.mass_matrix(&origin);
     assert_close("mass", mass.as_slice(), &[2.5, -0.5, -0.5, 1.5], EXACT);
@@ -90,8 +90,8 @@ fn gyroscope() {
     assert_close("mass", gyroscope.mass_matrix(&q).as_slice(), mass.as_slice(), EXACT);
 }
 
-/// Gimbal lock: with the axes of precession and spin in line, the mass matrix is singular, everything else is
-/// still right, and the acceleration is not a wrong number but none.
+/// In gimbal lock, with the axes of precession and spin in line, the mass matrix is singular. All other
+/// functions are still correct, and the acceleration is not finite instead of wrong.
 #[test]
 fn gimbal_lock() {
     let gyroscope = Gyroscope { g: 9.81, mass: 1.0, offset: 0.0, axial: 2.0, transverse: 3.0 };

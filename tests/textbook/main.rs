@@ -1,6 +1,6 @@
-//! Problems of the textbooks in the words that they are stated in: free coordinates, moving frames, laws,
-//! potentials and outputs, each against its closed form. Those that the gallery of ready-made mechanisms has
-//! are taken from there.
+//! Textbook problems in the terms in which they are stated: free coordinates, moving frames, force laws,
+//! potentials and outputs, each against its closed-form solution. Mechanisms that the gallery contains are
+//! used from there.
 
 mod coordinates;
 mod curves;
@@ -12,7 +12,7 @@ mod matrices;
 mod motions;
 mod orientations;
 
-/// Identities.
+/// Tolerance of identities.
 const EXACT: f64 = 1e-13;
-/// Motions.
+/// Tolerance of integrated motions.
 const MOTION: f64 = 1e-10;

@@ -5,7 +5,7 @@ use linkwork::prelude::*;
 use linkwork::rotation::{reciprocal, unvectorized, vectorized, wedge};
 use support::random::Random;
 
-/// A carrier in space with a wheel on an axle that stands askew.
+/// Carrier in space with a wheel on a skew axle.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Carrier {
     mass: f64,
@@ -68,31 +68,31 @@ fn matrices_are_what_their_vectors_say() {
         let (q, v): (SVector<f64, 8>, SVector<f64, 7>) = (random.configuration(&m), random.vector(2.0));
         let hull = m.frame_placement(frame!(Carrier, "hull"), &q).rotation;
         let wheel = m.frame_placement(frame!(Carrier, "wheel"), &q).rotation;
-        // A rotation has the same entries in both of its frames.
+        // A rotation has the same components in both of its frames.
         assert!((m.relative(&q) - (hull.inverse() * wheel).matrix()).amax() < 1e-14);
         let askew = wheel * Rotation3::from_axis_angle(&Vector3::x_axis(), 0.3);
         assert!((m.orientation(&q) - askew.matrix()).amax() < 1e-14);
         assert!(m.nothing(&q).amax() < 1e-14);
-        // Poisson's equation, by differences along the motion too.
+        // Poisson's equation, also checked by differences along the motion.
         let h = 1e-6;
         let difference =
             (m.relative(&m.integrate(&q, &(v * h))) - m.relative(&m.integrate(&q, &(v * -h)))) / (2.0 * h);
         assert!((m.relative_rate(&q, &v) - m.poisson(&q, &v)).amax() < 1e-13);
         assert!((m.relative_rate(&q, &v) - difference).amax() < 1e-8);
-        // An inertia stays in its body, and changes elsewhere as the body turns: by Ω J − J Ω.
+        // An inertia is constant in its body's frame; in another frame its rate is Ω J − J Ω.
         assert!((m.moments(&q) - Matrix3::from_diagonal(&Vector3::new(0.1, 0.2, 0.255))).amax() < 1e-14);
         assert!((m.moments_rate(&q, &v) - m.turning(&q, &v)).amax() < 1e-12);
         assert!(m.moments_rate(&q, &v).amax() > 1e-3);
         assert!((m.spin(&q, &v) - m.angular(&q, &v)).amax() < 1e-13);
-        // Projections.
+        // Projectors along and across an axis.
         assert!(m.along(&q).amax() < 1e-13);
         let place = m.place(&q);
         assert!((m.across(&q) - SVector::from([place[0], 0.0, place[2]])).amax() < 1e-13);
-        // The angle between the frames: 2 cos θ + 1 is the trace of their rotation.
+        // The trace of the rotation between the frames is 2 cos θ + 1, with their angle θ.
         let angle = (hull.inverse() * wheel).angle();
         assert!((m.cosine(&q) - (2.0 * angle.cos() + 1.0) / 2.0).abs() < 1e-13);
         assert!((m.rows(&q) - SVector::from([2.0, 2.0, 0.0])).amax() < 1e-15);
-        // Of all bodies, the moment about z is twice the energy of turning about it.
+        // The moment of inertia of all bodies about z is twice their energy of unit rotation about it.
         let z = Vector3::z();
         let turn = |w: Vector3<f64>| {
             let at = m.frame_placement(frame!(Carrier, "hull"), &q);
@@ -103,8 +103,8 @@ fn matrices_are_what_their_vectors_say() {
     }
 }
 
-/// A velocity of a free body in three of its directions that are not perpendicular, by reciprocal vectors as
-/// expressions.
+/// Free body whose velocity has components along three of its directions that are not perpendicular, with
+/// reciprocal vectors as expressions.
 #[mechanism]
 struct Oblique {
     #[body(mass = 1, inertia = sphere(1, 1))]
@@ -144,8 +144,8 @@ fn outputs_have_components_in_oblique_frames() {
     }
 }
 
-/// With vectors that are not perpendicular: `g₁ = f₂ × f₃ / (f₁ · f₂ × f₃)` and so on, and Cramer's rule for
-/// the components.
+/// Components along vectors that are not perpendicular follow from `g₁ = f₂ × f₃ / (f₁ · f₂ × f₃)` and so on,
+/// and from Cramer's rule.
 #[test]
 fn components_in_oblique_frames() {
     let mut random = Random::new(6);
@@ -164,7 +164,7 @@ fn components_in_oblique_frames() {
     }
 }
 
-/// `A X + X B = C` is `(1 ⊗ A + Bᵀ ⊗ 1) vec X = vec C`; a wedge product is the cross product's matrix,
+/// `A X + X B = C` is `(1 ⊗ A + Bᵀ ⊗ 1) vec X = vec C`; a wedge product is the matrix of the cross product,
 /// `(a ∧ b) v = (a × b) × v`.
 #[test]
 fn kronecker_products_solve_sylvester_s_equation() {

@@ -1,10 +1,10 @@
-//! Points that a motion singles out, momenta of several bodies, rates of vectors, points of a body along
-//! other axes.
+//! Characteristic points of motions, momenta of several bodies, rates of vectors, and points of a body given
+//! in other axes.
 
 use linkwork::prelude::*;
 use support::random::Random;
 
-/// A ladder that slides down a wall: its ends are on the floor and on the wall.
+/// Ladder that slides down a wall: its ends are on the floor and on the wall.
 #[mechanism(gravity = -9.81 * y)]
 struct Ladder {
     l: f64,
@@ -21,8 +21,8 @@ struct Ladder {
     axis: Vector,
 }
 
-/// The centre of velocity is where the normals of wall and floor meet; so is that of acceleration at the
-/// moment when it is let go, and the acceleration there is zero in any state.
+/// The instantaneous centre of velocity is the intersection of the normals of wall and floor. At the instant
+/// of release it is also the centre of acceleration, whose acceleration is zero in any state.
 #[test]
 fn a_ladder_turns_about_its_instantaneous_centre() {
     let (m, mut random) = (Ladder { l: 3.0 }, Random::new(8));
@@ -41,7 +41,7 @@ fn a_ladder_turns_about_its_instantaneous_centre() {
     }
 }
 
-/// A wheel that rolls along a line.
+/// Wheel that rolls along a line.
 #[mechanism]
 struct Wheel {
     radius: f64,
@@ -63,7 +63,7 @@ fn a_wheel_turns_about_its_contact_and_accelerates_about_its_hub() {
     assert!(m.unmoved(&q, &v, &[0.0].into()).amax() < 1e-14);
 }
 
-/// Two turns about axes that are skew, at a distance along z.
+/// Two rotations about skew axes, at a distance along z.
 #[mechanism]
 struct Cylindroid {
     d: f64,
@@ -83,8 +83,8 @@ struct Cylindroid {
     of_pin: Scalar,
 }
 
-/// The screw of two turns lies on Plücker's conoid: at the height `d w₂² / (w₁² + w₂²)`, with the pitch
-/// `−d w₁ w₂ / (w₁² + w₂²)` (Ball, *A Treatise on the Theory of Screws*, 1900, § 13).
+/// The screw axis of two rotations is on Plücker's conoid: at the height `d w₂² / (w₁² + w₂²)`, with the
+/// pitch `−d w₁ w₂ / (w₁² + w₂²)` (Ball, *A Treatise on the Theory of Screws*, 1900, § 13).
 #[test]
 fn two_turns_make_a_screw_of_the_cylindroid() {
     let (m, q) = (Cylindroid { d: 0.4 }, SVector::zeros());
@@ -96,7 +96,7 @@ fn two_turns_make_a_screw_of_the_cylindroid() {
     }
 }
 
-/// A nut on a screw beside the origin.
+/// Nut on a screw whose axis does not pass through the origin.
 #[mechanism]
 struct Nut {
     #[body(mass = 1, inertia = sphere(1, 0.1))]
@@ -116,7 +116,7 @@ fn a_nut_has_the_pitch_and_the_axis_of_its_thread() {
     assert!((Nut {}.axis(&q, &v) - SVector::from([0.5, 0.0, 0.03 * 0.8])).amax() < 1e-15);
 }
 
-/// A bat, free in its plane, that is struck at its centre of percussion for the grip.
+/// Bat that moves freely in its plane, hit at its centre of percussion with respect to the grip.
 #[mechanism]
 struct Bat {
     l: f64,
@@ -134,8 +134,8 @@ struct Bat {
     further: Vector,
 }
 
-/// Of a rod that is held at its end it is at two thirds of the length, and a blow there leaves the end at
-/// rest.
+/// The centre of percussion of a rod with respect to its end is at two thirds of the length: an impulse there
+/// leaves the end at rest.
 #[test]
 fn a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest() {
     let (m, q, v) = (Bat { l: 0.9 }, [0.3, 0.1, 0.7].into(), SVector::zeros());
@@ -146,12 +146,12 @@ fn a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest() {
     let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &[10.0].into()));
     let rate = m.frame_acceleration(frame!(Bat, "bat"), &q, &v, &a);
     assert!(rate.fixed_rows::<3>(0).amax() < 1e-13 && rate[5] > 1.0);
-    // Held elsewhere: I + m d² over m d.
+    // With respect to another point it is at I + m d² over m d.
     let d: f64 = 0.45 - 0.1;
     assert!((m.further(&q)[0] - (0.9_f64.powi(2) / 12.0 + d * d) / d).abs() < 1e-14);
 }
 
-/// A carrier with an arm and a bead, and a torque on the carrier.
+/// Carrier with an arm, a bead, and a torque on the carrier.
 #[mechanism(derivatives)]
 struct Carrier {
     mass: f64,
@@ -193,9 +193,8 @@ struct Carrier {
     parts: Scalar,
 }
 
-/// What several bodies have is what the whole has, and changes by forces and torques from outside alone
-/// (Euler's laws); seen from a frame that turns, a vector changes by less than `ω × h` (the transport
-/// theorem).
+/// Momenta of several bodies add up to those of the whole, and change only by external forces and torques
+/// (Euler's laws). In a rotating frame, the rate of a vector is smaller by `ω × h` (the transport theorem).
 #[test]
 fn euler_s_laws_hold_for_a_set_of_bodies() {
     let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(3));
@@ -222,7 +221,7 @@ fn euler_s_laws_hold_for_a_set_of_bodies() {
     }
 }
 
-/// A wheel on three axes that rolls by a pair of surfaces.
+/// Wheel on three axes that rolls by a rolling pair of surfaces.
 #[mechanism(gravity = -9.81 * z)]
 struct Rolls {
     radius: f64,
@@ -242,8 +241,8 @@ struct Rolls {
     contact: Rolling,
 }
 
-/// The wheel of [`Rolls`], whose lowest point is said in the axes of the fork: it is on the ground, and at
-/// rest.
+/// The wheel of [`Rolls`] with its lowest point given in the axes of the fork: this point is on the ground,
+/// and at rest.
 #[mechanism(gravity = -9.81 * z)]
 struct Written {
     radius: f64,
@@ -287,11 +286,11 @@ fn a_wheel_rolls_on_a_point_in_the_axes_of_its_fork() {
         v.fixed_rows_mut::<3>(0).copy_from(&-slides);
         assert!(written.slides(&q, &v).amax() < 1e-14);
         let tau = random.vector(1.0);
-        // Forces at a point that rests do no work: they leave the motion as it is.
+        // A force at a point at rest does no work and does not change the motion.
         let a = written.forward_dynamics(&q, &v, &tau);
         let expected = pair.forward_dynamics(&q, &v, &tau);
         assert!((a - expected).amax() < 1e-9 * (1.0 + expected.amax()), "{a} {expected}");
-        // Where it slides they have the power of a force at that point of the wheel.
+        // If the point slides, the generalized forces have the power of a force at that point of the wheel.
         let any: SVector<f64, 6> = random.vector(2.0);
         let power = written.generalized_forces(&q, &[2.0].into()).dot(&any);
         assert!((power - 2.0 * written.forward(&q, &any)).abs() < 1e-13);
@@ -299,7 +298,7 @@ fn a_wheel_rolls_on_a_point_in_the_axes_of_its_fork() {
     }
 }
 
-/// A pendulum whose inertia is that about its pivot, and one whose inertia is about its centre of mass.
+/// Pendulum with its inertia given about its pivot, and one with its inertia about its centre of mass.
 #[mechanism(gravity = -9.81 * y)]
 struct AboutPivot {
     j: f64,
@@ -317,13 +316,13 @@ struct AboutPivot {
 fn inertias_about_another_point_are_moved_to_the_centre_of_mass() {
     let m = AboutPivot { j: 0.7 };
     let mass = m.mass_matrix(&[0.3, 0.2].into());
-    // About the pivot it is what was said.
+    // The moment of inertia about the pivot is the given value.
     assert!((mass[(0, 0)] - 0.7).abs() < 1e-15);
     // 0.3 − 2 · 0.3² about the centre of mass, and 2 · 0.1² more about the pivot.
     assert!((mass[(1, 1)] - (0.3 - 0.18 + 0.02)).abs() < 1e-15);
 }
 
-/// A motor that drives a flywheel with drag, and the work that each has done.
+/// Motor that drives a flywheel with drag, with the work of each as a state.
 #[mechanism]
 struct Flywheel {
     #[body(mass = 1, inertia = diagonal(0.3, 0.3, 0.5))]
@@ -340,7 +339,7 @@ struct Flywheel {
     lost: State,
 }
 
-/// The work of a force is the integral of its power: a state.
+/// The work of a force is a first-order state, the integral of its power.
 #[test]
 fn work_is_what_energy_gains_and_drag_takes() {
     let m = Flywheel { work: 0.0, lost: 0.0 };
@@ -349,7 +348,8 @@ fn work_is_what_energy_gains_and_drag_takes() {
     let end = run.method(DormandPrince::new().tolerance(1e-11, 1e-11)).duration(3.0).finish().unwrap();
     let gained = 0.25 * (end.v[0] * end.v[0] - 1.0);
     assert!((end.v[1] - end.v[2] - gained).abs() < 1e-8, "{} {} {gained}", end.v[1], end.v[2]);
-    // ω = a t + b + c exp(−k t) with k = 0.6, of 0.5 ω′ = 2 t − 0.3 ω, and the work is the integral of 2 t ω.
+    // 0.5 ω′ = 2 t − 0.3 ω has the solution ω = a t + b + c exp(−k t) with k = 0.6; the work is the integral
+    // of 2 t ω.
     let (k, a) = (0.6_f64, 2.0 / 0.3);
     let (b, e) = (-a / k, (-3.0 * k).exp());
     let c = 1.0 - b;
@@ -357,7 +357,7 @@ fn work_is_what_energy_gains_and_drag_takes() {
     assert!((end.v[1] - work).abs() < 1e-7, "{} {work}", end.v[1]);
 }
 
-/// A ball that slides and turns on a lane, drawn by a force.
+/// Ball that slides and rotates on a lane, pulled by a force.
 #[mechanism(gravity = -9.81 * z)]
 struct Sliding {
     mu: f64,
@@ -379,8 +379,8 @@ struct Sliding {
     beside: Scalar,
 }
 
-/// Friction takes `μ N s² / √(s² + s₀²)` of a slip `s`, whatever presses; with it the power balance is
-/// complete.
+/// Friction dissipates `μ N s² / √(s² + s₀²)` at the slip velocity `s`, for any normal force, and completes
+/// the power balance.
 #[test]
 fn friction_of_a_slipping_contact_takes_power() {
     let m = Sliding { mu: 0.3 };

@@ -1,4 +1,4 @@
-//! Frames in angles, and the words for vectors.
+//! Frames in angles, and functions for vectors.
 
 use super::{EXACT, MOTION};
 use linkwork::mechanism;
@@ -8,7 +8,8 @@ use support::compare::assert_close;
 use support::simulate::advance;
 use support::table::Record;
 
-/// A body in a frame turned three times, with the names of the axes; checked against the table of sequences.
+/// Declares a body in a frame with three successive rotations about the named axes, and checks it against the
+/// table of sequences.
 macro_rules! sequences {
     ($($name:ident $label:literal $one:ident $two:ident $three:ident,)*) => {
         $(
@@ -77,7 +78,7 @@ sequences! {
     FrameZyz "zyz" z y z,
 }
 
-/// The heavy top in Euler's angles by a frame, with its tip fixed, against the same top on a ball joint.
+/// Heavy top with a fixed tip in Euler angles of a frame, against the same top on a ball joint.
 #[mechanism(gravity = -9.81 * z)]
 struct TopByFrame {
     psi: Coordinate,

@@ -1,1 +1,1 @@
-//! Nothing but the place of the test `ui`.
+//! Empty library of the package that contains the test `ui`.

@@ -1,12 +1,12 @@
-//! Mistakes as the user meets them: what rustc prints for one of each kind. All others are in the tables of the compiler's
-//! `tests/mistakes`, where a test tries them without rustc.
+//! Error messages as rustc prints them, one of each kind. The tables of the compiler's `tests/mistakes`
+//! contain all others, which a test checks without rustc.
 //!
-//! `TRYBUILD=overwrite cargo test -p linkwork-ui` writes the messages anew; read them before they are committed.
+//! `TRYBUILD=overwrite cargo test -p linkwork-ui` writes the messages again; read them before a commit.
 
 use std::fs;
 use std::path::Path;
 
-/// The generated crate that trybuild compiles the files in: the paths of URDF files start there.
+/// Crate that trybuild generates to compile the files: paths of URDF files are relative to it.
 const CRATE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/../tests/trybuild/", env!("CARGO_PKG_NAME"));
 
 #[test]

@@ -1,4 +1,5 @@
-//! The models and the language's own page: all are accepted; none is with a factor too many or too few.
+//! Units of the models and of the language reference: all mechanisms are accepted, and all are rejected after
+//! a factor is added or removed.
 
 use super::{Units, units};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
@@ -7,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use syn::{Item, ItemStruct, Meta};
 
-/// A mechanism of a source file.
+/// Mechanism of a source file.
 struct Source {
     arguments: TokenStream,
     item: ItemStruct,
@@ -18,7 +19,7 @@ impl Source {
         self.units().err().unwrap_or_default()
     }
 
-    /// The parameters with the units that their documentation ends with: "Mass of the cart, kg."
+    /// Returns the parameters with the units at the end of their documentation, as in "Mass of the cart, kg."
     fn documented(&self) -> Vec<(String, String)> {
         let field = |f: &syn::Field| {
             let doc = f.attrs.iter().filter_map(|a| match &a.meta {
@@ -35,7 +36,8 @@ impl Source {
         self.item.fields.iter().filter(|f| is_parameter(f)).filter_map(field).collect()
     }
 
-    /// The same with another text for one occurrence of a parameter; none if there are not so many.
+    /// Returns a copy with one occurrence of a parameter replaced by another text, or `None` if it has fewer
+    /// occurrences.
     fn replaced(&self, parameter: &str, occurrence: usize, by: &str) -> Option<Source> {
         let mut left = occurrence as isize;
         let by: TokenStream = by.parse().unwrap();
@@ -51,7 +53,7 @@ impl Source {
         (left < 0).then_some(Source { arguments, item })
     }
 
-    /// The same with the unit of every parameter but one.
+    /// Returns a copy that declares the unit of every parameter except one.
     fn pinned(&self, units: &[String], except: &str) -> Source {
         let mut item = self.item.clone();
         for (field, unit) in item.fields.iter_mut().filter(|field| is_parameter(field)).zip(units) {
@@ -73,7 +75,7 @@ impl Source {
             .any(|f| matches!(&f.ty, syn::Type::Path(path) if path.path.segments[0].ident == "Table"))
     }
 
-    /// The parameters with their units.
+    /// Returns the parameters with their units.
     fn parameters(&self) -> Vec<(String, String)> {
         let units = self.units().unwrap_or_else(|messages| panic!("{}: {messages:?}", self.item.ident));
         let fields = self.item.fields.iter().filter(|field| is_parameter(field));
@@ -86,7 +88,7 @@ impl Source {
     }
 }
 
-/// Parameters stand before all else but tables; states are parameters, too.
+/// Whether a field is a parameter or a first-order state.
 fn is_parameter(field: &syn::Field) -> bool {
     matches!(&field.ty, syn::Type::Path(path) if path.path.is_ident("f64") || path.path.is_ident("State"))
 }
@@ -97,7 +99,7 @@ fn is_unit(text: &str) -> bool {
         && words.filter(|w| !w.is_empty()).all(|w| ["m", "kg", "s", "rad", "N", "J", "1"].contains(&w))
 }
 
-/// Replaces the occurrence of a parameter that the count comes to; keys and members are none.
+/// Replaces the occurrence of a parameter with the index `left`. Keys and members with its name do not count.
 fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut isize) -> TokenStream {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let is = |k: usize, c: char| matches!(tokens.get(k), Some(TokenTree::Punct(p)) if p.as_char() == c);
@@ -121,7 +123,7 @@ fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut is
     new
 }
 
-/// The mechanisms of a file.
+/// Returns the mechanisms of a file.
 fn sources(text: &str) -> Vec<Source> {
     let found = syn::parse_file(text).unwrap().items.into_iter().filter_map(|item| {
         let Item::Struct(mut item) = item else { return None };
@@ -136,7 +138,7 @@ fn sources(text: &str) -> Vec<Source> {
     found.collect()
 }
 
-/// The mechanisms of all models that have parameters.
+/// Returns the mechanisms of all models that have parameters.
 fn gallery() -> Vec<Source> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/src");
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -148,7 +150,7 @@ fn gallery() -> Vec<Source> {
     all.filter(|source| !source.documented().is_empty()).collect()
 }
 
-/// What is inferred is what the authors wrote.
+/// Inferred units equal those in the documentation.
 #[test]
 fn units_are_those_of_the_documentation() {
     let mut compared = 0;
@@ -164,7 +166,7 @@ fn units_are_those_of_the_documentation() {
     assert!(compared > 30, "{compared} units");
 }
 
-/// Exponents of m, kg and s.
+/// Returns the exponents of m, kg and s.
 fn dimension(unit: &str) -> [i32; 3] {
     let mut sum = [0; 3];
     let (mut sign, mut inside) = (1, 1);
@@ -205,10 +207,11 @@ fn dimension(unit: &str) -> [i32; 3] {
     sum
 }
 
-/// Parameters that have a unit, and their occurrences with another text in turn.
+/// Replaces each occurrence of each parameter that has a unit, and checks that the mechanism is rejected.
+/// Returns the number of rejected mechanisms.
 fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
     let mut refused = 0;
-    // Tables take any unit, and so does what stands beside them.
+    // Tables accept any unit, and so do the factors of their values.
     for source in gallery().into_iter().filter(|source| !source.has_tables()) {
         let parameters = source.parameters();
         let units: Vec<String> = parameters.iter().map(|(_, unit)| unit.clone()).collect();
@@ -217,7 +220,7 @@ fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
         {
             let pinned = source.pinned(&units, if itself { "" } else { parameter });
             assert_eq!(pinned.messages(), Vec::<String>::new(), "{}", source.item.ident);
-            // What stands only once is what it is there.
+            // The only use of a parameter determines its unit.
             if !itself && source.replaced(parameter, 1, parameter).is_none() {
                 continue;
             }
@@ -239,16 +242,16 @@ fn a_factor_too_many_is_refused() {
     assert!(refused > 15, "{refused} mistakes");
 }
 
-/// Its ratio to itself: the factor is gone, the parameter is still used.
+/// Its ratio to itself removes a factor while the parameter is still used.
 #[test]
 fn a_factor_too_few_is_refused() {
     let refused = refuse_all(|p| format!("{p} / {p}"), true);
     assert!(refused > 40, "{refused} mistakes");
 }
 
-/// A message names the parameter, or one whose unit follows from it, or the definitions that it may stand in.
-/// One of the two entries of a symmetric matrix is refused before, and so is a loop that is locked by a
-/// length that is wrong.
+/// Whether a message names the parameter, another parameter whose unit follows from it, or the definition in
+/// which it may occur. Earlier checks reject one of the two entries of a symmetric matrix, and a loop that a
+/// wrong length locks.
 fn is_refused(messages: &[String], parameter: &str) -> bool {
     let parameter = format!("`{parameter}`");
     let others = [
@@ -261,7 +264,7 @@ fn is_refused(messages: &[String], parameter: &str) -> bool {
     messages.iter().any(|m| m.contains(&parameter) || others.iter().any(|other| m.contains(other)))
 }
 
-/// The page of the language, as far as it is compiled.
+/// Examples of the language reference are accepted, as far as they are compiled.
 #[test]
 fn the_page_of_the_language_is_accepted() {
     for (name, arguments, fields, expected) in PAGE {

@@ -1,4 +1,4 @@
-//! Random expressions of things whose units are known: accepted if and only if the units fit.
+//! Random expressions of quantities with known units are accepted if and only if the units are consistent.
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
@@ -13,7 +13,7 @@ const PLAIN: Dimension = [0, 0, 0];
 const FORCE: Dimension = [1, 1, -2];
 const ENERGY: Dimension = [2, 1, -2];
 
-/// Parameters, whose units are declared in `MACHINE`: a power of each gives every dimension.
+/// Parameters, whose units `MACHINE` declares: products of their powers have every dimension.
 const PARAMETERS: [(&str, Dimension); 7] = [
     ("l", [1, 0, 0]),
     ("m", [0, 1, 0]),
@@ -40,11 +40,11 @@ const MOTION: [(&str, Dimension); 12] = [
     ("moment_of_inertia(arm / ground, ground.z)", [2, 1, 0]),
 ];
 
-/// Inputs, with the unit of what they act on.
+/// Inputs, with the unit of their force or torque.
 const INPUTS: [(&str, Dimension); 4] =
     [("push", FORCE), ("turn", ENERGY), ("pull", FORCE), ("lever", [0, 1, -2])];
 
-/// A machine with an element more.
+/// Returns the source of a machine with an additional element.
 fn machine(more: &str) -> String {
     format!(
         "struct Machine {{
@@ -71,7 +71,7 @@ fn messages(more: &str) -> Vec<String> {
     cx.messages()
 }
 
-/// An integer less than `n`.
+/// Returns a random integer less than `n`.
 fn below(n: usize, random: &mut Random) -> usize {
     ((random.uniform(0.5) + 0.5) * n as f64) as usize % n
 }
@@ -84,7 +84,7 @@ fn pick<T: Copy>(from: &[T], random: &mut Random) -> T {
     from[below(from.len(), random)]
 }
 
-/// A factor that gives a product a dimension: powers of the first three parameters.
+/// Returns a factor of this dimension: powers of the first three parameters.
 fn missing(mut by: Dimension) -> String {
     let mut text = String::new();
     for (k, (name, unit)) in PARAMETERS.iter().take(3).enumerate() {
@@ -97,7 +97,7 @@ fn missing(mut by: Dimension) -> String {
     text
 }
 
-/// A product of this dimension that a parameter anchors: its numbers are plain factors.
+/// Returns a product of this dimension that contains a parameter, so that its numbers are dimensionless.
 fn anchored(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let (mut text, mut has) = (String::from("n"), PLAIN);
     for _ in 0..below(3, random) {
@@ -126,7 +126,8 @@ fn anchored(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     }
 }
 
-/// A term of this dimension: anchored, or a number, or the motion's own with a coefficient.
+/// Returns a term of this dimension: a product with a parameter, a number, or a quantity of the motion with a
+/// coefficient.
 fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let with_coefficient = [MOTION.as_slice(), INPUTS.as_slice()].concat();
     match below(8, random) {
@@ -140,7 +141,7 @@ fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     }
 }
 
-/// A sum of terms of this dimension, one of which is anchored.
+/// Returns a sum of terms of this dimension, one of which contains a parameter.
 fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let mut text = anchored(dimension, depth, random);
     for _ in 0..below(3, random) {
@@ -153,7 +154,7 @@ fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String
     text
 }
 
-/// Another dimension than this one.
+/// Returns another dimension.
 fn another(dimension: Dimension, random: &mut Random) -> Dimension {
     loop {
         let other = std::array::from_fn(|k| dimension[k] + below(5, random) as i32 - 2);
@@ -163,7 +164,7 @@ fn another(dimension: Dimension, random: &mut Random) -> Dimension {
     }
 }
 
-/// A sum in which one thing does not fit.
+/// Returns a sum in which the unit of one term is inconsistent.
 fn wrong(dimension: Dimension, random: &mut Random) -> String {
     let (good, bad) = (expression(dimension, 1, random), anchored(another(dimension, random), 1, random));
     match below(6, random) {
@@ -172,7 +173,7 @@ fn wrong(dimension: Dimension, random: &mut Random) -> String {
         2 => format!("({good}) * cos({})", anchored(another(PLAIN, random), 1, random)),
         3 => format!("min({good}, {bad})"),
         4 => {
-            // Without any parameter.
+            // Sum without any parameter.
             let all = [MOTION.as_slice(), INPUTS.as_slice()].concat();
             let (a, b) = loop {
                 let (a, b) = (pick(&all, random), pick(&all, random));
@@ -186,7 +187,7 @@ fn wrong(dimension: Dimension, random: &mut Random) -> String {
     }
 }
 
-/// An element that holds an expression of this dimension, directly or by way of definitions.
+/// Returns an element that uses an expression of this dimension, directly or through definitions.
 fn element(e: &str, dimension: Dimension, random: &mut Random) -> String {
     match below(if dimension == FORCE || dimension == ENERGY { 6 } else { 4 }, random) {
         0 => format!("#[output({e})] o: Scalar"),
@@ -232,7 +233,7 @@ fn expressions_whose_units_do_not_fit_are_refused() {
     }
 }
 
-/// Anchored expressions at places of another dimension.
+/// Expressions of another dimension than that of their use are rejected.
 #[test]
 fn places_refuse_other_units() {
     let mut random = Random::new(43);

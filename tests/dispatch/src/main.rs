@@ -1,22 +1,22 @@
-//! Functions that choose their instructions at run time agree with those that do not, to rounding; several
-//! states at once do what single states do; and there is no `unsafe` in generated code.
+//! Functions that select their instructions at run time agree to rounding with functions that do not. Batched
+//! functions agree with those of single states. Generated code contains no `unsafe`.
 #![forbid(unsafe_code)]
 
-/// The same mechanisms, compiled in two ways.
+/// Declares the same mechanisms for each of two compile options.
 macro_rules! mechanisms {
     ($name:ident: $($option:tt)*) => {
         mod $name {
             use linkwork::prelude::*;
 
-            /// Numbers alone.
+            /// Arm with constant values.
             #[mechanism(urdf = "../../models/urdf/panda.urdf", batch, derivatives, $($option)*)]
             pub struct Panda;
 
-            /// Limbs in lanes.
+            /// Quadruped with limbs as SIMD lanes.
             #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, batch, derivatives, $($option)*)]
             pub struct Solo12;
 
-            /// Parameters of any type, and what is computed of them.
+            /// Mechanism with parameters of any scalar type, and prepared values.
             #[mechanism(gravity = -g * y, batch, prepare, derivatives, $($option)*)]
             pub struct Machine<T> {
                 pub g: T,
@@ -38,7 +38,8 @@ macro_rules! mechanisms {
                 rubbing: Friction,
             }
 
-            /// So many velocities in a row that derivatives are composed of other functions' results.
+            /// Chain with enough velocities that its derivatives are composed from results of other generated
+            /// functions.
             #[mechanism(gravity = -9.81 * y, derivatives, $($option)*)]
             pub struct Chain {
                 #[body(mass = 1.0, com = 0.01 * x, inertia = diagonal(1, 1.1, 1.2))]
@@ -97,7 +98,7 @@ mechanisms!(targeted: processor = target);
 
 use linkwork::prelude::*;
 
-/// Numbers in [-2, 2], and an angle beyond the range in which sines are evaluated several at a time.
+/// Pseudo-random numbers in [-2, 2], and occasionally an angle beyond the range of the vectorised sine.
 struct Numbers(u64);
 
 impl Numbers {
@@ -111,18 +112,19 @@ impl Numbers {
         SVector::from_fn(|_, _| self.next())
     }
 
-    /// Without the large ones: lengths of that size leave hardly a digit of the inverse of a mass matrix.
+    /// Returns a vector without the large values: lengths of that magnitude would leave hardly a digit of the
+    /// inverse of a mass matrix.
     fn moderate<const N: usize>(&mut self) -> SVector<f64, N> {
         self.vector::<N>().map(|x| x.clamp(-2.0, 2.0))
     }
 }
 
-/// Largest difference relative to the largest number.
+/// Returns the largest difference relative to the largest entry.
 fn difference<const R: usize, const C: usize>(a: &SMatrix<f64, R, C>, b: &SMatrix<f64, R, C>) -> f64 {
     (a - b).amax() / (1.0 + b.amax())
 }
 
-/// True where this program chooses.
+/// Whether this program selects instructions at run time.
 fn chooses() -> bool {
     #[cfg(all(target_arch = "x86_64", not(target_feature = "fma")))]
     return std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
@@ -130,7 +132,7 @@ fn chooses() -> bool {
     return false;
 }
 
-/// Compares two mechanisms; `bits` says that lanes hold the bits of the dynamics of single states.
+/// Compares two mechanisms. With `bits`, lanes must have the same bits as single states in the dynamics, too.
 fn compare<A, B, const NQ: usize, const NV: usize, const NU: usize>(a: &A, b: &B, bits: bool)
 where
     A: Mechanism<NQ, NV, NU, Scalar = f64> + Batch<NQ, NV, NU, Scalar = f64>,
@@ -171,7 +173,7 @@ where
             assert!(!bits || same, "lanes hold the bits of single states");
         }
     }
-    // Rounding shows which instructions ran.
+    // Rounding errors show which instructions were executed.
     assert_eq!(differ, chooses(), "the choice");
 }
 

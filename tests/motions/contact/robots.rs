@@ -162,7 +162,7 @@ where
 }
 
 /// The contact-space inverse inertia with limbs as SIMD lanes equals that of the mass matrix. The cases have
-/// legs with contacts, arms without contacts, and contacts between two groups of limbs.
+/// legs with contacts, arms without contacts, and contacts on two groups of limbs.
 #[test]
 fn responses_of_limbs_are_those_of_the_mass_matrix() {
     let mut random = Random(11);

@@ -1,4 +1,4 @@
-//! What cannot be linked with a way to panic.
+//! Panic handler that cannot be linked: it makes every reachable panic a link error.
 
 use core::panic::PanicInfo;
 
@@ -7,10 +7,10 @@ fn panic(_: &PanicInfo<'_>) -> ! {
     unsafe extern "C" {
         fn linkwork_panic_path_reached() -> !;
     }
-    // SAFETY: the program cannot be linked with this call in it, so it is never made.
+    // SAFETY: the program cannot be linked with this call in it, so it is never executed.
     unsafe { linkwork_panic_path_reached() }
 }
 
-// The C library starts the program.
+// The C library provides the program's entry point.
 #[link(name = "c")]
 unsafe extern "C" {}

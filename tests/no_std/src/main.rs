@@ -1,7 +1,7 @@
-//! A computed-torque controller of a seven-axis arm with the arm that it moves, a body in flight with every
-//! integrator, an engine with a closed loop, and a sledge that strikes the ground and comes to rest there,
-//! without the standard library, without an allocator and without any way to panic: the panic handler calls a
-//! function that does not exist, so that a program with a panic left in it cannot be linked.
+//! Program without the standard library, without an allocator and without panics. It has a computed-torque
+//! controller with its seven-axis arm, a body in flight with every integrator, an engine with a closed loop,
+//! and a sledge that collides with the ground and comes to rest. The panic handler calls a function that does
+//! not exist, so that a program with a remaining panic cannot be linked.
 
 #![no_std]
 #![no_main]
@@ -18,19 +18,19 @@ struct Arm;
 
 type Joints = SVector<f64, { Arm::NV }>;
 
-/// Torques that bring the arm from `q`, `v` towards `target`.
+/// Returns torques that move the arm from `q`, `v` towards `target`.
 fn control(q: &Joints, v: &Joints, target: &Joints) -> Joints {
     let acceleration = (target - q) * 25.0 - v * 10.0;
     Arm.inverse_dynamics(q, v, &acceleration)
 }
 
-/// The arm a millisecond later.
+/// Returns the arm's state a millisecond later.
 fn step(q: &Joints, v: &Joints, u: &Joints) -> (Joints, Joints) {
     let v = v + Arm.forward_dynamics(q, v, &Arm.generalized_forces(q, u)) * 1e-3;
     (Arm.integrate(q, &(v * 1e-3)), v)
 }
 
-/// Whether everything that is computed here agrees with itself.
+/// Whether the generated functions of the arm are consistent with each other.
 fn consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
     let mass_matrix = Arm.mass_matrix(q);
     let forces = mass_matrix * a + Arm.bias_forces(q, v);
@@ -50,7 +50,7 @@ fn consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
         && Arm.momentum(q, v).norm() + Arm.momentum_rate(q, v).norm() + height + Arm.potential_energy(q) < 1e9
 }
 
-/// Whether arms side by side move as one alone.
+/// Whether arms in SIMD lanes move in the same way as a single one.
 fn side_by_side(q: &Joints, v: &Joints) -> bool {
     const COUNT: usize = 5;
     let (mut qs, mut vs) = ([0.0; 7 * COUNT], [0.0; 7 * COUNT]);
@@ -71,7 +71,7 @@ fn side_by_side(q: &Joints, v: &Joints) -> bool {
     done.is_ok() && qs.chunks_exact(COUNT).zip(one.q.iter()).all(same)
 }
 
-/// A body in the air with a pendulum on a ball joint.
+/// Body in the air with a pendulum on a ball joint.
 #[mechanism(gravity = -9.81 * z)]
 struct Flight {
     mass: f64,
@@ -87,7 +87,7 @@ struct Flight {
     thruster: Force,
 }
 
-/// Whether all integrators see the same flight.
+/// Whether all integrators give the same flight.
 fn flies(mass: f64) -> bool {
     let flight = Flight { mass };
     let v = SVector::from([1.0, 0.0, 3.0, 0.1, 0.2, 0.3, -0.5, 0.4, 0.3]);
@@ -106,7 +106,7 @@ fn flies(mass: f64) -> bool {
     driven.t == precise.t && fixed.iter().all(close)
 }
 
-/// A crank, a rod and a piston: a loop.
+/// Crank, rod and piston in a closed loop.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Engine {
     length: f64,
@@ -128,7 +128,7 @@ struct Engine {
     motor: Torque,
 }
 
-/// Whether the engine is assembled and stays so.
+/// Whether the engine can be assembled and its loop stays closed.
 fn turns(length: f64) -> bool {
     let engine = Engine { length };
     let Ok(q) = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]) else { return false };
@@ -144,7 +144,7 @@ fn turns(length: f64) -> bool {
     consistent && finite && (held - end.q).norm() < 1e-9
 }
 
-/// A sledge on two runners.
+/// Sledge on two runners.
 #[mechanism(gravity = -9.81 * y)]
 struct Sledge {
     friction: f64,
@@ -158,7 +158,7 @@ struct Sledge {
     front: Contact,
 }
 
-/// Whether the sledge falls, slides and stays, in steps and event by event.
+/// Whether the sledge falls, slides and comes to rest, with time stepping and with located events.
 fn rests(friction: f64) -> bool {
     let sledge = Sledge { friction };
     let run = || simulate(&sledge).from([0.0, 0.15, 0.1], [0.5, 0.0, 0.0]).duration(2.0);

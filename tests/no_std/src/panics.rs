@@ -1,4 +1,4 @@
-//! A program that may panic, which cannot be linked.
+//! Program that may panic, which cannot be linked.
 
 #![no_std]
 #![no_main]

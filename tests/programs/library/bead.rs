@@ -1,6 +1,6 @@
 use linkwork::prelude::*;
 
-/// A bead on a circular wire of 1 m, in a vertical plane, that is pushed sideways.
+/// Bead on a circular wire of 1 m in a vertical plane, with a sideways input force.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 pub struct Bead {
     mass: f64,
