@@ -1,4 +1,4 @@
-//! Writes the chains that are measured next to other libraries: a `#[mechanism]` struct has to stand in a
+//! Writes the chains for the comparison with other libraries, since a `#[mechanism]` struct must be in a
 //! source file.
 
 #[path = "src/chains.rs"]
@@ -13,7 +13,7 @@ fn main() -> std::io::Result<()> {
         return Ok(());
     }
     let mut text = String::new();
-    // Derivatives of the longest are left out: hundreds of thousands of operations.
+    // The longest chains have no derivatives, which would take hundreds of thousands of operations.
     for (n, extra) in [(6, ", derivatives"), (16, ", derivatives"), (32, ""), (64, "")] {
         for symbolic in [false, true] {
             let name = format!("Chain{n}{}", if symbolic { "Parameters" } else { "" });

@@ -1,4 +1,4 @@
-//! Every generated function next to the generic implementation, on 256 random states in turn.
+//! Every generated function and the generic implementation, on 256 random states in turn.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use linkwork_benches::pairs::robots;

@@ -5,33 +5,33 @@
 use linkwork_benches::precision;
 use std::slice::{from_raw_parts, from_raw_parts_mut};
 
-/// How many numbers the state of a problem has; zero where there is no such problem.
+/// Returns the number of entries of a problem's state; zero for a problem that does not exist.
 #[unsafe(no_mangle)]
 pub extern "C" fn dimension(problem: usize) -> usize {
     if problem < precision::PROBLEMS.len() { precision::start(problem).0.len() } else { 0 }
 }
 
-/// Writes the state at the beginning, and gives the time of the end.
+/// Writes the initial state, and returns the final time in seconds.
 ///
 /// # Safety
 ///
-/// `y` has room for as many numbers as [`dimension`] says.
+/// `y` must have room for [`dimension`] numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn begin(problem: usize, y: *mut f64) -> f64 {
     let (state, end) = precision::start(problem);
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller guarantees the size of `y`.
     unsafe { from_raw_parts_mut(y, state.len()) }.copy_from_slice(&state);
     end
 }
 
-/// Writes how a state of `n` numbers changes.
+/// Writes the rate of a state of `n` numbers.
 ///
 /// # Safety
 ///
-/// `y` and `rate` have `n` numbers, as many as [`dimension`] says, and do not overlap.
+/// `y` and `rate` must have `n` = [`dimension`] numbers and must not overlap.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rate(problem: usize, t: f64, y: *const f64, rate: *mut f64, n: usize) {
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller guarantees the sizes of `y` and `rate`.
     let (y, rate) = unsafe { (from_raw_parts(y, n), from_raw_parts_mut(rate, n)) };
     precision::rate(problem, t, y, rate);
 }

@@ -1,23 +1,23 @@
-//! The functions of an assembly file in the AT&T syntax that rustc writes for x86-64: their size, their stack
-//! and what they call. It knows as much of the language as that needs.
+//! Parser for assembly files in the AT&T syntax that rustc writes for x86-64. It determines the size of each
+//! function, its stack and the functions that it calls, and supports only the syntax that this needs.
 
 use rustc_demangle::demangle;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A function of an assembly file.
+/// Function of an assembly file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Routine {
-    /// Instructions, without those that fill gaps.
+    /// Number of instructions, without padding.
     pub instructions: usize,
-    /// Bytes of stack that it takes for itself.
+    /// Size of its own stack frame, bytes.
     pub stack: usize,
-    /// What it calls or jumps to, by the names of the linker.
+    /// Linker names of the functions that it calls or jumps to.
     pub calls: BTreeSet<String>,
-    /// It calls what it has computed or read from memory.
+    /// Whether it calls an address that it has computed or read from memory.
     pub calls_by_address: bool,
 }
 
-/// All functions by the names of the linker.
+/// Returns all functions by their linker names.
 #[must_use]
 pub fn routines(text: &str) -> BTreeMap<String, Routine> {
     let mut found = BTreeMap::new();
@@ -40,7 +40,7 @@ pub fn routines(text: &str) -> BTreeMap<String, Routine> {
     found
 }
 
-/// The instruction of a line, without its comment.
+/// Returns the instruction of a line, without its comment.
 fn instruction(line: &str) -> Option<&str> {
     let text = line.strip_prefix('\t')?.split('#').next()?.trim_end();
     let is_one = text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.starts_with("nop");
@@ -50,9 +50,9 @@ fn instruction(line: &str) -> Option<&str> {
 #[derive(Default)]
 struct Reader {
     routine: Routine,
-    /// Registers that have held the address of a function.
+    /// Registers that hold the address of a function, with its name.
     addresses: BTreeMap<String, String>,
-    /// A loop takes the stack page by page, up to a limit that is counted already.
+    /// Whether the code is a loop that allocates the stack page by page; its total is already counted.
     probing: bool,
 }
 
@@ -77,7 +77,7 @@ impl Reader {
         }
     }
 
-    /// An address goes from one register to another.
+    /// Records that an address is copied from one register to another.
     fn copy(&mut self, operands: &str) {
         if let Some((from, to)) = operands.split_once(", ")
             && let Some(function) = self.addresses.get(from)
@@ -113,7 +113,7 @@ fn number(text: &str) -> usize {
     text[..end].parse().unwrap_or(0)
 }
 
-/// The name of a function as the source has it, without the types that it is for.
+/// Returns the name of a function in the source, without type arguments.
 #[must_use]
 pub fn name_in_source(symbol: &str) -> String {
     let full = format!("{:#}", demangle(symbol));

@@ -1,38 +1,39 @@
-//! Chains of pins of any length: as the text of a `#[mechanism]` struct, and as a URDF file.
+//! Chains of pins of any length, as the text of a `#[mechanism]` struct and as a URDF file.
 
 use std::fmt::Write;
 
-/// A mechanism as the attribute receives it.
+/// Text of a mechanism as the attribute receives it.
 pub struct Source {
-    /// What stands in the attribute's parentheses.
+    /// Arguments in the attribute's parentheses.
     pub arguments: String,
-    /// The struct.
+    /// Text of the struct.
     pub item: String,
 }
 
-/// What the numbers of a link are called: mass, centre of mass, moments of inertia about it, length.
+/// Names of a link's parameters: mass, centre of mass, moments of inertia about it, length.
 const NUMBERS: [&str; 6] = ["m", "c", "a", "b", "e", "l"];
-/// Of what size they are: kg, m, kg·m², m.
+/// Typical values of the parameters: kg, m, kg·m², m.
 const SIZES: [f64; 6] = [2.0, 0.2, 0.03, 0.04, 0.02, 0.4];
 
-/// The numbers of link `k`, as they are written.
+/// Returns the values of link `k` as text.
 fn numbers(k: usize) -> [String; 6] {
     SIZES.map(|size| format!("{:.4}", size * (1.0 + 0.1 / k as f64)))
 }
 
-/// The names of the parameters of link `k` of `n`. The last link carries nothing, so its length is not used.
+/// Returns the names of the parameters of link `k` of `n`. The last link carries no other, so that its length
+/// is not used.
 fn names(k: usize, n: usize) -> impl Iterator<Item = String> {
     let count = if k < n { 6 } else { 5 };
     NUMBERS.into_iter().take(count).map(move |name| format!("{name}{k}"))
 }
 
-/// Which axis joint `k` turns about: x, y or z.
+/// Returns the index of the axis of joint `k`: x, y or z.
 fn axis(k: usize) -> usize {
     [2, 1, 0][k % 3]
 }
 
-/// A chain of `n` links on pins about changing axes, in the struct `name`. `symbolic`: mass, length, centre
-/// of mass and inertia of each link are parameters; else they are numbers.
+/// Returns a chain of `n` links on pins about changing axes, in the struct `name`. With `symbolic`, mass,
+/// length, centre of mass and inertia of each link are parameters; otherwise they are numbers.
 pub fn chain(name: &str, n: usize, symbolic: bool) -> Source {
     let mut item = format!("pub struct {name} {{\n");
     let mut parent = "ground".to_string();
@@ -56,14 +57,14 @@ pub fn chain(name: &str, n: usize, symbolic: bool) -> Source {
     Source { arguments: "gravity = -9.81 * z".to_string(), item }
 }
 
-/// The expression that makes the struct of a chain with parameters the same robot as that with numbers.
+/// Returns the expression of a struct with parameters that is the same robot as the chain with numbers.
 pub fn value(name: &str, n: usize) -> String {
     let fields = (1..=n).flat_map(|k| names(k, n).zip(numbers(k)));
     let fields: Vec<String> = fields.map(|(name, number)| format!("{name}: {number}")).collect();
     format!("{name} {{ {} }}", fields.join(", "))
 }
 
-/// The same robot as a URDF file.
+/// Returns the same robot as a URDF file.
 pub fn urdf(n: usize) -> String {
     let mut text = "<robot name=\"chain\">\n  <link name=\"link0\"/>\n".to_string();
     let mut length = "0".to_string();

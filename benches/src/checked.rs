@@ -1,4 +1,4 @@
-//! What rustc takes to read generated code.
+//! Costs of rustc on generated code.
 
 use std::error::Error;
 use std::fs::{read_to_string, write};
@@ -7,24 +7,24 @@ use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::Duration;
 
-/// How often rustc is looked at while it runs.
+/// Time between two readings of rustc's memory while it runs.
 const PERIOD: Duration = Duration::from_millis(3);
 
-/// Ticks of the clock in which Linux counts processor time, by second.
+/// Clock ticks per second in which Linux counts processor time.
 const TICKS: f64 = 100.0;
 
-/// The runtime that generated code calls, compiled.
+/// Compiled runtime, which generated code calls.
 pub struct Library {
-    /// The file that rustc links; what it depends on stands in the folder `deps` beside it.
+    /// Path of the rlib that rustc links; its dependencies are in the folder `deps` next to it.
     pub rlib: PathBuf,
 }
 
-/// What a run of rustc took.
+/// Cost of a run of rustc.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
     /// Processor time.
     pub time: Duration,
-    /// The largest resident size, bytes.
+    /// Peak resident memory, bytes.
     pub memory: f64,
 }
 
@@ -43,7 +43,7 @@ impl Library {
     }
 }
 
-/// Has rustc read a library of this text, as the dev profile does, up to its metadata.
+/// Runs rustc on a library of this text, with the options of the dev profile, up to its metadata.
 pub fn check(library: &Library, text: &str) -> Result<Cost, Box<dyn Error>> {
     let folder = std::env::temp_dir().join(format!("linkwork-expansion-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
@@ -71,7 +71,7 @@ pub fn check(library: &Library, text: &str) -> Result<Cost, Box<dyn Error>> {
     cost
 }
 
-/// Waits for a process, and tells what it took as far as the system says.
+/// Waits for a process, and returns its cost as far as the system reports it.
 fn watched(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
     let mut cost = Cost::default();
     loop {
@@ -83,12 +83,12 @@ fn watched(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
     }
 }
 
-/// What a process took so far.
+/// Returns the cost of a process so far.
 fn seen(process: u32) -> Option<Cost> {
     let status = read_to_string(format!("/proc/{process}/status")).ok()?;
     let memory = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kilobytes: f64 = memory.split_whitespace().next()?.parse().ok()?;
-    // After the name in parentheses: the 12th and the 13th word are the ticks in user and in system mode.
+    // After the name in parentheses, the 12th and the 13th fields are the ticks in user and in system mode.
     let stat = read_to_string(format!("/proc/{process}/stat")).ok()?;
     let words = stat.rsplit(')').next()?.split_whitespace().skip(11).take(2);
     let ticks: f64 = words.filter_map(|word| word.parse::<f64>().ok()).sum();

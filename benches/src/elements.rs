@@ -1,13 +1,13 @@
-//! Mechanisms with many elements between points, and with coordinates that place what they move by
-//! expressions.
+//! Mechanisms with many elements between points, and with bodies placed by expressions of coordinates.
 
 use crate::chains::Source;
 use std::fmt::Write;
 
-/// Links of the arm that springs pull at.
+/// Number of links of the arm with springs.
 const LINKS: usize = 4;
 
-/// An arm of spatial pins with so many springs between points of the ground and points of its links.
+/// Returns an arm of spatial pins with this number of springs between points of the ground and points of its
+/// links.
 pub fn sprung_arm(springs: usize) -> Source {
     let mut item = "pub struct Arm {\n".to_string();
     let mut parent = "ground".to_string();
@@ -34,7 +34,8 @@ pub fn sprung_arm(springs: usize) -> Source {
     Source { arguments: "gravity = -9.81 * z".to_string(), item }
 }
 
-/// A planar chain of particles on rods, each particle placed by the angles of all rods before it.
+/// Returns a planar chain of particles on rods; the position of each particle is an expression of the angles
+/// of all rods before it.
 pub fn placed_chain(particles: usize) -> Source {
     let mut item = "pub struct Placed {\n".to_string();
     let (mut x, mut z) = (Vec::new(), Vec::new());

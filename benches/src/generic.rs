@@ -1,9 +1,9 @@
-//! What a competent engineer writes by hand: rigid-body dynamics of any tree of links, read at run time.
+//! Hand-written reference implementation: rigid-body dynamics of any tree of links, read at run time.
 //!
-//! The recursive algorithms of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7, in link axes,
-//! on nalgebra's fixed 3-vectors and 3×3 matrices, with all intermediate results in a [`Data`] that is made
-//! once: nothing allocates. Written without the compiler's crates, so that it is an oracle for the generated
-//! code as well.
+//! It implements the recursive algorithms of Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 5–7,
+//! in link axes, with nalgebra's fixed 3-vectors and 3×3 matrices. All intermediate results are in a [`Data`]
+//! that is allocated once, so that no function allocates. It does not use the compiler's crates and is
+//! therefore also an oracle for the generated code.
 
 mod spatial;
 mod urdf;
@@ -13,19 +13,19 @@ pub use urdf::Options;
 
 use nalgebra::{DMatrix, Matrix3, Matrix6xX, Quaternion, Unit, UnitQuaternion, Vector3, Vector6};
 
-/// How a link moves in its parent.
+/// Motion of a link relative to its parent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// Rotation about an axis.
     Turn(Unit<Vector3<f64>>),
     /// Translation along an axis.
     Slide(Unit<Vector3<f64>>),
-    /// All motions: q = position, quaternion x y z w; v = linear, angular velocity in link axes.
+    /// Free motion: q = position, quaternion x y z w; v = linear, angular velocity in link axes.
     Free,
 }
 
 impl Motion {
-    /// Number of entries of `q` and of `v`.
+    /// Returns the number of entries of `q` and of `v`.
     fn sizes(self) -> (usize, usize) {
         match self {
             Motion::Turn(_) | Motion::Slide(_) => (1, 1),
@@ -33,7 +33,7 @@ impl Motion {
         }
     }
 
-    /// Column `k` of the motion subspace.
+    /// Returns column `k` of the motion subspace.
     fn subspace(self, k: usize) -> Spatial {
         match self {
             Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis),
@@ -42,7 +42,7 @@ impl Motion {
         }
     }
 
-    /// The motion subspace times the rates.
+    /// Returns the motion subspace times the rates.
     fn twist(self, rates: &[f64]) -> Spatial {
         match self {
             Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis * rates[0]),
@@ -51,7 +51,7 @@ impl Motion {
         }
     }
 
-    /// Placement of the link in the joint's frame.
+    /// Returns the placement of the link in the joint's frame.
     fn placement(self, q: &[f64]) -> Placement {
         match self {
             Motion::Turn(axis) => Placement::new(rotation(&axis, q[0]), Vector3::zeros()),
@@ -65,7 +65,7 @@ impl Motion {
     }
 }
 
-/// Rodrigues's formula.
+/// Returns the rotation matrix about the axis `n` by Rodrigues's formula.
 fn rotation(n: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     let (s, c) = angle.sin_cos();
     let (u, k) = (n * s, n * (1.0 - c));
@@ -82,42 +82,42 @@ fn rotation(n: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     )
 }
 
-/// A moving link, with everything that is fixed to it.
+/// Moving link, including all links that are fixed to it.
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// Parent link, whose index is smaller; the ground if none.
+    /// Index of the parent link, which is smaller; `None` for the ground.
     pub parent: Option<usize>,
-    /// The joint's frame on the parent.
+    /// Placement of the joint's frame in the parent.
     pub placement: Placement,
-    /// How the link moves in the joint's frame.
+    /// Motion of the link in the joint's frame.
     pub motion: Motion,
-    /// First entry of `q`.
+    /// Index of the first entry of `q`.
     pub q: usize,
-    /// First entry of `v`.
+    /// Index of the first entry of `v`.
     pub v: usize,
-    /// Mass properties.
+    /// Inertia about the link's origin.
     pub inertia: Inertia,
 }
 
-/// A named frame, fixed in a link or in the ground.
+/// Named frame, fixed to a link or to the ground.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Its name.
+    /// Name of the frame.
     pub name: String,
-    /// The link; the ground if none.
+    /// Index of the link; `None` for the ground.
     pub link: Option<usize>,
     /// Placement in the link.
     pub placement: Placement,
 }
 
-/// A mechanism.
+/// Tree of links with its named frames and gravity.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Links, parents first.
     pub links: Vec<Link>,
     /// Named frames.
     pub frames: Vec<Frame>,
-    /// Gravity in ground axes.
+    /// Gravitational acceleration in ground axes, m/s².
     pub gravity: Vector3<f64>,
     /// Number of entries of `q`.
     pub nq: usize,
@@ -140,7 +140,7 @@ struct LinkData {
     force: f64,
 }
 
-/// Room for the intermediate results of a model.
+/// Working storage for the intermediate results of a model.
 #[derive(Clone, Debug)]
 pub struct Data(Vec<LinkData>);
 
@@ -150,7 +150,7 @@ impl Model {
         urdf::read(text, options)
     }
 
-    /// Room for intermediate results.
+    /// Allocates the intermediate results.
     pub fn data(&self) -> Data {
         let of_link = |link: &Link| LinkData {
             placement: link.placement,
@@ -172,8 +172,8 @@ impl Model {
         }
     }
 
-    /// Inverse dynamics `τ = M a + h` (the bias `h` alone without accelerations): recursive Newton–Euler
-    /// algorithm.
+    /// Computes inverse dynamics `τ = M a + h` (only the bias `h` without accelerations) by the recursive
+    /// Newton–Euler algorithm.
     pub fn inverse_dynamics(
         &self,
         data: &mut Data,
@@ -196,7 +196,7 @@ impl Model {
         }
     }
 
-    /// Twists, accelerations and the wrenches that they take, link by link.
+    /// Computes twists, accelerations and the wrenches that they need, link by link.
     fn move_outward(&self, data: &mut Data, v: &[f64], a: Option<&[f64]>) {
         for (k, link) in self.links.iter().enumerate() {
             let nv = link.motion.sizes().1;
@@ -217,7 +217,7 @@ impl Model {
         }
     }
 
-    /// Mass matrix, both triangles: composite-rigid-body algorithm.
+    /// Computes the mass matrix, both triangles, by the composite-rigid-body algorithm.
     pub fn mass_matrix(&self, data: &mut Data, q: &[f64], m: &mut DMatrix<f64>) {
         self.place(data, q);
         for (link, d) in self.links.iter().zip(&mut data.0) {
@@ -251,7 +251,7 @@ impl Model {
         }
     }
 
-    /// Forward dynamics `v̇ = M⁻¹ (τ − h)`: articulated-body algorithm.
+    /// Computes forward dynamics `v̇ = M⁻¹ (τ − h)` by the articulated-body algorithm.
     pub fn forward_dynamics(&self, data: &mut Data, q: &[f64], v: &[f64], tau: &[f64], a: &mut [f64]) {
         self.place(data, q);
         for (k, link) in self.links.iter().enumerate() {
@@ -266,7 +266,8 @@ impl Model {
         for (k, link) in self.links.iter().enumerate().rev() {
             let d = &mut data.0[k];
             let (inertia, wrench) = match link.motion {
-                // All the force is the joint's: nothing is left for the parent to move.
+                // A free joint transmits no force, so that the parent has no articulated inertia of this
+                // link.
                 Motion::Free => (None, Spatial::from_slice(&tau[link.v..])),
                 Motion::Turn(_) | Motion::Slide(_) => {
                     let s = link.motion.subspace(0);
@@ -311,7 +312,7 @@ impl Model {
         }
     }
 
-    /// Kinetic energy.
+    /// Returns the kinetic energy, J.
     pub fn kinetic_energy(&self, data: &mut Data, q: &[f64], v: &[f64]) -> f64 {
         self.place(data, q);
         let mut twice = 0.0;
@@ -324,16 +325,16 @@ impl Model {
         0.5 * twice
     }
 
-    /// The index of a frame.
+    /// Returns the index of a frame.
     pub fn frame(&self, name: &str) -> Option<usize> {
         self.frames.iter().position(|frame| frame.name == name)
     }
 
-    /// Jacobian of a frame: velocity of its origin, then angular velocity, in ground axes.
+    /// Writes the Jacobian of a frame: velocity of its origin, then angular velocity, in ground axes.
     pub fn frame_jacobian(&self, data: &mut Data, frame: usize, q: &[f64], jacobian: &mut Matrix6xX<f64>) {
         jacobian.fill(0.0);
         let frame = &self.frames[frame];
-        // From the frame inwards: where the ancestors are seen from it, in the frame's axes …
+        // Ancestors from the frame inwards, relative to the frame and in its axes …
         let mut seen = frame.placement.inverse();
         let mut at = frame.link;
         while let Some(k) = at {
@@ -347,7 +348,7 @@ impl Model {
             seen = seen.then(&d.placement.inverse());
             at = link.parent;
         }
-        // … and then all columns in the ground's.
+        // … then all columns in ground axes.
         let axes = seen.rotation.transpose();
         at = frame.link;
         while let Some(k) = at {
@@ -365,7 +366,7 @@ impl Model {
 mod tests {
     use crate::pairs;
 
-    /// The two know nothing of each other but the file.
+    /// Generated and generic code are independent implementations for the same files, and agree.
     #[test]
     fn generated_and_generic_code_agree() {
         for robot in pairs::robots() {

@@ -1,6 +1,5 @@
-//! Speed of Linkwork: generated functions next to a generic implementation of the same algorithms and next to
-//! other libraries, and the time that the compiler takes. The README beside this package says how to run
-//! what.
+//! Benchmarks of Linkwork: generated functions against a generic implementation of the same algorithms and
+//! against other libraries, and the time of the compiler. The README of this package documents the commands.
 
 pub mod assembly;
 pub mod chains;

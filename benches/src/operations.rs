@@ -1,4 +1,4 @@
-//! Operations of generated functions, counted by the compiler.
+//! Numbers of operations of generated functions, as counted by the compiler.
 
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
@@ -8,14 +8,14 @@ use linkwork_compiler::{compile, read};
 use proc_macro2::TokenStream;
 use std::path::Path;
 
-/// Operations of one function.
+/// Numbers of operations of one function.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Size {
-    /// Multiplications, additions and divisions.
+    /// Number of multiplications, additions and divisions.
     pub operations: usize,
-    /// The same with a product and its sum as one instruction.
+    /// Number of operations with a product and its sum as one instruction.
     pub fused: usize,
-    /// Elementary functions.
+    /// Number of elementary functions.
     pub calls: usize,
 }
 
@@ -31,18 +31,18 @@ impl Size {
     }
 }
 
-/// Everything that the compiler derives of a mechanism.
+/// Output of the compiler for a mechanism.
 pub struct Operations {
     output: Output,
-    /// Number of nodes of the expressions' graph.
+    /// Number of nodes of the expression graph.
     pub nodes: usize,
     /// Number of velocities.
     pub velocities: usize,
 }
 
 impl Operations {
-    /// Compiles `#[mechanism(arguments)] item`; paths are relative to this package. Panics if there is a
-    /// mistake in it.
+    /// Compiles `#[mechanism(arguments)] item`; paths are relative to this package. Panics if the mechanism
+    /// has an error.
     pub fn of(arguments: &str, item: &str) -> Operations {
         let tokens = |text: &str| -> TokenStream { text.parse().expect("tokens") };
         let cx = &mut Diagnostics::new();
@@ -56,13 +56,13 @@ impl Operations {
         Operations { output, nodes: graph.len(), velocities: model.nv() }
     }
 
-    /// Those of a generated function; none if it does not exist.
+    /// Returns the numbers of operations of a generated function; zero if it does not exist.
     pub fn function(&self, name: &str) -> Size {
         let found = self.output.functions.iter().filter(|f| f.name == name);
         Size::of(found.map(|f| &f.program))
     }
 
-    /// Those of a frame's Jacobian: the steps along the path to its link.
+    /// Returns the numbers of operations of a frame's Jacobian: the steps along the path to its link.
     pub fn jacobian(&self, frame: &str) -> Size {
         let frame = self.output.frames.iter().find(|f| f.name == frame);
         let mut programs: Vec<&Program> = frame.map(|f| &f.placement).into_iter().collect();

@@ -1,4 +1,4 @@
-//! Generated functions next to the generic implementation of the same, on the same random states.
+//! Generated functions and the generic implementation of the same functions, on the same random states.
 
 use crate::generic::{Data, Model, Options};
 use crate::operations::{Operations, Size};
@@ -10,29 +10,29 @@ use nalgebra::{DMatrix, DVector, Matrix6xX, SMatrix, SVector};
 use std::hint::black_box;
 use std::rc::Rc;
 
-/// A function of a robot, twice. The functions take the number of a state.
+/// Function of a robot in both implementations. The closures take the index of a state.
 pub struct Pair {
-    /// Its name.
+    /// Name of the function.
     pub function: &'static str,
     /// Runs the generated code.
     pub generated: Box<dyn FnMut(usize)>,
     /// Runs the generic implementation.
     pub generic: Box<dyn FnMut(usize)>,
-    /// The largest difference of the two results, relative to one plus their size.
+    /// Returns the largest difference of both results, relative to one plus their magnitude.
     pub difference: Box<dyn FnMut(usize) -> f64>,
-    /// Operations of the generated code.
+    /// Numbers of operations of the generated code.
     pub size: Size,
 }
 
-/// A robot with its functions.
+/// Robot with its functions.
 pub struct Robot {
-    /// Its name.
+    /// Name of the robot.
     pub name: &'static str,
-    /// Its functions.
+    /// Functions of the robot in both implementations.
     pub pairs: Vec<Pair>,
 }
 
-/// All robots.
+/// Returns all robots.
 pub fn robots() -> Vec<Robot> {
     macro_rules! robot {
         ($name:literal, $robot:ident, $file:literal, $arguments:literal, $options:expr, $frame:literal) => {{
@@ -66,19 +66,19 @@ pub fn robots() -> Vec<Robot> {
     ]
 }
 
-/// Where a robot comes from.
+/// Source of a robot for both implementations.
 struct Source {
     name: &'static str,
-    /// The file's text and how the generic implementation reads it.
+    /// Text of the file, and the options with which the generic implementation reads it.
     text: &'static str,
     options: Options<'static>,
-    /// The attribute's arguments.
+    /// Arguments of the attribute.
     arguments: &'static str,
-    /// The frame of the Jacobian.
+    /// Name of the frame of the Jacobian.
     frame: &'static str,
 }
 
-/// A generic model with all that its functions write to.
+/// Generic model with the storage for its results.
 struct Generic {
     model: Rc<Model>,
     data: Data,
@@ -88,7 +88,7 @@ struct Generic {
     frame: usize,
 }
 
-/// Runs a generic function; its result.
+/// Runs a generic function and returns its result.
 type Run<const NQ: usize, const NV: usize> = for<'s> fn(&'s mut Generic, &State<NQ, NV>) -> &'s [f64];
 
 fn robot<M, J, const NQ: usize, const NV: usize, const NU: usize>(
@@ -172,7 +172,7 @@ where
     Robot { name: source.name, pairs }
 }
 
-/// A model with its states.
+/// Model with its states.
 struct Bench<const NQ: usize, const NV: usize> {
     model: Rc<Model>,
     frame: usize,

@@ -1,5 +1,5 @@
-//! Problems on which methods of integration are compared: two that are stiff or constrained, one of three
-//! bodies and more.
+//! Problems for the comparison of integration methods: an n-body problem, and stiff or constrained
+//! mechanisms.
 
 use linkwork::integrate::Method;
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -9,8 +9,8 @@ use linkwork_models::{AndrewsSqueezer, CarAxle};
 use std::cell::Cell;
 use std::time::Instant;
 
-/// Seven stars in a plane that attract each other and pass close by (Hairer, Nørsett and Wanner, *Solving
-/// Ordinary Differential Equations I*, 1993, II.10).
+/// Seven stars in a plane that attract each other, with close encounters (Hairer, Nørsett and Wanner,
+/// *Solving Ordinary Differential Equations I*, 1993, II.10).
 #[mechanism(derivatives)]
 pub struct Pleiades {
     #[particle(mass = 1 + i)]
@@ -62,15 +62,15 @@ pub struct Pleiades {
 }
 
 impl Pleiades {
-    /// Configuration and velocity at the beginning.
+    /// Initial configuration and velocity.
     pub const START: ([f64; 14], [f64; 14]) = (
         [3.0, 3.0, 3.0, -3.0, -1.0, 2.0, -3.0, 0.0, 2.0, 0.0, -2.0, -4.0, 2.0, 4.0],
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.25, 0.0, 1.0, 1.75, 0.0, -1.5, 0.0],
     );
 }
 
-/// A centrifugal governor whose sleeve sits on a stiff spring in thick oil: its motion dies away within a
-/// millisecond, the balls swing for seconds.
+/// Centrifugal governor whose sleeve is on a stiff spring in viscous oil: the motion of the sleeve decays
+/// within a millisecond, the balls swing for seconds.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 pub struct StiffGovernor {
     #[body(mass = 2, inertia = diagonal(0.01, 0.01, 0.02))]
@@ -91,7 +91,7 @@ pub struct StiffGovernor {
     air: Dashpot,
 }
 
-/// A mechanism whose evaluations are counted.
+/// Mechanism that counts its evaluations.
 struct Counted<'m, M> {
     mechanism: &'m M,
     evaluations: &'m Cell<usize>,
@@ -184,22 +184,22 @@ where
     }
 }
 
-/// What a method made of a problem.
+/// Result of a method on a problem.
 pub struct Found {
-    /// The configuration at the end.
+    /// Final configuration.
     pub q: Vec<f64>,
-    /// Evaluations of the accelerations.
+    /// Number of evaluations of the accelerations.
     pub evaluations: usize,
-    /// Evaluations of their derivatives.
+    /// Number of evaluations of their derivatives.
     pub derivatives: usize,
-    /// The least of some times, s.
+    /// Minimum of the measured times, s.
     pub seconds: f64,
 }
 
-/// The problems by number.
+/// Names of the problems, by index.
 pub const PROBLEMS: [&str; 4] = ["pleiades", "car axis", "Andrews' squeezer", "stiff governor"];
 
-/// What is done with a problem whose type is known.
+/// Operation on a problem, generic over its type.
 trait Visit {
     type Result;
     fn visit<M, const N: usize>(self, m: &M, start: ([f64; N], [f64; N]), end: f64) -> Self::Result
@@ -251,7 +251,7 @@ impl<S: Method<f64> + Clone> Visit for Solve<S> {
 ///
 /// # Errors
 ///
-/// Those of simulations.
+/// Returns the errors of the simulation.
 pub fn solve<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<Found, Error> {
     with(problem, Solve(method))
 }
@@ -269,7 +269,7 @@ impl Visit for Start {
     }
 }
 
-/// The state at the beginning, configuration and velocity, and when a problem ends, s.
+/// Returns the initial state, configuration and velocity, and the final time of a problem, s.
 pub fn start(problem: usize) -> (Vec<f64>, f64) {
     with(problem, Start)
 }
@@ -296,7 +296,7 @@ impl Visit for Rate<'_> {
     }
 }
 
-/// How a state changes, with the accelerations that keep constraints: the right-hand side for other
+/// Writes the rate of a state, with accelerations that satisfy the constraints: the right-hand side for other
 /// libraries.
 pub fn rate(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
     with(problem, Rate { t, y, rate });

@@ -1,15 +1,15 @@
-//! Random numbers that are the same in every run.
+//! Reproducible random numbers.
 
-/// A generator (xorshift64*, Vigna 2016).
+/// Random generator (xorshift64*, Vigna 2016).
 pub struct Random(u64);
 
 impl Random {
-    /// With a seed.
+    /// Creates a generator with a seed.
     pub fn new(seed: u64) -> Random {
         Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
     }
 
-    /// A number between `-limit` and `limit`.
+    /// Returns a number between `-limit` and `limit`.
     pub fn within(&mut self, limit: f64) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;

@@ -1,24 +1,24 @@
-//! Robots that are measured beside those of `linkwork-models`.
+//! Robots of the benchmarks in addition to those of `linkwork-models`.
 
 use linkwork::mechanism;
 
-/// A seven-axis arm with two independent fingers.
+/// Arm with seven axes and two independent fingers.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, derivatives, packed)]
 #[derive(Clone, Copy)]
 pub struct Panda;
 
-/// A six-axis arm with joints that turn for ever.
+/// Arm with six axes and continuous joints.
 #[mechanism(urdf = "../models/urdf/kinova.urdf", derivatives, packed)]
 #[derive(Clone, Copy)]
 pub struct Kinova;
 
-/// The Gen3 of Kinova: a seven-axis arm, every other joint of which turns for ever.
+/// Gen3 of Kinova: an arm with seven axes, every other joint of which is continuous.
 #[mechanism(urdf = "../models/urdf/gen3.urdf", derivatives, packed)]
 #[derive(Clone, Copy)]
 pub struct Gen3;
 
-/// The G1 of Unitree: a humanoid with legs of six joints, a waist of three and arms of seven, hips and
-/// shoulders inclined.
+/// G1 of Unitree: a humanoid with legs of six joints, a waist of three and arms of seven, with inclined hips
+/// and shoulders.
 #[mechanism(urdf = "../models/urdf/g1.urdf", base = free, derivatives, packed)]
 #[derive(Clone, Copy)]
 pub struct G1;

@@ -1,13 +1,13 @@
-//! Random states that are the same in every run.
+//! Reproducible random states.
 
 use crate::generic::{Model, Motion};
 use crate::random::Random;
 use nalgebra::SVector;
 
-/// Number of states that the calls go through, one after another.
+/// Number of states that the calls cycle through.
 pub const STATES: usize = 256;
 
-/// What the functions take.
+/// Arguments of the functions.
 #[derive(Clone, Copy, Debug)]
 pub struct State<const NQ: usize, const NV: usize> {
     /// Configuration.
@@ -21,7 +21,8 @@ pub struct State<const NQ: usize, const NV: usize> {
 }
 
 impl<const NQ: usize, const NV: usize> State<NQ, NV> {
-    /// Random coordinates, unit quaternions; everything else of the order of one.
+    /// Returns a state with random coordinates and unit quaternions; all other values are of the order of
+    /// one.
     fn random(model: &Model, random: &mut Random) -> State<NQ, NV> {
         let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.within(3.0));
         for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
@@ -32,13 +33,13 @@ impl<const NQ: usize, const NV: usize> State<NQ, NV> {
         State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
     }
 
-    /// All numbers, one after another.
+    /// Returns all numbers, one after another.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
         [self.q.as_slice(), self.v.as_slice(), self.a.as_slice(), self.tau.as_slice()].concat().into_iter()
     }
 }
 
-/// [`STATES`] of them. Panics if the model is of another size.
+/// Returns [`STATES`] random states. Panics if the model has other sizes.
 pub fn states<const NQ: usize, const NV: usize>(model: &Model) -> Vec<State<NQ, NV>> {
     assert_eq!((model.nq, model.nv), (NQ, NV), "size of the model");
     let mut random = Random::new(1);

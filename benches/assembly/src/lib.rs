@@ -1,30 +1,30 @@
-//! Functions that do nothing but call a generated one, so that the machine code of each can be looked at by
-//! itself. The mechanisms are declared here and not taken from `linkwork-models`, where a part of their code
-//! would be compiled: all that a function calls must be in the assembly of this package.
+//! Functions that only call a generated one, so that the machine code of each generated function can be
+//! inspected separately. The mechanisms are declared here instead of in `linkwork-models`, since all code
+//! that a function calls must be in the assembly of this package.
 #![forbid(unsafe_code)]
 
 use linkwork::prelude::*;
 
-/// The Panda of Franka Emika without its fingers: seven axes, all in a row.
+/// Panda of Franka Emika without its fingers: seven joint axes in a row.
 #[mechanism(urdf = "../../models/urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"], derivatives, packed)]
 pub struct Panda;
 
-/// Solo 12: a free body with four alike legs.
+/// Solo 12: free body with four identical legs.
 #[mechanism(urdf = "../../models/urdf/solo12.urdf", base = free, derivatives, packed)]
 pub struct Solo12;
 
-/// A humanoid with 35 velocities.
+/// Humanoid with 35 velocities.
 #[mechanism(urdf = "../../models/urdf/simple_humanoid.urdf", base = free, derivatives, packed)]
 pub struct Humanoid;
 
-/// A cart with a pole, with parameters: its functions are too small to choose their instructions.
+/// Cart with a pole and parameters. Its functions are too small for a selection of instructions at run time.
 #[mechanism(gravity = -9.81 * y, derivatives, packed)]
 pub struct CartPole {
-    /// Mass of the cart.
+    /// Mass of the cart, kg.
     pub cart_mass: f64,
-    /// Mass of the pole.
+    /// Mass of the pole, kg.
     pub pole_mass: f64,
-    /// Length of the pole.
+    /// Length of the pole, m.
     pub pole_length: f64,
     #[body(mass = cart_mass)]
     cart: Body,
@@ -38,12 +38,12 @@ pub struct CartPole {
     push: Force,
 }
 
-/// A crank, a rod and a piston: a loop.
+/// Crank, rod and piston in a closed loop.
 #[mechanism(gravity = -9.81 * y)]
 pub struct SliderCrank {
-    /// Radius of the crank.
+    /// Radius of the crank, m.
     pub r: f64,
-    /// Length of the rod.
+    /// Length of the rod, m.
     pub l: f64,
     #[body(mass = 0.5, com = r / 2 * x, inertia = rod(0.5, r, x))]
     crank: Body,
@@ -63,7 +63,7 @@ pub struct SliderCrank {
     motor: Torque,
 }
 
-/// A function that calls the one of the same name: its arguments and its result.
+/// Declares a function that calls the generated function of the same name, with its arguments and its result.
 macro_rules! call {
     ($type:ident, $function:ident($($argument:ident),+) -> $result:ty) => {
         #[doc = concat!("`", stringify!($type), "::", stringify!($function), "`.")]
@@ -74,7 +74,8 @@ macro_rules! call {
     };
 }
 
-/// The same for a function whose results go into matrices.
+/// Declares a function that calls the generated function of the same name, which writes its results to
+/// matrices.
 macro_rules! call_into {
     ($type:ident, $function:ident($($argument:ident),+; $($matrix:ident),+)) => {
         #[doc = concat!("`", stringify!($type), "::", stringify!($function), "`.")]
@@ -89,7 +90,7 @@ macro_rules! call_into {
     };
 }
 
-/// The type of an argument.
+/// Expands to the type of an argument.
 macro_rules! vector {
     ($type:ident, q) => {
         SVector<f64, { $type::NQ }>
@@ -99,7 +100,7 @@ macro_rules! vector {
     };
 }
 
-/// The functions of a mechanism, in a module of this name.
+/// Declares the functions of a mechanism in a module of this name.
 macro_rules! functions {
     ($module:ident, $type:ident) => {
         #[doc = concat!("[`", stringify!($type), "`].")]
@@ -128,7 +129,7 @@ functions!(panda, Panda);
 functions!(solo12, Solo12);
 functions!(humanoid, Humanoid);
 
-/// [`SliderCrank`].
+/// Functions of [`SliderCrank`].
 pub mod slider_crank {
     use super::*;
 

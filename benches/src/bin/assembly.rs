@@ -1,5 +1,5 @@
-//! The machine code of generated functions: how large each is, how much stack it takes and what it calls.
-//! Fails if one calls anything that is not on the list below, such as what panics.
+//! Reports the machine code of generated functions: size, stack and calls of each function. Fails if a
+//! function calls anything that is not in the list below, such as a panic.
 //!
 //! `cargo run --release -p linkwork-benches --bin assembly [native]`: for cargo's default target, or for this
 //! computer's processor. It compiles the package `benches/assembly`.
@@ -11,17 +11,17 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::{env, fs};
 
-/// What generated functions may call beside one another.
+/// Functions that generated functions may call in addition to each other.
 const DOCUMENTED: [&str; 18] = [
-    // They move large results, and put zeros into them.
+    // Copy large results, and fill them with zeros.
     "memcpy",
     "memmove",
     "memset",
-    // Of angles beyond 10⁵ rad, one by one.
+    // For angles beyond 10⁵ rad, one by one.
     "cos",
     "sin",
     "sincos",
-    // Functions that expressions name.
+    // Functions that occur in expressions.
     "acos",
     "asin",
     "atan",
@@ -33,7 +33,7 @@ const DOCUMENTED: [&str; 18] = [
     "sinh",
     "tan",
     "tanh",
-    // Asks the processor, the first time.
+    // Queries the processor's features at the first call.
     "std_detect::detect::cache::detect_and_initialize",
 ];
 
@@ -57,7 +57,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints the tables; an error if there is a call that is not documented.
+/// Prints the tables. Returns an error for an undocumented call.
 fn show(flags: &str) -> Result<(), String> {
     let (text, object) = build(flags)?;
     let (routines, bytes) = (routines(&text), sizes(&object)?);
@@ -74,7 +74,7 @@ fn show(flags: &str) -> Result<(), String> {
     generated.sort();
     for (title, symbol) in generated {
         let parts = parts(symbol, &routines);
-        // Not what does nothing but call the function of the same name.
+        // A function that only calls the function of the same name is skipped.
         let skipped = usize::from(parts.get(1).is_some_and(|next| last(next) == last(symbol)));
         for (k, part) in parts.iter().enumerate().skip(skipped) {
             if k == skipped {
@@ -105,7 +105,7 @@ fn show(flags: &str) -> Result<(), String> {
     }
 }
 
-/// The mechanism and the function of a function of the package; of no other.
+/// Returns the names of the mechanism and of the function for a symbol of the package, otherwise `None`.
 fn mechanism(symbol: &str) -> Option<(String, String)> {
     let name = name_in_source(symbol);
     let (mechanism, function) = name.strip_prefix("linkwork_assembly::")?.split_once("::")?;
@@ -117,7 +117,7 @@ fn name(symbol: &str) -> String {
     mechanism(symbol).map_or_else(|| last(symbol), |(mechanism, function)| format!("{mechanism}, {function}"))
 }
 
-/// The figures of a function: the rest of a row.
+/// Returns the values of a function as the remaining cells of a table row.
 fn row(symbol: &str, routines: &BTreeMap<String, Routine>, bytes: &BTreeMap<String, u64>) -> String {
     let routine = &routines[symbol];
     let calls = BTreeSet::from_iter(routine.calls.iter().map(|call| last(call)));
@@ -126,7 +126,7 @@ fn row(symbol: &str, routines: &BTreeMap<String, Routine>, bytes: &BTreeMap<Stri
     format!("| {bytes} | {} | {} | {calls} |", routine.instructions, routine.stack)
 }
 
-/// Compiles the package; its assembly and its object file.
+/// Compiles the package and returns its assembly and its object file.
 fn build(flags: &str) -> Result<(String, Vec<u8>), String> {
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("assembly");
     let folder = env::var_os("CARGO_TARGET_DIR").map_or(package.join("../../target"), PathBuf::from);
@@ -151,14 +151,15 @@ fn build(flags: &str) -> Result<(String, Vec<u8>), String> {
     Ok((fs::read_to_string(text).map_err(read)?, fs::read(object).map_err(read)?))
 }
 
-/// The size of every function in an object file.
+/// Returns the size of every function in an object file, bytes.
 fn sizes(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
     let file = object::File::parse(object).map_err(|error| error.to_string())?;
     let symbols = file.symbols();
     Ok(symbols.filter_map(|symbol| Some((symbol.name().ok()?.to_string(), symbol.size()))).collect())
 }
 
-/// A function and all others of the file that it comes to, itself first.
+/// Returns a function and all functions of the file that it calls directly or indirectly; the function itself
+/// comes first.
 fn parts<'a>(symbol: &'a str, routines: &'a BTreeMap<String, Routine>) -> Vec<&'a str> {
     let mut parts = vec![symbol];
     let mut next = 0;
@@ -173,7 +174,7 @@ fn parts<'a>(symbol: &'a str, routines: &'a BTreeMap<String, Routine>) -> Vec<&'
     parts
 }
 
-/// What is called beside the functions of the file and those on the list.
+/// Returns a message for each call outside of the file's functions and the documented ones.
 fn undocumented(symbols: &BTreeSet<&str>, routines: &BTreeMap<String, Routine>) -> Vec<String> {
     let mut wrong = Vec::new();
     for symbol in symbols {
@@ -192,7 +193,7 @@ fn undocumented(symbols: &BTreeSet<&str>, routines: &BTreeMap<String, Routine>) 
     wrong
 }
 
-/// The last of a name's parts.
+/// Returns the last segment of a name's path.
 fn last(symbol: &str) -> String {
     let name = name_in_source(symbol);
     name.rsplit("::").next().unwrap_or(&name).to_string()

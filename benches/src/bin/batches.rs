@@ -1,10 +1,11 @@
-//! Functions of several states at once next to those of one, in one table.
+//! Table of batched functions of several states and functions of single states.
 //!
 //! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin batches`, or without the
-//! flag for the default target. Nanoseconds per state: the least over many rounds, in which all take turns.
+//! flag for the default target. The values are nanoseconds per state: the minimum over many rounds, in which
+//! all functions take turns.
 //!
-//! Behind it states in arrays that no cache near the processor holds, on one thread: what
-//! `runtime/python/benches/calls.py` measures from Python.
+//! A second table has states in arrays that exceed the caches near the processor, on one thread.
+//! `runtime/python/benches/calls.py` measures the same from Python.
 
 use linkwork::Rheonomic;
 use linkwork::nalgebra::SVector;
@@ -13,10 +14,10 @@ use linkwork_benches::random::Random;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// How long each function is measured.
+/// Time for the measurement of each function.
 const BUDGET: Duration = Duration::from_millis(400);
 
-/// Number of states that the calls go through: few enough for the fastest cache.
+/// Number of states that the calls cycle through, which fit into the fastest cache.
 const STATES: usize = 64;
 
 /// Number of states of the arrays.
@@ -48,13 +49,13 @@ fn main() {
     arrays("Panda", &Panda);
 }
 
-/// `L` states in lanes each.
+/// Packs the states into lanes, `L` states each.
 fn wide<const L: usize, const N: usize>(states: &[SVector<f64, N>]) -> Vec<SVector<Lanes<f64, L>, N>> {
     let group = |group: &[SVector<f64, N>]| SVector::from_fn(|i, _| Lanes::from_fn(|k| group[k][i]));
     states.chunks_exact(L).map(group).collect()
 }
 
-/// The states of one kind: one by one, and in lanes.
+/// States as single vectors, and packed into 4 and 8 lanes.
 type States<const N: usize> =
     (Vec<SVector<f64, N>>, Vec<SVector<Lanes<f64, 4>, N>>, Vec<SVector<Lanes<f64, 8>, N>>);
 
@@ -91,7 +92,7 @@ where
     row!("forward dynamics", forward_dynamics(q, v, v));
 }
 
-/// Nanoseconds per state of a call for one state, four and eight.
+/// Returns the nanoseconds per state for calls with one, four and eight states.
 fn measure(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
     let mut calls = calls.into_iter().zip([1, 4, 8]).collect::<Vec<_>>();
     let mut best = [Duration::MAX; 3];
@@ -106,7 +107,7 @@ fn measure(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
     best.map(|time| time.as_secs_f64() * 1e9 / STATES as f64)
 }
 
-/// A robot whose configurations are as long as its velocities.
+/// Measures arrays of states of a robot whose `q` and `v` have equal length.
 fn arrays<M, const N: usize, const NU: usize>(name: &str, m: &M)
 where
     M: Batch<N, N, NU, Scalar = f64>,

@@ -1,6 +1,6 @@
-//! Steps of a quadruped with contacts at its feet, and of a humanoid on the corners of its soles:
-//! microseconds, and how exact they are, as JSON for `benches/peers/contact.py`, which has the same robots
-//! for MuJoCo.
+//! Steps of a quadruped with contacts at its feet, and of a humanoid on the corners of its soles. Prints
+//! microseconds per step and accuracies as JSON for `benches/peers/contact.py`, which has the same robots for
+//! MuJoCo.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -24,7 +24,7 @@ struct Solo {
     hind_right: Contact,
 }
 
-/// Eight contacts, of which the motion cannot tell the impulses apart.
+/// Humanoid with eight contacts, whose impulses the motion does not determine uniquely.
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, limits = ignore, gravity = -9.81 * z)]
 struct Humanoid {
     #[contact(l_ankle.at(0.16 * x + (0.12 * i - 0.06) * y - 0.1 * z), ground.plane(z), friction = 0.8)]
@@ -40,15 +40,16 @@ struct Humanoid {
 type Stepping = TimeStepping<f64>;
 type End = Sample<f64, 19, 18, 12>;
 
-/// What the joints are driven to.
+/// Target angles of the drives, rad.
 const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
 
-/// Springs and dampers at the joints, N·m/rad and N·m·s/rad; none where the robot collapses.
+/// Returns the torques of springs and dampers at the joints, with the given stiffness, N·m/rad. With zero
+/// stiffness the robot collapses.
 fn drives(q: &SVector<f64, 19>, v: &SVector<f64, 18>, stiffness: f64) -> SVector<f64, 12> {
     SVector::from_fn(|k, _| stiffness * (POSTURE[k % 3] - q[7 + k] - 0.025 * v[6 + k]))
 }
 
-/// Where `duration` seconds lead.
+/// Returns the state after `duration` seconds.
 fn end(
     m: &Solo,
     start: (SVector<f64, 19>, SVector<f64, 18>),
@@ -60,14 +61,14 @@ fn end(
     run.method(method).duration(duration).finish().expect("the robot moves")
 }
 
-/// Microseconds of the process in a step of a millisecond of the quadruped.
+/// Returns the processor time of a step of one millisecond of the quadruped, µs.
 fn time(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, method: Stepping) -> f64 {
     least(500.0, || {
         end(m, start, stiffness, method, 0.5);
     })
 }
 
-/// Microseconds of the process in one of so many steps: the least of several runs.
+/// Returns the processor time of one of `steps` steps, µs: the minimum over several runs.
 fn least(steps: f64, run: impl Fn()) -> f64 {
     let now = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
@@ -81,8 +82,8 @@ fn least(steps: f64, run: impl Fn()) -> f64 {
     times.fold(f64::INFINITY, f64::min) / steps
 }
 
-/// Times of the humanoid while it stands, collapses and is in the air, and its creep in metres a second. Each
-/// link turns about its own joint with 1 kg·m² and more, so that its drives may be stiff.
+/// Returns the times of the humanoid while it stands, collapses and is in the air, µs, and its creep, m/s.
+/// Each link has at least 1 kg·m² about its own joint, so that the drives can be stiff.
 fn humanoid(method: Stepping) -> [f64; 4] {
     let m = Humanoid {};
     let high = m.neutral();
@@ -109,7 +110,7 @@ fn humanoid(method: Stepping) -> [f64; 4] {
     [time(stands, 1e4), time((low, still), 0.0), time((up, still), 1e4), creep]
 }
 
-/// What the table says of steps of one kind, as JSON.
+/// Returns the table values for one kind of step as JSON.
 fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
     let posed = |m: &Solo, height: f64| {
         let mut q = m.neutral();
@@ -124,7 +125,7 @@ fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
         let end = end(m, drop, 6.0, method, 8.0);
         (end.q, end.v)
     };
-    // Metres a second over the second that follows.
+    // Velocity over the following second, m/s.
     let creep = |m: &Solo| {
         let from = settled(m);
         (end(m, from, 6.0, method, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0)).norm()

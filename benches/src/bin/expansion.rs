@@ -1,10 +1,9 @@
-//! What the compiler costs, and what rustc costs on its output: time, memory and size, next to the goals.
+//! Costs of the compiler, and of rustc on its output: time, memory and size, with their target values.
 //!
-//! `cargo run -p linkwork-benches --bin expansion`, in the dev profile: that is how cargo builds procedural
-//! macros. Each mechanism is expanded in a process of its own, so that its memory can be told from the
-//! others'. The last columns are of rustc reading what came out as cargo's dev profile does, up to the
-//! metadata of a library: processor time, and the most memory. `expansion FIRST [LAST]` prints the lines of
-//! some mechanisms, by number.
+//! `cargo run -p linkwork-benches --bin expansion`, in the dev profile, in which cargo builds procedural
+//! macros. Each mechanism is expanded in its own process, so that its memory can be measured separately. The
+//! last columns measure rustc on the expanded code in cargo's dev profile, up to the metadata of a library:
+//! processor time, and peak memory. `expansion FIRST [LAST]` prints the lines of some mechanisms, by number.
 
 use linkwork_benches::chains::{Source, chain};
 use linkwork_benches::checked::{Library, check};
@@ -17,7 +16,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
 
-/// Repetitions of which the fastest is shown, unless that takes longer than `PATIENCE`.
+/// Number of repetitions, of which the fastest is reported, unless they take longer than `PATIENCE`.
 const REPEATS: usize = 9;
 const PATIENCE: Duration = Duration::from_secs(4);
 
@@ -37,7 +36,7 @@ const DOUBLE_PENDULUM: &str = "pub struct DoublePendulum {
     #[joint(upper.at(-l1 * y) -> lower, about = z)] elbow: Pin,
 }";
 
-/// Name, options of the file, goal.
+/// Name, options of the file, target time.
 const ROBOTS: [(&str, &str, &str); 4] = [
     ("ur5", "", ""),
     ("panda", ", mimic = independent", "150 ms"),
@@ -49,7 +48,7 @@ const SPRINGS: [usize; 4] = [10, 100, 300, 1000];
 const PLACED: [usize; 5] = [4, 8, 16, 32, 64];
 const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
-/// Name, goal and text of every mechanism.
+/// Returns name, target time and text of every mechanism.
 fn mechanisms() -> Vec<(String, &'static str, Source)> {
     let own = |name: &str, goal, item: &str| {
         let arguments = "gravity = -g * y".to_string();
@@ -75,8 +74,8 @@ fn mechanisms() -> Vec<(String, &'static str, Source)> {
     list
 }
 
-/// The word before the number of a mechanism and the place of the library, where a line is made in a process
-/// of its own.
+/// Command of the child process that prints one line. The number of the mechanism and the path of the library
+/// follow it.
 const LINE: &str = "line";
 
 fn main() -> ExitCode {
@@ -106,7 +105,7 @@ fn print_line(k: usize, rlib: &str) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints the lines of the mechanisms of these numbers.
+/// Prints the lines of the mechanisms from `first` to `last`.
 fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
     let library = Library::built()?;
     let profile = if cfg!(debug_assertions) {
@@ -129,7 +128,7 @@ fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A line of the table.
+/// Returns a line of the table.
 fn line(name: &str, goal: &str, source: &Source, library: &Library) -> Result<String, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let arguments: TokenStream = source.arguments.parse()?;
@@ -172,7 +171,7 @@ fn timed<T>(f: impl FnOnce() -> T) -> Duration {
     start.elapsed()
 }
 
-/// The largest resident size of this process so far, kB, where the system tells.
+/// Returns the peak resident memory of this process so far, kB, if the system reports it.
 fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

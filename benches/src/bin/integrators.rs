@@ -1,6 +1,6 @@
-//! Methods of integration on the problems of `precision`, a line for each tolerance: problem, method,
-//! tolerance, evaluations of the accelerations and of their derivatives, seconds, then the configuration at
-//! the end. `peers/run integrators` compares it.
+//! Integration methods on the problems of `precision`, a line for each tolerance: problem, method, tolerance,
+//! evaluations of the accelerations and of their derivatives, seconds, then the final configuration.
+//! `peers/run integrators` compares it.
 
 use linkwork::integrate::{DormandPrince, DormandPrince8, Error, Rodas};
 use linkwork_benches::precision::{Found, PROBLEMS, solve};

@@ -1,14 +1,14 @@
-//! Generated functions and the generic implementation, side by side in one table.
+//! Table of generated functions and the generic implementation.
 //!
 //! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin ratios`, or without the
-//! flag for the default target. Nanoseconds of one call: the least over many batches, in which both take
-//! turns.
+//! flag for the default target. The values are nanoseconds per call: the minimum over many batches, in which
+//! both take turns.
 
 use linkwork_benches::pairs::{Pair, robots};
 use linkwork_benches::states::STATES;
 use std::time::{Duration, Instant};
 
-/// How long each function is measured.
+/// Time for the measurement of each function.
 const BUDGET: Duration = Duration::from_millis(700);
 
 fn main() {
@@ -39,7 +39,7 @@ fn main() {
     }
 }
 
-/// Nanoseconds of a call of each.
+/// Returns the nanoseconds per call of both implementations.
 fn measure(pair: &mut Pair) -> (f64, f64) {
     let (mut generated, mut generic) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();

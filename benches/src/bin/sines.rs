@@ -1,8 +1,9 @@
-//! Sines and cosines of joint angles next to those of the standard library and of `libm`, in one table.
+//! Table of sines and cosines of joint angles: those of Linkwork, of the standard library and of `libm`.
 //!
 //! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin sines`, or without the
-//! flag for the default target, where generated functions ask for AVX2 and FMA as here. Nanoseconds of all
-//! angles of a call, which are within 10⁴ rad: the least over many rounds, in which all take turns.
+//! flag for the default target, where generated functions select AVX2 and FMA at run time as this program
+//! does. The values are nanoseconds for all angles of a call, which are within 10⁴ rad: the minimum over many
+//! rounds, in which all take turns.
 
 use linkwork::__private::{Arithmetic, Evaluate, dispatch};
 use linkwork_benches::random::Random;
@@ -10,19 +11,19 @@ use std::array::from_fn;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// How long each number of angles is measured.
+/// Time for the measurement of each number of angles.
 const BUDGET: Duration = Duration::from_millis(300);
 
-/// Number of configurations that the calls go through.
+/// Number of configurations that the calls cycle through.
 const STATES: usize = 64;
 
 /// Largest angle, rad.
 const BOUND: f64 = 1e4;
 
-/// Sines and cosines of so many angles.
+/// Sines and cosines of `N` angles.
 type Both<const N: usize> = ([f64; N], [f64; N]);
 
-/// What a generated function calculates first.
+/// First part of a generated function: sines and cosines of the angles.
 struct Sines;
 
 impl<const N: usize> Evaluate<0, &[f64; N]> for Sines {
@@ -34,7 +35,7 @@ impl<const N: usize> Evaluate<0, &[f64; N]> for Sines {
     }
 }
 
-/// Linkwork's way to calculate them, the standard library's, and that of `libm`.
+/// Returns the implementations of Linkwork, of the standard library, and of `libm`.
 fn ways<const N: usize>() -> [fn(&[f64; N]) -> Both<N>; 3] {
     [|x| dispatch::<0, f64, _, _>(&Sines, x), |x| each(x, f64::sin_cos), |x| each(x, libm::sincos)]
 }

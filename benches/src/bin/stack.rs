@@ -1,8 +1,8 @@
-//! The stack that functions of robots need, with everything that they call.
+//! Measures the stack that functions of robots need, including all functions that they call.
 //!
 //! `cargo run -p linkwork-benches --bin stack` for debug builds, with `--release` for release builds. Each
-//! call is made on a painted stack of a thread, and what it leaves unpainted is counted: KiB, upwards, for
-//! one state and for eight.
+//! call is made on a thread's stack that is filled with a pattern; the overwritten part is measured in KiB,
+//! rounded up, for one state and for eight.
 
 use linkwork::Rheonomic;
 use linkwork::nalgebra::SVector;
@@ -11,13 +11,13 @@ use linkwork_benches::random::Random;
 use std::hint::black_box;
 use std::thread;
 
-/// How much of the stack is painted, bytes.
+/// Size of the filled part of the stack, bytes.
 const PAINTED: usize = 6 << 20;
-/// What is left for the painter itself, bytes: nothing less is seen.
+/// Reserve for the filling function itself, bytes: smaller values cannot be measured.
 const MARGIN: usize = 512;
 /// Stack of the thread, bytes.
 const STACK: usize = PAINTED + (2 << 20);
-/// What it is painted with.
+/// Pattern that fills the stack.
 const PAINT: u8 = 0xA5;
 
 #[mechanism(urdf = "../models/urdf/ur5.urdf", batch, derivatives)]
@@ -58,7 +58,7 @@ fn table() {
     robot!("humanoid", Humanoid);
 }
 
-/// A random state.
+/// Returns a random state.
 fn state<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M) -> (SVector<f64, NQ>, SVector<f64, NV>)
 where
     M: Batch<NQ, NV, NU, Scalar = f64>,
@@ -93,15 +93,15 @@ fn derivatives(name: &str, text: &str, mut call: impl FnMut()) {
     println!("| {name} | {text} | {} | |", kib(stack(&mut call)));
 }
 
-/// In KiB, upwards.
+/// Converts bytes to KiB, rounded up.
 fn kib(bytes: usize) -> usize {
     bytes.div_ceil(1 << 10)
 }
 
-/// The stack that a call needs below this function, bytes.
+/// Returns the stack that a call needs below this function, bytes.
 #[inline(never)]
 fn stack(call: &mut dyn FnMut()) -> usize {
-    // What is loaded or looked up at the first call is not counted.
+    // The first call is not measured, since it can load or detect something.
     call();
     let here = black_box(0_u8);
     let top = std::ptr::from_ref(&here) as usize - MARGIN;
@@ -110,12 +110,12 @@ fn stack(call: &mut dyn FnMut()) -> usize {
     top - lowest(top)
 }
 
-/// Paints the stack below an address.
+/// Fills the stack below an address with the pattern.
 #[inline(never)]
 #[expect(unsafe_code, reason = "the stack below this function belongs to the thread, and nobody uses it")]
 fn paint(top: usize) {
     let own = black_box(0_u8);
-    // Its own frame is left alone.
+    // The function's own frame is not overwritten.
     let top = top.min(std::ptr::from_ref(&own) as usize - MARGIN);
     for address in top - PAINTED..top {
         // SAFETY: the thread has `STACK` bytes, of which few are in use.
@@ -123,7 +123,7 @@ fn paint(top: usize) {
     }
 }
 
-/// The lowest address below another one whose paint is gone.
+/// Returns the lowest address below `top` that no longer has the pattern.
 #[inline(never)]
 #[expect(unsafe_code, reason = "the stack below this function belongs to the thread")]
 fn lowest(top: usize) -> usize {

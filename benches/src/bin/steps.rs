@@ -1,5 +1,5 @@
-//! A step of the classical Runge-Kutta method with its Jacobians next to C that CasADi generates
-//! (`benches/peers/run steps`), and second derivatives next to first ones, which need no peer.
+//! Compares a step of the classical Runge-Kutta method with its Jacobians to C that CasADi generates
+//! (`benches/peers/run steps`), and second derivatives to first ones, which needs no peer.
 
 use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;
@@ -15,7 +15,7 @@ use std::rc::Rc;
 
 /// The period of a step, s.
 const PERIOD: f64 = 0.01;
-/// Seconds for each implementation.
+/// Time for the measurement of each implementation, s.
 const BUDGET: f64 = 0.2;
 
 #[mechanism(urdf = "../models/urdf/ur5.urdf", passive = ignore, second_derivatives)]
@@ -31,7 +31,7 @@ struct Ur5;
 #[derive(Clone, Copy)]
 struct PandaArm;
 
-/// `[A B]` of a step under forces at the joints, columns of `q`, `v` and `τ`.
+/// Returns `[A B]` of a step under joint torques: the columns of `q`, `v` and `τ`.
 fn step<M, const N: usize>(m: &M, s: &State<N, N>) -> [[SMatrix<f64, N, N>; 2]; 3]
 where
     M: RheonomicDerivatives<N, N, N, Scalar = f64>,
@@ -40,7 +40,7 @@ where
     [[found.q_by_q, found.v_by_q], [found.q_by_v, found.v_by_v], [found.q_by_u, found.v_by_u]]
 }
 
-/// Blocks one upon another, as a list of columns.
+/// Blocks in a column, as a list of matrix columns.
 struct Stacked<const N: usize>([[SMatrix<f64, N, N>; 2]; 3]);
 
 impl<const N: usize> Flat for Stacked<N> {
@@ -50,7 +50,7 @@ impl<const N: usize> Flat for Stacked<N> {
     }
 }
 
-/// A function of ours as a contender.
+/// Returns a function of Linkwork as a contender.
 fn own<M: Copy + 'static, R: Flat + 'static, const N: usize>(
     mechanism: M,
     states: &Rc<Vec<State<N, N>>>,
@@ -60,7 +60,7 @@ fn own<M: Copy + 'static, R: Flat + 'static, const N: usize>(
     Box::new(Own { owner, mechanism, states, name, call })
 }
 
-/// Numbers that stand for blocks whose values are not compared.
+/// Result whose values are not compared.
 struct Unread<R>(R);
 
 impl<R> Flat for Unread<R> {
@@ -69,7 +69,7 @@ impl<R> Flat for Unread<R> {
     }
 }
 
-/// Nanoseconds of a call of each of some functions, in turns.
+/// Returns the nanoseconds per call of each function, measured in turns.
 fn nanoseconds(mut of: Vec<Box<dyn Contender>>) -> Vec<f64> {
     time(&mut of, STATES, BUDGET).iter().map(|measured| measured.time).collect()
 }

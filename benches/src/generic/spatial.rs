@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// A twist (velocity of the origin, angular velocity) or a wrench (force, moment about the origin).
+/// Twist (velocity of the origin, angular velocity) or wrench (force, moment about the origin).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spatial {
     /// Velocity or force.
@@ -13,17 +13,17 @@ pub struct Spatial {
 }
 
 impl Spatial {
-    /// Of its parts.
+    /// Creates a spatial vector from its two parts.
     pub fn new(linear: Vector3<f64>, angular: Vector3<f64>) -> Spatial {
         Spatial { linear, angular }
     }
 
-    /// Zero.
+    /// Returns the zero vector.
     pub fn zero() -> Spatial {
         Spatial::new(Vector3::zeros(), Vector3::zeros())
     }
 
-    /// Entry `k` one, the others zero.
+    /// Returns the unit vector with entry `k` one.
     pub fn unit(k: usize) -> Spatial {
         let mut s = Spatial::zero();
         let part = if k < 3 { &mut s.linear } else { &mut s.angular };
@@ -31,28 +31,28 @@ impl Spatial {
         s
     }
 
-    /// From the first six numbers.
+    /// Creates a spatial vector from the first six numbers.
     pub fn from_slice(s: &[f64]) -> Spatial {
         Spatial::new(Vector3::new(s[0], s[1], s[2]), Vector3::new(s[3], s[4], s[5]))
     }
 
-    /// All six numbers.
+    /// Returns all six numbers.
     pub fn vector(&self) -> Vector6<f64> {
         let (l, a) = (self.linear, self.angular);
         Vector6::new(l.x, l.y, l.z, a.x, a.y, a.z)
     }
 
-    /// Both parts with a function applied.
+    /// Applies a function to both parts.
     pub fn map(&self, f: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Spatial {
         Spatial::new(f(&self.linear), f(&self.angular))
     }
 
-    /// Twist dotted with wrench: a power.
+    /// Returns the scalar product of twist and wrench: a power.
     pub fn dot(&self, other: &Spatial) -> f64 {
         self.linear.dot(&other.linear) + self.angular.dot(&other.angular)
     }
 
-    /// The rate of a twist that is carried along by this one.
+    /// Returns the rate of a twist that is fixed in a frame moving with this twist.
     pub fn cross(&self, other: &Spatial) -> Spatial {
         Spatial::new(
             self.angular.cross(&other.linear) + self.linear.cross(&other.angular),
@@ -60,7 +60,7 @@ impl Spatial {
         )
     }
 
-    /// The rate of a wrench that is carried along by this twist.
+    /// Returns the rate of a wrench that is fixed in a frame moving with this twist.
     pub fn cross_force(&self, wrench: &Spatial) -> Spatial {
         Spatial::new(
             self.angular.cross(&wrench.linear),
@@ -96,38 +96,38 @@ impl Mul<f64> for Spatial {
     }
 }
 
-/// Where a child frame is in a parent frame.
+/// Placement of a child frame in a parent frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Columns are the child's axes in the parent's.
+    /// Rotation matrix whose columns are the child's axes in the parent's.
     pub rotation: Matrix3<f64>,
-    /// The child's origin, in parent axes.
+    /// Position of the child's origin, in parent axes, m.
     pub translation: Vector3<f64>,
 }
 
 impl Placement {
-    /// Of its parts.
+    /// Creates a placement from its parts.
     pub fn new(rotation: Matrix3<f64>, translation: Vector3<f64>) -> Placement {
         Placement { rotation, translation }
     }
 
-    /// The child frame is the parent frame.
+    /// Returns the placement of a frame in itself.
     pub fn identity() -> Placement {
         Placement::new(Matrix3::identity(), Vector3::zeros())
     }
 
-    /// This placement, then another in the child frame.
+    /// Composes this placement with another one in the child frame.
     pub fn then(&self, next: &Placement) -> Placement {
         Placement::new(self.rotation * next.rotation, self.translation + self.rotation * next.translation)
     }
 
-    /// The parent frame in the child frame.
+    /// Returns the placement of the parent frame in the child frame.
     pub fn inverse(&self) -> Placement {
         let rotation = self.rotation.transpose();
         Placement::new(rotation, -(rotation * self.translation))
     }
 
-    /// A twist of the parent's frame, at the child's.
+    /// Transforms a twist from the parent's frame to the child's.
     pub fn twist_to_child(&self, t: &Spatial) -> Spatial {
         Spatial::new(
             self.rotation.tr_mul(&(t.linear + t.angular.cross(&self.translation))),
@@ -135,37 +135,37 @@ impl Placement {
         )
     }
 
-    /// A twist of the child's frame, at the parent's.
+    /// Transforms a twist from the child's frame to the parent's.
     pub fn twist_to_parent(&self, t: &Spatial) -> Spatial {
         let angular = self.rotation * t.angular;
         Spatial::new(self.rotation * t.linear + self.translation.cross(&angular), angular)
     }
 
-    /// A wrench at the child's frame, at the parent's.
+    /// Transforms a wrench from the child's frame to the parent's.
     pub fn wrench_to_parent(&self, w: &Spatial) -> Spatial {
         let force = self.rotation * w.linear;
         Spatial::new(force, self.rotation * w.angular + self.translation.cross(&force))
     }
 }
 
-/// Mass properties about a frame's origin.
+/// Rigid-body inertia about a frame's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
-    /// Mass.
+    /// Mass, kg.
     pub mass: f64,
-    /// Mass times centre of mass.
+    /// Mass times centre of mass, kg·m.
     pub moment: Vector3<f64>,
-    /// Inertia about the origin.
+    /// Inertia tensor about the origin, kg·m².
     pub tensor: Matrix3<f64>,
 }
 
 impl Inertia {
-    /// Nothing.
+    /// Returns the inertia of a massless link.
     pub fn zero() -> Inertia {
         Inertia { mass: 0.0, moment: Vector3::zeros(), tensor: Matrix3::zeros() }
     }
 
-    /// A body with its centre of mass at `c` and an inertia about it.
+    /// Returns the inertia of a body with its centre of mass at `c` and an inertia tensor about it.
     pub fn of_body(mass: f64, c: Vector3<f64>, central: Matrix3<f64>) -> Inertia {
         Inertia {
             mass,
@@ -174,7 +174,7 @@ impl Inertia {
         }
     }
 
-    /// Momentum of a twist.
+    /// Returns the momentum of a twist.
     pub fn times(&self, t: &Spatial) -> Spatial {
         Spatial::new(
             t.linear * self.mass + t.angular.cross(&self.moment),
@@ -182,7 +182,7 @@ impl Inertia {
         )
     }
 
-    /// The same about the parent's origin, in parent axes.
+    /// Transforms the inertia to the parent's origin and axes.
     pub fn to_parent(&self, placement: &Placement) -> Inertia {
         let (r, p) = (&placement.rotation, &placement.translation);
         let h = r * self.moment;
@@ -203,19 +203,19 @@ impl AddAssign for Inertia {
     }
 }
 
-/// An articulated inertia: force `m a + hᵀ w`, moment `h a + i w` for an acceleration `(a, w)`.
+/// Articulated inertia: force `m a + hᵀ w`, moment `h a + i w` for an acceleration `(a, w)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Articulated {
-    /// Force by linear acceleration.
+    /// Block from linear acceleration to force.
     pub m: Matrix3<f64>,
-    /// Moment by linear acceleration.
+    /// Block from linear acceleration to moment.
     pub h: Matrix3<f64>,
-    /// Moment by angular acceleration.
+    /// Block from angular acceleration to moment.
     pub i: Matrix3<f64>,
 }
 
 impl Articulated {
-    /// Of a rigid body.
+    /// Returns the articulated inertia of a rigid body.
     pub fn rigid(inertia: &Inertia) -> Articulated {
         Articulated {
             m: Matrix3::from_diagonal_element(inertia.mass),
@@ -224,12 +224,12 @@ impl Articulated {
         }
     }
 
-    /// The wrench of an acceleration.
+    /// Returns the wrench of an acceleration.
     pub fn times(&self, a: &Spatial) -> Spatial {
         Spatial::new(self.m * a.linear + self.h.tr_mul(&a.angular), self.h * a.linear + self.i * a.angular)
     }
 
-    /// `IA − U Uᵀ / D`.
+    /// Returns `IA − U Uᵀ / D`.
     pub fn without(&self, u: &Spatial, inverse: f64) -> Articulated {
         let scaled = *u * inverse;
         Articulated {
@@ -239,7 +239,7 @@ impl Articulated {
         }
     }
 
-    /// The same about the parent's origin, in parent axes.
+    /// Transforms the articulated inertia to the parent's origin and axes.
     pub fn to_parent(&self, placement: &Placement) -> Articulated {
         let r = &placement.rotation;
         let turned = |x: &Matrix3<f64>| r * x * r.transpose();
@@ -250,7 +250,7 @@ impl Articulated {
         Articulated { m, h: moved, i: turned(&self.i) - moved * p + p * h.transpose() }
     }
 
-    /// The acceleration that a wrench gives.
+    /// Returns the acceleration that a wrench causes.
     pub fn solve(&self, wrench: &Spatial) -> Spatial {
         let mut full = Matrix6::zeros();
         full.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.m);

@@ -1,20 +1,20 @@
-//! A URDF file → a [`Model`]: links that are fixed to others are lumped into them; coordinates depth first,
-//! the joints of one link in alphabetical order.
+//! Reads a URDF file into a [`Model`]. Fixed links are merged into the links that carry them. Coordinates are
+//! depth first, with the joints of one link in alphabetical order.
 
 use super::{Frame, Inertia, Link, Model, Motion, Placement};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use roxmltree::{Document, Node};
 
-/// How a file is read. Mimic joints are independent.
+/// Options of reading. Mimic joints are independent.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options<'a> {
-    /// The root moves freely.
+    /// Whether the base is free.
     pub free: bool,
-    /// Joints that stay at zero.
+    /// Names of joints that are locked at zero.
     pub lock: &'a [&'a str],
 }
 
-/// Reads a file.
+/// Reads the text of a URDF file.
 pub fn read(text: &str, options: &Options<'_>) -> Result<Model, String> {
     let document = Document::parse(text).map_err(|e| e.to_string())?;
     let robot = document.root_element();
@@ -41,7 +41,7 @@ pub fn read(text: &str, options: &Options<'_>) -> Result<Model, String> {
     Ok(reader.model)
 }
 
-/// The link at one end of a joint.
+/// Returns the name of the link at one end of a joint.
 fn end<'a>(joint: &Node<'a, '_>, which: &str) -> Option<&'a str> {
     let node = joint.children().find(|n| n.has_tag_name(which))?;
     node.attribute("link")
@@ -55,7 +55,7 @@ struct Reader<'a, 'd, 'i> {
 }
 
 impl Reader<'_, '_, '_> {
-    /// Adds a moving link without mass yet; its index.
+    /// Adds a moving link of zero mass, and returns its index.
     fn add(&mut self, parent: Option<usize>, placement: Placement, motion: Motion) -> usize {
         let (nq, nv) = motion.sizes();
         let (q, v) = (self.model.nq, self.model.nv);
@@ -65,7 +65,7 @@ impl Reader<'_, '_, '_> {
         self.model.links.len() - 1
     }
 
-    /// Reads a link that is fixed at `placement` in the moving link `at`, and all that hangs from it.
+    /// Reads a link that is fixed at `placement` in the moving link `at`, and all its descendants.
     fn link(&mut self, name: &str, at: Option<usize>, placement: Placement) -> Result<(), String> {
         self.model.frames.push(Frame { name: name.to_string(), link: at, placement });
         let node = self.links.iter().find(|n| n.attribute("name") == Some(name));
@@ -87,7 +87,7 @@ impl Reader<'_, '_, '_> {
         Ok(())
     }
 
-    /// How a joint moves; not at all if it is fixed or locked.
+    /// Returns the motion of a joint, or `None` if it is fixed or locked.
     fn motion(&self, joint: &Node<'_, '_>) -> Result<Option<Motion>, String> {
         let name = joint.attribute("name").unwrap_or_default();
         if self.lock.contains(&name) {
@@ -109,7 +109,7 @@ impl Reader<'_, '_, '_> {
     }
 }
 
-/// An `<origin>`.
+/// Reads an `<origin>`.
 fn origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
     let Some(node) = parent.children().find(|n| n.has_tag_name("origin")) else {
         return Ok(Placement::identity());
@@ -119,7 +119,7 @@ fn origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
     Ok(Placement::new(rotation.into_inner(), vector(&node, "xyz")?))
 }
 
-/// An `<inertial>`.
+/// Reads an `<inertial>`.
 fn inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
     let find = |tag: &str| inertial.children().find(|n| n.has_tag_name(tag));
     let mass = find("mass").map_or(Ok(0.0), |n| number(&n, "value"))?;
@@ -140,7 +140,7 @@ fn number(node: &Node<'_, '_>, key: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("`{text}` is no number"))
 }
 
-/// Three numbers; zero if absent.
+/// Reads three numbers, which are zero if the attribute is absent.
 fn vector(node: &Node<'_, '_>, key: &str) -> Result<Vector3<f64>, String> {
     let Some(text) = node.attribute(key) else {
         return Ok(Vector3::zeros());

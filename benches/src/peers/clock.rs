@@ -1,8 +1,8 @@
-//! Time that this thread has run: other programs on the same processor do not count.
+//! Processor time of this thread: other programs on the same processor do not count.
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// Seconds.
+/// Returns the processor time of this thread, s.
 pub fn seconds() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

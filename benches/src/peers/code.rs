@@ -1,20 +1,21 @@
-//! The size of generated functions in machine code, from the symbols of this program.
+//! Sizes of generated functions in machine code, from the symbols of this program.
 
 use object::{Object, ObjectKind, ObjectSymbol};
 use std::any::type_name;
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// Below, a function does nothing but call others.
+/// Smallest size in bytes; a smaller function only calls others.
 const SMALLEST: u64 = 500;
 
-/// Bytes of the function `name` of the mechanism `M` where it is called by the code at an address, of which
-/// it has become a part or not. Nothing where it only calls other functions, or the system does not tell.
+/// Returns the bytes of machine code of the function `name` of the mechanism `M`, plus those of its caller at
+/// an address, into which it may have been inlined. Returns `None` if it only calls other functions, or if
+/// the system does not report the sizes.
 pub fn bytes<M>(caller: *const (), name: &str) -> Option<u64> {
     static SIZES: OnceLock<Option<Sizes>> = OnceLock::new();
     let sizes = SIZES.get_or_init(Sizes::read).as_ref()?;
     let mechanism = type_name::<M>().rsplit("::").next()?;
-    // As names are mangled: each with its length before it.
+    // Mangled names contain each identifier after its length.
     let end = format!("{}{mechanism}{}{name}", mechanism.len(), name.len());
     let own = sizes.names.iter().filter(|(symbol, _)| symbol.contains(&end)).map(|(_, size)| size).max();
     let all = sizes.addresses.get(&(caller as u64))? + own.unwrap_or(&0);
@@ -29,7 +30,7 @@ struct Sizes {
 impl Sizes {
     fn read() -> Option<Sizes> {
         let path = std::env::current_exe().ok()?;
-        // The first line of the map is the start of this program in memory.
+        // The first line of the map is the start address of this program in memory.
         let maps = std::fs::read_to_string("/proc/self/maps").ok()?;
         let line = maps.lines().find(|line| line.ends_with(&*path.to_string_lossy()))?;
         let start = u64::from_str_radix(line.split('-').next()?, 16).ok()?;

@@ -1,5 +1,5 @@
-//! Generated functions next to other libraries, in one process, interleaved, on the same states: what the
-//! programs that compare them share.
+//! Comparison of generated functions with other libraries, in one process, interleaved, on the same states:
+//! shared parts of the programs.
 
 pub mod clock;
 mod code;

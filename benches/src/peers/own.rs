@@ -7,20 +7,20 @@ use linkwork::nalgebra::SMatrix;
 use std::hint::black_box;
 use std::rc::Rc;
 
-/// A function of the mechanism `M`.
+/// Function of the mechanism `M`.
 pub type Call<M, R, const NQ: usize, const NV: usize> = fn(&M, &State<NQ, NV>) -> R;
 
-/// A generated function with the mechanism that it belongs to.
+/// Generated function with its mechanism.
 pub struct Own<M, R, const NQ: usize, const NV: usize> {
-    /// Whether the mechanism has parameters.
+    /// Variant of the generated code: with or without parameters.
     pub owner: Owner,
-    /// The mechanism.
+    /// Mechanism of the function.
     pub mechanism: M,
-    /// What it is called on.
+    /// Arguments of the calls.
     pub states: Rc<Vec<State<NQ, NV>>>,
-    /// The function's name.
+    /// Name of the function.
     pub name: &'static str,
-    /// The function.
+    /// Closure that calls the function.
     pub call: Call<M, R, NQ, NV>,
 }
 
@@ -49,17 +49,17 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for Own<M, R, NQ, N
     }
 }
 
-/// A generated function that puts its results into `K` matrices, which keep their zeros.
+/// Generated function that writes its results to `K` matrices with permanent zeros.
 pub struct Keeping<M, const NQ: usize, const NV: usize, const K: usize> {
-    /// The mechanism.
+    /// Mechanism of the function.
     pub mechanism: M,
-    /// What it is called on.
+    /// Arguments of the calls.
     pub states: Rc<Vec<State<NQ, NV>>>,
-    /// The function's name.
+    /// Name of the function.
     pub name: &'static str,
-    /// The function.
+    /// Closure that calls the function.
     pub call: fn(&M, &State<NQ, NV>, &mut [SMatrix<f64, NV, NV>; K]),
-    /// The matrices.
+    /// Matrices of the results.
     pub matrices: [SMatrix<f64, NV, NV>; K],
 }
 
@@ -89,9 +89,9 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for Keeping<
     }
 }
 
-/// Results as lists.
+/// Results as lists of numbers.
 pub trait Flat {
-    /// All numbers, column by column.
+    /// Returns all numbers in column-major order.
     fn flat(&self) -> Vec<f64>;
 }
 

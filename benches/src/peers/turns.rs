@@ -1,26 +1,27 @@
-//! Contenders in turns: whether they agree, and how long each takes.
+//! Compares the results of contenders, and measures their times in turns.
 
 use super::clock;
 use super::contender::{Contender, Owner};
 
-/// How far results may differ, relative to one plus the largest number of the column.
+/// Tolerance of results, relative to one plus the largest number of the column.
 pub const TOLERANCE: f64 = 1e-9;
-/// Seconds that are measured at a time, so that reading the clock costs nothing.
+/// Duration of one measurement, s, which is long enough that reading the clock costs nothing.
 const BATCH: f64 = 1e-4;
 
-/// What is known of a contender after it has been measured.
+/// Result of a contender's measurement.
 pub struct Measured {
-    /// Whose it is.
+    /// Owner of the implementation.
     pub owner: Owner,
-    /// Which of several.
+    /// Variant among the owner's implementations.
     pub variant: String,
-    /// Nanoseconds of a call.
+    /// Time per call, ns.
     pub time: f64,
     /// Bytes of machine code.
     pub bytes: Option<u64>,
 }
 
-/// Leaves out what differs from the first, Pinocchio if it is there; tells of those of our own.
+/// Removes contenders that differ from the first one (Pinocchio if present). Returns a message for each of
+/// Linkwork's own.
 pub fn agree(
     contenders: &mut Vec<Box<dyn Contender>>,
     what: &str,
@@ -51,7 +52,7 @@ pub fn agree(
     wrong
 }
 
-/// How far a result is off, column by column.
+/// Returns the largest difference of a result, relative in each column.
 pub fn difference(found: &[f64], expected: &[f64], nv: usize) -> f64 {
     assert_eq!(found.len(), expected.len(), "size of a result");
     let columns = found.chunks_exact(nv).zip(expected.chunks_exact(nv));
@@ -61,12 +62,12 @@ pub fn difference(found: &[f64], expected: &[f64], nv: usize) -> f64 {
     }))
 }
 
-/// The largest of some numbers, or what is no number.
+/// Returns the largest number, or NaN if there is one.
 pub fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }
 
-/// Measures in turns, each for `budget` seconds; the least time counts.
+/// Measures the contenders in turns, each for `budget` seconds. The result is the minimum time.
 pub fn time(contenders: &mut [Box<dyn Contender>], states: usize, budget: f64) -> Vec<Measured> {
     let seconds = |contender: &mut Box<dyn Contender>, passes: usize| {
         let start = clock::seconds();

@@ -1,8 +1,8 @@
-//! The crate dynibo behind the interface that `src/bin/peers/library.rs` of the benches states.
+//! The crate dynibo behind the C interface that is documented in `src/bin/peers/library.rs` of the benches.
 //!
-//! It keeps the velocity, acceleration and force of a free base in world axes, angular part first, and has
-//! its own value of g. All of that is turned round where no clock runs: when a robot is opened, and when a
-//! result is taken.
+//! dynibo stores the velocity, acceleration and force of a free base in world axes, angular part first, and
+//! has its own value of g. These conversions are outside of the measured time: they occur when a robot is
+//! opened, and when a result is read.
 
 use dynibo::{BaseState, FloatingRobot, Frame, Robot, RobotModel, Twist};
 use nalgebra::{DMatrix, DVector, DVectorView, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
@@ -10,19 +10,19 @@ use std::error::Error;
 use std::ffi::{CStr, c_char};
 use std::path::Path;
 
-/// What the other peers take for g, and what dynibo does.
+/// Gravitational acceleration of the other peers, and of dynibo, m/s².
 const G: f64 = 9.81;
 const G_OF_DYNIBO: f64 = 9.80665;
 
-/// A state, joints in dynibo's order.
+/// State with the joints in dynibo's order.
 struct State {
     base: BaseState,
     q: Vec<f64>,
     v: Vec<f64>,
     a: Vec<f64>,
-    /// With the base's if it is free, and with what makes up for the other g.
+    /// Generalized forces, including those of a free base, corrected for the difference of g.
     tau: Vec<f64>,
-    /// What gravity lacks.
+    /// Generalized forces of the difference between the two values of g.
     lack: Vec<f64>,
 }
 
@@ -31,11 +31,11 @@ enum Kind {
     Free(FloatingRobot),
 }
 
-/// A robot with its states.
+/// Robot with its states.
 pub struct Peer {
     kind: Kind,
     states: Vec<State>,
-    /// The place of each of dynibo's joints among the joints of the other peers.
+    /// Index among the joints of the other peers for each of dynibo's joints.
     order: Vec<usize>,
     out: Vec<f64>,
 }
@@ -64,7 +64,7 @@ impl Peer {
         Ok(peer)
     }
 
-    /// A state of a row of `q`, `v`, `a` and `τ`.
+    /// Converts a row of `q`, `v`, `a` and `τ` to a state.
     fn state(&mut self, row: &[f64], free: bool) -> Result<State, Failure> {
         let n = self.order.len();
         let (base_q, base_v) = if free { (7, 6) } else { (0, 0) };
@@ -95,8 +95,8 @@ impl Peer {
         Ok(state)
     }
 
-    /// What turns one of dynibo's vectors of generalized forces into one of the other peers: a rotation, and
-    /// rows in another order.
+    /// Returns the matrix that converts dynibo's generalized forces to those of the other peers: a rotation
+    /// of the base's force and a permutation of the rows.
     fn change(&self, state: &State) -> DMatrix<f64> {
         let nv = state.lack.len();
         let base = nv - self.order.len();
@@ -128,7 +128,7 @@ impl Peer {
         }
         let mut a = change * vector;
         if nv > self.order.len() {
-            // The acceleration of the base's origin, turned into the rate of its velocity in body axes.
+            // Conversion of the acceleration of the base's origin to the rate of its velocity in body axes.
             let to_body = state.base.frame().rotation.inverse();
             let Twist { linear, angular } = state.base.velocity();
             let turning = (to_body * angular).cross(&(to_body * linear));
@@ -140,7 +140,7 @@ impl Peer {
     }
 }
 
-/// The base's state in world axes.
+/// Returns the base's state in world axes.
 fn base(q: &[f64], v: &[f64], a: &[f64]) -> Result<BaseState, Failure> {
     let rotation = UnitQuaternion::new_unchecked(Quaternion::new(q[6], q[3], q[4], q[5]));
     let world: Rotation3<f64> = rotation.to_rotation_matrix();
@@ -181,7 +181,7 @@ extern "C" fn forward(peer: &mut Peer, k: usize) {
     debug_assert!(done.is_ok());
 }
 
-/// Opens a robot; null if dynibo cannot read it.
+/// Opens a robot; returns null if dynibo cannot read it.
 ///
 /// # Safety
 ///
@@ -193,7 +193,7 @@ pub unsafe extern "C" fn peer_open(
     length: usize,
     count: usize,
 ) -> Option<Box<Peer>> {
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the string and the array.
     let (folder, numbers) = unsafe { (CStr::from_ptr(folder), std::slice::from_raw_parts(states, length)) };
     match Peer::open(Path::new(folder.to_str().ok()?), numbers, count) {
         Ok(peer) => Some(Box::new(peer)),
@@ -204,7 +204,7 @@ pub unsafe extern "C" fn peer_open(
     }
 }
 
-/// What evaluates one state.
+/// Returns the function that evaluates one state.
 #[unsafe(no_mangle)]
 pub extern "C" fn peer_step(
     _: &Peer,
@@ -219,14 +219,14 @@ pub extern "C" fn peer_step(
     }
 }
 
-/// The result of the last step.
+/// Writes the result of the last step.
 ///
 /// # Safety
 ///
-/// `out` must have room for it.
+/// `out` must have room for the result.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn peer_result(peer: &Peer, function: usize, state: usize, out: *mut f64) {
     let result = peer.result(function, &peer.states[state]);
-    // SAFETY: as the caller promises.
+    // SAFETY: the caller guarantees the size of `out`.
     unsafe { std::ptr::copy_nonoverlapping(result.as_ptr(), out, result.len()) };
 }

@@ -1,9 +1,9 @@
 //! Constrained mechanisms: time of one evaluation of the accelerations and multipliers, and of a thousand
 //! steps of `Rk4`, each projected onto the constraints.
 //!
-//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin constraints` shows
-//! Linkwork alone; `benches/peers/run constraints` installs other libraries and shows them beside it. By
-//! itself: `constraints write FOLDER`, `constraints measure FOLDER [--quick]`.
+//! `RUSTFLAGS="-C target-cpu=native" cargo run --release -p linkwork-benches --bin constraints` measures only
+//! Linkwork; `benches/peers/run constraints` installs other libraries and compares them. The program's own
+//! commands are `constraints write FOLDER` and `constraints measure FOLDER [--quick]`.
 
 mod mechanisms;
 mod table;

@@ -1,4 +1,4 @@
-//! The constrained mechanisms that are compared; `peers/constraints/mechanisms.py` has the same numbers.
+//! The constrained mechanisms of the comparison; `peers/constraints/mechanisms.py` has the same parameters.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::{Constrained, Rk4, simulate};
@@ -12,14 +12,14 @@ use linkwork_models::{
 };
 use std::rc::Rc;
 
-/// Seconds.
+/// Step of the simulations, s.
 const STEP: f64 = 1e-3;
 
-/// A mechanism with its functions.
+/// Mechanism with its measured functions.
 pub struct Mechanism {
-    /// As in the table.
+    /// Title in the table.
     pub title: &'static str,
-    /// Its folder's name.
+    /// Name of its folder.
     pub name: &'static str,
     /// Number of coordinates.
     pub nq: usize,
@@ -27,15 +27,15 @@ pub struct Mechanism {
     pub nv: usize,
     /// Number of scalar constraints.
     pub nc: usize,
-    /// `q`, `v`, `v̇` and no forces of every state, one after another.
+    /// `q`, `v`, `v̇` and zero forces of every state, one after another.
     pub numbers: Vec<f64>,
-    /// Its accelerations in all states.
+    /// Accelerations in all states.
     pub accelerations: Box<dyn Contender>,
-    /// Its motion from the first state, a hundred steps long.
+    /// Motion of a hundred steps from the first state.
     pub motion: Box<dyn Contender>,
 }
 
-/// Accelerations and multipliers; the peers give only the first, though they find both.
+/// Accelerations and multipliers. Peers compute both but return only the accelerations.
 struct Solution<const NV: usize, const NC: usize>(SVector<f64, NV>, SVector<f64, NC>);
 
 impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
@@ -44,8 +44,8 @@ impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
     }
 }
 
-/// A mechanism near a configuration, which is brought onto the constraints with a velocity: the first state.
-/// The others are random ones, as far as `spread` away.
+/// Returns a mechanism with its states. The first state is the given configuration and velocity projected
+/// onto the constraints; the others are random, at distances up to `spread`.
 fn mechanism<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     (title, name): (&'static str, &'static str),
     m: M,
@@ -96,7 +96,7 @@ where
     Mechanism { title, name, nq: NQ, nv: NV, nc: NC, numbers, accelerations, motion }
 }
 
-/// All mechanisms.
+/// Returns the constructors of all mechanisms.
 pub fn mechanisms() -> Vec<fn() -> Mechanism> {
     vec![
         || {

@@ -1,4 +1,4 @@
-//! Constrained mechanisms next to other libraries: accelerations, and a thousand steps.
+//! Comparison of constrained mechanisms with other libraries: accelerations, and a thousand steps.
 
 use crate::mechanisms::{Mechanism, mechanisms};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
@@ -9,10 +9,11 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Motions of methods of the same order, with projections and without, differ by more than rounding.
+/// Tolerance of motions: methods of the same order, with and without projection, differ by more than
+/// rounding.
 const MOTIONS: f64 = 1e-3;
 
-/// The peers, with the libraries that hold them: `*` stands for the folder of the mechanism.
+/// The peers with the files of their libraries; `*` is replaced by the folder of the mechanism.
 const LIBRARIES: [(&str, Owner); 4] = [
     ("*/sympy.exact.so", Owner::Sympy),
     ("*/sympy.fast.so", Owner::Sympy),
@@ -20,11 +21,11 @@ const LIBRARIES: [(&str, Owner); 4] = [
     ("libmujoco.so", Owner::Mujoco),
 ];
 
-/// In the order of the table.
+/// Order of the columns in the table.
 const COLUMNS: [Owner; 4] = [Owner::Linkwork, Owner::Sympy, Owner::Pinocchio, Owner::Mujoco];
 
-/// Writes the states of every mechanism, each with its accelerations in a line; prints the names of the
-/// folders.
+/// Writes a file for every mechanism with a state and its accelerations in each line, and prints the names of
+/// the folders.
 pub fn write(folder: &Path) -> io::Result<()> {
     for make in mechanisms() {
         let m = make();
@@ -41,18 +42,18 @@ pub fn write(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// What is known of a mechanism.
+/// Results of a mechanism.
 struct Line {
     mechanism: Mechanism,
     accelerations: Vec<Measured>,
     steps: Vec<Measured>,
-    /// Nanoseconds of accelerations by lambdify and by PyDy, milliseconds of a thousand steps.
+    /// Nanoseconds of accelerations with lambdify and with PyDy, and milliseconds of a thousand steps.
     python: Option<[f64; 3]>,
-    /// By how much MuJoCo's accelerations differ.
+    /// Largest difference of MuJoCo's accelerations.
     soft: Option<f64>,
 }
 
-/// Measures all mechanisms and prints two tables; without a folder those of Linkwork alone.
+/// Measures all mechanisms and prints two tables; without a folder, only those of Linkwork.
 pub fn measure(folder: Option<&Path>, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.3 };
     let (mut lines, mut wrong) = (Vec::new(), Vec::new());
@@ -96,7 +97,7 @@ pub fn measure(folder: Option<&Path>, quick: bool) -> Result<(), String> {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
-/// All peers that know a mechanism.
+/// Returns all peers that have this mechanism.
 fn peers(folder: &Path, name: &str, function: Function, rows: Rows<'_>) -> Vec<Box<dyn Contender>> {
     let own = folder.join(name);
     let libraries = LIBRARIES.iter().flat_map(|(path, owner)| {
@@ -106,7 +107,7 @@ fn peers(folder: &Path, name: &str, function: Function, rows: Rows<'_>) -> Vec<B
     libraries.collect()
 }
 
-/// What `derive.py` has measured.
+/// Reads the times that `derive.py` has measured.
 fn in_python(folder: &Path) -> Option<[f64; 3]> {
     let text = fs::read_to_string(folder.join("python")).ok()?;
     let numbers: Vec<f64> = text.split_whitespace().filter_map(|x| x.parse().ok()).collect();
@@ -141,7 +142,7 @@ fn print(lines: &[Line]) {
     }
 }
 
-/// The least times of Linkwork and of the peers.
+/// Returns the minimum times of Linkwork and of the peers.
 fn best(measured: &[Measured]) -> [Option<f64>; 4] {
     COLUMNS.map(|owner| {
         let all = measured.iter().filter(|m| m.owner == owner);
@@ -149,14 +150,14 @@ fn best(measured: &[Measured]) -> [Option<f64>; 4] {
     })
 }
 
-/// With some digits.
+/// Formats a value with this number of significant digits, or a dash.
 fn number(value: Option<f64>, digits: i32) -> String {
     let Some(x) = value.filter(|x| *x > 0.0) else { return "–".to_string() };
     let decimals = (digits - 1 - x.log10().floor() as i32).max(0) as usize;
     format!("{x:.decimals$}")
 }
 
-/// In the place of what has been taken.
+/// Placeholder for a contender that has been moved out of its list.
 struct Nobody;
 
 impl Contender for Nobody {

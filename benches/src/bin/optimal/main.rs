@@ -1,5 +1,5 @@
-//! Iterations of an iterative linear-quadratic regulator (iLQR) on an arm, on a quadruped that flies and on
-//! one that trots: nanoseconds a node of their parts, and the costs of the iterates, as JSON for
+//! Iterations of an iterative linear-quadratic regulator (iLQR) on an arm, a flying quadruped and a trotting
+//! one. Prints the nanoseconds per node of each phase and the costs of the iterates as JSON for
 //! `benches/peers/optimal.py`, which has the same problems for Crocoddyl.
 
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -26,13 +26,14 @@ const NODES: usize = 100;
 const PERIOD: f64 = 0.01;
 const ITERATIONS: usize = 8;
 const REPEATS: usize = 300;
-/// What costs in the last state: configuration and velocity.
+/// Weights of configuration and velocity in the last state.
 const LAST: [f64; 2] = [100.0, 1.0];
-/// What costs in the others, and of inputs, in a period.
+/// Weights of configuration and velocity in the other states, and of inputs, each per period.
 const RUNNING: [f64; 2] = [PERIOD, 0.1 * PERIOD];
 const EFFORT: f64 = 1e-2 * PERIOD;
 
-/// Nanoseconds of the process in one call of a function a node: the least of many.
+/// Returns the processor time of a call, divided by the number of nodes, ns: the minimum over many
+/// repetitions.
 fn least(nodes: usize, mut f: impl FnMut()) -> f64 {
     let now = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
@@ -50,14 +51,14 @@ type State<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, N
 type Node<const NQ: usize, const NV: usize, const NU: usize> =
     (discrete::Transition<f64, NQ, NV, NU>, Quadratic<f64, NV, NU>);
 
-/// What moves, and where it is to go.
+/// Mechanism with its integrator and its goal.
 struct Problem<'m, M, const NQ: usize> {
     mechanism: &'m M,
     method: SemiImplicitEuler<f64>,
     goal: SVector<f64, NQ>,
 }
 
-/// A trajectory with everything that an iteration makes of it: one allocation each.
+/// Trajectory with the policies of an iteration, each in one allocation.
 struct Trajectory<const NQ: usize, const NV: usize, const NU: usize> {
     states: Vec<State<NQ, NV>>,
     inputs: Vec<SVector<f64, NU>>,
@@ -65,7 +66,8 @@ struct Trajectory<const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 impl<M, const NQ: usize> Problem<'_, M, NQ> {
-    /// The costs of a state: half of the weighted squares of what is left to the goal, and of the velocity.
+    /// Returns the cost of a state: half of the weighted squares of the distance to the goal and of the
+    /// velocity.
     fn of_state<const NV: usize, const NU: usize>(&self, (q, v): &State<NQ, NV>, weights: [f64; 2]) -> f64
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
@@ -74,8 +76,8 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         0.5 * (weights[0] * off.norm_squared() + weights[1] * v.norm_squared())
     }
 
-    /// Gradients by configuration and velocity, and what of the Hessian is not the same everywhere, without
-    /// the curvature of the difference (Gauss and Newton).
+    /// Writes the gradients with respect to configuration and velocity, and the block of the Hessian that
+    /// depends on the state, without the curvature of the difference (Gauss-Newton approximation).
     fn model<const NV: usize, const NU: usize>(
         &self,
         (q, v): &State<NQ, NV>,
@@ -88,7 +90,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         let off = self.mechanism.difference(&self.goal, q);
         (*by_v, *by_q) = (v * of_v, off * of_q);
         if NQ != NV {
-            // How the difference changes: as its coordinates do, but for the base.
+            // Jacobian of the difference: the identity except for the base.
             let (_, changes) = self.mechanism.tangent_rate_derivatives(&off, v);
             let base = changes.fixed_view::<6, 6>(0, 0).into_owned();
             let gradient = base.tr_mul(&by_q.fixed_rows::<6>(0));
@@ -97,7 +99,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         }
     }
 
-    /// The costs of the last state.
+    /// Returns the cost of the last state and its derivatives.
     fn last<const NV: usize, const NU: usize>(&self, state: &State<NQ, NV>) -> Value<f64, NV>
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
@@ -109,7 +111,8 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         all
     }
 
-    /// A step with its Jacobians, and the costs of its beginning, into a node with the costs of any other.
+    /// Writes the transition of a step with its Jacobians, and the cost of its initial state. The constant
+    /// Hessians of the node are already set.
     fn node<const NV: usize, const NU: usize>(
         &self,
         state: &State<NQ, NV>,
@@ -125,7 +128,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         cost.u = u * EFFORT;
     }
 
-    /// All nodes from the last to the first, each handed on as soon as it is known.
+    /// Evaluates all nodes from the last to the first, and passes each to `then`.
     fn each<const NV: usize, const NU: usize>(
         &self,
         states: &[State<NQ, NV>],
@@ -143,7 +146,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         }
     }
 
-    /// Linearises and goes backwards: nothing of a node is kept but its policy.
+    /// Linearises and runs the backward recursion; of each node only the policy is stored.
     fn sweep<const NV: usize, const NU: usize>(&self, all: &mut Trajectory<NQ, NV, NU>)
     where
         M: RheonomicDerivatives<NQ, NV, NU, Scalar = f64>,
@@ -155,7 +158,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         });
     }
 
-    /// The motion with the policies, and its costs.
+    /// Simulates the motion under the policies, and returns its cost.
     fn rollout<const NV: usize, const NU: usize>(
         &self,
         all: &Trajectory<NQ, NV, NU>,
@@ -233,12 +236,12 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
 fn main() {
     let method = SemiImplicitEuler::step(PERIOD);
     let at = |x: f64| SVector::<f64, 7>::repeat(x);
-    // What holds the arm still where it begins.
+    // Torques that hold the arm at rest in its initial configuration.
     let held = Panda.inverse_dynamics(&at(0.1), &SVector::zeros(), &SVector::zeros());
     let panda =
         Problem { mechanism: &Panda, method, goal: at(-0.2) }.measure("panda", at(0.1), vec![held; NODES]);
 
-    // A flying body moves its legs and turns by it.
+    // A flying body moves its legs and rotates by reaction.
     let flying = |x: f64| {
         let displacement = SVector::from_fn(|k, _| if k < 6 { 0.0 } else { x });
         Solo.integrate(&Solo.neutral(), &displacement)

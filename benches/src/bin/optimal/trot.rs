@@ -1,5 +1,5 @@
-//! A trot whose contacts are known: phases in which feet are held, and touchdowns between them. The gait and
-//! its costs are those of Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
+//! Trot with a known contact sequence: phases in which feet stick, separated by touchdowns. The gait and its
+//! costs are those of Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
 
 use super::{ITERATIONS, State, least};
 use linkwork::contact::{self, Held, HeldDerivatives, Touch};
@@ -45,36 +45,36 @@ type Transition = discrete::Transition<f64, 19, 18, 12>;
 type Cost = Quadratic<f64, 18, 12>;
 
 const PERIOD: f64 = 0.01;
-/// Nodes of a swing, and of standing on four feet before it.
+/// Number of nodes of a swing phase, and of the preceding stance on four feet.
 const SWING: usize = 25;
 const STAND: usize = 2;
-/// Metres that a foot is set forward, and lifted.
+/// Step length and step height of a foot, m.
 const REACH: f64 = 0.1;
 const LIFT: f64 = 0.05;
 const FRICTION: f64 = 0.7;
-/// What velocities of feet that are held decay with, 1/s.
+/// Gain with which velocities of sticking feet decay, 1/s.
 const DAMPING: f64 = 50.0;
-/// What the centre of mass costs that is off, and feet in the air and at touchdown.
+/// Weights of the errors of the centre of mass, of feet in the air, and of feet at touchdown.
 const OF_CENTRE: f64 = 1e6;
 const OF_FEET: f64 = 1e6;
 const OF_LANDINGS: f64 = 1e7;
-/// What forces cost outside of their cones, states, and inputs.
+/// Weights of forces outside of their friction cones, of states, and of inputs.
 const OF_CONES: f64 = 1e1;
 const OF_STATES: f64 = 1e1;
 const OF_INPUTS: f64 = 1e-1;
 
-/// A node of the gait.
+/// Node of the gait.
 struct Phase {
     touches: [Touch; 4],
-    /// Where the centre of mass is to be.
+    /// Target position of the centre of mass.
     centre: Option<Place>,
-    /// Where feet are to be.
+    /// Target positions of the feet.
     feet: [Option<Place>; 4],
-    /// Whether it is a touchdown.
+    /// Whether the node is a touchdown.
     lands: bool,
 }
 
-/// The position of a foot, and how it moves.
+/// Returns the position of a foot.
 fn foot(k: usize, q: &Configuration) -> Place {
     let m = Walker {};
     match k {
@@ -95,7 +95,7 @@ fn foot_jacobian(k: usize, q: &Configuration) -> SMatrix<f64, 3, 18> {
     }
 }
 
-/// Two steps of diagonal pairs of feet, the first half as long.
+/// Returns two steps of diagonal pairs of feet; the first step has half the length.
 fn gait(start: &Configuration) -> Vec<Phase> {
     let mut feet: [Place; 4] = std::array::from_fn(|k| foot(k, start));
     let mut centre: Place = feet.iter().sum::<Place>() / 4.0;
@@ -123,7 +123,8 @@ fn gait(start: &Configuration) -> Vec<Phase> {
     all
 }
 
-/// The inputs that hold the robot still on its feet, but for what two of them cannot.
+/// Returns the inputs that hold the robot at rest on its feet, up to the wrench that two feet cannot
+/// transmit.
 fn quasi_static(q: &Configuration, phase: &Phase) -> Inputs {
     let m = Walker {};
     let bias = m.bias_forces(q, &Motion::zeros());
@@ -139,15 +140,15 @@ fn quasi_static(q: &Configuration, phase: &Phase) -> Inputs {
     })
 }
 
-/// The columns of the joints, which the inputs turn.
+/// Returns the columns of the joints, on which the inputs act.
 fn of_joints<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12> {
     let mut by_u = SMatrix::zeros();
     by_u.data.0.copy_from_slice(&by_tau.data.0[6..]);
     by_u
 }
 
-/// Rows of the friction cone as factors of the normal force and those along tangents, and how far a force is
-/// outside of each.
+/// Returns the violated rows of the friction cone as coefficients of the normal and tangential forces, each
+/// with its violation.
 fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
     let sides = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| [-FRICTION, x, y]);
     let [normal, x, y] = force;
@@ -156,7 +157,7 @@ fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
     past.filter(|(_, off)| *off > 0.0).chain(Some(pulls).filter(|(_, off)| *off < 0.0))
 }
 
-/// The factors of squares of the state in a phase: by configuration and by velocity.
+/// Returns the weights of squares of configuration and velocity in a phase.
 fn weights(phase: &Phase) -> [Motion; 2] {
     let list = |base: [f64; 2], joints: f64| {
         Motion::from_fn(|k, _| OF_STATES * if k < 6 { base[k / 3] } else { joints }.powi(2))
@@ -167,12 +168,12 @@ fn weights(phase: &Phase) -> [Motion; 2] {
     }
 }
 
-/// A node of a trajectory to second order, with room for what it is made of.
+/// Node of a trajectory to second order, with its working storage.
 struct Node {
     step: Transition,
     cost: Cost,
     held: HeldDerivatives<f64, 18, 12>,
-    /// Whether the costs depend on more than one of configuration, velocity and inputs at once.
+    /// Whether the cost couples configuration, velocity and inputs.
     is_mixed: bool,
 }
 
@@ -183,14 +184,14 @@ impl Node {
     }
 }
 
-/// The gait from a start, whose posture is also what states are drawn to.
+/// Gait from an initial configuration, which is also the reference of the state costs.
 struct Trot {
     start: Configuration,
     phases: Vec<Phase>,
     weights: Vec<[Motion; 2]>,
 }
 
-/// A trajectory and the policies that lead it.
+/// Trajectory with its policies.
 struct Plan {
     states: Vec<State<19, 18>>,
     inputs: Vec<Inputs>,
@@ -198,7 +199,7 @@ struct Plan {
 }
 
 impl Trot {
-    /// What a state costs in a node, and forces of contacts.
+    /// Returns the cost of a state and of its contact forces in a node.
     fn costs(&self, k: usize, (q, v): &State<19, 18>, forces: Option<&SVector<f64, 12>>) -> f64 {
         let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
         let off = Walker {}.difference(&self.start, q);
@@ -216,7 +217,7 @@ impl Trot {
         sum / 2.0
     }
 
-    /// Gradients and Hessians of these by the state, times a factor.
+    /// Writes the gradients and Hessians of the state's cost, times a factor.
     fn model(&self, k: usize, (q, v): &State<19, 18>, factor: f64, cost: &mut Cost) {
         let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
         let off = Walker {}.difference(&self.start, q);
@@ -224,7 +225,7 @@ impl Trot {
         (cost.q, cost.v) = (off.component_mul(&of_q), v.component_mul(&of_v));
         cost.qq.set_diagonal(&of_q);
         cost.vv.set_diagonal(&of_v);
-        // How the difference changes: as its coordinates do, but for the base.
+        // Jacobian of the difference: the identity except for the base.
         let (_, changes) = Walker {}.tangent_rate_derivatives(&off, v);
         let mut gradient = [0.0; 6];
         for (j, (column, sum)) in changes.data.0.iter().zip(&mut gradient).enumerate() {
@@ -249,7 +250,7 @@ impl Trot {
         }
     }
 
-    /// A node to first order, with its costs to second.
+    /// Evaluates a node to first order, with its cost to second order.
     fn node(
         &self,
         k: usize,
@@ -266,7 +267,7 @@ impl Trot {
         if phase.lands {
             *step = contact::land_derivatives(&Walker {}, 0.0, q, v, &phase.touches)?.transition(q);
             self.model(k, state, 1.0, cost);
-            // Inputs do nothing: those that cost are zero.
+            // Inputs have no effect at a touchdown: with this cost they are zero.
             cost.uu.fill_diagonal(1.0);
             return Ok(());
         }
@@ -297,7 +298,7 @@ impl Trot {
         Ok(())
     }
 
-    /// The costs of the last state.
+    /// Returns the cost of the last state and its derivatives.
     fn last(&self, state: &State<19, 18>) -> Value<f64, 18> {
         let mut cost = Quadratic::zeros();
         self.model(self.phases.len() - 1, state, 1.0, &mut cost);
@@ -305,7 +306,8 @@ impl Trot {
         Value { q, v, qq, qv, vv }
     }
 
-    /// Linearises and goes backwards; what the change of inputs is expected to add to the costs.
+    /// Linearises and runs the backward recursion. Returns the expected change of the cost: its coefficients
+    /// of the step length and of half of its square.
     fn sweep(&self, plan: &mut Plan) -> [f64; 2] {
         let mut node = Node::zeros();
         let mut to_go = self.last(&plan.states[plan.inputs.len()]);
@@ -318,7 +320,7 @@ impl Trot {
         expected
     }
 
-    /// The motion with the policies and its costs.
+    /// Simulates the motion under the policies, and returns its cost.
     fn rollout(&self, plan: &Plan, length: f64, next: &mut (Vec<State<19, 18>>, Vec<Inputs>)) -> f64 {
         let (m, mut state, mut sum) = (Walker {}, plan.states[0], 0.0);
         next.0.clear();
@@ -346,7 +348,7 @@ impl Trot {
         sum + self.costs(plan.inputs.len(), &state, None)
     }
 
-    /// The gait for a program that has the same costs.
+    /// Returns the gait as JSON for a program with the same costs.
     fn written(&self) -> String {
         let list = |place: &Option<Place>| {
             place.map_or("null".to_owned(), |place| format!("{:?}", place.as_slice()))
@@ -364,8 +366,8 @@ impl Trot {
     }
 }
 
-/// Iterations from what holds the robot still, with the line search of Crocoddyl's `SolverDDP`; the figures
-/// as JSON.
+/// Runs the iterations from the inputs of the robot at rest, with the line search of Crocoddyl's `SolverDDP`.
+/// Returns the results as JSON.
 pub fn measure() -> String {
     let mut start = Walker {}.neutral();
     start[2] = 0.235;

@@ -1,8 +1,8 @@
-//! Generated functions next to other libraries, in one process, interleaved, on the same states.
+//! Comparison of generated functions with other libraries, in one process, interleaved, on the same states.
 //!
-//! `benches/peers/run` does everything: it installs and builds the peers, and calls this program, first to
-//! write the robots for them, then to measure. By itself: `peers write FOLDER`,
-//! `peers measure FOLDER [--quick]`. A peer that is not in the folder is left out.
+//! `benches/peers/run` installs and builds the peers, and calls this program, first to write the robots for
+//! them, then to measure. The program's own commands are `peers write FOLDER` and
+//! `peers measure FOLDER [--quick]`. A peer that is not in the folder is omitted.
 
 mod robots;
 mod table;

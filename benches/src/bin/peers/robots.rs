@@ -1,4 +1,4 @@
-//! The robots that are compared.
+//! The robots of the comparison.
 
 use linkwork::nalgebra::{ArrayStorage, SMatrix};
 use linkwork_benches::generic::{Model, Options};
@@ -9,20 +9,20 @@ use linkwork_benches::states::{State, states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::rc::Rc;
 
-/// A generated function with what it computes.
+/// Function with a contender that evaluates it.
 pub type Generated = (Function, Box<dyn Contender>);
 
-/// A robot with its generated functions.
+/// Robot with its generated functions.
 pub struct Robot {
-    /// Its name, and its folder's.
+    /// Name of the robot and of its folder.
     pub name: &'static str,
-    /// Its file.
+    /// Text of its URDF file.
     pub urdf: String,
-    /// Joints of the file that do not move.
+    /// Names of the file's locked joints.
     pub lock: &'static [&'static str],
-    /// Its root moves freely.
+    /// Whether its base is free.
     pub free: bool,
-    /// Its moving joints in order, without that of the root.
+    /// Names of its moving joints in order, without that of the base.
     pub joints: &'static [&'static str],
     /// Number of coordinates.
     pub nq: usize,
@@ -30,11 +30,11 @@ pub struct Robot {
     pub nv: usize,
     /// `q`, `v`, `a` and `τ` of every state, one after another.
     pub numbers: Vec<f64>,
-    /// Its functions.
+    /// Its generated functions.
     pub functions: Vec<Generated>,
 }
 
-/// A generated function as a contender.
+/// Returns a generated function as a contender.
 fn own<M: 'static, R: Flat + 'static, const NQ: usize, const NV: usize>(
     (owner, mechanism): (Owner, M),
     states: &Rc<Vec<State<NQ, NV>>>,
@@ -45,7 +45,7 @@ fn own<M: 'static, R: Flat + 'static, const NQ: usize, const NV: usize>(
     (function, Box::new(Own { owner, mechanism, states, name: function.name(), call }))
 }
 
-/// The functions of a mechanism.
+/// Returns the functions of a mechanism as contenders.
 macro_rules! functions {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
         let from = (Owner::$owner, $value);
@@ -57,7 +57,7 @@ macro_rules! functions {
     }};
 }
 
-/// Their derivatives.
+/// Returns the derivatives of a mechanism's functions as contenders.
 macro_rules! derivatives {
     ($type:ty, $value:expr, $owner:ident, $states:expr) => {{
         let from = (Owner::$owner, $value);
@@ -72,8 +72,8 @@ macro_rules! derivatives {
     }};
 }
 
-/// Functions whose results go into matrices that keep their zeros: the mass matrix if those are a quarter of
-/// it, and derivatives.
+/// Returns functions that write their results to matrices with permanent zeros: the mass matrix, if at least
+/// a quarter of its entries are zero, and derivatives.
 macro_rules! kept {
     ($type:ty, $value:expr, Linkwork, $states:expr) => {{
         const N: usize = <$type>::NV;
@@ -119,7 +119,8 @@ macro_rules! kept {
     }};
 }
 
-/// A robot: its name, its file and how that is read, its type, and the functions of several of its values.
+/// Returns a robot from its name, its URDF text with options, its type, and the functions of one or more of
+/// its values.
 macro_rules! robot {
     ($name:literal, $urdf:expr, $options:expr, $type:ident, $($macro:ident!($of:ident, $value:expr, $owner:ident)),+) => {{
         let (urdf, options): (String, Options<'static>) = ($urdf, $options);
@@ -143,7 +144,7 @@ macro_rules! robot {
     }};
 }
 
-/// A robot from a file.
+/// Returns a robot from a file.
 macro_rules! file {
     ($name:literal, $file:literal, $options:expr, $type:ident) => {
         robot!(
@@ -161,7 +162,7 @@ macro_rules! file {
 #[cfg(feature = "chains")]
 mod chains;
 
-/// All robots.
+/// Returns the constructors of all robots.
 pub fn robots() -> Vec<fn() -> Robot> {
     const FIXED: Options<'static> = Options { free: false, lock: &[] };
     const FREE: Options<'static> = Options { free: true, lock: &[] };

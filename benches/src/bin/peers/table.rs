@@ -1,4 +1,4 @@
-//! Agreement first, then time, as a table.
+//! Checks that the implementations agree, then prints their times as a table.
 
 use crate::robots::{Robot, robots};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
@@ -7,12 +7,12 @@ use linkwork_benches::peers::turns::{Measured, TOLERANCE, agree, time};
 use linkwork_benches::states::STATES;
 use std::path::Path;
 
-/// The C that CasADi generates, and how it is compiled.
+/// Variants of CasADi's generated C code, and of its compiler flags.
 const CASADI: [&str; 2] = ["plain", "shared"];
 const FLAGS: [&str; 2] = ["exact", "fast"];
 
-/// Measures every function of every robot and prints a table. Whatever disagrees is left out; it is an error
-/// if that is generated code of our own.
+/// Measures every function of every robot and prints a table. Implementations that disagree are omitted; a
+/// disagreement of Linkwork's own code is an error.
 pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.2 };
     println!(
@@ -39,7 +39,7 @@ pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
-/// All implementations of a function.
+/// Returns all implementations of a function.
 fn contenders(
     folder: &Path,
     robot: &mut Robot,
@@ -66,7 +66,7 @@ fn contenders(
     all
 }
 
-/// A line of the table, for one of our own functions.
+/// Returns a line of the table, for one of Linkwork's functions.
 fn line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) -> String {
     let best = |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
     let own = best(owner);

@@ -1,4 +1,4 @@
-//! Robots as files for the peers.
+//! Writes the robots as files for the peers.
 
 use crate::robots::{Robot, robots};
 use linkwork_benches::peers::contender::Function;
@@ -7,8 +7,8 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a folder for every robot: `robot.urdf`; `joints`, the names of the moving ones
-/// in order; `free` if the root moves, `derivatives` if they are measured. Prints the folders.
+/// Writes a folder for every robot: `robot.urdf`; `joints`, the names of the moving joints in order; `free`
+/// if the base is free; `derivatives` if they are measured. Prints the folders.
 pub fn write(folder: &Path) -> io::Result<()> {
     for make in robots() {
         let robot = make();
@@ -28,7 +28,8 @@ pub fn write(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The file as it is meant: locked joints fixed, no joint following another.
+/// Returns the file with the robot's options applied: locked joints become fixed, and no joint follows
+/// another.
 fn as_meant(robot: &Robot) -> io::Result<String> {
     let document = Document::parse(&robot.urdf).map_err(|error| io::Error::other(error.to_string()))?;
     let joints = document.root_element().children().filter(|node| node.has_tag_name("joint"));

@@ -1,11 +1,11 @@
-//! Serial chains of any length, with numbers in the code and with parameters.
+//! Serial chains of several lengths, with constant values and with parameters.
 
 use super::*;
 use linkwork_benches::chains;
 
 include!(concat!(env!("OUT_DIR"), "/chains.rs"));
 
-/// A chain with numbers, with parameters, and with parameters prepared.
+/// Returns a chain with constant values, with parameters, and with prepared parameters.
 macro_rules! chain {
     ($name:literal, $n:literal, $type:ident, $symbolic:ident, $prepared:ident, $($functions:ident)+) => {
         robot!(
@@ -22,7 +22,7 @@ macro_rules! chain {
     };
 }
 
-/// All chains.
+/// Returns the constructors of all chains.
 pub fn robots() -> Vec<fn() -> Robot> {
     vec![
         || chain!("chain_6", 6, Chain6, Chain6Parameters, PreparedChain6Parameters, functions derivatives),
