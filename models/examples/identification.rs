@@ -1,6 +1,6 @@
-//! A seven-axis arm learns what it weighs: it moves along periodic trajectories, its torques are regressed on
-//! base parameters, friction and rotors, and what was found is put back into the robot, as bodies that can
-//! be.
+//! Identifies the inertial parameters of a seven-axis arm. The arm moves along periodic trajectories. Its
+//! torques are regressed on base parameters, friction and rotor inertias. The results are then converted to
+//! physically consistent inertial parameters of the robot's bodies.
 //!
 //! Sources: Swevers, Ganseman, Tükel, De Schutter and Van Brussel, *Optimal robot excitation and
 //! identification*, IEEE Transactions on Robotics and Automation 13 (1997), for the trajectories; Gautier and
@@ -15,8 +15,8 @@ use linkwork::nalgebra::{Cholesky, SMatrix, SVector};
 use linkwork::prelude::*;
 use linkwork::{Inertial, ParameterError};
 
-/// The arm of the file. Its figures are parameters, and so are rotors of its motors, of which the file says
-/// nothing.
+/// Arm from a file, whose values are parameters. The inertias of the motors' rotors, which the file does not
+/// contain, are parameters, too.
 #[mechanism(
     urdf = "urdf/panda.urdf",
     lock = ["panda_finger_joint1", "panda_finger_joint2"],
@@ -50,16 +50,15 @@ struct Arm {
 
 type Joints = SVector<f64, 7>;
 const BASE: usize = Arm::BASE_PARAMETERS.len();
-/// After the base parameters: damping and dry friction of every joint, and the rotors of all but the first
-/// two. Those act as the inertias of their links about the same axes do, which turn about nothing else along
-/// them.
+/// Number of regressed parameters: the base parameters, then damping and dry friction of every joint, and the
+/// rotor inertias of all joints except the first two. The rotors of the first two joints cannot be
+/// distinguished from the inertias of their links about the same axes.
 const COLUMNS: usize = BASE + 7 + 7 + 5;
-/// Speed around which dry friction is smooth, rad/s: `friction_speed` of the mechanism, as it is if nothing
-/// is said.
+/// Velocity below which dry friction is smooth, rad/s: the default `friction_speed` of the mechanism.
 const SMOOTH: f64 = 0.01;
 
 impl Arm {
-    /// Damping, friction and rotors of the joints.
+    /// Returns damping, friction and rotor inertias of the joints.
     fn joints(&self) -> [Joints; 3] {
         let damping = [
             self.panda_joint1_damping,
@@ -112,7 +111,7 @@ impl Arm {
     }
 }
 
-/// Numbers between −1 and 1, the same in every run (SplitMix64).
+/// Reproducible random numbers between −1 and 1 (SplitMix64).
 struct Random(u64);
 
 impl Random {
@@ -124,11 +123,12 @@ impl Random {
     }
 }
 
-/// A sum of sines that repeats itself, by joint and harmonic: position, velocity and acceleration are exact.
+/// Periodic trajectory: a sum of sines for each joint and harmonic, with exact position, velocity and
+/// acceleration.
 struct Fourier([[[f64; 2]; 5]; 7]);
 
 impl Fourier {
-    /// Of moderate size, about a posture with a bent elbow.
+    /// Returns a random trajectory of moderate amplitude about a posture with a bent elbow.
     fn new(random: &mut Random) -> Fourier {
         Fourier([[(); 5]; 7].map(|joint| joint.map(|()| [0.8 * random.next(), 0.8 * random.next()])))
     }
@@ -150,7 +150,8 @@ impl Fourier {
     }
 }
 
-/// The robot as it is: links that differ from the file's, a load in the hand, friction and rotors.
+/// Returns the real robot: its links differ from the file's, and it has a load in the hand, friction and
+/// rotors.
 fn robot_as_it_is() -> Arm {
     let mut random = Random(7);
     let mut arm = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
@@ -168,7 +169,7 @@ fn robot_as_it_is() -> Arm {
     ])
 }
 
-/// The columns that torques are a sum of.
+/// Returns the regressor: the torques are its product with the parameters.
 fn columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
     let mut all = SMatrix::<f64, 7, COLUMNS>::zeros();
     all.fixed_view_mut::<7, BASE>(0, 0).copy_from(&arm.base_regressor(q, v, a));
@@ -182,7 +183,7 @@ fn columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
     all
 }
 
-/// The root of the mean square of what one robot's torques differ from another's on a trajectory, N·m.
+/// Returns the root mean square of the difference between two robots' torques on a trajectory, N·m.
 fn difference(one: &Arm, other: &Arm, trajectory: &Fourier) -> f64 {
     let square = |k: usize| {
         let [q, v, a] = trajectory.at(0.02 * k as f64);
@@ -196,7 +197,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     truth.validate()?;
     let mut arm = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
-    // Excite, and measure torques with noise: the normal equations of the regression.
+    // Excitation: torques are measured with noise and accumulated in the normal equations of the regression.
     let (mut normal, mut right) =
         (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
     for _ in 0..6 {
@@ -212,8 +213,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let found = Cholesky::new(normal).ok_or("some parameters were not excited")?.solve(&right);
 
-    // Put back: the joints' own figures, then the bodies nearest to the file's that move as was measured.
-    // What was measured has noise, so that no bodies may have it as it is.
+    // Conversion: the parameters of the joints, then the bodies nearest to the file's that reproduce the
+    // measurements. Because of the noise, no consistent bodies may reproduce them exactly.
     let part = |first: usize| Joints::from_fn(|j, _| found[first + j]);
     let rotors = Joints::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
     arm = arm.with_joints([part(BASE), part(BASE + 7), rotors]);
@@ -238,7 +239,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!((d - td).amax() < 0.03 && (f - tf).amax() < 0.03, "friction of all joints");
     assert!((r - tr).rows(2, 5).amax() < 0.03, "rotors of all but the first two");
 
-    // The base parameters are those of the robot, the first two rotors among them.
+    // The base parameters equal those of the robot, which include the first two rotors.
     let expected = truth.base_parameters(&truth.standard_parameters());
     let mut got = arm.base_parameters(&arm.standard_parameters());
     got[index!(Arm::BASE_PARAMETERS, "panda_link1.zz")] -= truth.rotor1;
@@ -246,14 +247,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("base parameters: {:.3} off at most, of {:.1}", (got - expected).amax(), expected.amax());
     assert!((got - expected).amax() < 0.05);
 
-    // On a trajectory that it has not seen, the robot does what was learnt, and not what its file says.
+    // On a new trajectory the identified model predicts the robot's torques, and the file's model does not.
     let fresh = Fourier::new(&mut random);
     let file = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let (before, after) = (difference(&file, &truth, &fresh), difference(&arm, &truth, &fresh));
     println!("torques off by {before:.3} N·m by the file, {after:.4} N·m as identified");
     assert!(before > 1.0 && after < 0.02);
 
-    // What no body has does not go unnoticed.
+    // Physically inconsistent parameters are rejected.
     let wrong: Result<(), ParameterError> =
         Arm { panda_link5: Inertial { mass: -1.0, ..arm.panda_link5 }, ..arm }.validate();
     println!("{}", wrong.err().map_or(String::new(), |error| error.to_string()));

@@ -1,7 +1,8 @@
-//! A cart with a pole goes from one end of its rail to the other, and never over: model-predictive control.
-//! To lean the pole to where it shall go, the cart has to go back first, for which it has two centimetres.
-//! Twenty-five times a second the next second is linearised about what was planned before, and a quadratic
-//! program finds the pushes that cost least within the limits of rail and motor.
+//! Model-predictive control of a cart-pole that moves from one end of its rail to the other without exceeding
+//! it. To incline the pole in the direction of motion the cart must first move backwards, for which it has
+//! two centimetres. Twenty-five times a second, the motion of the next second is linearised about the
+//! previous plan. A quadratic program then finds the forces of minimum cost within the limits of rail and
+//! motor.
 //!
 //! ```text
 //! cargo run --release --example mpc -p linkwork-models
@@ -16,7 +17,7 @@ use linkwork::optimal::{Quadratic, Value};
 use linkwork::prelude::*;
 use regulator::regulator;
 
-/// A cart on a short rail, with a pole pinned to it, upright at zero.
+/// Cart on a short rail with a pole pinned to it, upright at zero.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct CartPole {
     #[body(mass = 1)]
@@ -33,20 +34,20 @@ struct CartPole {
     push: Force,
 }
 
-/// Place of the cart and lean of the pole, then their rates.
+/// Position of the cart, m, angle of the pole, rad, then their rates.
 type State = SVector<f64, 4>;
 const RAIL: usize = index!(CartPole::VELOCITIES, "rail");
 
-/// Steps that are planned, and the period of each, s.
+/// Number of planned steps, and the period of each, s.
 const STEPS: usize = 25;
 const PERIOD: f64 = 0.04;
 const METHOD: Rk4<f64> = Rk4::step(PERIOD);
-/// Where it should come to rest: two centimetres before the buffer.
+/// Goal: at rest two centimetres before the buffer.
 const GOAL: State = State::new(0.5, 0.0, 0.0, 0.0);
-/// Numbers of a step in the quadratic program: a push, then the state after it.
+/// Number of unknowns of a step in the quadratic program: a force, then the state after it.
 const SIZE: usize = 5;
 
-/// Costs of a period at rest in a place.
+/// Returns the weights of one period about a state of rest.
 fn costs() -> Quadratic<f64, 2, 1> {
     Quadratic {
         qq: SMatrix::from_diagonal(&[20.0, 5.0].into()),
@@ -56,14 +57,14 @@ fn costs() -> Quadratic<f64, 2, 1> {
     }
 }
 
-/// A state after a push.
+/// Returns the state after a period with a constant force.
 fn after(x: &State, push: f64) -> Result<State, Error> {
     let (q, v) = discrete::split(x);
     let (q, v) = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
     Ok(discrete::stacked(&q, &v))
 }
 
-/// A sparse matrix while it is written: rows, columns and values of entries.
+/// Sparse matrix in triplet form: rows, columns and values of its entries.
 #[derive(Default)]
 struct Entries(Vec<usize>, Vec<usize>, Vec<f64>);
 
@@ -79,8 +80,8 @@ impl Entries {
     }
 }
 
-/// The pushes and states of the next second: the sum of costs is least, with `rows x = right` for the motion,
-/// and `≤` for limits.
+/// Quadratic program for the forces and states of the next second: minimum cost, with `rows x = right` for
+/// the motion and `rows x ≤ right` for the limits.
 struct Program {
     hessian: Entries,
     gradient: [f64; SIZE * STEPS],
@@ -89,7 +90,7 @@ struct Program {
 }
 
 impl Program {
-    /// The motion from a state on, linearised about that under planned pushes:
+    /// Adds the motion from a state, linearised about the motion under the planned forces:
     /// `x⁺ − A x − B u = f − A x̄ − B ū`.
     fn motion(&mut self, start: &State, plan: &[f64; STEPS]) -> Result<(), Error> {
         let mut x = *start;
@@ -98,7 +99,7 @@ impl Program {
             let step = discrete::transition(&CartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
             let (a, b) = (step.a::<4>(), step.b::<4>());
             let next: State = discrete::stacked(&step.q, &step.v);
-            // The first state is known.
+            // The initial state is given and moves to the right-hand side.
             let known = if k == 0 { next - b * push } else { next - a * x - b * push };
             for i in 0..4 {
                 let row = self.right.len();
@@ -114,7 +115,7 @@ impl Program {
         Ok(())
     }
 
-    /// The push of every step and the place after it within their limits, to both sides.
+    /// Adds the limits, in both directions, of the force in each step and of the position after it.
     fn limits(&mut self) {
         let m = CartPole {};
         let (least, most) = (m.lower_limits()[RAIL], m.upper_limits()[RAIL]);
@@ -130,7 +131,7 @@ impl Program {
         }
     }
 
-    /// The costs of every step, and at its end what the regulator would take from there.
+    /// Adds the cost of every step, and at the end the cost-to-go of the regulator.
     fn costs(&mut self, to_go: &Value<f64, 2>) {
         let costs = costs();
         let each = Value { qq: costs.qq, vv: costs.vv, ..Value::zeros() }.hessian::<4>();
@@ -146,7 +147,7 @@ impl Program {
         }
     }
 
-    /// The best pushes; `None` if there are none.
+    /// Returns the optimal forces, or `None` if the program is infeasible.
     fn solved(self) -> Option<[f64; STEPS]> {
         let (count, columns, motions) = (self.right.len(), SIZE * STEPS, 4 * STEPS);
         let (hessian, rows) = (self.hessian.matrix(columns, columns), self.rows.matrix(count, columns));
@@ -159,8 +160,8 @@ impl Program {
     }
 }
 
-/// The pushes of the next second that cost least, by those that were planned before; `None` if none keep the
-/// limits.
+/// Returns the optimal forces of the next second, linearised about the previous plan; `None` if no forces
+/// satisfy the limits.
 fn planned(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<Option<[f64; STEPS]>, Error> {
     let (hessian, rows) = (Entries::default(), Entries::default());
     let mut program = Program { hessian, gradient: [0.0; SIZE * STEPS], rows, right: Vec::new() };
@@ -175,7 +176,7 @@ fn main() -> Result<(), Error> {
     let (regulator, to_go) = found.expect("a push on the cart can keep the pole upright");
     let (most, strength) = (CartPole {}.upper_limits()[RAIL], CartPole {}.effort_limits()[RAIL]);
 
-    // The regulator alone, which knows no limits, and a plan from the same start.
+    // The regulator alone, without limits, and the planner from the same initial state.
     let start = State::new(-0.5, 0.0, 0.0, 0.0);
     let (mut free, mut x, mut plan) = (start, start, [0.0; STEPS]);
     let (mut furthest, mut strongest) = ([0.0_f64; 2], [0.0_f64; 2]);

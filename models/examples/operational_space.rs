@@ -1,5 +1,6 @@
-//! A seven-axis arm leads its hand along a circle without turning it, while its elbow stays where it likes to
-//! be: operational-space control with the generated inverse mass matrix, frame Jacobian and bias forces.
+//! Operational-space control of a seven-axis arm: its hand moves along a circle with constant orientation,
+//! while the elbow stays near a preferred posture. It uses the generated inverse mass matrix, frame Jacobian
+//! and bias forces.
 //!
 //! Source: Khatib, *A unified approach for motion and force control of robot manipulators: the operational
 //! space formulation*, IEEE Journal on Robotics and Automation 3 (1987).
@@ -16,16 +17,16 @@ use linkwork_models::PandaArm;
 use std::f64::consts::PI;
 
 type Joints = SVector<f64, 7>;
-/// Linear, then angular, in ground axes.
+/// Linear, then angular components in ground axes.
 type Twist = SVector<f64, 6>;
 
-/// Where the joints like to be, rad: far from their limits, the elbow bent.
+/// Preferred joint angles, rad: far from their limits, with the elbow bent.
 const POSTURE: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
 /// Radius of the circle, m.
 const RADIUS: f64 = 0.12;
 const RATE: f64 = 2.0;
 
-/// Where the hand should be, how it should move and accelerate: upside down on an upright circle.
+/// Returns the desired pose, velocity and acceleration of the hand: pointing down, on a vertical circle.
 fn wanted(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
     let (sin, cos) = (RATE * t).sin_cos();
     let along = |y: f64, z: f64| Twist::from([0.0, RADIUS * y, RADIUS * z, 0.0, 0.0, 0.0]);
@@ -35,34 +36,35 @@ fn wanted(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
     (placement, along(-sin, cos) * RATE, along(-cos, -sin) * RATE * RATE)
 }
 
-/// The torques for the hand's motion; what it leaves free draws the joints to their posture.
+/// Returns the torques for the hand's motion; its nullspace moves the joints towards their preferred posture.
 fn control(t: f64, q: &Joints, v: &Joints) -> Joints {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
     let (placement, twist, acceleration) = wanted(t);
     let jacobian = arm.frame_jacobian(hand, q);
     let missing = placement_difference(&arm.frame_placement(hand, q), &placement);
-    // The acceleration of the hand that corrects what is missing, less what it has without one of the joints,
-    // J̇ v.
+    // Desired acceleration of the hand with feedback, minus the part J̇ v that it has without joint
+    // accelerations.
     let corrected = acceleration + missing * 400.0 + (twist - jacobian * v) * 40.0;
     let hand_acceleration = corrected - arm.frame_acceleration(hand, q, v, &Joints::zeros());
 
-    // The hand's inertia Λ = (J M⁻¹ Jᵀ)⁻¹ makes a force of the acceleration.
+    // The operational-space inertia Λ = (J M⁻¹ Jᵀ)⁻¹ maps the acceleration to a force.
     let inverse_mass = arm.mass_matrix_inverse(q);
     let Some(inertia) = (jacobian * inverse_mass * jacobian.transpose()).try_inverse() else {
-        return arm.clamp_effort(&arm.bias_forces(q, v)); // Stretched out: hold still.
+        return arm.clamp_effort(&arm.bias_forces(q, v)); // Singular: hold still.
     };
     let posture = arm.mass_matrix(q) * ((Joints::from(POSTURE) - q) * 25.0 - v * 10.0);
-    // Torques of the posture that do not move the hand: less those by which it would, Jᵀ Λ J M⁻¹.
+    // Posture torques projected into the nullspace: the part Jᵀ Λ J M⁻¹ that would move the hand is
+    // subtracted.
     let moving = jacobian.transpose() * (inertia * (jacobian * (inverse_mass * posture)));
     let torques = jacobian.transpose() * (inertia * hand_acceleration) + posture - moving;
-    // Gravity, Coriolis and centrifugal forces, friction: all that does not depend on the acceleration.
+    // Gravity, Coriolis and centrifugal forces and friction do not depend on the acceleration.
     arm.clamp_effort(&(torques + arm.bias_forces(q, v)))
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
-    // The start of the circle, from the posture by inverse kinematics; at rest, so that the hand has to catch
-    // up.
+    // The initial configuration follows by inverse kinematics from the posture. It starts at rest, so that
+    // the hand must catch up.
     let target = Target::pose(index!(PandaArm::FRAMES, "panda_hand_tcp"), wanted(0.0).0);
     let found = InverseKinematics::new().reach(&arm, 0.0, &[target], &POSTURE.into())?;
 

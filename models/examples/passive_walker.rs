@@ -1,13 +1,14 @@
-//! Two legs walk down a gentle slope without motors: the simplest walking model, whose gait is published.
+//! Two legs walk down a gentle slope without motors: the simplest walking model, with its published gait.
 //!
-//! A heavy hip, light feet, and between two touchdowns a double pendulum that stands on one foot
-//! ([`contact::hold`]). The other foot strikes the ground, the first one lifts off ([`contact::land`]), and
-//! legs change their parts. What a step dissipates is what the slope gives; a gait is a fixed point of the
-//! map from one step to the next, and this one is stable. As in the source the swinging foot passes through
-//! the ground on its way forward, for want of knees.
+//! The model has a heavy hip and light feet. Between two touchdowns it is a double pendulum that stands on
+//! one foot ([`contact::hold`]). At touchdown the other foot sticks, the first one lifts off
+//! ([`contact::land`]), and the legs exchange their roles. A step dissipates the energy that the slope
+//! supplies. A gait is a fixed point of the map from one step to the next, and this one is stable. As in the
+//! source, the swinging foot passes through the ground on its way forward, since the legs have no knees.
 //!
 //! Source: Garcia, Chatterjee, Ruina and Coleman, *The simplest walking model: stability, complexity, and
-//! scaling*, Journal of Biomechanical Engineering 120 (1998). Lengths are in legs, times in √(l/g).
+//! scaling*, Journal of Biomechanical Engineering 120 (1998). Units: leg length for lengths, √(l/g) for
+//! times.
 //!
 //! ```text
 //! cargo run --release --example passive_walker -p linkwork-models
@@ -16,13 +17,13 @@
 use linkwork::contact::{self, Touch};
 use linkwork::prelude::*;
 
-/// A hip on two legs; `x` leads down the slope, `y` away from it.
+/// Hip on two legs; `x` points down the slope, `y` is normal to it.
 #[mechanism(gravity = sin(slope) * x - cos(slope) * y)]
 struct Walker {
     /// Angle of the slope, rad.
     #[unit(rad)]
     slope: f64,
-    /// Mass of a foot, in masses of the hip.
+    /// Mass of a foot, relative to the mass of the hip.
     #[unit(kg)]
     foot: f64,
     #[body(mass = 1)]
@@ -43,27 +44,27 @@ struct Walker {
     right_foot: Contact,
 }
 
-/// The state of a gait just after a touchdown, when both feet are on the ground: the angle of the standing
-/// leg from the slope's normal, and its rate.
+/// State of a gait just after a touchdown, with both feet on the ground: the angle of the stance leg from the
+/// slope's normal, and its rate.
 type Gait = [f64; 2];
 
-/// The published fixed point for the slope 0.009.
+/// Published fixed point for the slope 0.009.
 const PUBLISHED: Gait = [0.200310900544287, -0.199832473004977];
 
-/// The state with that gait, when the left leg stands at the origin.
+/// Returns the state with this gait and the left leg at the origin.
 fn state([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
     let (sin, cos) = angle.sin_cos();
     let q = [-sin, cos, angle, -angle].into();
     (q, [-cos * rate, -sin * rate, rate, rate * (2.0 * angle).cos()].into())
 }
 
-/// One step on the left leg: the gait after the touchdown of the right one, how long it takes, how far the
-/// hip gets, and what the touchdown dissipates.
+/// Simulates one step on the left leg. Returns the gait after the touchdown of the right foot, the duration,
+/// the distance of the hip, and the energy that the touchdown dissipates.
 fn step(walker: &Walker, gait: Gait) -> Result<(Gait, f64, f64, f64), Box<dyn std::error::Error>> {
     let (q, v) = state(gait);
     let stance = contact::hold(walker, [Touch::Sticks, Touch::Open]);
-    // Both feet are on the ground on the way forward, too, when the sum of the angles rises through zero:
-    // that is passed over.
+    // Both feet are also on the ground in mid-swing, when the sum of the angles rises through zero: that
+    // crossing is ignored.
     let run = simulate(&stance).from(q, v).method(DormandPrince8::new().tolerance(1e-13, 1e-13));
     let strikes = run.until_crossing(Crossing::Falling, |_t, q, _v| q[2] + q[3]).duration(20.0);
     let end = strikes.finish()?;
@@ -75,20 +76,20 @@ fn step(walker: &Walker, gait: Gait) -> Result<(Gait, f64, f64, f64), Box<dyn st
     Ok(([end.q[3], after.v[3]], end.t, end.q[0] - q[0], lost))
 }
 
-/// Prints the gait, and how a disturbance of it goes away.
+/// Prints the gait, and the decay of a disturbance.
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let walker = Walker { slope: 0.009, foot: 1e-7 };
     let (next, time, way, lost) = step(&walker, PUBLISHED)?;
     println!("a step: {time:.4} √(l/g), {way:.4} l");
-    // The published gait, of feet without mass, comes back.
+    // The published gait, for massless feet, is reproduced.
     for (found, published) in next.iter().zip(PUBLISHED) {
         assert!((found - published).abs() < 1e-6, "{found}");
     }
-    // The slope gives what the touchdown takes.
+    // The slope supplies the energy that the touchdown dissipates.
     let given = way * walker.slope.sin();
     assert!((lost - given).abs() < 1e-6, "{lost} {given}");
 
-    // Disturbed, it comes back.
+    // The gait recovers from a disturbance.
     let mut gait = [PUBLISHED[0] * 1.003, PUBLISHED[1] * 0.998];
     for count in 1..=60 {
         gait = step(&walker, gait)?.0;
@@ -98,7 +99,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     assert!((gait[0] - PUBLISHED[0]).abs() < 1e-6 && (gait[1] - PUBLISHED[1]).abs() < 1e-6);
 
-    // On the level it falls before the other foot is down.
+    // On level ground the walker falls before the other foot touches down.
     let level = Walker { slope: 0.0, ..walker };
     assert!(step(&level, PUBLISHED).is_err());
     Ok(())

@@ -1,4 +1,4 @@
-//! A first mechanism: declare it, look at its equations, let it swing.
+//! First example: declares a mechanism, prints its equations, and simulates it.
 //!
 //! ```text
 //! cargo run --example pendulum -p linkwork-models
@@ -6,15 +6,15 @@
 
 use linkwork::prelude::*;
 
-/// A uniform rod on a hinge, with some friction and a motor.
+/// Uniform rod on a hinge, with friction and a motor.
 #[mechanism(gravity = -9.81 * y)]
 struct Pendulum {
-    // Plain fields are parameters. They stay in the struct.
+    // Plain fields are parameters. They remain fields of the struct.
     mass: f64,
     length: f64,
     friction: f64,
 
-    // Elements say what the mechanism is made of. The compiler reads them and removes them.
+    // Elements declare the parts of the mechanism. The compiler reads them and removes them from the struct.
     #[body(mass = mass, com = -length / 2 * y, inertia = rod(mass, length, y))]
     rod: Body,
     #[joint(ground -> rod, about = z)]
@@ -29,8 +29,7 @@ fn main() -> Result<(), Error> {
     let pendulum = Pendulum { mass: 2.0, length: 1.5, friction: 0.3 };
     println!("{}", Pendulum::EQUATIONS);
 
-    // Every function is generated for this mechanism alone. Configuration q, velocity v and forces are
-    // vectors.
+    // Every function is generated for this mechanism. Configuration q, velocity v and forces are vectors.
     let (q, v) = (SVector::from([0.5]), SVector::from([0.0]));
     let inertia = pendulum.mass_matrix(&q)[0];
     let torque = pendulum.bias_forces(&q, &v)[0];
@@ -38,12 +37,12 @@ fn main() -> Result<(), Error> {
     println!("moment of inertia about the hinge  {inertia:.3} kg·m²");
     println!("torque that holds it at 0.5 rad    {torque:.3} N·m");
     println!("acceleration if it is let go       {acceleration:.3} rad/s²\n");
-    // A rod about its end: m l² / 3; its weight acts half way down.
+    // Inertia of a rod about its end: m l² / 3. Its weight acts at half of its length.
     assert!((inertia - 2.0 * 1.5 * 1.5 / 3.0).abs() < 1e-12);
     assert!((torque - 2.0 * 9.81 * 0.75 * 0.5_f64.sin()).abs() < 1e-12);
     assert!((acceleration + torque / inertia).abs() < 1e-12);
 
-    // A motion: released at 0.5 rad, the motor pushing to and fro, a sample every half second.
+    // Motion from rest at 0.5 rad with an oscillating motor torque, with a sample every half second.
     let run = simulate(&pendulum)
         .from([0.5], [0.0])
         .inputs(|t, _q, _v| SVector::from([0.5 * t.sin()]))

@@ -1,11 +1,11 @@
-//! A quadrotor in gusts knows where it is from its inertial measurement unit and from fixes of its position,
-//! five a second: an extended Kalman filter on generated Jacobians of the step and of the sensors. It flies
-//! on what the filter believes.
+//! Extended Kalman filter of a quadrotor in gusts, from its inertial measurement unit and five position fixes
+//! per second. It uses the generated Jacobians of the step and of the sensors. The quadrotor is controlled by
+//! the filter's estimate.
 //!
-//! The state is a pose and a velocity; spreads are those of displacements and velocities in the quadrotor's
-//! axes, twelve numbers, so that no quaternion is ever estimated. In still air an accelerometer feels the
-//! drag, which tells the tilt (Martin and Salaün, *The true role of accelerometer feedback in quadrotor
-//! control*, ICRA 2010).
+//! The state is a pose and a velocity. Covariances are those of displacements and velocities in the
+//! quadrotor's axes (twelve numbers), so that no quaternion is estimated directly. In still air an
+//! accelerometer measures the drag, which makes the tilt observable (Martin and Salaün, *The true role of
+//! accelerometer feedback in quadrotor control*, ICRA 2010).
 //!
 //! ```text
 //! cargo run --release --example quadrotor_ekf -p linkwork-models
@@ -19,8 +19,8 @@ use linkwork::{OutputDerivatives, Outputs, discrete};
 use regulator::regulator;
 use std::ops::Range;
 
-/// Four rotors, each with its thrust, N, as its input; a gyroscope and an accelerometer off the centre of
-/// mass.
+/// Quadrotor with the thrust of each rotor, N, as an input, and a gyroscope and an accelerometer off the
+/// centre of mass.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Quadrotor {
     front: Input,
@@ -54,21 +54,21 @@ struct Quadrotor {
 type Pose = SVector<f64, { Quadrotor::NQ }>;
 type Twist = SVector<f64, { Quadrotor::NV }>;
 type Thrusts = SVector<f64, { Quadrotor::NU }>;
-/// Displacement, then change of velocity.
+/// Error of the state: displacement, then velocity.
 type Error12 = SVector<f64, 12>;
 type Measured = SVector<f64, 9>;
 
-/// How often the rotors are set and the unit is read, s, and what makes a step of it.
+/// Period of the controller and of the measurements, s, and the integrator of a period.
 const PERIOD: f64 = 0.01;
 const METHOD: Rk4<f64> = Rk4::step(PERIOD);
-/// What gusts do to linear and angular velocity in a period: standard deviations, m/s and rad/s.
+/// Standard deviations of the changes of linear and angular velocity by gusts in a period, m/s and rad/s.
 const GUSTS: [f64; 2] = [0.02, 0.02];
-/// Standard deviations of what is measured: rates, rad/s; accelerations, m/s²; place, m.
+/// Standard deviations of the measurements: rates, rad/s; accelerations, m/s²; position, m.
 const NOISE: [f64; 3] = [0.01, 0.1, 0.1];
 const UNIT: Range<usize> = 0..6;
 const FIX: Range<usize> = 6..9;
 
-/// Numbers with a normal distribution, of variance 1 (splitmix64; Box and Muller).
+/// Random numbers with a standard normal distribution (splitmix64; Box and Muller).
 struct Random(u64);
 
 impl Random {
@@ -85,7 +85,7 @@ impl Random {
     }
 }
 
-/// A state that is known up to a spread: the covariance of displacements and velocities.
+/// Estimate of the state with the covariance of its displacements and velocities.
 struct Belief {
     q: Pose,
     v: Twist,
@@ -93,7 +93,7 @@ struct Belief {
 }
 
 impl Belief {
-    /// A period goes by, with gusts.
+    /// Predicts the estimate over one period with gusts.
     fn predict(&mut self, u: &Thrusts) -> Result<(), Error> {
         let next = discrete::transition(&Quadrotor {}, &METHOD, 0.0, &self.q, &self.v, u)?;
         let a = next.a::<12>();
@@ -105,7 +105,7 @@ impl Belief {
         Ok(())
     }
 
-    /// Some of the outputs are measured, one number after the other.
+    /// Corrects the estimate with the measured outputs of `rows`, one scalar after the other.
     fn correct(&mut self, u: &Thrusts, measured: &Measured, rows: Range<usize>) {
         let (m, q, v) = (Quadrotor {}, self.q, self.v);
         let motion = m.linear_motion(&q, &v, u);
@@ -123,13 +123,13 @@ impl Belief {
         (self.q, self.v) = (m.integrate(&q, &dq), v + dv);
     }
 
-    /// How far it is off a state.
+    /// Returns the error of the estimate from a state.
     fn error(&self, q: &Pose, v: &Twist) -> Error12 {
         discrete::stacked(&Quadrotor {}.difference(&self.q, q), &(v - self.v))
     }
 }
 
-/// Thrusts by which the quadrotor hovers, and a regulator that keeps it so.
+/// Returns the thrusts for hovering, and a regulator that stabilises it.
 fn hover() -> Option<(Thrusts, Policy<f64, 6, 4>)> {
     let thrusts = Thrusts::repeat(9.81 / 4.0);
     let costs = Quadratic {
@@ -142,7 +142,7 @@ fn hover() -> Option<(Thrusts, Policy<f64, 6, 4>)> {
     Some((thrusts, regulator))
 }
 
-/// Thrusts by what is believed, towards a point on a circle.
+/// Returns the thrusts for the estimated state, towards a moving point on a circle.
 fn steer(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &Belief) -> Thrusts {
     let (sin, cos) = (0.8 * t).sin_cos();
     let (target, speed) = ([2.0 * cos, 2.0 * sin, 1.0], [-1.6 * sin, 1.6 * cos, 0.0]);
@@ -152,21 +152,21 @@ fn steer(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &Belief) -> Thrus
     hover.0 + hover.1.inputs(1.0, &Quadrotor {}.difference(&pose, &belief.q), &dv)
 }
 
-/// Mean squares over a flight.
+/// Mean squared errors of a flight.
 #[derive(Default)]
 struct Figures {
     position: f64,
     tilt: f64,
     speed: f64,
-    /// Squared error in units of its spread: 12 if the filter is right about itself.
+    /// Squared error normalised by the covariance: 12 for a consistent filter.
     normalised: f64,
 }
 
-/// Flies for some seconds, and prints if asked.
+/// Simulates a flight of some seconds, and prints it if requested.
 fn fly(seed: u64, seconds: f64, print: bool) -> Result<Figures, Error> {
     let (m, mut random) = (Quadrotor {}, Random(seed));
     let hover = hover().expect("four rotors can keep it in its place");
-    // It begins somewhere about where it is believed to be.
+    // The true initial state deviates randomly from the estimate.
     let deviations = Error12::from_fn(|k, _| [0.3, 0.15, 0.3, 0.1][k / 3]);
     let off = deviations.map(|deviation| deviation * random.normal());
     let start = m.integrate(&m.neutral(), &[2.0, 0.0, 1.0, 0.0, 0.0, 0.0].into());
@@ -220,7 +220,7 @@ fn main() -> Result<(), Error> {
         "\nof three flights: {position:.3} m, {tilt:.3} rad, {speed:.3} m/s; {normalised:.1} by the spread, of 12"
     );
 
-    // A fix alone is off by 0.17 m, √3 times its deviation along each axis.
+    // A position fix alone has an error of 0.17 m, √3 times its deviation along each axis.
     assert!(position < 0.17 && tilt < 0.1 && speed < 0.2, "the filter knows better than its sensors");
     assert!((normalised - 12.0).abs() < 3.0, "and it knows how well");
     Ok(())

@@ -1,6 +1,6 @@
-//! A pole is swung up by a cart: a trajectory that costs least, found by iterative linear-quadratic
-//! regulators (iLQR) and by differential dynamic programming (DDP), on generated first and second derivatives
-//! of the discrete step.
+//! Swing-up of a cart-pole along an optimal trajectory. It is found by an iterative linear-quadratic
+//! regulator (iLQR) and by differential dynamic programming (DDP), with generated first and second
+//! derivatives of the discrete step.
 //!
 //! ```text
 //! cargo run --release --example trajectory -p linkwork-models
@@ -11,7 +11,7 @@ use linkwork::optimal::{Policy, Quadratic, Value, backward};
 use linkwork::prelude::*;
 use std::f64::consts::PI;
 
-/// A cart on a rail, with a pole that hangs from it at zero.
+/// Cart on a rail, with a pole that hangs down at zero.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
 struct CartPole {
     #[body(mass = 1)]
@@ -26,37 +26,37 @@ struct CartPole {
     push: Force,
 }
 
-/// Place of the cart and angle of the pole, or their rates.
+/// Position of the cart, m, and angle of the pole, rad; or their rates.
 type State = SVector<f64, 2>;
 type Push = SVector<f64, 1>;
-/// What to change in each step.
+/// Feedback policies of all steps.
 type Policies = [Policy<f64, 2, 1>; STEPS];
 
-/// Steps of the trajectory, and the period of each, s.
+/// Number of steps of the trajectory, and the period of each, s.
 const STEPS: usize = 60;
 const PERIOD: f64 = 0.03;
-/// What makes a step of a motion.
+/// Integrator of a period.
 const METHOD: Rk4<f64> = Rk4::step(PERIOD);
 
-/// States from the start on, and the inputs between them.
+/// States including the initial one, and the inputs between them.
 #[derive(Clone)]
 struct Trajectory {
     states: [(State, State); STEPS + 1],
     inputs: [Push; STEPS],
 }
 
-/// Where it should end: the cart where it was, the pole upright.
+/// Returns the final configuration: the cart at its initial position, the pole upright.
 fn goal() -> State {
     [0.0, PI].into()
 }
 
-/// What a step costs, to second order about a push; pushes alone count.
+/// Returns the cost of a step, to second order in the input force, which is the only running cost.
 fn step_costs(u: &Push) -> Quadratic<f64, 2, 1> {
     let weight = 0.02 * PERIOD;
     Quadratic { u: u * weight, uu: [weight].into(), ..Quadratic::zeros() }
 }
 
-/// What the end costs, to second order about a state.
+/// Returns the cost of the final state to second order.
 fn end_costs(q: &State, v: &State) -> Value<f64, 2> {
     let weight = SMatrix::from_diagonal_element(100.0);
     Value { q: (q - goal()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
@@ -69,8 +69,8 @@ impl Trajectory {
         pushes + 50.0 * ((q - goal()).norm_squared() + v.norm_squared())
     }
 
-    /// The trajectory from the same start under policies about this one, with the length `α` of their
-    /// changes.
+    /// Returns the trajectory from the same initial state under policies about this one, with the step length
+    /// `α` of their changes.
     fn followed(&self, policies: &Policies, length: f64) -> Result<Self, Error> {
         let mut next = self.clone();
         for (k, policy) in policies.iter().enumerate() {
@@ -81,8 +81,9 @@ impl Trajectory {
         Ok(next)
     }
 
-    /// Policies that are best to second order about this trajectory, and what they should save; `None` if the
-    /// costs are not convex in a push. DDP counts the curvature of the steps, iLQR does not.
+    /// Returns the optimal policies to second order about this trajectory, and the expected reduction of the
+    /// cost; `None` if the cost is not convex in an input. DDP includes the curvature of the dynamics, iLQR
+    /// does not.
     fn policies(&self, ddp: bool, regularisation: f64) -> Result<Option<(Policies, f64)>, Error> {
         let none = Policy {
             change: SVector::zeros(),
@@ -112,13 +113,13 @@ impl Trajectory {
     }
 }
 
-/// What a method found, and the largest change of a push in each iteration, N.
+/// Result of a method, with the largest change of the force in each iteration, N.
 struct Found {
     best: Trajectory,
     changes: Vec<f64>,
 }
 
-/// Improves a trajectory until its pushes no longer change.
+/// Improves a trajectory until its forces converge.
 fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
     let (mut best, mut regularisation, mut changes) = (start.clone(), 1e-3, Vec::new());
     for _ in 0..500 {
@@ -126,8 +127,9 @@ fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
             regularisation = (4.0 * regularisation).max(1e-6);
             continue;
         };
-        // Half as long a change, and half again, until it saves a part of what it should; near the end
-        // rounding hides that. A change that is far too long ends in states that are no numbers.
+        // Line search: the step length is halved until the cost decreases by a fraction of the expected
+        // reduction. Near the optimum rounding errors exceed the reduction. Much too long steps lead to
+        // states that are not finite.
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
         let mut tried = lengths.filter_map(|length| best.followed(&policies, length).ok());
         let enough = |next: &Trajectory| saved < 1e-11 || next.costs() < best.costs() - 1e-4 * saved;
@@ -147,7 +149,7 @@ fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
 }
 
 fn main() -> Result<(), Error> {
-    // It hangs, and the cart is pushed to and fro a little.
+    // Initial guess: the pole hangs, and the cart is pushed back and forth slightly.
     let mut start =
         Trajectory { states: [(State::zeros(), State::zeros()); STEPS + 1], inputs: [Push::zeros(); STEPS] };
     for (k, u) in start.inputs.iter_mut().enumerate() {
@@ -169,13 +171,13 @@ fn main() -> Result<(), Error> {
         println!("{name:5} {count:3} iterations, costs {costs:.6}: {}", last.collect::<Vec<_>>().join(" "));
     }
 
-    // Both end the same way, and upright.
+    // Both methods have the same final state, with the pole upright.
     let (end, _) = ddp.best.states[STEPS];
     assert!((end - goal()).amax() < 0.05, "it is swung up");
     for (a, b) in ilqr.best.inputs.iter().zip(&ddp.best.inputs) {
         assert!((a - b).amax() < 1e-5, "one trajectory is the best");
     }
-    // In the end an iteration of DDP squares what is left, one of iLQR takes a part of it away.
+    // Near the optimum an iteration of DDP squares the error, and one of iLQR reduces it by a factor.
     for pair in ddp.changes[ddp.changes.len() - 3..].windows(2) {
         assert!(pair[1] < 2.0 * pair[0] * pair[0], "quadratic convergence");
     }

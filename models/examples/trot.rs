@@ -1,11 +1,11 @@
-//! A quadruped trots and walks on its feet: a gait that leads the feet around, springs and dampers at the
-//! joints that follow it, and the ground that does the rest.
+//! Quadruped that trots and walks: a gait generator moves the desired feet, joint springs and dampers follow
+//! it, and contact forces result from the ground.
 //!
-//! Feet are led backwards under the hips while they stand, and return above the ground. The joints give way,
-//! so that the robot goes at half to three quarters of the speed at which its feet are led. In a trot feet
-//! stand in diagonal pairs, half of the time each; in a walk they are lifted one after the other. Source:
-//! Hildebrand, *Symmetrical gaits of horses*, Science 150 (1965). Nothing is known of contacts here; what the
-//! ground exerts is read off as force plates would do it.
+//! During stance a foot moves backwards under its hip, and during swing it returns above the ground. The
+//! joints are compliant, so that the robot moves at half to three quarters of the commanded speed. In a trot,
+//! diagonal pairs of feet stand for half of the time each; in a walk, one foot after the other is lifted.
+//! Source: Hildebrand, *Symmetrical gaits of horses*, Science 150 (1965). The controller does not know the
+//! contacts; the ground forces are read from the simulation, as with force plates.
 //!
 //! ```text
 //! cargo run --release --example trot -p linkwork-models
@@ -33,25 +33,25 @@ type Velocity = SVector<f64, 18>;
 
 /// Length of thigh and shank, m.
 const SEGMENT: f64 = 0.16;
-/// Height of the hips over the feet, and how high these are lifted, m.
+/// Height of the hips above the feet, and height of a lifted foot, m.
 const HEIGHT: f64 = 0.23;
 const LIFT: f64 = 0.04;
 /// Stiffness and damping of the joints, N·m/rad and N·m·s/rad.
 const STIFFNESS: f64 = 30.0;
 const DAMPING: f64 = 0.5;
-/// For how long the gait grows from standing, s.
+/// Time in which the gait grows from standing to its full amplitude, s.
 const BEGINS: f64 = 1.0;
 
-/// When feet are lifted.
+/// Timing of the feet.
 struct Gait {
     name: &'static str,
-    /// Of a cycle, s.
+    /// Period of a cycle, s.
     period: f64,
-    /// The part of a cycle for which a foot stands.
+    /// Fraction of a cycle in which a foot stands.
     duty: f64,
-    /// By which part of a cycle each foot is ahead: front left and right, hind left and right.
+    /// Phase of each foot as a fraction of a cycle: front left and right, hind left and right.
     phases: [f64; 4],
-    /// How fast feet move backwards, m/s.
+    /// Backward speed of the feet in stance, m/s.
     speed: f64,
 }
 
@@ -59,7 +59,7 @@ const TROT: Gait = Gait { name: "trot", period: 0.4, duty: 0.5, phases: [0.0, 0.
 const WALK: Gait = Gait { name: "walk", period: 0.6, duty: 0.8, phases: [0.25, 0.75, 0.0, 0.5], speed: 0.1 };
 
 impl Gait {
-    /// Where a foot should be from its hip, forwards and up, m.
+    /// Returns the desired position of a foot relative to its hip, forwards and up, m.
     fn foot(&self, foot: usize, t: f64) -> [f64; 2] {
         let grown = (t / BEGINS).clamp(0.0, 1.0);
         let reach = grown * self.speed * self.duty * self.period / 2.0;
@@ -72,14 +72,14 @@ impl Gait {
         [-reach * angle.cos(), -HEIGHT + grown * LIFT * angle.sin().powi(2)]
     }
 
-    /// The angles of hip, thigh and shank with the foot there.
+    /// Returns the angles of hip, thigh and shank for the desired foot position, rad.
     fn leg(&self, foot: usize, t: f64) -> [f64; 3] {
         let [x, z] = self.foot(foot, t);
         let knee = -2.0 * (x.hypot(z) / (2.0 * SEGMENT)).acos();
         [0.0, (-x).atan2(-z) - knee / 2.0, knee]
     }
 
-    /// The torques of the joints.
+    /// Returns the torques of the joints, N·m.
     fn follow(&self, t: f64, q: &Configuration, v: &Velocity) -> SVector<f64, 12> {
         let h = 1e-4;
         SVector::from_fn(|k, _| {
@@ -89,13 +89,13 @@ impl Gait {
     }
 }
 
-/// How far the trunk leans, rad.
+/// Returns the tilt of the trunk, rad.
 fn lean(q: &Configuration) -> f64 {
-    // The cosine between its vertical and that of the ground.
+    // Cosine of the angle between the vertical axes of trunk and ground.
     (1.0 - 2.0 * (q[3] * q[3] + q[4] * q[4])).clamp(-1.0, 1.0).acos()
 }
 
-/// Lets the robot go for some seconds.
+/// Simulates a gait for some seconds, and checks it.
 fn go(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
     let robot = Solo {};
     let mut start = robot.neutral();
@@ -110,7 +110,7 @@ fn go(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
         .method(TimeStepping::step(h))
         .duration(duration);
     println!("{}\n  t, s   way, m   height, m   lean, mrad   feet that stand", gait.name);
-    // Mean force on the ground over whole cycles, and how far feet slip meanwhile.
+    // Mean ground force over whole cycles, and the slip of the feet.
     let cycles = (duration - BEGINS) / gait.period;
     let since = duration - cycles.floor() * gait.period;
     let (mut pressed, mut steps, mut begin, mut feet) = (0.0, 0.0, start, 0);

@@ -1,4 +1,4 @@
-//! A robot from a file: where its tool is, how it moves, what its motors have to do.
+//! Robot from a file: position and velocity of its tool, and torques of its motors.
 //!
 //! ```text
 //! cargo run --example urdf_arm -p linkwork-models
@@ -7,7 +7,7 @@
 use linkwork::nalgebra::Vector6;
 use linkwork::prelude::*;
 
-/// A UR5. The path is relative to the package; all of its numbers become constants of the program.
+/// UR5 arm. The path is relative to the package; all values of the file become constants of the program.
 #[mechanism(urdf = "urdf/ur5.urdf")]
 struct Arm;
 
@@ -18,13 +18,12 @@ fn main() {
     let q = SVector::from([0.0, -1.2, 1.5, -0.3, 1.57, 0.0]);
     let v = SVector::from([0.2, 0.1, -0.3, 0.0, 0.5, 0.0]);
 
-    // Frames are named at compile time: a slip in the name does not compile.
+    // Frame names are resolved at compile time: a misspelt name does not compile.
     let tool = frame!(Arm, "tool0");
     let placement = Arm.frame_placement(tool, &q);
     println!("tool at           {:.4?}", placement.translation.vector.as_slice());
 
-    // The Jacobian turns joint velocities into the velocity of the tool: linear, then angular, in ground
-    // axes.
+    // The Jacobian maps joint velocities to the velocity of the tool: linear, then angular, in ground axes.
     let jacobian = Arm.frame_jacobian(tool, &q);
     println!("moves with        {:.4?}", (jacobian * v).as_slice());
     let step = 1e-6;
@@ -32,7 +31,7 @@ fn main() {
     let moved = (after - before) / (2.0 * step);
     assert!((moved - (jacobian * v).fixed_rows::<3>(0)).amax() < 1e-9, "the tool moves as the Jacobian says");
 
-    // Joint velocities that move the tool straight up at 0.1 m/s without turning it.
+    // Joint velocities that move the tool vertically up at 0.1 m/s without rotation.
     let up = Vector6::new(0.0, 0.0, 0.1, 0.0, 0.0, 0.0);
     if let Some(inverse) = jacobian.try_inverse() {
         println!("straight up by    {:.4?}", (inverse * up).as_slice());
@@ -42,7 +41,7 @@ fn main() {
         assert!(there.rotation.angle_to(&placement.rotation) < 1e-9, "and does not turn");
     }
 
-    // Torques that hold the arm still, and torques that also accelerate its elbow by 2 rad/s².
+    // Torques that hold the arm at rest, and torques that also accelerate its elbow by 2 rad/s².
     let rest = SVector::zeros();
     let mut a = SVector::zeros();
     a[2] = 2.0;
@@ -52,7 +51,7 @@ fn main() {
     let tau = Arm.inverse_dynamics(&q, &rest, &a);
     println!("accelerated by    {:.3?}", tau.as_slice());
 
-    // And back: what these torques do is that acceleration.
+    // Forward dynamics of these torques returns that acceleration.
     let found = Arm.forward_dynamics(&q, &rest, &tau);
     println!("check             {:.3?}", found.as_slice());
     assert!((found - a).amax() < 1e-10, "the elbow is accelerated, and nothing else");

@@ -1,11 +1,11 @@
-//! A quadruped on its four feet moves its trunk about: whole-body control, whose torques let the feet push
-//! within their cones of friction, and no more along the ground than they have to.
+//! Whole-body control of a quadruped that moves its trunk while standing on four feet. The torques keep the
+//! contact forces within their friction cones, with minimum tangential forces.
 //!
-//! Trunk and contact forces depend on the torques by [`contact::forward_dynamics_derivatives`]:
-//! `v̇ = v̇₀ + A τ`, `f = f₀ + F τ`. Of all torques that give the trunk the acceleration it should have,
-//! those are taken whose forces are least along the ground. Source: Righetti, Buchli, Mistry, Kalakrishnan
-//! and Schaal, *Optimal distribution of contact forces with inverse-dynamics control*, International Journal
-//! of Robotics Research 32 (2013).
+//! The accelerations of the trunk and the contact forces depend linearly on the torques, by
+//! [`contact::forward_dynamics_derivatives`]: `v̇ = v̇₀ + A τ`, `f = f₀ + F τ`. Among the torques with the
+//! desired acceleration of the trunk, the controller selects those with the minimum tangential forces.
+//! Source: Righetti, Buchli, Mistry, Kalakrishnan and Schaal, *Optimal distribution of contact forces with
+//! inverse-dynamics control*, International Journal of Robotics Research 32 (2013).
 //!
 //! ```text
 //! cargo run --release --example whole_body -p linkwork-models
@@ -32,32 +32,32 @@ type Configuration = SVector<f64, 19>;
 type Velocity = SVector<f64, 18>;
 type Torques = SVector<f64, 12>;
 
-/// Hip, thigh and shank of each leg, rad.
+/// Angles of hip, thigh and shank of each leg, rad.
 const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
 const STANDING: [Touch; 4] = [Touch::Sticks; 4];
-/// What a torque costs beside a force along the ground, (N/(N·m))²; and a normal force, so that all feet
-/// carry.
+/// Weight of torques relative to tangential forces, (N/(N·m))², and weight of normal forces, which
+/// distributes the load to all feet.
 const TORQUE: f64 = 1e-4;
 const NORMAL: f64 = 1e-2;
-/// How the trunk moves: sideways and up, m, nodding, rad, at this frequency, rad/s.
+/// Amplitudes of the trunk's motion: sideways and up, m, and pitch, rad; and its frequency, rad/s.
 const REACH: [f64; 3] = [0.03, 0.015, 0.12];
 const RATE: f64 = 6.0;
 
-/// Where the trunk should be, beside the start, as a displacement in its axes, with rate and acceleration.
+/// Returns the desired displacement of the trunk from the start, in its axes, with velocity and acceleration.
 fn wanted(t: f64) -> [SVector<f64, 6>; 3] {
     let [side, up, nod] = REACH;
     let along = |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
     let (sin, cos) = (RATE * t).sin_cos();
     let (x, rate, change) =
         (along(sin, cos - 1.0), along(cos, -sin) * RATE, along(-sin, -cos) * (RATE * RATE));
-    // It begins at rest.
+    // The motion starts at rest.
     let late = (-4.0 * t).exp();
     let grown = 1.0 - late * (1.0 + 4.0 * t + 8.0 * t * t);
     let (growth, bend) = (32.0 * t * t * late, 64.0 * t * (1.0 - 2.0 * t) * late);
     [x * grown, rate * grown + x * growth, change * grown + rate * (2.0 * growth) + x * bend]
 }
 
-/// The configuration with the trunk where it should be.
+/// Returns the configuration with the desired pose of the trunk.
 fn led(start: &Configuration, t: f64) -> Configuration {
     let [place, ..] = wanted(t);
     let mut displacement = Velocity::zeros();
@@ -65,14 +65,15 @@ fn led(start: &Configuration, t: f64) -> Configuration {
     Solo {}.integrate(start, &displacement)
 }
 
-/// The torques, and the contact forces that they are to have.
+/// Returns the torques, and the contact forces that they cause.
 fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (Torques, SVector<f64, 12>) {
     let robot = Solo {};
     let missing = robot.difference(q, &led(start, t));
     let [_, velocity, acceleration] = wanted(t);
     let off = missing.fixed_rows::<6>(0) * 900.0 + (velocity - v.fixed_rows::<6>(0)) * 60.0;
     let target = acceleration + off;
-    // As on feet that stick: without torques, and by how much these change it.
+    // With sticking feet: motion and contact forces for zero torques, and their derivatives with respect to
+    // torques.
     let Ok(held) = contact::forward_dynamics_derivatives(&robot, 0.0, q, v, &Velocity::zeros(), &STANDING)
     else {
         return (Torques::zeros(), SVector::zeros());
@@ -81,7 +82,7 @@ fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (T
     let pushes = held.forces_by_tau.fixed_view::<12, 12>(0, 6);
     let weights = SVector::<f64, 12>::from_fn(|k, _| if k % 3 == 0 { NORMAL } else { 1.0 });
     let weighted = SMatrix::<f64, 12, 12>::from_diagonal(&weights) * pushes;
-    // Least ½ fᵀ W f + ½ ε τᵀ τ with A τ = v̇ − v̇₀ (Lagrange multipliers).
+    // Minimum of ½ fᵀ W f + ½ ε τᵀ τ with A τ = v̇ − v̇₀ (Lagrange multipliers).
     let mut system = SMatrix::<f64, 18, 18>::zeros();
     let mut right = SVector::<f64, 18>::zeros();
     let costs = pushes.transpose() * weighted + SMatrix::<f64, 12, 12>::identity() * TORQUE;
@@ -95,7 +96,8 @@ fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (T
     (torques, held.forces + pushes * torques)
 }
 
-/// The largest share of its cone of friction that a foot uses; all press.
+/// Returns the largest ratio of tangential force to friction limit over all feet, with positive normal
+/// forces.
 fn share(forces: &SVector<f64, 12>) -> f64 {
     let of = |foot: usize| forces.fixed_rows::<2>(3 * foot + 1).norm() / (0.6 * forces[3 * foot].max(1e-9));
     (0..4).map(of).fold(0.0, f64::max)

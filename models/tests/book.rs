@@ -1,16 +1,16 @@
 //! The table of the book's sections in the gallery's documentation has rows for every chapter, and names
-//! mechanisms and tests that exist.
+//! existing mechanisms and tests.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where the table looks for tests: here, in the package of tests, in that of design, and at the compiler's
-/// equations.
+/// Folders of the tests that the table names: this package, the package of tests, that of design, and the
+/// compiler's equations.
 const FOLDERS: [&str; 4] =
     ["tests", "../tests", "../runtime/design/tests", "../macros/compiler/src/equations/tests"];
 
-/// The chapters; those on flight and linear systems together.
+/// The chapters, with those on flight and linear systems combined.
 const CHAPTERS: [&str; 10] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10–16"];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -24,12 +24,12 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Names of the functions of a file that are tests.
+/// Returns the names of a file's test functions.
 fn tests(text: &str) -> impl Iterator<Item = &str> {
     text.split("#[test]").skip(1).filter_map(|rest| rest.split_once("fn ")?.1.split('(').next())
 }
 
-/// What stands between backticks.
+/// Returns the texts between backticks.
 fn quoted(cell: &str) -> impl Iterator<Item = &str> {
     cell.split('`').skip(1).step_by(2)
 }

@@ -1,11 +1,11 @@
-//! Whatever figures they get, functions of mechanisms give figures or errors, in builds with debug assertions
-//! and overflow checks too: numbers that are none, infinite, enormous or tiny, and runs with such times.
+//! Functions of mechanisms return values or errors for any input, also in builds with debug assertions and
+//! overflow checks: NaN, infinite, very large and very small numbers, and runs with such times.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use linkwork_models::{FourBar, RollingDisk, Solo12};
 
-/// Numbers that nobody means.
+/// Pathological numbers.
 const HOSTILE: [f64; 12] = [
     f64::NAN,
     f64::INFINITY,
@@ -21,7 +21,7 @@ const HOSTILE: [f64; 12] = [
     6_381_956_970_095_103.0 * 1e240,
 ];
 
-/// A mechanism with functions of all sorts, and a screw that closes a loop.
+/// Mechanism with functions of many kinds, and a screw that closes a loop.
 #[mechanism(gravity = -g * y, batch, derivatives)]
 #[derive(Clone, Copy)]
 struct Machine {
@@ -50,7 +50,7 @@ struct Machine {
     push: Force,
 }
 
-/// Vectors of one hostile number, or with one in the middle of others.
+/// Returns vectors in which every entry, or only the middle one, is a pathological number.
 fn vectors<const N: usize>() -> impl Iterator<Item = SVector<f64, N>> {
     HOSTILE.into_iter().flat_map(|x| {
         [SVector::repeat(x), SVector::from_fn(|i, _| if i == N / 2 { x } else { 0.3 * i as f64 })]
@@ -101,7 +101,7 @@ fn runs_take_any_times() {
     let machine = Machine { g: 9.81, k: 1.0, l: 0.5 };
     let (q, v) = (machine.neutral(), SVector::repeat(0.1));
     for (x, y) in HOSTILE.into_iter().flat_map(|x| HOSTILE.map(|y| (x, y))) {
-        // A few steps each: some of these runs never end.
+        // Only a few steps each, since some of these runs never end.
         let run = || simulate(&machine).from(q, v);
         let _ = run().start_at(x).duration(y).take(3).count();
         let _ = run().duration(1e-3).sample_every(x).take(3).count();

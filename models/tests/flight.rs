@@ -1,4 +1,5 @@
-//! The flight gallery: trim, modes and derivatives against published figures and closed forms.
+//! Flight mechanisms of the gallery: trim, modes and derivatives against published values and closed-form
+//! solutions.
 
 #[path = "flight/craft.rs"]
 mod craft;
@@ -9,13 +10,13 @@ mod fighter;
 
 use linkwork_design::Mode;
 
-/// Whether a figure is another, within a part of it.
+/// Checks that a number equals another within a relative tolerance.
 #[track_caller]
 pub fn close(found: f64, expected: f64, relative: f64) {
     assert!((found - expected).abs() <= relative * expected.abs(), "expected {expected}, found {found}");
 }
 
-/// Whether a mode has this eigenvalue, within a part of its size.
+/// Checks that a mode has this eigenvalue, within a tolerance relative to its magnitude.
 #[track_caller]
 pub fn is_at(mode: Option<&Mode>, re: f64, im: f64, relative: f64) {
     let pole = mode.expect("the mode is there").exponent;

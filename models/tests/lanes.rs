@@ -1,11 +1,11 @@
-//! Eight states at once in a build with debug assertions: the bits of single states, and no more stack than a
-//! small thread has.
+//! Eight states at once in a build with debug assertions return the bits of single states, and need no more
+//! stack than a small thread has.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use std::thread;
 
-/// A quadruped, the base of which is free.
+/// Quadruped with a free base.
 #[mechanism(urdf = "urdf/solo12.urdf", base = free, batch, derivatives)]
 struct Solo12;
 
@@ -16,7 +16,7 @@ type Q<T> = SVector<T, 19>;
 type V<T> = SVector<T, 18>;
 type Eight = Lanes<f64, 8>;
 
-/// Eight states, some steps away from the neutral one.
+/// Returns eight states, some steps away from the neutral one.
 fn states() -> (Q<Eight>, V<Eight>) {
     let v = V::from_fn(|i, _| Lanes::from_fn(|k| ((i * i + 3 * k) as f64).sin()));
     let q = Solo12.neutral().map(Lanes::splat);

@@ -1,11 +1,11 @@
-//! Steady motions of mechanisms of the gallery against published figures.
+//! Steady motions of mechanisms of the gallery against published values.
 
 use linkwork::nalgebra::DMatrix;
 use linkwork::prelude::*;
 use linkwork_design::steady::constrained_equilibrium;
 use linkwork_models::{Bicycle, RollingDisk};
 
-/// A disk that rolls in a circle: lean and rate of turn say how fast it rolls (Neimark and Fufaev, ch. II).
+/// A disk rolls in a circle: lean and turning rate determine its rolling rate (Neimark and Fufaev, ch. II).
 #[test]
 fn a_disk_rolls_in_a_circle() {
     let disk = RollingDisk { g: 9.81, m: 0.5, radius: 0.2 };
@@ -22,14 +22,14 @@ fn a_disk_rolls_in_a_circle() {
     let spin = (across * across * lean.tan() - 4.0 * disk.g / disk.radius * lean.sin()) / (6.0 * across);
     assert!((found.v[5] + turning * lean.sin() - spin).abs() < 1e-10, "{found:?}");
     assert!((found.q[2] - 0.2 * lean.cos()).abs() < 1e-14);
-    // The centre goes round its circle.
+    // The centre moves along its circle.
     let (v, a) =
         (found.v.fixed_rows::<2>(0).into_owned(), found.acceleration.fixed_rows::<2>(0).into_owned());
     assert!(v.dot(&a).abs() < 1e-10 && (a.norm() - turning * v.norm()).abs() < 1e-10);
 }
 
-/// The bicycle in wide circles at 4.6 m/s: lean and steering torque are those of
-/// `(g K₀ + v² K₂) (φ, δ) = (0, T)`, and without torque it circles at the published capsize speed alone
+/// The bicycle moves in wide circles at 4.6 m/s: lean and steering torque satisfy
+/// `(g K₀ + v² K₂) (φ, δ) = (0, T)`. Without torque it moves in a circle only at the published capsize speed
 /// (Meijaard and others, 2007).
 #[test]
 fn a_bicycle_turns() {
@@ -79,8 +79,8 @@ fn a_bicycle_turns() {
     assert!((speed - 6.024_262_015_388_37).abs() < 1e-6, "{speed}");
 }
 
-/// The bicycle upright and straight, from its bodies and wheels: published eigenvalues (Meijaard and others,
-/// 2007, table 2).
+/// The upright straight bicycle, built from its bodies and wheels, has the published eigenvalues (Meijaard
+/// and others, 2007, table 2).
 #[test]
 fn a_bicycle_weaves_and_capsizes() {
     let bicycle = Bicycle::BENCHMARK;
@@ -136,9 +136,9 @@ fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
     );
 }
 
-/// Meijaard, Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a
-/// bicycle*, Proc. R. Soc. A 463 (2007), § 4: `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in lean and steer, from the
-/// bodies and wheels of the bicycle.
+/// The bodies and wheels of the bicycle give the published matrices of `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in
+/// lean and steer (Meijaard, Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance
+/// and steer of a bicycle*, Proc. R. Soc. A 463, 2007, § 4).
 #[test]
 fn a_bicycle_has_the_published_matrices() {
     let bicycle = Bicycle::BENCHMARK;

@@ -1,10 +1,10 @@
-//! A cart with two poles, one on the other, and what keeps them upright. Nothing here needs the standard
-//! library: the static library in `../controller_for_c` is made of this file, too.
+//! Cart with two poles in series, and its stabilising controller. This file does not use the standard
+//! library, since the static library in `../controller_for_c` includes it, too.
 
 use linkwork::optimal::{Policy, Quadratic};
 use linkwork::prelude::*;
 
-/// A cart on a rail with a pole pinned to it, and another pole pinned to the end of the first; both are
+/// Cart on a rail with a pole pinned to it, and a second pole pinned to the end of the first. Both are
 /// upright at zero.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 #[derive(Clone, Copy, Debug)]
@@ -27,12 +27,12 @@ pub struct Cart {
     push: Force,
 }
 
-/// Place of the cart, lean of the lower pole, angle between both: m and rad; or their rates.
+/// Position of the cart, m, angle of the lower pole and angle between both poles, rad; or their rates.
 pub type State = SVector<f64, { Cart::NV }>;
-/// How the push follows from the state.
+/// Feedback policy from the state to the force on the cart.
 pub type Regulator = Policy<f64, { Cart::NV }, { Cart::NU }>;
 
-/// What a period costs: displacements, angles, rates and pushes.
+/// Returns the weights of one period: displacement, angles, rates and force.
 pub fn costs() -> Quadratic<f64, { Cart::NV }, { Cart::NU }> {
     Quadratic {
         qq: SMatrix::from_diagonal(&[10.0, 100.0, 100.0].into()),
@@ -42,7 +42,7 @@ pub fn costs() -> Quadratic<f64, { Cart::NV }, { Cart::NU }> {
     }
 }
 
-/// The push, N, for the state of an instant, no stronger than the motor.
+/// Returns the force on the cart for a state, N, limited to the motor's strength.
 pub fn control(regulator: &Regulator, q: &State, v: &State) -> f64 {
     let strength = Cart {}.effort_limits()[index!(Cart::VELOCITIES, "rail")];
     regulator.inputs(1.0, q, v)[0].clamp(-strength, strength)

@@ -1,5 +1,5 @@
-//! A cart keeps two poles upright, one on the other: a linear-quadratic regulator on generated derivatives,
-//! and from how far it brings the poles back.
+//! Balances two poles in series on a cart with a linear-quadratic regulator from generated derivatives, and
+//! determines its region of attraction.
 //!
 //! ```text
 //! cargo run --release --example lqr_double_pendulum -p linkwork-models
@@ -15,10 +15,10 @@ use linkwork::optimal::Value;
 use linkwork::prelude::*;
 use regulator::regulator;
 
-/// How often the controller looks, s.
+/// Period of the controller, s.
 const PERIOD: f64 = 0.005;
 
-/// What a run from leaning poles ends with.
+/// End of a run that starts with inclined poles.
 struct Run {
     q: State,
     v: State,
@@ -26,10 +26,10 @@ struct Run {
     costs: f64,
 }
 
-/// Lets the poles go at rest, and the cart push, for some seconds.
+/// Simulates the controlled cart for some seconds from rest, with the poles at these angles.
 fn run(regulator: &Regulator, lower: f64, upper: f64, seconds: f64) -> Result<Run, Error> {
     let (cart, method, rate) = (Cart {}, Rk4::step(PERIOD), costs());
-    // The hip's angle is relative to the lower pole.
+    // The angle of the upper hinge is relative to the lower pole.
     let (mut q, mut v) = (State::from([0.0, lower, upper - lower]), State::zeros());
     let (mut strongest, mut costs) = (0.0_f64, 0.0);
     for _ in 0..(seconds / PERIOD) as usize {
@@ -44,7 +44,7 @@ fn run(regulator: &Regulator, lower: f64, upper: f64, seconds: f64) -> Result<Ru
     Ok(Run { q, v, strongest, costs })
 }
 
-/// Prints what becomes of three starts, and holds it against what the regulator promises.
+/// Prints the runs from three initial states, and compares their costs with the predicted ones.
 fn three_starts(regulator: &Regulator, to_go: &Value<f64, { Cart::NV }>) -> Result<(), Error> {
     println!("lower, rad   upper, rad   strongest push, N   costs   promised   left after 6 s");
     for (lower, upper) in [(0.01, 0.0), (0.1, 0.1), (0.2, -0.05)] {
@@ -53,15 +53,16 @@ fn three_starts(regulator: &Regulator, to_go: &Value<f64, { Cart::NV }>) -> Resu
         let left = q.amax().max(v.amax());
         println!("{lower:10.2} {upper:12.2} {strongest:19.2} {costs:7.3} {promised:10.3} {left:16.1e}");
         assert!(left < 2e-3, "the poles stand, and the cart is back");
-        // The promise is that of the linear system without a limit: kept where angles are small and the motor
-        // strong enough.
+        // The prediction is that of the linear system without a force limit: it holds for small angles while
+        // the motor is strong enough.
         let kept = (costs / promised - 1.0).abs() < 0.01;
         assert!(kept || strongest == 30.0, "{costs} is about {promised}");
     }
     Ok(())
 }
 
-/// Prints from which angles the poles come back, at most 0.6 rad to either side, and returns it row by row.
+/// Prints the angles from which the poles return, up to 0.6 rad to each side, and returns the table row by
+/// row.
 fn basin(regulator: &Regulator) -> Result<[[bool; 13]; 13], Error> {
     let mut caught = [[false; 13]; 13];
     println!(
@@ -87,7 +88,7 @@ fn main() -> Result<(), Error> {
     three_starts(&regulator, &to_go)?;
 
     let caught = basin(&regulator)?;
-    // Left and right are alike; what leans little comes back, what leans much does not.
+    // The table is symmetric; small angles return, large ones do not.
     for (i, row) in caught.iter().enumerate() {
         for (j, &caught_here) in row.iter().enumerate() {
             assert_eq!(caught_here, caught[12 - i][12 - j], "the mirrored poles end alike");

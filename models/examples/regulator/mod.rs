@@ -1,15 +1,17 @@
-//! The linear-quadratic regulator for any mechanism, in blocks of `NV` by `NV`. Several examples hold it.
+//! Linear-quadratic regulator for any mechanism, in blocks of `NV` by `NV`. Several examples include this
+//! module.
 
 use linkwork::RheonomicDerivatives;
 use linkwork::discrete::{self, DifferentiableStep};
 use linkwork::nalgebra::SVector;
 use linkwork::optimal::{Policy, Quadratic, Value, backward};
 
-/// The linear-quadratic regulator about a state of rest, for any mechanism, and the costs to go under it: the
-/// recursion of optimal control with the same step and the same costs again and again, until the costs to go
-/// stay as they are.
+/// Returns the linear-quadratic regulator about a state of rest, for any mechanism, and its cost-to-go. It
+/// repeats the recursion of optimal control with the same step and the same costs until the cost-to-go
+/// converges.
 ///
-/// `None` if they do not, as for a mechanism that cannot be stabilised, or if something is not finite.
+/// Returns `None` if it does not converge, as for a mechanism that cannot be stabilised, or if a value is not
+/// finite.
 pub fn regulator<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     method: &S,

@@ -1,5 +1,4 @@
-//! A transport from trim to modes: how it flies along level, what disturbs it, and how its rudder is
-//! answered.
+//! Transport aircraft: its trimmed flight, its response to a gust and to the rudder, and its flight modes.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure};
 use linkwork::nalgebra::DVector;
@@ -10,12 +9,12 @@ use linkwork_design::{Mode, StateSpace, picture};
 use linkwork_models::CruisingAircraft;
 
 const TRANSPORT: CruisingAircraft = CruisingAircraft::BOEING_747;
-/// A gust from ahead, m/s.
+/// Head-on gust, m/s.
 const GUST: f64 = 5.0;
-/// Two phugoids and more, s.
+/// Duration of more than two phugoid periods, s.
 const DURATION: f64 = 240.0;
 
-/// Etkin and Reid, *Dynamics of Flight* (1996), ch. 6: eigenvalues as printed, 1/s.
+/// Published eigenvalues (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6), 1/s.
 const PUBLISHED: [(&str, f64, f64); 5] = [
     ("short period", -0.3719, 0.8875),
     ("phugoid", -0.003289, 0.06723),
@@ -89,7 +88,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-/// A declaration without its parameters, of which there are many.
+/// Returns a declaration without its many parameters.
 fn elements(declaration: &str) -> String {
     let is_parameter = |line: &&str| line.starts_with("    pub ") || line.starts_with("    #[unit");
     declaration.lines().filter(|line| !is_parameter(line)).collect::<Vec<_>>().join("\n")
@@ -114,8 +113,8 @@ fn row(name: &str, mode: &Mode) -> Vec<String> {
 
 type Points = Vec<(f64, f64)>;
 
-/// How the speed changes after a gust by the equations of motion and by the linear ones, and the largest
-/// difference as a part of the gust.
+/// Returns the change of speed after a gust by the nonlinear and by the linear equations, and the largest
+/// difference relative to the gust.
 fn after_a_gust(
     trim: &SteadyState<7, 6, 4>,
     along: &StateSpace,

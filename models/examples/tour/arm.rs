@@ -1,4 +1,4 @@
-//! A Panda arm draws a figure eight with a load that its controller does not know of.
+//! A Panda arm draws a figure eight with a load that its controller's model does not include.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure};
 use crate::scene::{Part, Point, Scene, Tone, View, point};
@@ -12,14 +12,14 @@ use std::time::Instant;
 
 type Seven = SVector<f64, 7>;
 
-/// Elbow up, hand straight down.
+/// Initial joint angles: elbow up, hand vertically down.
 const HOME: [f64; 7] = [0.0, -0.3, 0.0, -2.2, 0.0, 1.9, FRAC_PI_4];
 /// Mass of the load, kg.
 const LOAD: f64 = 1.5;
 /// Period of the control loop, s.
 const PERIOD: f64 = 1e-3;
 const DURATION: f64 = 10.0;
-/// The eight is drawn twice in this time, s; then the arm rests.
+/// Duration of drawing the eight twice, s; the arm rests afterwards.
 const DRAWING: f64 = 8.5;
 /// Half width and half height of the eight, m.
 const EIGHT: [f64; 2] = [0.28, 0.14];
@@ -28,29 +28,29 @@ const STIFFNESS: f64 = 400.0;
 const DAMPING: f64 = 40.0;
 /// Bandwidth of the disturbance observer, 1/s.
 const BANDWIDTH: f64 = 60.0;
-/// Pictures per second.
+/// Frames per second of the animation.
 const RATE: f64 = 50.0;
 
-/// One run of the arm.
+/// Results of one run of the arm.
 struct Run {
     samples: Vec<Sample<f64, 7, 7, 7>>,
-    /// Distance of the fingertips from where they should be, m.
+    /// Distance of the fingertips from their desired position, m.
     error: Vec<f64>,
-    /// What the observer felt at the end, N·m.
+    /// Final torques of the disturbance observer, N·m.
     felt: Seven,
     /// Nanoseconds of each control step.
     cost: Vec<f64>,
 }
 
-/// Computed torque in the space of the hand, from the model without a load.
+/// Computed-torque control in the task space of the hand, with the model without a load.
 struct Controller {
-    /// Whether the observer is used.
+    /// Whether the disturbance observer is used.
     observing: bool,
-    /// Where the hand is to point.
+    /// Desired orientation of the hand.
     home: IsometryMatrix3<f64>,
-    /// Torque from outside, as felt.
+    /// External torques, as estimated by the observer.
     felt: Seven,
-    /// Momentum that the model would have by now.
+    /// Momentum that the observer's model predicts.
     momentum: Seven,
 }
 
@@ -127,9 +127,9 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-/// Where the fingertips are to be: position, velocity, acceleration, relative to the start.
+/// Returns desired position, velocity and acceleration of the fingertips, relative to the start.
 fn eight(t: f64) -> [Vector3<f64>; 3] {
-    // A phase from 0 to 2 turns with no velocity or acceleration at its ends.
+    // Phase from 0 to 2 turns, with zero velocity and acceleration at both ends.
     let s = (t / DRAWING).clamp(0.0, 1.0);
     let turns = 2.0 * TAU;
     let phase = turns * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
@@ -146,7 +146,8 @@ fn hand(q: &Seven) -> IsometryMatrix3<f64> {
     PandaArm.frame_placement(frame!(PandaArm, "panda_hand_tcp"), q)
 }
 
-/// The small rotation from one frame to another, rad: half the sum of the cross products of their axes.
+/// Returns the small rotation from one frame to another, rad: half of the sum of the cross products of their
+/// axes.
 fn turn(from: &IsometryMatrix3<f64>, to: &IsometryMatrix3<f64>) -> Vector3<f64> {
     let axis = |frame: &IsometryMatrix3<f64>, k| frame.rotation.matrix().column(k).into_owned();
     (0..3).map(|k| axis(from, k).cross(&axis(to, k))).sum::<Vector3<f64>>() / 2.0
@@ -157,7 +158,7 @@ impl Controller {
         Self { observing, home: hand(&HOME.into()), felt: Seven::zeros(), momentum: Seven::zeros() }
     }
 
-    /// One step of the control loop.
+    /// Returns the torques for one period of the control loop.
     fn torque(&mut self, t: f64, q: &Seven, v: &Seven) -> Seven {
         let arm = PandaArm;
         let tip = frame!(PandaArm, "panda_hand_tcp");
@@ -166,7 +167,7 @@ impl Controller {
         let twist = arm.frame_velocity(tip, q, v);
         let jacobian = arm.frame_jacobian(tip, q);
 
-        // What the hand's acceleration should be, linear and angular.
+        // Desired linear and angular acceleration of the hand.
         let offset = self.home.translation.vector + at - hand.translation.vector;
         let turn = turn(&hand, &self.home);
         let stack = |a: Vector3<f64>, b: Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
@@ -175,7 +176,8 @@ impl Controller {
             + STIFFNESS * stack(offset, turn);
         let drift = arm.frame_acceleration(tip, q, v, &Seven::zeros());
 
-        // Joint accelerations that give it; the seventh freedom keeps the elbow near home.
+        // Joint accelerations with this hand acceleration; the redundant degree of freedom keeps the elbow
+        // near its initial posture.
         let square = jacobian * jacobian.transpose() + SMatrix::<f64, 6, 6>::identity() * 1e-6;
         let inverse = square.try_inverse().unwrap_or_default();
         let posture = -20.0 * (q - Seven::from(HOME)) - 9.0 * v;
@@ -183,7 +185,8 @@ impl Controller {
         let tau = arm.inverse_dynamics(q, v, &a) - self.felt;
 
         if self.observing {
-            // De Luca and Mattone's observer (ICRA 2003): the felt torque follows what the momentum lacks.
+            // De Luca and Mattone's observer (ICRA 2003): the estimated torque follows the residual of the
+            // momentum.
             let rate = arm.momentum_rate(q, v) + tau + self.felt;
             let lacking = arm.generalized_momentum(q, v) - self.momentum;
             self.momentum += PERIOD * rate;
@@ -223,14 +226,14 @@ impl Run {
         self.error.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Largest torque of any motor as a part of what its joint is rated for.
+    /// Returns the largest torque of any motor relative to its rating.
     fn strain(&self) -> f64 {
         let rated = |k: usize| if k < 4 { 87.0 } else { 12.0 };
         self.samples.iter().flat_map(|s| (0..7).map(move |k| s.u[k].abs() / rated(k))).fold(0.0, f64::max)
     }
 }
 
-/// The mass whose weight at the fingertips explains the felt torques best.
+/// Returns the mass whose weight at the fingertips fits the estimated torques best.
 fn weigh(run: &Run) -> f64 {
     let Some(last) = run.samples.last() else { return f64::NAN };
     let jacobian = PandaArm.frame_jacobian(frame!(PandaArm, "panda_hand_tcp"), &last.q);
@@ -244,8 +247,8 @@ fn median(times: &[f64]) -> f64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Time of one call of some generated functions, ns: median and least over batches, each over the states of
-/// the motion.
+/// Returns the time per call of some generated functions, ns: median and minimum over batches, each over the
+/// states of the motion.
 fn timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
     let arm = PandaArm;
     let states: Vec<(Seven, Seven, Seven)> =
@@ -278,13 +281,13 @@ fn scene(run: &Run) -> Scene {
     let frame = |s: &Sample<f64, 7, 7, 7>| {
         let at = PandaArm.frame_placements(&s.q);
         let mut points: Vec<Point> = vec![[0.0; 3]];
-        // The links' origins, then the ends of each joint's housing.
+        // Origins of the links, then the ends of each joint's housing.
         points.extend(joints.map(|k| point(&at[k], [0.0; 3])));
         points.push(point(&at[flange], [0.0; 3]));
         for end in [-1.0, 1.0] {
             points.extend(joints.map(|k| point(&at[k], [0.0, 0.0, 0.055 * end])));
         }
-        // Palm, fingers, load, and the edge of the base.
+        // Points of the palm, the fingers, the load, and the edge of the base.
         for [y, z] in
             [[-0.085, 0.035], [0.085, 0.035], [-0.03, 0.05], [-0.03, 0.11], [0.03, 0.05], [0.03, 0.11]]
         {

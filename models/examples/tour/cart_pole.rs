@@ -1,4 +1,4 @@
-//! A cart-pole: swung up by its energy, caught and held by a linear–quadratic regulator.
+//! Cart-pole: swing-up by energy shaping, then stabilisation by a linear–quadratic regulator.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
 use crate::scene::{Part, Scene, Tone, View, corners, faces, point};
@@ -10,29 +10,29 @@ use linkwork_models::CartPole;
 use std::f64::consts::{PI, TAU};
 
 const CART_POLE: CartPole = CartPole { cart_mass: 1.0, pole_mass: 0.3, pole_length: 1.0, rail_damping: 0.5 };
-/// The motor's strength, N.
+/// Maximum force of the motor, N.
 const STRENGTH: f64 = 15.0;
 /// Period of the digital controller, s.
 const PERIOD: f64 = 0.005;
-/// When somebody shoves the cart, s, and how hard, N.
+/// Time of a disturbance on the cart, s, and its force, N.
 const SHOVE: std::ops::Range<f64> = 8.0..8.1;
 const SHOVING: f64 = 18.0;
 const DURATION: f64 = 12.0;
-/// Pictures per second.
+/// Frames per second of the animation.
 const RATE: f64 = 50.0;
 
 type State = SVector<f64, 2>;
 
-/// Swings up until it can hold.
+/// Swings the pole up, and switches to the regulator near the upright position.
 struct Controller {
     gains: SMatrix<f64, 1, 4>,
-    /// When it last began to hold.
+    /// Time of the last switch to the regulator, s.
     caught: Option<f64>,
 }
 
 pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let upright_system = linear_system(&CART_POLE, &State::zeros(), &State::zeros(), &SVector::zeros())?;
-    // Riccati's equation for inputs that are held over a period.
+    // Riccati's equation for inputs that are constant over a period.
     let best = upright_system.lqr_held(&Cost::diagonal(&[20.0, 10.0, 1.0, 1.0], &[0.05]), PERIOD)?;
     let gains = SMatrix::<f64, 1, 4>::from_iterator(best.gain.iter().copied());
     let mut controller = Controller { gains, caught: None };
@@ -72,7 +72,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         Check::new("tilt at the end, rad", largest(DURATION - 0.5, &|q| upright(q[1])), 5e-3),
         Check::new("cart's distance from the middle at the end, m", largest(DURATION - 0.5, &|q| q[0]), 0.02),
     ];
-    // Upright is a multiple of a full turn; the one that was reached is drawn as zero.
+    // The upright position is a multiple of a full turn; the reached one is drawn as zero.
     let turns = samples.last().map_or(0.0, |s| (s.q[1] / TAU).round() * TAU);
     let pictures = vec![
         Picture::over_time("Cart and pole", "position, m; angle, rad", |chart| {
@@ -104,7 +104,7 @@ impl Controller {
     fn push(&mut self, t: f64, q: &State, v: &State) -> f64 {
         let x = SVector::from([q[0], upright(q[1]), v[0], v[1]]);
         let hold = -(self.gains * x)[0];
-        // Catch where the motor is strong enough to hold; let go only if the pole falls.
+        // Switch to the regulator as soon as the motor is strong enough; switch back only if the pole falls.
         let holding = self.caught.is_some() && x[1].abs() < 1.0;
         if holding || (x[1].abs() < 0.4 && hold.abs() < STRENGTH) {
             self.caught.get_or_insert(t);
@@ -114,14 +114,15 @@ impl Controller {
         self.swing(q, v)
     }
 
-    /// Åström and Furuta's energy shaping, *Automatica* 36 (2000): the pole's energy `E` seen from the cart
-    /// is to be that of standing upright, and `Ė` is in proportion to the cart's acceleration.
+    /// Returns the force of Åström and Furuta's energy shaping, *Automatica* 36 (2000). The pole's energy `E`
+    /// relative to the cart is controlled to that of the upright position; `Ė` is proportional to the cart's
+    /// acceleration.
     fn swing(&self, q: &State, v: &State) -> f64 {
         let turning = State::new(0.0, v[1]);
         let top = CART_POLE.potential_energy(&State::zeros());
         let energy = CART_POLE.kinetic_energy(q, &turning) + CART_POLE.potential_energy(q) - top;
         let acceleration = -3.0 * energy * v[1] * q[1].cos() - 14.0 * q[0] - 4.0 * v[0];
-        // The push that gives the cart this acceleration while the pole turns freely: two rows of M v̇ + h =
+        // Force that gives the cart this acceleration while the pole rotates freely: two rows of M v̇ + h =
         // τ.
         let (m, h) = (CART_POLE.mass_matrix(q), CART_POLE.bias_forces(q, v));
         let turn = -(h[1] + m[(1, 0)] * acceleration) / m[(1, 1)];
@@ -129,7 +130,7 @@ impl Controller {
     }
 }
 
-/// The angle from upright, between −π and π.
+/// Returns the angle from the upright position, between −π and π.
 fn upright(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
@@ -139,7 +140,7 @@ fn list(gains: &SMatrix<f64, 1, 4>) -> String {
 }
 
 fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
-    // The mechanism's y points up, the picture's z does.
+    // The mechanism's y axis points up, that of the animation is z.
     let turned = |body: &IsometryMatrix3<f64>, at| {
         let [x, y, z] = point(body, at);
         [x, -z, y]
@@ -149,7 +150,7 @@ fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         let pole = CART_POLE.frame_placement(frame!(CartPole, "pole"), &s.q);
         let mut points = vec![turned(&pole, [0.0; 3]), turned(&pole, [0.0, CART_POLE.pole_length, 0.0])];
         points.extend(corners(&cart, [0.0, -0.04, 0.0], [0.16, 0.07, 0.1]).map(|[x, y, z]| [x, -z, y]));
-        // The force as an arrow that ends at the cart.
+        // The force is an arrow that ends at the cart.
         let side = -0.17 * s.u[0].signum();
         points.push(turned(&cart, [side - 0.03 * s.u[0], -0.04, 0.0]));
         points.push(turned(&cart, [side, -0.04, 0.0]));

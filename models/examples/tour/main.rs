@@ -1,5 +1,5 @@
-//! A tour of Linkwork: six mechanisms, each simulated from generated equations and held against what
-//! mechanics says about it.
+//! Tour of Linkwork: six mechanisms, each simulated from generated equations and compared with known results
+//! of mechanics.
 //!
 //! ```text
 //! cargo run --release --example tour -p linkwork-models
@@ -25,7 +25,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use std::{env, fs};
 
-/// A stop on the tour.
+/// Function that runs one section of the tour.
 type Stop = fn() -> Result<Section, Box<dyn Error>>;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
@@ -59,7 +59,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     }
 }
 
-/// Where the page goes: the argument, or `tour` in cargo's target folder, three above
+/// Returns the output folder: the argument, or `tour` in cargo's target folder, three levels above
 /// `target/release/examples/tour`.
 fn folder() -> Result<PathBuf, Box<dyn Error>> {
     if let Some(folder) = env::args_os().nth(1) {

@@ -1,9 +1,9 @@
-//! The report as one web page that needs nothing else: text, tables, SVG plots and animated scenes.
+//! Report as one self-contained web page: text, tables, SVG plots and animated scenes.
 
 use crate::report::{Section, Table, figure};
 use std::fmt::Write;
 
-/// The whole page.
+/// Returns the complete page.
 pub fn html(sections: &[Section]) -> String {
     let checks = || sections.iter().flat_map(|s| &s.checks);
     let (held, total) = (checks().filter(|check| check.holds()).count(), checks().count());

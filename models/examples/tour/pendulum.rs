@@ -1,4 +1,4 @@
-//! A pendulum over a thousand seconds: what three integrators make of its energy and its phase.
+//! Pendulum over a thousand seconds: errors of energy and phase with three integrators.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
 use linkwork::integrate::Method;
@@ -10,17 +10,18 @@ use std::time::Instant;
 const PENDULUM: Pendulum<f64> = Pendulum { g: 9.81, mass: 1.0, length: 1.0 };
 const START: f64 = 2.5;
 const DURATION: f64 = 1000.0;
-/// Samples are this far apart, s; of the errors in each window, longer than a swing, the largest is shown.
+/// Interval of samples, s, and width of the windows, s, in which the largest error is shown; a window is
+/// longer than an oscillation.
 const INTERVAL: f64 = 0.05;
 const WINDOW: f64 = 5.0;
 
-/// What one integrator made of the run.
+/// Errors and cost of one integrator.
 struct Run {
-    /// Largest error of the energy in every window, relative to m g l.
+    /// Largest error of the energy in each window, relative to m g l.
     energy: Vec<[f64; 2]>,
-    /// Largest error of the angle in every window, rad.
+    /// Largest error of the angle in each window, rad.
     angle: Vec<[f64; 2]>,
-    /// Milliseconds of computing.
+    /// Computing time, ms.
     cost: f64,
 }
 
@@ -115,8 +116,8 @@ fn worst(errors: &[[f64; 2]]) -> f64 {
     errors.iter().map(|e| e[1]).fold(0.0, f64::max)
 }
 
-/// The exact angle: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`; Jacobi's functions by the
-/// descending Landen transformation (Abramowitz and Stegun, 16.4).
+/// Returns the exact angle: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`. Jacobi's functions follow
+/// by the descending Landen transformation (Abramowitz and Stegun, 16.4).
 fn exact(t: f64) -> f64 {
     let k = (START / 2.0).sin();
     let (mut a, mut b) = (1.0, (START / 2.0).cos());

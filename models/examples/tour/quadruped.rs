@@ -1,5 +1,5 @@
-//! A quadruped turns a somersault: nothing holds it, so its centre of mass and its angular momentum obey
-//! Newton alone.
+//! Somersault of a quadruped: without contacts, Newton's and Euler's laws determine its centre of mass and
+//! its angular momentum.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
 use crate::scene::{Part, Point, Scene, Tone, View, corners, faces, point};
@@ -12,17 +12,17 @@ use linkwork_models::Solo12;
 type Sample12 = Sample<f64, 19, 18, 12>;
 
 const G: f64 = 9.81;
-/// Velocity of the centre of mass at take-off, m/s, and the time until it is as high again, s.
+/// Velocity of the centre of mass at take-off, m/s, and the time until it returns to the same height, s.
 const TAKE_OFF: [f64; 3] = [-0.35, 0.0, 4.2];
 const FLIGHT: f64 = 2.0 * TAKE_OFF[2] / G;
 const PERIOD: f64 = 1e-3;
-/// Hip and knee of a front leg, rad; hind legs bend the other way.
+/// Angles of hip and knee of a front leg, rad; hind legs bend in the opposite direction.
 const STANDING: [f64; 2] = [0.7, -1.4];
 const TUCKED: [f64; 2] = [1.5, -2.7];
-/// When the legs are drawn in and stretched out, parts of the flight.
+/// Intervals in which the legs are tucked and extended, as fractions of the flight.
 const TUCKING: [f64; 2] = [0.12, 0.3];
 const OPENING: [f64; 2] = [0.68, 0.86];
-/// Pictures per second.
+/// Frames per second of the animation.
 const RATE: f64 = 200.0;
 
 pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
@@ -88,7 +88,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-/// Where the joints are to be at a time.
+/// Returns the desired joint angles at a time.
 fn posture(t: f64) -> SVector<f64, 12> {
     let part = t / FLIGHT;
     let smooth = |[from, to]: [f64; 2], part: f64| {
@@ -97,7 +97,7 @@ fn posture(t: f64) -> SVector<f64, 12> {
     };
     SVector::from_fn(|k, _| {
         let (leg, joint) = (k / 3, k % 3);
-        // The left hind leg is late.
+        // The left hind leg is delayed.
         let late = if leg == 2 { 0.04 } else { 0.0 };
         let tuck = smooth(TUCKING, part - late) - smooth(OPENING, part - late);
         let bend = if leg < 2 { 1.0 } else { -1.0 };
@@ -108,7 +108,8 @@ fn posture(t: f64) -> SVector<f64, 12> {
     })
 }
 
-/// The state at take-off: feet on the floor, centre of mass and trunk moving as wanted.
+/// Returns the state at take-off, with the feet on the floor and the desired velocities of centre of mass and
+/// trunk.
 fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
     let robot = Solo12;
     let mut q = robot.neutral();
@@ -137,7 +138,8 @@ fn fly(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Sample12>, Er
         .collect()
 }
 
-/// The spin at take-off for which the trunk is level again at the end, and how level it is.
+/// Returns the angular velocity at take-off for which the trunk is level again at the end, and the remaining
+/// tilt.
 fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
     let tilt = |spin: Vector3<f64>| -> Result<Vector3<f64>, Box<dyn std::error::Error>> {
         let samples = fly(spin, Rk4::step(PERIOD))?;
@@ -163,14 +165,14 @@ fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
     Ok((spin, error.norm()))
 }
 
-/// Distance of the centre of mass from where free fall takes it, m.
+/// Returns the distance of the centre of mass from its free-fall parabola over time, m.
 fn parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
     let start = Solo12.center_of_mass(&samples[0].q);
     let fall = |t: f64| start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0);
     samples.iter().skip(1).map(|s| [s.t, (Solo12.center_of_mass(&s.q) - fall(s.t)).norm()]).collect()
 }
 
-/// Change of the angular momentum about the centre of mass, relative to what it was.
+/// Returns the relative change of the angular momentum about the centre of mass over time.
 fn drift(samples: &[Sample12]) -> Vec<[f64; 2]> {
     let angular = |s: &Sample12| Solo12.momentum(&s.q, &s.v).fixed_rows::<3>(3).into_owned();
     let start = angular(&samples[0]);
@@ -188,7 +190,7 @@ fn scene(samples: &[Sample12]) -> Scene {
             for link in ["SHOULDER", "UPPER_LEG", "LOWER_LEG", "FOOT"] {
                 points.push(point(&at[index(leg, link)], [0.0; 3]));
             }
-            // The shoulder's axle, from inside the trunk.
+            // Axle of the shoulder, from inside the trunk.
             let inwards = if leg.ends_with('L') { -0.05 } else { 0.05 };
             points.push(point(&at[index(leg, "SHOULDER")], [0.0, inwards, 0.0]));
         }

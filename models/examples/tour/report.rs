@@ -1,39 +1,39 @@
-//! One stop of the tour as data, and as text for the terminal; [`crate::page`] makes a web page of the same.
+//! One section of the tour as data, and as text for the terminal; [`crate::page`] renders it as a web page.
 
 use crate::scene::Scene;
 use linkwork_design::picture::Chart;
 use std::fmt::Write;
 
-/// What one stop has to show.
+/// Results of one section.
 pub struct Section {
-    /// Heading.
+    /// Heading of the section.
     pub title: String,
-    /// What happens, in a few sentences.
+    /// Description in a few sentences.
     pub text: String,
-    /// The mechanism as it was written.
+    /// Source text of the mechanism's declaration.
     pub declaration: String,
-    /// Its equations of motion; empty if they are too long to be read.
+    /// Equations of motion, or an empty string if they are too long to print.
     pub equations: &'static str,
-    /// Figures.
+    /// Tables of results.
     pub tables: Vec<Table>,
-    /// What must hold.
+    /// Checks of the results.
     pub checks: Vec<Check>,
-    /// Moving pictures.
+    /// Animated scenes.
     pub scenes: Vec<Scene>,
-    /// Pictures that stand still.
+    /// Plots.
     pub pictures: Vec<Picture>,
 }
 
-/// A picture as SVG.
+/// Plot as SVG.
 pub struct Picture {
-    /// Heading.
+    /// Heading of the plot.
     pub title: &'static str,
-    /// The picture.
+    /// SVG text of the plot.
     pub svg: String,
 }
 
 impl Picture {
-    /// Curves over time with a label for what they show; `draw` adds them.
+    /// Creates a plot of curves over time with a label for their quantity; `draw` adds the curves.
     pub fn over_time(
         title: &'static str,
         y: &str,
@@ -43,42 +43,42 @@ impl Picture {
     }
 }
 
-/// Points for a curve.
+/// Converts points to the pairs of a curve.
 pub fn pairs(points: &[[f64; 2]]) -> impl Iterator<Item = (f64, f64)> {
     points.iter().map(|[x, y]| (*x, *y))
 }
 
-/// A table; the first column holds names, the others figures.
+/// Table whose first column holds names, and whose other columns hold values.
 pub struct Table {
-    /// Heads of the columns.
+    /// Headings of the columns.
     pub head: Vec<&'static str>,
-    /// Rows.
+    /// Cells of the rows.
     pub rows: Vec<Vec<String>>,
 }
 
-/// A figure that must stay below a bound.
+/// Value that must be below a bound.
 pub struct Check {
-    /// What it is, with its unit.
+    /// Name of the value, with its unit.
     pub what: &'static str,
-    /// The figure.
+    /// Measured value.
     pub value: f64,
-    /// The bound.
+    /// Upper bound.
     pub bound: f64,
 }
 
 impl Check {
-    /// A check, to be shown.
+    /// Creates a check.
     pub fn new(what: &'static str, value: f64, bound: f64) -> Self {
         Self { what, value, bound }
     }
 
-    /// Whether the figure is below its bound; a NaN is not.
+    /// Whether the value is below its bound; NaN is not.
     pub fn holds(&self) -> bool {
         self.value < self.bound
     }
 }
 
-/// Three digits, with a power of ten where the number is very small or large.
+/// Formats a number with three digits, and with a power of ten if it is very small or large.
 pub fn figure(x: f64) -> String {
     let size = x.abs();
     if size > 0.0 && !(1e-3..1e4).contains(&size) {
@@ -89,7 +89,7 @@ pub fn figure(x: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-/// A mechanism as it was written, without its documentation, from the text of its file.
+/// Returns the declaration of a mechanism without its documentation, from the text of its file.
 pub fn declaration(file: &str, name: &str) -> String {
     let lines: Vec<&str> = file.lines().filter(|line| !line.trim_start().starts_with("///")).collect();
     let starts = |line: &&str, word: &str| line.starts_with(&format!("pub struct {name}{word}"));
@@ -102,11 +102,11 @@ pub fn declaration(file: &str, name: &str) -> String {
     kept.copied().collect::<Vec<_>>().join("\n")
 }
 
-/// Width of the text in the terminal.
+/// Width of the text in the terminal, characters.
 const WIDTH: usize = 100;
 
 impl Section {
-    /// The section for a terminal.
+    /// Returns the section as text for a terminal.
     pub fn text(&self, number: usize) -> String {
         let mut out = format!("{number}  {}\n", self.title);
         write_wrapped(&mut out, &self.text);

@@ -1,79 +1,78 @@
-//! Moving pictures in space, as data for `player.js`: points that move, and the parts that are drawn between
-//! them.
+//! Animated scenes as data for `player.js`: moving points, and the parts that are drawn between them.
 
 use linkwork::nalgebra::{IsometryMatrix3, Point3};
 use std::fmt::Write;
 
-/// A point in space: x to the right, y away, z up, m.
+/// Point in space: x to the right, y away from the viewer, z up, m.
 pub type Point = [f64; 3];
 
-/// A moving picture.
+/// Animated scene.
 pub struct Scene {
-    /// What it shows.
+    /// Title of the scene.
     pub title: &'static str,
-    /// Pictures per second of simulated time.
+    /// Frames per second of simulated time.
     pub rate: f64,
-    /// Seconds shown per second watched.
+    /// Simulated seconds per second of playback.
     pub speed: f64,
-    /// What is drawn, by the indices of points.
+    /// Drawn parts, which refer to points by index.
     pub parts: Vec<Part>,
-    /// Where the points are, picture by picture.
+    /// Positions of the points in each frame.
     pub frames: Vec<Vec<Point>>,
-    /// The instant, s, that a picture that does not move shows.
+    /// Time of the frame that is shown without animation, s.
     pub still: f64,
-    /// Words from a picture on.
+    /// Captions, each with its first frame.
     pub captions: Vec<(usize, String)>,
-    /// Lines that do not move.
+    /// Fixed lines.
     pub guides: Vec<Vec<Point>>,
-    /// A point that leaves a trail, and for how many pictures.
+    /// Index of a point that leaves a trail, and the length of the trail in frames.
     pub trail: Option<(usize, usize)>,
-    /// From where it is seen.
+    /// Viewpoint of the scene.
     pub view: View,
 }
 
-/// Something drawn between points.
+/// Shape that is drawn between points.
 pub enum Part {
-    /// A round bar with its radius, m.
+    /// Cylinder between two points with its radius, m.
     Rod(usize, usize, f64, Tone),
-    /// A ball with its radius, m.
+    /// Sphere with its radius, m.
     Ball(usize, f64, Tone),
-    /// A flat face.
+    /// Polygon.
     Face(Vec<usize>, Tone),
-    /// An arrow from one point to another.
+    /// Arrow from one point to another.
     Arrow(usize, usize, Tone),
 }
 
-/// Colour of a part; the page says what it looks like.
+/// Colour of a part, whose appearance the page defines.
 #[derive(Clone, Copy)]
 pub enum Tone {
-    /// The main body.
+    /// Colour of the main body.
     Body,
-    /// Joints and other ironware.
+    /// Colour of joints and other small parts.
     Dark,
-    /// What is to be watched.
+    /// Colour of highlighted parts.
     Accent,
-    /// The other side.
+    /// Colour of a contrasting part.
     Second,
 }
 
-/// From where a scene is seen.
+/// Viewpoint of a scene.
 pub struct View {
-    /// The point in the middle.
+    /// Point at the centre of the view, m.
     pub target: Point,
-    /// What has to fit, m: width and height.
+    /// Width and height of the visible region, m.
     pub size: [f64; 2],
-    /// Direction of sight about the vertical, degrees.
+    /// Direction of view about the vertical, degrees.
     pub yaw: f64,
-    /// Degrees from above.
+    /// Elevation of the viewpoint, degrees.
     pub pitch: f64,
-    /// Turning while it plays, degrees per second watched.
+    /// Rate of rotation of the view during playback, degrees per second.
     pub turning: f64,
     /// Height and half width of the floor's grid, m.
     pub floor: Option<[f64; 2]>,
 }
 
 impl Scene {
-    /// The scene for `player.js`. Points are in hundredths of millimetres.
+    /// Returns the scene as JSON for `player.js`. Points are in hundredths of millimetres.
     pub fn json(&self) -> String {
         let mut out = format!(
             "{{\"rate\":{},\"speed\":{},\"still\":{},\"target\":{:?},\"size\":{:?},\"yaw\":{},\"pitch\":{},\"turning\":{},",
@@ -127,12 +126,12 @@ fn join(lists: &[Vec<Point>]) -> String {
     lists.iter().map(list).collect::<Vec<_>>().join(",")
 }
 
-/// A point of a body in space.
+/// Returns a point of a body in ground coordinates.
 pub fn point(body: &IsometryMatrix3<f64>, at: Point) -> Point {
     (body * Point3::from(at)).coords.into()
 }
 
-/// The eight corners of a box with the given half sizes about a point of a body.
+/// Returns the eight corners of a box with the given half sizes about a point of a body.
 pub fn corners(body: &IsometryMatrix3<f64>, at: Point, half: Point) -> [Point; 8] {
     let signs = |k: usize| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|bit| 2.0 * bit as f64 - 1.0);
     std::array::from_fn(|k| {
@@ -141,7 +140,7 @@ pub fn corners(body: &IsometryMatrix3<f64>, at: Point, half: Point) -> [Point; 8
     })
 }
 
-/// The six faces of a box whose corners start with the point `first`.
+/// Returns the six faces of a box whose corners start with the point `first`.
 pub fn faces(first: usize, tone: Tone) -> impl Iterator<Item = Part> {
     let sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
     sides.into_iter().map(move |side| Part::Face(side.map(|k| first + k).to_vec(), tone))

@@ -1,4 +1,4 @@
-//! A heavy top: its precession and its nutation against Lagrange's closed forms.
+//! Heavy top: its precession and nutation against Lagrange's closed-form solutions.
 
 use crate::report::{Check, Picture, Section, Table, declaration, figure};
 use crate::scene::{Part, Point, Scene, Tone, View, point};
@@ -8,15 +8,15 @@ use linkwork_models::HeavyTop;
 use std::f64::consts::TAU;
 
 const TOP: HeavyTop<f64> = HeavyTop { g: 9.81, mass: 0.3, height: 0.05, axial: 2.4e-4, transverse: 1.8e-4 };
-/// Inclination at the start, rad.
+/// Initial inclination, rad.
 const TILT: f64 = 0.5;
 /// Spin about the axis, rad/s.
 const SPIN: f64 = 150.0;
-/// Turns of steady precession.
+/// Number of turns of steady precession.
 const TURNS: f64 = 10.0;
-/// How long the released top is shown, s.
+/// Duration of the released top's animation, s.
 const SHOWN: f64 = 2.8;
-/// Pictures per second.
+/// Frames per second of the animation.
 const RATE: f64 = 240.0;
 
 pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
@@ -33,7 +33,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         checks.push(Check::new(what, (simulated / closed - 1.0).abs(), 1e-9));
     };
 
-    // Steady: A Ω² cos θ − C n Ω + m g h = 0, the slower of both solutions.
+    // Steady precession: the slower solution of A Ω² cos θ − C n Ω + m g h = 0.
     let rate = 2.0 * weight / (spin + (spin * spin - 4.0 * across * TILT.cos() * weight).sqrt());
     let mut omega = tilt.inverse() * Vector3::new(0.0, 0.0, rate);
     omega.z = SPIN;
@@ -48,8 +48,8 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         rate,
     );
 
-    // Released with its axis at rest it falls, to the other root of β (1 − u²) = a² (u₀ − u), and rises to a
-    // cusp.
+    // Released with its axis at rest, the top falls to the other root of β (1 − u²) = a² (u₀ − u), and rises
+    // again to a cusp.
     let (a2, b) = ((spin / across) * (spin / across), 2.0 * weight / across);
     let lowest = (a2 - (a2 * a2 - 4.0 * b * (a2 * TILT.cos() - b)).sqrt()) / (2.0 * b);
     let released = simulate(&TOP).from(q, [0.0, 0.0, SPIN]).method(method);
@@ -118,13 +118,13 @@ fn axis(q: &SVector<f64, 4>) -> Vector3<f64> {
     rotation(q) * Vector3::z()
 }
 
-/// How fast the axis goes round the vertical, rad/s.
+/// Returns the precession rate of the axis about the vertical, rad/s.
 fn precession(s: &Sample<f64, 4, 3, 0>) -> f64 {
     let (at, rate) = (axis(&s.q), rotation(&s.q) * Vector3::new(s.v.y, -s.v.x, 0.0));
     (at.x * rate.y - at.y * rate.x) / (at.x * at.x + at.y * at.y)
 }
 
-/// Corners around the top.
+/// Number of points on the circumference of the drawn top.
 const CORNERS: usize = 20;
 
 fn scene(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {

@@ -1,4 +1,4 @@
-//! A glider, a quadrotor, a satellite with wheels, and a craft over the round Earth, against closed forms.
+//! Glider, quadrotor, satellite with wheels, and vehicle over the round Earth, against closed-form solutions.
 
 use crate::{close, is_at};
 use linkwork::nalgebra::{Complex, Quaternion, SVector, UnitQuaternion, Vector3};
@@ -35,7 +35,7 @@ const GLIDER: Glider = Glider {
     yaw_r: -0.03,
 };
 
-/// A steady glide, with the elevator that gives the coefficient of lift.
+/// Returns a steady glide, with the elevator angle of this lift coefficient.
 fn glide(glider: &Glider, lift: f64) -> SteadyState<7, 6, 1> {
     let alpha = (lift - glider.cl_0) / glider.cl_alpha;
     let elevator = -glider.cm_alpha * alpha / glider.cm_elevator;
@@ -77,8 +77,9 @@ fn modes(glider: &Glider, lift: f64) -> FlightModes {
     FlightModes::of(&flight::linear_system(glider, &found.q, &found.v, &found.u).unwrap()).unwrap()
 }
 
-/// With its angle of attack held firmly, `V̇ = −k_D V² − g sin γ` and `V γ̇ = k_L V² − g cos γ`: about the
-/// glide at `tan γ = −C_D / C_L` the trace is `−3 (g / V) C_D / C_L`, a third of it by the path's slope.
+/// With a constant angle of attack, `V̇ = −k_D V² − g sin γ` and `V γ̇ = k_L V² − g cos γ`. About the glide
+/// at `tan γ = −C_D / C_L` the trace is `−3 (g / V) C_D / C_L`, a third of which is due to the slope of the
+/// path.
 #[test]
 fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     let (lift, firm) = (0.8, Glider { cm_alpha: -1000.0, ..GLIDER });
@@ -88,7 +89,7 @@ fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     close(2.0 * PI / phugoid.frequency(), SQRT_2 * PI * speed / firm.g, 0.01);
     let ratio = lift / (firm.cd_0 + firm.cd_induced * lift * lift);
     close(phugoid.damping_ratio(), 3.0 / (2.0 * SQRT_2 * ratio), 0.01);
-    // How far the neutral point lies behind, in chords; pitch is far faster.
+    // Distance of the neutral point behind the centre of mass, in chords; pitch is much faster.
     let derivatives = {
         let SteadyState { q, v, u, .. } = glide(&GLIDER, lift);
         Derivatives::of(&GLIDER, &q, &v, &u).unwrap().in_stability_axes()
@@ -102,7 +103,8 @@ fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     assert!(found.short_period.unwrap().frequency() > 20.0 * phugoid.frequency());
 }
 
-/// Etkin and Reid, § 6.8: the constant term of the characteristic polynomial decides.
+/// The constant term of the characteristic polynomial determines the stability of the spiral (Etkin and Reid,
+/// § 6.8).
 #[test]
 fn dihedral_makes_a_spiral_stable() {
     let boundary = GLIDER.yaw_beta * GLIDER.roll_r / GLIDER.yaw_r;
@@ -178,7 +180,7 @@ fn at_rest() -> (SVector<f64, 7>, SVector<f64, 6>) {
 #[test]
 fn a_satellite_turns_by_its_wheels() {
     let (q, v) = at_rest();
-    // Rest to rest: one way, then back.
+    // Rest-to-rest manoeuvre: acceleration in one direction, then in the opposite one.
     let turn = |torques: [f64; 3], q, v, duration: f64| {
         let path = simulate(&SATELLITE)
             .from(q, v)
@@ -195,7 +197,7 @@ fn a_satellite_turns_by_its_wheels() {
     let hull = 2.0 * q[0].atan2(q[3]);
     close(hull, -SATELLITE.wheel / (SATELLITE.ixx + 2.0 * SATELLITE.wheel) * q[4], 1e-8);
 
-    // All three at once, and tumbling: the angular momentum stays.
+    // With all wheels at once, and while tumbling, the angular momentum is constant.
     let v = SVector::from([0.1, -0.2, 0.15, 80.0, -50.0, 20.0]);
     let seen = |q: &_, v: &_| Outputs::outputs(&SATELLITE, 0.0, q, v, &SVector::zeros(), &SVector::zeros());
     let (later, faster) = turn([0.05, 0.1, -0.02], q, v, 15.0);
@@ -217,9 +219,9 @@ fn a_satellite_with_a_spinning_wheel_nutates() {
     is_at(found.first(), 0.0, nutation, 1e-10);
 }
 
-/// Turning about the axis of its middle moment of inertia at `ν` a satellite tumbles; a wheel with the
-/// momentum `h` along that axis holds it if `(h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) > 0`, which over `I₂ I₃` is
-/// the square of its nutation (Hughes, § 6.3).
+/// A satellite that rotates at `ν` about the axis of its intermediate moment of inertia tumbles. A wheel with
+/// the momentum `h` along that axis stabilises it if `(h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) > 0`, which divided
+/// by `I₂ I₃` is the square of its nutation frequency (Hughes, § 6.3).
 #[test]
 fn a_wheel_holds_a_satellite_that_turns_about_its_middle_axis() {
     let (q, _) = at_rest();
@@ -259,7 +261,7 @@ const CRAFT: HypersonicGlider = HypersonicGlider {
     drag_area: 1.2,
 };
 
-/// Over a place on the Earth with these axes, which are those of the craft: forward, right, down.
+/// Returns the pose at a position over the Earth with local axes of the craft: forward, right, down.
 fn over(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, UnitQuaternion<f64>) {
     let down = -place.normalize();
     let axes = linkwork::nalgebra::Matrix3::from_columns(&[forward, down.cross(&forward), down]);
@@ -268,7 +270,7 @@ fn over(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, UnitQua
     ([place.x, place.y, place.z, c.x, c.y, c.z, c.w].into(), turn)
 }
 
-/// How the velocity over the Earth changes, in axes of the Earth.
+/// Returns the rate of the velocity relative to the Earth, in axes of the Earth.
 fn acceleration(t: f64, q: &SVector<f64, 7>, v: &SVector<f64, 6>, u: [f64; 3]) -> Vector3<f64> {
     let tau = Rheonomic::generalized_forces(&CRAFT, t, q, v, &u.into());
     let rates = Rheonomic::forward_dynamics(&CRAFT, t, q, v, &tau);
@@ -287,7 +289,7 @@ fn to_the_east_a_craft_needs_less_lift() {
         let inertial: f64 = sign * speed + CRAFT.turning * r;
         let lift = CRAFT.mass * (CRAFT.mu / (r * r) - inertial * inertial / r);
         let drag = 0.5 * CRAFT.density * (-40e3 / CRAFT.scale).exp() * CRAFT.drag_area * speed * speed;
-        // Level, and steady with as much thrust as drag: towards the centre, and nothing else.
+        // Level and steady, with thrust equal to drag: the only acceleration is towards the centre.
         let found = acceleration(0.0, &q, &v, [lift, drag, 0.0]);
         let expected = Vector3::new(-speed * speed / r, 0.0, 0.0);
         assert!((found - expected).norm() < 1e-8 * CRAFT.mu / (r * r), "{found} {expected}");
@@ -318,14 +320,14 @@ fn over_the_earth_gravity_and_turning_pull() {
     }
 }
 
-/// After a circle of a quarter around the poles the Earth has turned on below.
+/// After a quarter of a polar circle the Earth has rotated below the craft.
 #[test]
 fn an_orbit_goes_west_over_the_ground() {
     let craft = HypersonicGlider { density: 0.0, ..CRAFT };
     let r = CRAFT.radius + 300e3;
     let (q, _) = over(Vector3::new(r, 0.0, 0.0), Vector3::z());
     let (speed, rate) = ((CRAFT.mu / r).sqrt(), (CRAFT.mu / (r * r * r)).sqrt());
-    // Seen from the Earth it goes west, to the left of a craft that heads north.
+    // Relative to the Earth the craft moves west, to the left of its northward heading.
     let turning = CRAFT.turning;
     let v = [speed, -turning * r, 0.0, -turning, -rate, 0.0];
     let duration = FRAC_PI_2 / rate / 2.0;

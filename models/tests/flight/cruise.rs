@@ -1,4 +1,4 @@
-//! The transport and the light aircraft by their derivatives.
+//! Transport and light aircraft given by their stability derivatives.
 
 use crate::{close, is_at};
 use linkwork::nalgebra::DMatrix;
@@ -11,7 +11,7 @@ use linkwork_models::CruisingAircraft;
 
 type State = (SVector<f64, 7>, SVector<f64, 6>, SVector<f64, 4>);
 
-/// Level flight at the speed of the cruise: pitch, climb, elevator and thrust are found.
+/// Trims level flight at the cruise speed: pitch, climb, elevator and thrust are unknown.
 fn level(craft: &CruisingAircraft) -> State {
     let found = equilibrium(craft)
         .moving([craft.cruise, 0.0, 0.0, 0.0, 0.0, 0.0].into())
@@ -36,15 +36,15 @@ const TRANSPORT: CruisingAircraft = CruisingAircraft::BOEING_747;
 #[test]
 fn a_transport_cruises() {
     let (q, v, u) = level(&TRANSPORT);
-    // The cruise is that of its derivatives: nothing deflects.
+    // In cruise the derivatives alone determine the trim: all deflections are zero.
     assert!((v[0] - 235.9).abs() < 1e-12 && v[2].abs() < 1e-9 && q[4].abs() < 1e-12);
     assert!(u[0].abs() < 1e-12 && u[3].abs() < 1e-6, "{u}");
     let felt = measured_system(&TRANSPORT, 0.0, &q, &v, &u).unwrap();
     assert_eq!(felt.outputs()[3].name, "felt");
 }
 
-/// The matrices by an independent chain of Etkin's derivatives to 1e-9, and his matrices (ft and s), as
-/// printed, to their digits.
+/// The matrices equal those of an independent computation from Etkin's derivatives to 1e-9, and his printed
+/// matrices (ft and s) to their digits.
 #[test]
 fn a_transport_has_the_matrices_of_etkin_and_reid() {
     let system = system(&TRANSPORT);
@@ -83,7 +83,7 @@ fn a_transport_has_the_matrices_of_etkin_and_reid() {
         let found = part.a()[(i, j)];
         assert!((found - own[i][j]).abs() <= 1e-9 * own[i][j].abs() + 1e-12, "A[{i}, {j}] is {found}");
     }
-    // What the elevator does: Z_δ / (m − Z_ẇ), and M_δ with what the downwash of that adds.
+    // Effect of the elevator: Z_δ / (m − Z_ẇ), and M_δ plus the effect of the resulting downwash.
     let column = system.input_index("elevator").unwrap();
     let CruisingAircraft { mass, density, cruise, area, chord, iyy, .. } = TRANSPORT;
     let (load, lag) = (0.5 * density * cruise * cruise * area, 0.25 * density * chord * area);
@@ -93,7 +93,7 @@ fn a_transport_has_the_matrices_of_etkin_and_reid() {
     close(system.b()[(4, column)], pitch / iyy, 1e-12);
 }
 
-/// Published eigenvalues, and those of the independent chain.
+/// The modes have the published eigenvalues, and those of an independent computation.
 #[test]
 fn a_transport_has_the_modes_of_etkin_and_reid() {
     let modes = FlightModes::of(&system(&TRANSPORT)).unwrap();
@@ -107,7 +107,7 @@ fn a_transport_has_the_modes_of_etkin_and_reid() {
     is_at(modes.dutch_roll.as_ref(), -0.033011, 0.94655, 1e-3);
     is_at(modes.roll.as_ref(), -0.56248, 0.0, 1.2e-3);
     is_at(modes.spiral.as_ref(), -0.0072973, 0.0, 3e-3);
-    // Height alone is left, on which nothing depends in air of one density.
+    // Height is the remaining state: nothing depends on it in air of uniform density.
     let [height] = &modes.others[..] else { panic!("{:?}", modes.others) };
     assert!(height.frequency() < 1e-9);
     assert_eq!(modes.named().len(), 5);
@@ -122,7 +122,7 @@ fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
     assert!((ratio - 7.0 / 8.0).abs() < 0.01, "{ratio}");
 }
 
-/// What went in comes out: dimensional derivatives over what makes them dimensionless.
+/// The dimensionless derivatives from dimensional ones equal the declared derivatives.
 #[test]
 fn derivatives_without_dimension_are_those_declared() {
     let craft = TRANSPORT;
@@ -169,8 +169,8 @@ fn derivatives_without_dimension_are_those_declared() {
     assert!(found.of_force("M", "flaps").unwrap_err().to_string().contains("elevator"));
 }
 
-/// Nelson, *Flight Stability and Automatic Control* (1998), ch. 4 and 5: eigenvalues of the Navion as
-/// printed.
+/// The Navion has the printed eigenvalues (Nelson, *Flight Stability and Automatic Control*, 1998, ch. 4 and
+/// 5).
 #[test]
 fn a_light_aircraft_has_the_modes_of_nelson() {
     let modes = FlightModes::of(&system(&CruisingAircraft::NAVION)).unwrap();
@@ -181,10 +181,10 @@ fn a_light_aircraft_has_the_modes_of_nelson() {
     is_at(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
 }
 
-/// Teper, *Aircraft Stability and Control Data* (1969), as Cook, *Flight Dynamics Principles* (2007), ch. 7,
-/// has it: the DC-8 at 468.2 ft/s in 15 000 ft. Its lateral derivatives, per ft/s and rad/s, and the
-/// characteristic polynomial `(s + 0.0065) (s + 1.329) (s² + 0.254 s + 1.433)`. Which mass, moments of
-/// inertia, area and span make them dimensionless cancels.
+/// The DC-8 at 468.2 ft/s in 15 000 ft (Teper, *Aircraft Stability and Control Data*, 1969, as in Cook,
+/// *Flight Dynamics Principles*, 2007, ch. 7). Its lateral derivatives, per ft/s and rad/s, give the
+/// characteristic polynomial `(s + 0.0065) (s + 1.329) (s² + 0.254 s + 1.433)`. The mass, moments of inertia,
+/// area and span that make them dimensionless cancel.
 #[test]
 fn an_airliner_has_the_modes_of_cook() {
     let (feet, speed) = (0.3048, 468.2 * 0.3048);
@@ -211,8 +211,8 @@ fn an_airliner_has_the_modes_of_cook() {
     is_at(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
 }
 
-/// Cook, *Flight Dynamics Principles* (2007), ch. 5: the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body
-/// axes that climb at 13.3° to the wind, from the state matrix as printed:
+/// The A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the wind (Cook, *Flight
+/// Dynamics Principles*, 2007, ch. 5). The printed state matrix gives
 /// `(s² + 0.033 s + 0.020) (s² + 0.902 s + 2.666)`.
 #[test]
 fn modes_of_printed_matrices_are_named() {

@@ -1,4 +1,4 @@
-//! The fighter: a state by the book, trimmed flight, and its linear motion.
+//! Fighter: rates in a published state, trimmed flight, and its linear motion.
 
 use crate::is_at;
 use linkwork::nalgebra::{DMatrix, SVector, UnitQuaternion};
@@ -10,7 +10,7 @@ use linkwork_models::Fighter;
 
 const FOOT: f64 = 0.3048;
 
-/// The source divides by moments of inertia in constants of four digits; what turns differs by as much.
+/// Tolerance of rotational rates: the source divides by moments of inertia in constants of four digits.
 const ROUNDED: f64 = 2.5e-4;
 
 fn posed(place: [f64; 3], [bank, pitch, heading]: [f64; 3]) -> SVector<f64, 7> {
@@ -19,13 +19,14 @@ fn posed(place: [f64; 3], [bank, pitch, heading]: [f64; 3]) -> SVector<f64, 7> {
     SVector::from([x, y, z, turn.i, turn.j, turn.k, turn.w])
 }
 
-/// Velocity in body axes of speed, angle of attack and sideslip, with rates and power.
+/// Returns the velocity in body axes and the power, for a speed, angle of attack, sideslip, and body rates.
 fn moving(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], power: f64) -> SVector<f64, 7> {
     let across = speed * beta.cos();
     SVector::from([across * alpha.cos(), speed * beta.sin(), across * alpha.sin(), p, q, r, power])
 }
 
-/// Stevens, Lewis and Johnson, table 3.5-2: the rates of all states in a state far from any trim.
+/// The rates of all states equal those of the book in a state far from any trim (Stevens, Lewis and Johnson,
+/// table 3.5-2).
 #[test]
 fn all_rates_are_those_of_the_book() {
     let fighter = Fighter { place: 0.4, ..Fighter::F16 };
@@ -70,7 +71,7 @@ struct Level {
     u: SVector<f64, 4>,
 }
 
-/// Level flight by the sea: angle of attack, throttle, power and elevator are found.
+/// Trims level flight at sea level: angle of attack, throttle, power and elevator are unknown.
 fn level(fighter: &Fighter, speed: f64) -> Level {
     let whole = fighter.extended();
     let found = equilibrium(&whole)
@@ -87,8 +88,8 @@ fn level(fighter: &Fighter, speed: f64) -> Level {
     Level { q: found.q, v: found.v, u: found.u }
 }
 
-/// Table 3.6-2: throttle, angle of attack and elevator (degrees) over the speed (ft/s) in level flight by the
-/// sea.
+/// Throttle, angle of attack and elevator (degrees) as functions of the speed (ft/s) in level flight at sea
+/// level equal table 3.6-2.
 #[test]
 fn trimmed_flight_is_that_of_the_book() {
     let published = [
@@ -115,7 +116,7 @@ fn trimmed_flight_is_that_of_the_book() {
             assert!((found - expected).abs() <= digits, "{speed} ft/s: expected {expected}, found {found}");
         }
     }
-    // Table 3.6-3: how the centre of mass moves the elevator.
+    // Table 3.6-3: effect of the position of the centre of mass on the elevator.
     for (place, throttle, alpha, elevator) in
         [(0.35, 0.1385, 0.03691, -0.7588), (0.3, 0.1485, 0.03936, -1.931), (0.38, 0.1325, 0.03544, -0.0559)]
     {
@@ -126,7 +127,7 @@ fn trimmed_flight_is_that_of_the_book() {
     }
 }
 
-/// A turn of 0.3 rad/s at 502 ft/s, coordinated: table 3.6-3.
+/// A coordinated turn of 0.3 rad/s at 502 ft/s equals table 3.6-3.
 #[test]
 fn a_fighter_turns_as_in_the_book() {
     let fighter = Fighter { place: 0.3, ..Fighter::F16 };
@@ -179,7 +180,7 @@ fn linear(fighter: &Fighter, at_rest: &Level) -> StateSpace {
     flight::linear_system(&at(&whole, 0.0), &at_rest.q, &at_rest.v, &at_rest.u).unwrap()
 }
 
-/// Example 3.7-1: the matrix in speed (ft/s), angle of attack, pitch and pitch rate at 502 ft/s by the sea.
+/// Matrix of speed (ft/s), angle of attack, pitch and pitch rate at 502 ft/s at sea level (example 3.7-1).
 const LONGITUDINAL: [[f64; 4]; 4] = [
     [-1.9311e-2, 8.8157, -32.170, -0.57499],
     [-2.5389e-4, -1.0189, 0.0, 0.90506],
@@ -187,8 +188,8 @@ const LONGITUDINAL: [[f64; 4]; 4] = [
     [0.0, 0.82225, 0.0, -1.0774],
 ];
 
-/// Example 5.3-1: the rows of sideslip, roll rate and yaw rate there, in sideslip, roll rate, yaw rate and
-/// bank.
+/// Rows of sideslip, roll rate and yaw rate in the same flight, with the columns sideslip, roll rate, yaw
+/// rate and bank (example 5.3-1).
 const ACROSS: [[f64; 4]; 3] =
     [[-0.3220, 0.0364, -0.9917, 0.0640], [-30.6492, -3.6784, 0.6646, 0.0], [8.5396, -0.0254, -0.4764, 0.0]];
 
@@ -224,8 +225,8 @@ fn linear_motion_is_that_of_the_book() {
     }
 }
 
-/// With its centre of mass far back the fighter has two real modes of pitch, one of which grows; farther
-/// forward it has a short period. Its engine is a mode of its own, and lags by a second.
+/// With an aft centre of mass the fighter has two real pitch modes, one of which is unstable; with a forward
+/// one it has a short period. The engine is a separate mode with a lag of a second.
 #[test]
 fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     let modes = |place| {
@@ -244,7 +245,7 @@ fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
         growing.len() == 1 && growing[0].exponent.im == 0.0 && growing[0].participation_of("q") > Some(0.3)
     );
 
-    // Across, those of the matrix of the book with its turning of the bank, p + r tan θ.
+    // Lateral modes: those of the book's matrix with its bank rate, p + r tan θ.
     let trim = level(&Fighter::F16, 502.0);
     let [beta, p, r] = ACROSS;
     let bank = [0.0, 1.0, trim.v[2] / trim.v[0], 0.0];

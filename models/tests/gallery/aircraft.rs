@@ -3,7 +3,7 @@ use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::Aircraft;
 
-/// A light aircraft.
+/// Light aircraft with linear aerodynamics.
 const A: Aircraft = Aircraft {
     g: 9.81,
     mass: 1050.0,
@@ -30,13 +30,13 @@ fn state(turn: UnitQuaternion<f64>, v: Vector3<f64>, w: Vector3<f64>) -> (SVecto
     ([0.0, 0.0, 0.0, turn.i, turn.j, turn.k, turn.w].into(), [v.x, v.y, v.z, w.x, w.y, w.z].into())
 }
 
-/// Trim in level flight: lift, thrust and elevator worked out by hand leave no acceleration.
+/// In trimmed level flight, lift, thrust and elevator from a calculation by hand give zero accelerations.
 #[test]
 fn level_flight() {
     let (alpha, weight) = (0.06_f64, A.mass * A.g);
     let cl = A.cl_0 + A.cl_alpha * alpha;
     let cd = A.cd_0 + A.cd_induced * cl * cl;
-    // L + D tan α = m g gives the speed.
+    // L + D tan α = m g determines the speed.
     let load = weight / (cl + cd * alpha.tan());
     let speed = (2.0 * load / (A.density * A.area)).sqrt();
     let thrust = load * cd / alpha.cos();
@@ -48,7 +48,7 @@ fn level_flight() {
     let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
     assert_near(A.forward_dynamics(&q, &v, &tau), SVector::zeros(), 1e-12);
 
-    // Pitched up by a little the nose is driven back down.
+    // After a small pitch-up the moment lowers the nose.
     let nose_up = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha + 0.01);
     let (q, v) = state(nose_up, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
     let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
@@ -56,7 +56,7 @@ fn level_flight() {
     assert_close(back, load * A.chord * A.cm_alpha * 0.01 / A.iyy, 1e-12);
 }
 
-/// Level turn of a glider without drag: the velocity is constant in its own axes.
+/// In a level turn of a glider without drag, the velocity is constant in body axes.
 #[test]
 fn level_turn() {
     let smooth = Aircraft { cd_0: 0.0, cd_induced: 0.0, ..A };

@@ -22,7 +22,8 @@ fn tool_by_denavit_and_hartenberg() {
 
 #[test]
 fn weight_of_the_stretched_arm() {
-    // Stretched out level along x, as at zero: the lift joint carries m₂, m₃ and the three wrist bodies.
+    // At zero the arm is stretched out horizontally along x: the lift joint carries m₂, m₃ and the three
+    // wrist bodies.
     let robot = Ur5;
     let h = robot.bias_forces(&robot.neutral(), &SVector::zeros());
     let moment = 8.393 * 0.28 + 2.275 * (0.425 + 0.25) + (1.219 + 1.219 + 0.1879) * (0.425 + 0.39225);

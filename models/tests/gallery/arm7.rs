@@ -23,7 +23,7 @@ fn flange_by_denavit_and_hartenberg() {
     assert_near(tip.to_homogeneous(), expected.to_homogeneous(), 1e-14);
 }
 
-/// Locked fingers are fingers that do not move: the upper left part of the full robot's mass matrix.
+/// Locked fingers do not move: the mass matrix is the upper left part of the full robot's.
 #[test]
 fn locked_fingers() {
     let mut full = Panda.neutral();

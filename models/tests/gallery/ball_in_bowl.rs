@@ -5,13 +5,14 @@ use linkwork_models::BallInBowl;
 
 const B: BallInBowl = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
 
-/// At the angle `theta` from the lowest point towards x, unturned.
+/// Returns the configuration at the angle `theta` from the lowest point towards x, without rotation.
 fn place(theta: f64) -> SVector<f64, 7> {
     let reach = B.bowl - B.radius;
     [reach * theta.sin(), 0.0, -reach * theta.cos(), 0.0, 0.0, 0.0, 1.0].into()
 }
 
-/// Large swings, by the elliptic integral; small ones have the frequency `√(5 g / (7 (R − r)))`.
+/// Large oscillations have the period of an elliptic integral; small ones have the frequency
+/// `√(5 g / (7 (R − r)))`.
 #[test]
 fn swings_like_a_longer_pendulum() -> Result<(), Error> {
     assert_eq!((BallInBowl::NC, BallInBowl::NS), (3, 3));

@@ -5,8 +5,8 @@ use linkwork_models::BallInDish;
 
 const B: BallInDish = BallInDish { g: 9.81, mass: 0.2, radius: 0.03, curvature: 0.25 };
 
-/// Touching at a point of the dish, unturned: with the velocity of the centre along the dish's two tangents
-/// there, and a spin about the normal.
+/// Returns a state with the ball touching a point of the dish, without rotation. The velocity of the centre
+/// is given along the dish's two tangents there, and the spin about the normal.
 fn state(u: f64, w: f64, along: [f64; 2], spin: f64) -> (SVector<f64, 9>, SVector<f64, 8>) {
     let (first, second) = (Vector3::new(1.0, 0.0, u / B.curvature), Vector3::new(0.0, 1.0, w / B.curvature));
     let normal = first.cross(&second).normalize();
@@ -16,7 +16,7 @@ fn state(u: f64, w: f64, along: [f64; 2], spin: f64) -> (SVector<f64, 9>, SVecto
     let turning = normal * spin + normal.cross(&velocity) / B.radius;
     let q = [u, w, center.x, center.y, center.z, 0.0, 0.0, 0.0, 1.0];
     let v = [0.0, 0.0, velocity.x, velocity.y, velocity.z, turning.x, turning.y, turning.z].into();
-    // The rates of u and w follow.
+    // The rates of u and w follow from the constraints.
     (q.into(), B.project_velocity(&q.into(), &v).expect("regular"))
 }
 
@@ -49,9 +49,9 @@ fn circles_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// Anywhere, by Newton's and Euler's equations without the contact's force: with the centre on the parallel
-/// surface, `v = (r ω) × n` and the weight, `(7/5) a` along the tangents is what the turning of the normal
-/// and gravity leave.
+/// Accelerations satisfy Newton's and Euler's equations without the contact force. With the centre on the
+/// parallel surface, `v = (r ω) × n` and the weight, `(7/5) a` along the tangents equals the terms of gravity
+/// and of the normal's rotation.
 #[test]
 fn accelerations() {
     for (u, w, along, spin) in [(0.1, 0.15, [0.3, -0.2], 20.0), (-0.2, 0.05, [-0.5, 0.9], -35.0)] {
@@ -59,7 +59,7 @@ fn accelerations() {
         let a = B.forward_dynamics(&q, &v, &SVector::zeros());
         let (velocity, turning) = (Vector3::new(v[2], v[3], v[4]), Vector3::new(v[5], v[6], v[7]));
         let linear = Vector3::new(a[2], a[3], a[4]) + turning.cross(&velocity);
-        // The normal and its rate, by the surface's second derivatives.
+        // The normal and its rate, from the surface's second derivatives.
         let size = (1.0 + (u * u + w * w) / (B.curvature * B.curvature)).sqrt();
         let upward = Vector3::new(-u, -w, B.curvature) / B.curvature;
         let normal = upward / size;
@@ -68,9 +68,9 @@ fn accelerations() {
         let tangent = Matrix3::identity() - normal * normal.transpose();
         let expected = normal.cross(&turned) * (0.4 * B.radius * spin) - tangent * Vector3::z() * B.g;
         assert_near(tangent * linear * 1.4, expected, 1e-11);
-        // Along the normal as the geometry asks: n · v stays zero.
+        // Along the normal the geometry determines the acceleration: n · v is constantly zero.
         assert_close(normal.dot(&linear), -turned.dot(&velocity), 1e-12);
-        // The spin about the normal: no moment acts about it.
+        // Spin about the normal: no moment acts about it.
         let spun = Vector3::new(a[5], a[6], a[7]).dot(&normal);
         assert_close(spun, 0.0, 1e-10);
     }

@@ -5,8 +5,8 @@ use linkwork_models::BallInFunnel;
 
 const B: BallInFunnel = BallInFunnel { g: 9.81, mass: 0.1, radius: 0.02, half_angle: 0.6 };
 
-/// At the distance `rho` from the axis, towards x, unturned: moving along the funnel at `sinking` and round
-/// it at `rate`, with a spin about the normal.
+/// Returns a state at the distance `rho` from the axis, towards x, without rotation. The ball moves along the
+/// funnel at `sinking` and around it at `rate`, with a spin about the normal.
 fn state(rho: f64, rate: f64, sinking: f64, spin: f64) -> (SVector<f64, 7>, SVector<f64, 6>) {
     let (s, c) = B.half_angle.sin_cos();
     let (normal, along) = (Vector3::new(-c, 0.0, s), Vector3::new(s, 0.0, c));
@@ -38,7 +38,8 @@ fn circles_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// On its way down and up again: the two constants of any surface of revolution, in closed form for a cone.
+/// Both integrals of motion of a surface of revolution, in closed form for a cone, are constant while the
+/// ball descends and rises.
 #[test]
 fn keeps_its_integrals() -> Result<(), Error> {
     let (s, c) = B.half_angle.sin_cos();

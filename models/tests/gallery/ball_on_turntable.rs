@@ -4,7 +4,7 @@ use linkwork_models::BallOnTurntable;
 
 const B: BallOnTurntable = BallOnTurntable { g: 9.81, mass: 0.2, radius: 0.03, spin: 7.0 };
 
-/// A circle at the rate foretold, whatever the ball's mass and size.
+/// The ball moves on a circle at the predicted rate, for any mass and size.
 #[test]
 fn goes_round_in_circles() -> Result<(), Error> {
     for ball in [B, BallOnTurntable { mass: 7.3, radius: 0.11, ..B }] {
@@ -14,7 +14,7 @@ fn goes_round_in_circles() -> Result<(), Error> {
 }
 
 fn goes_round(ball: BallOnTurntable) -> Result<(), Error> {
-    // Velocity of the centre, and the angular velocity that makes the contact move as the table does.
+    // Velocity of the centre, and the angular velocity for which the contact point moves with the table.
     let (place, velocity, twist) = ([0.3, -0.1], [0.5, 0.2], 3.0);
     let table = [-ball.spin * place[1], ball.spin * place[0]];
     let w = [(table[1] - velocity[1]) / ball.radius, (velocity[0] - table[0]) / ball.radius, twist];

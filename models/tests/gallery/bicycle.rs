@@ -8,7 +8,7 @@ const LEAN: usize = 3;
 const WHEEL: usize = 6;
 const STEER: usize = 7;
 
-/// `ẋ = A x` in lean, steer and their rates at a speed, and the inverse of the mass matrix.
+/// Returns `A` of `ẋ = A x` in lean, steer and their rates at a speed, and the inverse of the mass matrix.
 fn linear(speed: f64) -> (Matrix4<f64>, Matrix2<f64>) {
     let bicycle = Bicycle::BENCHMARK;
     let q = bicycle.neutral();
@@ -55,8 +55,8 @@ fn matrices_are_the_published_ones() {
     }
 }
 
-/// Real and imaginary parts of the eigenvalues, 1/s, by speed, m/s; recomputed from the published parameters
-/// with 40 digits.
+/// Real and imaginary parts of the eigenvalues, 1/s, for each speed, m/s; recomputed from the published
+/// parameters with 40 digits.
 const EIGENVALUES: [(f64, [(f64, f64); 4]); 11] = [
     (
         0.0,

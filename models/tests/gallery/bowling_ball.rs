@@ -21,7 +21,7 @@ fn accelerations_follow_the_slip() {
         let [x, y] = slip.map(|s| -B.friction * B.g * s / size);
         let (a, normal) = ball.constrained_dynamics(&place(), &v, &SVector::zeros());
         assert_close(normal[0], B.mass * B.g, 1e-14);
-        // In the ball's axes, which turn.
+        // Acceleration in the ball's axes, which rotate.
         let linear = a.fixed_rows::<3>(0) + Vector3::new(2.0, 3.0, 5.0).cross(&Vector3::new(1.0, -0.4, 0.0));
         assert_near(linear, [x, y, 0.0].into(), 1e-13);
         let arm = 2.5 / B.radius;
@@ -29,7 +29,8 @@ fn accelerations_follow_the_slip() {
     }
 }
 
-/// Up to the regularisation: the last bit of slip, of the size of its speed, takes a little longer.
+/// The ball slides, then rolls. Because of the regularised friction, slip velocities of the order of the
+/// regularisation speed take slightly longer to decay.
 #[test]
 fn slides_and_then_rolls() -> Result<(), Error> {
     let speed = 5.0;
@@ -44,16 +45,16 @@ fn slides_and_then_rolls() -> Result<(), Error> {
     let end = run(1.5 * time)?;
     let pose = UnitQuaternion::from_quaternion([end.q[3], end.q[4], end.q[5], end.q[6]].into());
     let velocity = pose * Vector3::new(end.v[0], end.v[1], end.v[2]);
-    // The angular momentum about the lane does not change, so that this is exact.
+    // The angular momentum about the lane is constant, so that this is exact.
     assert_near(velocity, Vector3::x() * (5.0 / 7.0 * speed), 1e-6);
     assert_close(end.v[4] * B.radius, 5.0 / 7.0 * speed, 1e-6);
-    // 12/49 v² / (μ g) from the sliding, and what it rolled.
+    // Sliding distance 12/49 v² / (μ g), then the rolling distance.
     let way = 12.0 / 49.0 * speed * speed / (B.friction * B.g) + 5.0 / 7.0 * speed * time / 2.0;
     assert_close(end.q[0], way, 1e-3);
     Ok(())
 }
 
-/// With spin across its way the ball runs along a parabola while it slides.
+/// With spin transverse to its path the ball moves along a parabola while it slides.
 #[test]
 fn hooks() -> Result<(), Error> {
     let v = SVector::from([4.0, 0.0, 0.0, 30.0, 0.0, 0.0]);

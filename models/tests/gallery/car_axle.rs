@@ -2,7 +2,8 @@ use crate::testing::precisely;
 use linkwork::prelude::*;
 use linkwork_models::CarAxle;
 
-/// At t = 3 s, recomputed at 160 and at 230 bits; the published digits are good to 2e-13 and 5e-12.
+/// The configuration at t = 3 s, recomputed at 160 and at 230 bits; the published digits are accurate to
+/// 2e-13 and 5e-12.
 #[test]
 fn car_axle_ends_where_published() -> Result<(), Error> {
     let start = ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]);

@@ -2,7 +2,7 @@ use crate::testing::precisely;
 use linkwork::prelude::*;
 use linkwork_models::ChaplyginSleigh;
 
-/// Closed form: the speed is `V tanh(a V t / b² + c₀)`; numbers recomputed with 40 digits.
+/// The speed has the closed form `V tanh(a V t / b² + c₀)`; the values are recomputed with 40 digits.
 #[test]
 fn chaplygin_sleigh_turns_as_in_closed_form() -> Result<(), Error> {
     let sleigh = ChaplyginSleigh { m: 1.0, j: 0.5, a: 0.3 };

@@ -14,7 +14,7 @@ fn lorentz_force() {
 #[test]
 fn circles_about_a_drifting_centre() -> Result<(), Error> {
     let (omega, drift) = (P.charge * P.magnetic / P.mass, P.electric / P.magnetic);
-    // From the origin with the drift and 2 m/s more along x.
+    // Start at the origin with the drift velocity and 2 m/s more along x.
     let run = simulate(&P).from([0.0; 3], [drift + 2.0, 0.0, 0.3]).method(precisely());
     for sample in run.duration(2.0).sample_every(0.1) {
         let Sample { t, q, .. } = sample?;

@@ -15,20 +15,20 @@ fn lagrangian() {
     assert_close(P.kinetic_energy(&q, &v), kinetic, 1e-14);
     let potential = -(m1 + m2) * g * l1 * a.cos() - m2 * g * l2 * b.cos();
     assert_close(P.potential_energy(&q), potential, 1e-14);
-    // Lagrange's equations of the above.
+    // Lagrange's equations of the documented Lagrangian.
     let h1 = m2 * l1 * l2 * s * db * db + (m1 + m2) * g * l1 * a.sin();
     let h2 = -m2 * l1 * l2 * s * da * da + m2 * g * l2 * b.sin();
     assert_near(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-13);
 }
 
-/// A small deflection in the shape of a mode is drawn back in that shape.
+/// A small deflection in a mode shape has an acceleration in the same shape.
 #[test]
 fn normal_modes() {
     let equal = CoplanarDoublePendulum { l2: P.l1, ..P };
     let (sum, l) = (P.m1 + P.m2, P.l1);
     for sign in [-1.0, 1.0] {
         let omega2 = P.g / l * (sum + sign * (sum * P.m2).sqrt()) / P.m1;
-        // From the first equation: (m₁ + m₂) (g/l − ω²) φ₁ = m₂ ω² φ₂.
+        // The first equation gives (m₁ + m₂) (g/l − ω²) φ₁ = m₂ ω² φ₂.
         let shape = SVector::from([P.m2 * omega2, sum * (P.g / l - omega2)]).normalize();
         let a = equal.forward_dynamics(&(1e-5 * shape), &SVector::zeros(), &SVector::zeros());
         assert_near(a / 1e-5, -omega2 * shape, 1e-8);

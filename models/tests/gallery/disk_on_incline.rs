@@ -18,7 +18,7 @@ fn rolls_without_slip() {
     assert_near(disk.rim(&[0.0].into(), &[2.0].into()), SVector::zeros(), 1e-15);
     let turn = 0.15 * std::f64::consts::TAU;
     assert_near(disk.rim(&[turn].into(), &[2.0].into()), SVector::zeros(), 1e-14);
-    // Half a turn later it is on top and goes twice as fast as the centre.
+    // Half a turn later this point is at the top and moves at twice the speed of the centre.
     let top = disk.rim(&[turn / 2.0].into(), &[2.0].into());
     assert_near(top, 4.0 * SVector::from([0.35_f64.cos(), -0.35_f64.sin(), 0.0]), 1e-14);
 }

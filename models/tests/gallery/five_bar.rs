@@ -17,7 +17,7 @@ fn direction(angle: f64) -> Vector2<f64> {
     Vector2::new(angle.cos(), angle.sin())
 }
 
-/// Elbows and tool, by the intersection of two circles above the elbows.
+/// Returns the positions of elbows and tool, by the intersection of two circles above the elbows.
 fn closed_form(left: f64, right: f64) -> [Vector2<f64>; 3] {
     let first = R.crank * direction(left);
     let second = Vector2::new(R.base, 0.0) + R.crank * direction(right);
@@ -32,7 +32,7 @@ fn state(left: f64, right: f64) -> SVector<f64, 4> {
     [left, angle(first) - left, right, angle(second) - right].into()
 }
 
-/// Rates of the tool for the rates of the cranks.
+/// Returns the Jacobian of the tool with respect to the crank angles.
 fn jacobian(left: f64, right: f64) -> Matrix2<f64> {
     let [first, second, tool] = closed_form(left, right);
     let forearms = [tool - first, tool - second];
@@ -55,8 +55,8 @@ fn circles_meet_at_the_tool() {
     }
 }
 
-/// Held by the torques of virtual work nothing moves; more torque moves it as its inertia in the two angles
-/// says.
+/// Torques from virtual work hold the linkage at rest; additional torque accelerates it by its reduced
+/// inertia in the two crank angles.
 #[test]
 fn statics_and_reduced_inertia() {
     let (left, right) = (2.0, 0.9);
@@ -74,7 +74,7 @@ fn statics_and_reduced_inertia() {
     let mut weight = tool.row(1) * R.tool_mass;
     for (k, from) in [first, second].into_iter().enumerate() {
         let middle = (elbows[k] + tool) / 2.0;
-        // A rod is two thirds of its mass in the middle and a sixth at each end.
+        // A rod is equivalent to two thirds of its mass in the middle and a sixth at each end.
         for (part, j) in [(1.0 / 6.0, elbows[k]), (4.0 / 6.0, middle), (1.0 / 6.0, tool)] {
             inertia += j.transpose() * j * (R.forearm_mass * part);
         }

@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 const P: FoucaultPendulum =
     FoucaultPendulum { g: 9.81, mass: 28.0, length: 67.0, earth_rate: 7.292e-5, latitude: 0.8527 };
 
-/// The bob's place: south, east, up.
+/// Returns the position of the bob: south, east, up, m.
 fn bob(q: &SVector<f64, 2>) -> SVector<f64, 3> {
     let ((sa, ca), (sb, cb)) = (q[0].sin_cos(), q[1].sin_cos());
     P.length * SVector::from([-sb, sa * cb, -ca * cb])
@@ -15,7 +15,7 @@ fn bob(q: &SVector<f64, 2>) -> SVector<f64, 3> {
 
 #[test]
 fn coriolis_forces_of_small_swings() {
-    // x = −l b and y = l a; a faster earth makes the force plain, Ω² is left out.
+    // x = −l b and y = l a; a faster earth makes the Coriolis force visible, terms in Ω² are neglected.
     let fast = FoucaultPendulum { earth_rate: 1e-4, ..P };
     let vertical = 1e-4 * P.latitude.sin();
     let v = SVector::from([0.3, -0.5]);
@@ -26,7 +26,7 @@ fn coriolis_forces_of_small_swings() {
 
 #[test]
 fn plane_turns_with_the_sine_of_the_latitude() -> Result<(), Error> {
-    // Released from rest in the laboratory at 1 m south, after a hundred swings.
+    // Released from rest in the laboratory at 1 m south, after a hundred oscillations.
     let swings = 100.0;
     let omega = (P.g / P.length).sqrt();
     let time = swings * std::f64::consts::TAU / omega;
@@ -41,7 +41,8 @@ fn plane_turns_with_the_sine_of_the_latitude() -> Result<(), Error> {
 fn at_the_pole_the_plane_stands_still() -> Result<(), Error> {
     let pole = FoucaultPendulum { latitude: FRAC_PI_2, earth_rate: 0.05, ..P };
     let still = SphericalPendulum { g: P.g, mass: P.mass, length: P.length };
-    // The same place and velocity, seen from the ground and from the laboratory, which agree at t = 0.
+    // The same position and velocity in the ground frame and in the laboratory frame, which coincide at t =
+    // 0.
     let (q, v) = (SVector::from([0.3, -0.2]), SVector::from([0.02, 0.1]));
     let cross = SVector::from([-bob(&q)[1], bob(&q)[0], 0.0]) * pole.earth_rate;
     // Velocity of the bob per rate of each angle.

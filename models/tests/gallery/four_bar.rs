@@ -2,15 +2,15 @@ use crate::testing::{assert_close, precisely};
 use linkwork::prelude::*;
 use linkwork_models::FourBar;
 
-/// Grashof's crank and rocker.
+/// Crank-rocker linkage by Grashof's criterion.
 const L: FourBar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
 
-/// The open branch with a given crank angle.
+/// Returns the configuration in the open assembly mode with a given crank angle.
 fn at(input: f64) -> SVector<f64, 3> {
     L.assemble(&[input, 0.9 - input, 1.8].into(), &[0]).expect("the crank goes all the way round")
 }
 
-/// Positions by Freudenstein's equation, rates by its derivative, all the way round.
+/// Positions satisfy Freudenstein's equation, and rates its derivative, over a full rotation.
 #[test]
 fn freudensteins_equation() {
     assert_eq!((FourBar::NC, FourBar::NP, FourBar::NS), (2, 1, 1));
@@ -29,7 +29,7 @@ fn freudensteins_equation() {
     }
 }
 
-/// At rest the motor carries what lifting the links takes, by virtual work.
+/// At rest the motor torque equals the derivative of the potential energy, by virtual work.
 #[test]
 fn holding_torque() {
     let FourBar { g, density, a, b, c, .. } = L;
@@ -53,7 +53,7 @@ fn start() -> (SVector<f64, 3>, SVector<f64, 3>) {
     (q, L.project_velocity(&q, &[12.0, 0.0, 0.0].into()).expect("no dead centre"))
 }
 
-/// The error of a method of order four falls by 2⁴ when its step is halved, constraints included.
+/// The error of a fourth-order method decreases by 2⁴ when its step is halved, including the constraints.
 #[test]
 fn order_of_the_integrator() -> Result<(), Error> {
     let (q, v) = start();

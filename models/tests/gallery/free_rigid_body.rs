@@ -14,10 +14,11 @@ fn newtons_and_eulers_equations() {
     assert_near(found.fixed_rows::<3>(3).into_owned(), w.cross(&(inertia * w)), 1e-14);
 }
 
-/// Spun about the middle axis with a slight wobble: over after half a period, back after a whole one.
+/// With a slight wobble about the intermediate axis, the body is upside down after half a period and returns
+/// after a whole one.
 #[test]
 fn turns_over() -> Result<(), Error> {
-    // No spin about x at first, so that L² > 2 E I₂.
+    // No spin about x at the start, so that L² > 2 E I₂.
     let start = Vector3::new(0.0, 5.0, 0.01);
     let inertia = Vector3::new(B.ixx, B.iyy, B.izz);
     let twice = start.component_mul(&start).dot(&inertia);

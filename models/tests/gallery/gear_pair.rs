@@ -15,11 +15,11 @@ fn reduced_inertia_and_tooth_force() {
     assert!(G.constraint_residuals(&q).amax() < 1e-17);
     let (a, force) = G.constrained_dynamics(&q, &v, &G.generalized_forces(&q, &[torque].into()));
     assert_near(a, [expected, -ratio * expected].into(), 1e-13);
-    // The teeth push the pinion back.
+    // The teeth push the pinion backwards.
     assert_near(force, [-ratio / 0.05 * 3e-3 * expected].into(), 1e-13);
 }
 
-/// From any angles to the nearest at which the teeth mesh.
+/// The assembly moves any angles to the nearest ones at which the teeth mesh.
 #[test]
 fn meshes() {
     let q = G.assemble(&[1.0, 0.3].into(), &[0]).expect("the wheel can follow");

@@ -4,7 +4,7 @@ use linkwork::prelude::*;
 use linkwork_models::GravityGradientSatellite;
 use std::f64::consts::TAU;
 
-/// Earth; up is x, forward y, across z.
+/// Satellite of the Earth; up is x, forward y, across z.
 const S: GravityGradientSatellite =
     GravityGradientSatellite { mu: 3.986004418e14, mass: 50.0, ixx: 5.0, iyy: 90.0, izz: 92.0 };
 
@@ -23,7 +23,7 @@ fn force_and_torque() {
     let inertia = Vector3::new(S.ixx, S.iyy, S.izz);
     let scale = 3.0 * S.mu / distance.powi(3);
     let torque = n.cross(&inertia.component_mul(&n));
-    // The torque is a small difference of large terms only in the last digits.
+    // The torque is a small difference of large terms, which costs only the last digits.
     assert_near(h.fixed_rows::<3>(3).into_owned() / scale, -torque, 1e-9);
 }
 
@@ -33,21 +33,21 @@ fn pitch_oscillation() -> Result<(), Error> {
     pitch(S, TAU / frequency, |t| (frequency * t).cos())
 }
 
-/// With the long axis forward it turns over.
+/// With its long axis forward the satellite is unstable and turns over.
 #[test]
 fn stands_with_the_long_axis_up_alone() -> Result<(), Error> {
     let growth = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
     pitch(GravityGradientSatellite { ixx: S.iyy, iyy: S.ixx, ..S }, 3.0 / growth, |t| (growth * t).cosh())
 }
 
-/// The pitch of a satellite that starts a thousandth of a radian off, in eight samples, next to what is
-/// expected.
+/// Checks the pitch of a satellite with an initial pitch of a thousandth of a radian, at eight samples,
+/// against the expected function.
 fn pitch(
     satellite: GravityGradientSatellite,
     duration: f64,
     expected: impl Fn(f64) -> f64,
 ) -> Result<(), Error> {
-    // In units of the orbit: radius, gravitational parameter and rate are one. The satellite is so small that
+    // Units of the orbit: radius, gravitational parameter and rate are one. The satellite is so small that
     // its shape does not disturb the orbit.
     let tiny = 1e-11;
     let unit = GravityGradientSatellite {
@@ -71,7 +71,7 @@ fn pitch(
     for sample in run.sample_every(duration / 8.0) {
         let Sample { t, q, .. } = sample?;
         let off = pitch(&q) / 1e-3 - expected(t);
-        // It is small no longer, by the third power, where it has grown.
+        // For large pitch the error is of the third power.
         assert!(off.abs() < 1e-5 * (1.0 + expected(t).abs().powi(3)), "{off} at {t}");
     }
     Ok(())

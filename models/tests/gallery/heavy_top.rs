@@ -21,8 +21,8 @@ fn eulers_equations() {
     assert_near(TOP.bias_forces(&q, &omega), omega.cross(&(inertia * omega)) - torque, 1e-14);
 }
 
-/// Slow and fast precession for the same spin: the axis stays at its inclination and turns at the rate
-/// foretold.
+/// Slow and fast steady precession exist for the same spin: the inclination of the axis is constant, and it
+/// precesses at the predicted rate.
 #[test]
 fn steady_precession() -> Result<(), Error> {
     let (theta, spin) = (0.5_f64, 150.0);
@@ -38,7 +38,7 @@ fn steady_precession() -> Result<(), Error> {
             .duration(1.0 / rate)
             .finish()?;
         let axis = UnitQuaternion::from_quaternion(end.q.into()) * Vector3::z();
-        // The axis starts towards −y and turns by one radian.
+        // The axis starts towards −y and precesses by one radian.
         assert_close(axis.z, theta.cos(), 1e-8);
         assert_close(axis.x, theta.sin() * 1.0_f64.sin(), 1e-8);
         assert_close(axis.y, -theta.sin() * 1.0_f64.cos(), 1e-8);
@@ -46,7 +46,7 @@ fn steady_precession() -> Result<(), Error> {
     Ok(())
 }
 
-/// Nearly upright: with enough spin it stays so, with too little it falls.
+/// Near the upright position the top is stable with sufficient spin, and falls with less.
 #[test]
 fn sleeps_if_it_spins_fast_enough() -> Result<(), Error> {
     let critical = (4.0 * across() * TOP.mass * TOP.g * TOP.height).sqrt() / TOP.axial;

@@ -33,7 +33,7 @@ fn steady_whirl_below_and_above_the_critical_speed() -> Result<(), Error> {
         for sample in run.duration(0.3).sample_every(0.05) {
             let Sample { t, q, .. } = sample?;
             assert_near(q / radius, at(t) / radius, 1e-7);
-            // Far above the critical speed the centre of mass stays where it is.
+            // Far above the critical speed the centre of mass is nearly at rest.
             let unbalance = R.eccentricity * SVector::from([(spin * t).cos(), (spin * t).sin()]);
             let moves = (q + unbalance).norm() > 0.01 * R.eccentricity;
             assert_eq!(moves, spin < 1000.0, "at {spin} rad/s");

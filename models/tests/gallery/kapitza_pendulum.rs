@@ -22,7 +22,7 @@ fn stands_upright() -> Result<(), Error> {
     let slow = (a * a / (2.0 * l * l) - P.g / l).sqrt();
     let method = DormandPrince::new().tolerance(1e-9, 1e-9);
     let run = simulate(&P).from([PI + 0.05], [0.0]).method(method);
-    // The ripple on the averaged motion is a / l = 0.02 of it, and so is what the start adds to its
+    // The ripple on the averaged motion is relative a / l = 0.02, and so is the initial contribution to the
     // amplitude.
     for sample in run.duration(TAU / slow).sample_every(TAU / slow / 16.0) {
         let Sample { t, q, .. } = sample?;

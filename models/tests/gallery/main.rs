@@ -1,5 +1,5 @@
-//! Every mechanism of the gallery against the closed form that its description gives, or against published
-//! figures. A crate of their own, so that the mechanisms are compiled once.
+//! Every mechanism of the gallery against the closed-form solution of its documentation, or against published
+//! values. The tests are one crate, so that the mechanisms are compiled once.
 
 mod aircraft;
 mod andrews_squeezer;

@@ -2,7 +2,7 @@ use crate::testing::assert_near;
 use linkwork::prelude::*;
 use linkwork_models::{QuintuplePendulum, TriplePendulum};
 
-/// The closed form in relative angles: mass matrix and bias forces.
+/// Returns the closed form in relative angles: mass matrix and bias forces.
 fn closed_form<const N: usize>(
     g: f64,
     (m, l): ([f64; N], [f64; N]),

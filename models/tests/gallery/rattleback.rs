@@ -5,7 +5,7 @@ use linkwork_models::Rattleback;
 
 const R: Rattleback = Rattleback::BENCHMARK;
 
-/// Touching the table in an attitude, with an angular velocity in the body's axes.
+/// Returns a state in contact with the table, with this orientation and angular velocity in body axes.
 fn state(turn: UnitQuaternion<f64>, w: Vector3<f64>) -> (SVector<f64, 7>, SVector<f64, 6>) {
     let n = turn.inverse() * Vector3::z();
     let squares = Vector3::new(R.a * R.a, R.b * R.b, R.c * R.c);
@@ -26,7 +26,8 @@ fn the_point_that_touches_is_at_rest() {
     assert_near(projected, v, 1e-14);
 }
 
-/// Spun backwards with a tilt of half a degree it comes to turn forwards; spun forwards it keeps turning.
+/// Spun backwards with a tilt of half a degree, the rattleback reverses to forward rotation; spun forwards,
+/// it keeps its direction.
 #[test]
 fn turns_back() -> Result<(), Error> {
     let tilt = 0.5_f64.to_radians();

@@ -5,12 +5,12 @@ use linkwork_models::RollingCone;
 
 const C: RollingCone = RollingCone { g: 9.81, mass: 0.4, height: 0.2, half_angle: 0.35, slope: 0.3 };
 
-/// `d²T/dθ̇²`.
+/// Returns the inertia for the precession, `d²T/dθ̇²`.
 fn inertia(c: &RollingCone) -> f64 {
     3.0 / 20.0 * c.mass * c.height * c.height * (1.0 + 5.0 * c.half_angle.cos().powi(2))
 }
 
-/// The line of contact at the angle `theta` from the fall line, turning at the rate `rate`.
+/// Returns a state with the line of contact at the angle `theta` from the fall line, precessing at `rate`.
 fn state(c: &RollingCone, theta: f64, rate: f64) -> (SVector<f64, 7>, SVector<f64, 6>) {
     let (s, k) = c.slope.sin_cos();
     let (normal, fall) = (Vector3::new(s, 0.0, k), Vector3::new(k, 0.0, -s));
@@ -36,7 +36,7 @@ fn has_one_degree_of_freedom() {
     assert_close(C.potential_energy(&q), C.mass * C.g * height, 1e-14);
 }
 
-/// Large swings, by the elliptic integral.
+/// Large oscillations have the period of an elliptic integral.
 #[test]
 fn swings_about_its_apex() -> Result<(), Error> {
     let cosine = C.half_angle.cos();
@@ -46,7 +46,7 @@ fn swings_about_its_apex() -> Result<(), Error> {
         let quarter = elliptic((theta / 2.0).sin().powi(2)) / slow.sqrt();
         let end = simulate(&C).from(q, v).method(precisely()).duration(4.0 * quarter).finish()?;
         assert_near(end.q.fixed_rows::<3>(0).into_owned(), SVector::zeros(), 1e-12);
-        // The cone is turned about its axis by then, and back.
+        // By then the cone has rotated about its axis, and back.
         assert!((end.q - q).amax() < 1e-7, "{} {}", end.q, q);
         let half = simulate(&C).from(q, v).method(precisely()).duration(2.0 * quarter).finish()?;
         let mirrored = state(&C, -theta, 0.0).0;
@@ -58,8 +58,8 @@ fn swings_about_its_apex() -> Result<(), Error> {
     Ok(())
 }
 
-/// Euler's equation about the apex on a level plane: the moment of the normal force holds the weight and
-/// turns the angular momentum.
+/// On a level plane, Euler's equation about the apex holds: the moment of the normal force balances that of
+/// the weight and changes the angular momentum.
 #[test]
 fn presses_on_a_line() {
     let c = RollingCone { slope: 0.0, ..C };
@@ -73,7 +73,7 @@ fn presses_on_a_line() {
         assert_close(lambda[0], c.mass * c.g, 1e-13);
         let gyroscopic = rate * rate * cosine / sine * (axial * cosine * cosine + across * sine * sine);
         assert_close(lambda[1], 0.75 * c.height * cosine * c.mass * c.g + gyroscopic, 1e-13);
-        // The line stays at rest, so that nothing works on the cone.
+        // The line of contact is at rest, so that no force does work on the cone.
         let rates = c.constraint_jacobian(&q) * a + c.constraint_bias(&q, &v);
         assert!(rates.amax() < 1e-11);
         assert!(v.dot(&(c.mass_matrix(&q) * a)).abs() < 1e-11);

@@ -4,7 +4,8 @@ use linkwork_models::RollingDisk;
 
 const D: RollingDisk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
 
-/// At the origin with a lean and an angular velocity `u` in the leaning axes, the contact at rest.
+/// Returns a state at the origin with a lean and an angular velocity `u` in the leaning axes, with the
+/// contact point at rest.
 fn state(lean: f64, u: [f64; 3]) -> (SVector<f64, 6>, SVector<f64, 6>) {
     let ((s, c), r) = (lean.sin_cos(), D.radius);
     let rates = [u[2] / c, u[0], u[1] - u[2] * s / c];
@@ -31,7 +32,8 @@ fn accelerations() {
     assert_near(found.fixed_rows::<3>(3).into_owned(), [heading, rates[0], roll].into(), 1e-13);
 }
 
-/// Below the critical speed one exponent is positive, above it small leans oscillate; the others are zero.
+/// Below the critical speed one exponent is positive; above it small leans oscillate. The other exponents are
+/// zero.
 #[test]
 fn stability_of_rolling_straight() {
     let critical = (D.g * D.radius / 3.0).sqrt();
@@ -40,7 +42,7 @@ fn stability_of_rolling_straight() {
         let linear = D.linearize(&q, &v, &SVector::zeros(), &[3, 4, 5]).expect("regular");
         assert_eq!(linear.speeds, [3, 4, 5]);
         let square = 4.0 * D.g / (5.0 * D.radius) - 2.4 * (speed / D.radius).powi(2);
-        // Of the characteristic polynomial λ⁶ (λ² − s²): its traces.
+        // Traces of the characteristic polynomial λ⁶ (λ² − s²).
         let squared = linear.a * linear.a;
         assert_close(linear.a.trace(), 0.0, 1e-12);
         assert_close(squared.trace(), 2.0 * square, 1e-12);
@@ -51,7 +53,7 @@ fn stability_of_rolling_straight() {
     }
 }
 
-/// In circles with a steady lean: `u₁` does not change.
+/// The disk rolls in circles with a steady lean: `u₁` is constant.
 #[test]
 fn rolls_in_circles() -> Result<(), Error> {
     let (lean, turning) = (0.3_f64, 2.5);

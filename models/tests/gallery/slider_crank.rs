@@ -4,10 +4,10 @@ use linkwork_models::SliderCrank;
 
 const S: SliderCrank = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
 
-/// A function of the crank's angle with its first and second derivative.
+/// Function of the crank's angle with its first and second derivatives.
 type Course = [f64; 3];
 
-/// Rod's angle, x of its centre, y of its centre, piston.
+/// Returns the rod's angle, x and y of its centre, and the position of the piston.
 fn closed_form(theta: f64) -> [Course; 4] {
     let SliderCrank { r, l, .. } = S;
     let (s, c) = theta.sin_cos();
@@ -15,7 +15,7 @@ fn closed_form(theta: f64) -> [Course; 4] {
     let (sp, cp) = phi.sin_cos();
     let first = -r / l * c / cp;
     let second = (r / l * s + sp * first * first) / cp;
-    // What lies at `r` along the crank and at `k` along the rod.
+    // x of a point at `r` along the crank and at `k` along the rod.
     let along =
         |k: f64| [r * c + k * cp, -r * s - k * sp * first, -r * c - k * (cp * first * first + sp * second)];
     [[phi, first, second], along(l / 2.0), [r / 2.0 * s, r / 2.0 * c, -r / 2.0 * s], along(l)]
@@ -42,7 +42,7 @@ fn piston_is_where_the_closed_form_says() {
     }
 }
 
-/// Acceleration by Eksergian's equation, and the power that the motor hands over.
+/// The acceleration follows from Eksergian's equation, and the power of the motor is the rate of the energy.
 #[test]
 fn reduced_inertia() {
     let SliderCrank { g, r, l, m_crank, m_rod, m_piston } = S;

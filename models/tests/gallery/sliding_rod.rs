@@ -4,18 +4,18 @@ use linkwork_models::SlidingRod;
 
 const R: SlidingRod = SlidingRod { g: 9.81, mass: 0.3, half: 0.5, radius: 0.01, friction: 0.4 };
 
-/// Leaning at an angle, its end sliding at a speed, turning at a rate.
+/// Returns a state with this angle, slip velocity of the end and angular velocity.
 fn state(angle: f64, slip: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let [c, d] = arm(angle);
     ([0.0, -d, angle].into(), [slip + rate * d, -rate * c, rate].into())
 }
 
-/// The contact from the middle.
+/// Returns the contact point relative to the centre.
 fn arm(angle: f64) -> [f64; 2] {
     [-R.half * angle.cos(), -R.half * angle.sin() - R.radius]
 }
 
-/// `1/m + c²/J + μ σ c d / J`
+/// Returns `1/m + c²/J + μ σ c d / J`, the normal acceleration per normal force.
 fn pressed(rod: &SlidingRod, angle: f64, slip: f64) -> f64 {
     let ([c, d], inertia) = (arm(angle), rod.mass * rod.half * rod.half / 3.0);
     let part = slip / slip.hypot(1e-3);
@@ -30,7 +30,7 @@ fn slides_under_its_normal_force() {
         assert!(R.constraint_residuals(&q).amax() < 1e-16 && R.constraint_rates(&q, &v).amax() < 1e-16);
         let (a, lambda) = R.try_constrained_dynamics(&q, &v, &SVector::zeros()).expect("it slides");
         let [c, d] = arm(0.6);
-        // The end's centre goes round the middle.
+        // The centre of the end moves on a circle about the rod's centre.
         let normal = (R.g - R.half * 0.6_f64.sin() * rate * rate) / pressed(&R, 0.6, slip);
         let drag = -R.friction * normal * slip / slip.hypot(1e-3);
         assert_close(lambda[0], normal, 1e-12);
@@ -39,8 +39,7 @@ fn slides_under_its_normal_force() {
     }
 }
 
-/// A rough floor under a rod that is pushed ahead: steep it slides, flat it jams, and pulled it always
-/// slides.
+/// On a rough floor, a pushed rod slides if it is steep and jams if it is flat; a pulled rod always slides.
 #[test]
 fn jams() {
     let rough = SlidingRod { friction: 1.8, ..R };
@@ -59,7 +58,7 @@ fn jams() {
         }
     }
     assert!(seen[0] > 14 && seen[1] > 3, "{seen:?}");
-    // So the simulation stops there, and says why; with every method.
+    // The simulation therefore stops there with an error, for every method.
     let (q, v) = state(0.8, -1.0, 0.0);
     assert!(pressed(&rough, 0.8, -1.0) <= 0.0);
     let stops = |end: Result<Sample<f64, 3, 3, 0>, Error>| match end {

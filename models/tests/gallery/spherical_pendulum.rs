@@ -19,7 +19,7 @@ fn equations_of_motion() {
 
 #[test]
 fn conical_motion() -> Result<(), Error> {
-    // From the (y, z) plane at inclination α, a = α, b = 0, moving along −x: ḃ = ω sin α.
+    // Start in the (y, z) plane at the inclination α, a = α, b = 0, moving along −x: ḃ = ω sin α.
     let alpha = 0.9_f64;
     let period = 2.0 * std::f64::consts::PI * (P.length * alpha.cos() / P.g).sqrt();
     let speed = 2.0 * std::f64::consts::PI / period * alpha.sin();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 const C: SpringChain<f64> = SpringChain { mass: 0.8, stiffness: 50.0, damping: 0.6 };
 
-/// Natural frequency, damping ratio and shape of mode j.
+/// Returns the natural frequency, damping ratio and shape of mode j.
 fn mode(j: usize) -> (f64, f64, SVector<f64, 3>) {
     let beta = (2 * j - 1) as f64 * PI / 7.0;
     let omega = 2.0 * (C.stiffness / C.mass).sqrt() * (beta / 2.0).sin();

@@ -23,7 +23,7 @@ fn on_circle(radius: f64, degrees: f64) -> Vector3<f64> {
     Vector3::new(radius * c, radius * s, 0.0)
 }
 
-/// A pose off all symmetries.
+/// Returns a pose without symmetry.
 fn pose() -> Isometry3<f64> {
     Isometry3::from_parts(
         Vector3::new(0.1, -0.05, 0.9).into(),
@@ -31,7 +31,7 @@ fn pose() -> Isometry3<f64> {
     )
 }
 
-/// The legs as vectors from foot to head.
+/// Returns the legs as vectors from foot to head.
 fn legs(pose: &Isometry3<f64>) -> [Vector3<f64>; 6] {
     LEGS.map(|(foot, head)| {
         let head = pose * linkwork::nalgebra::Point3::from(on_circle(P.platform_radius, head));
@@ -39,7 +39,8 @@ fn legs(pose: &Isometry3<f64>) -> [Vector3<f64>; 6] {
     })
 }
 
-/// Inverse kinematics: along the leg is `(sin b, −sin a cos b, cos a cos b)`.
+/// Returns the configuration by inverse kinematics: the direction of a leg is
+/// `(sin b, −sin a cos b, cos a cos b)`.
 fn configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatform::NQ }> {
     let mut q = P.neutral();
     q.fixed_rows_mut::<3>(0).copy_from(&pose.translation.vector);
@@ -58,17 +59,18 @@ fn inverse_kinematics() {
     assert_eq!((StewartPlatform::NP, StewartPlatform::NS, StewartPlatform::NU), (6, 6, 6));
     let q = configuration(&pose());
     assert!(P.constraint_residuals(&q).amax() < 1e-15);
-    // From a level platform, the pose held.
+    // Assembly from a level platform with the pose fixed.
     let mut guess = configuration(&Isometry3::translation(0.0, 0.0, 0.9));
     guess.fixed_rows_mut::<7>(0).copy_from(&q.fixed_rows::<7>(0));
     assert_near(P.assemble(&guess, &[0, 1, 2, 3, 4, 5]).expect("the legs reach"), q, 1e-13);
-    // Forward kinematics: the lengths held.
+    // Forward kinematics: assembly with the lengths fixed.
     let lengths = [8, 11, 14, 17, 20, 23];
     let guess = P.integrate(&q, &SVector::from_fn(|k, _| if lengths.contains(&k) { 0.0 } else { 0.02 }));
     assert_near(P.assemble(&guess, &lengths).expect("a pose is near"), q, 1e-12);
 }
 
-/// Rows: how the height of weights, and the lengths, change with the platform's velocity in its own axes.
+/// Leg forces follow from virtual work. Rows: derivatives of the weights' heights, and of the lengths, with
+/// respect to the platform's velocity in body axes.
 #[test]
 fn forces_by_virtual_work() {
     let pose = pose();
@@ -82,8 +84,8 @@ fn forces_by_virtual_work() {
             Vector6::new(f.x, f.y, f.z, torque.x, torque.y, torque.z)
         };
         lengths.set_column(k, &row(n));
-        // A point at a fixed distance along the leg rises as the head does across the leg; one at a fixed
-        // distance from the head as the head does, less that.
+        // A point at a fixed distance along the leg rises with the head's motion across the leg. A point at a
+        // fixed distance from the head rises with the head, minus that amount.
         let across = (Vector3::z() - n * n.z) * (P.leg / 2.0 / length);
         weight += row(across) * P.leg_mass + row(Vector3::z() - across) * P.leg_mass;
     }
@@ -91,7 +93,7 @@ fn forces_by_virtual_work() {
     let (q, still) = (configuration(&pose), SVector::zeros());
     let a = P.forward_dynamics(&q, &still, &P.generalized_forces(&q, &forces));
     assert!(a.amax() < 1e-11, "{a}");
-    // A little less and the platform sinks.
+    // With slightly smaller forces the platform sinks.
     let a = P.forward_dynamics(&q, &still, &P.generalized_forces(&q, &(forces * 0.9)));
     let up = pose.rotation * Vector3::new(a[0], a[1], a[2]);
     assert!(up.z < -0.1, "{up}");

@@ -1,11 +1,12 @@
-//! What the tests of the mechanisms share.
+//! Shared functions of the mechanisms' tests.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{Isometry3, Rotation3, SMatrix, Translation3, Vector3};
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Holds what was generated against the closed form: relative to the largest entry, or absolute below one.
+/// Checks a generated matrix against the closed form: the tolerance is relative to the largest entry, or
+/// absolute below one.
 #[track_caller]
 pub fn assert_near<const R: usize, const C: usize>(
     found: SMatrix<f64, R, C>,
@@ -16,20 +17,20 @@ pub fn assert_near<const R: usize, const C: usize>(
     assert!(error <= tolerance, "error {error:e}: found {found} expected {expected}");
 }
 
-/// Holds a number that was generated against the closed form: relative to it, or absolute below one.
+/// Checks a generated number against the closed form: the tolerance is relative to it, or absolute below one.
 #[track_caller]
 pub fn assert_close(found: f64, expected: f64, tolerance: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
     assert!(error <= tolerance, "error {error:e}: found {found}, expected {expected}");
 }
 
-/// Integration to nearly all digits.
+/// Returns an integrator with nearly full precision.
 pub fn precisely() -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e-12, 1e-12)
 }
 
-/// Complete elliptic integral of the first kind by the arithmetic–geometric mean:
-/// `K(k) = ½π / agm(1, √(1 − k²))`, given `k²`.
+/// Returns the complete elliptic integral of the first kind by the arithmetic–geometric mean:
+/// `K(k) = ½π / agm(1, √(1 − k²))`, for the argument `k²`.
 pub fn elliptic(k2: f64) -> f64 {
     let (mut a, mut b) = (1.0, (1.0 - k2).sqrt());
     while (a - b).abs() > 1e-15 * a {
@@ -38,12 +39,12 @@ pub fn elliptic(k2: f64) -> f64 {
     FRAC_PI_2 / a
 }
 
-/// A turn about z and a displacement along it: one half of a Denavit–Hartenberg step.
+/// Returns a rotation about z and a displacement along it: one half of a Denavit–Hartenberg step.
 pub fn about_z(angle: f64, d: f64) -> Isometry3<f64> {
     placed(Vector3::z(), angle, d)
 }
 
-/// A turn about x and a displacement along it: the other half of a Denavit–Hartenberg step.
+/// Returns a rotation about x and a displacement along it: the other half of a Denavit–Hartenberg step.
 pub fn about_x(angle: f64, a: f64) -> Isometry3<f64> {
     placed(Vector3::x(), angle, a)
 }

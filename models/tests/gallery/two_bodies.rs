@@ -20,7 +20,8 @@ fn newtons_law() {
     assert_close(P.potential_energy(&q), -1.5 / r.norm(), 1e-14);
 }
 
-/// From the pericentre of an ellipse with a = 1 and e = 0.6, whose centre of mass drifts.
+/// From the pericentre, the relative motion is an ellipse with a = 1 and e = 0.6, while the centre of mass
+/// drifts.
 #[test]
 fn ellipse() -> Result<(), Error> {
     let (mu, a, e) = (2.0_f64, 1.0, 0.6);
@@ -37,7 +38,7 @@ fn ellipse() -> Result<(), Error> {
         let laplace = dr.cross(&r.cross(&dr)) / mu - r.normalize();
         assert_near(laplace, SVector::from([e, 0.0, 0.0]), 1e-9);
         assert_close(P.center_of_mass(&q)[2], drift * t, 1e-10);
-        // Half the period to the apocentre, all of it back to the pericentre.
+        // Half of the period to the apocentre, a whole period back to the pericentre.
         match k {
             2 => assert_near(r, SVector::from([-a * (1.0 + e), 0.0, 0.0]), 1e-8),
             4 => assert_near(r, SVector::from([near, 0.0, 0.0]), 1e-8),

@@ -2,7 +2,7 @@ use crate::testing::{assert_near, precisely};
 use linkwork::prelude::*;
 use linkwork_models::WilberforcePendulum;
 
-/// Of the size of Berg and Marshall's.
+/// Pendulum with the dimensions of Berg and Marshall's.
 const P: WilberforcePendulum = WilberforcePendulum {
     mass: 0.4905,
     inertia: 1.39e-4,

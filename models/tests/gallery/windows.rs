@@ -6,7 +6,7 @@ use linkwork_models::TwoWindows;
 fn windows_go_through_their_singular_positions() -> Result<(), Error> {
     let windows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
     assert_eq!((TwoWindows::NV, TwoWindows::NC), (5, 4));
-    // Angles are counted against the clock; the couplers keep their direction.
+    // Angles are counter-clockwise; the couplers keep their direction.
     let run = simulate(&windows)
         .from([0.0; 5], [-1.0, 1.0, -1.0, 1.0, -1.0])
         .method(precisely())

@@ -307,7 +307,7 @@ impl Trot {
     }
 
     /// Linearises and runs the backward recursion. Returns the expected change of the cost: its coefficients
-    /// of the step length and of half of its square.
+    /// of the step length and of its square.
     fn sweep(&self, plan: &mut Plan) -> [f64; 2] {
         let mut node = Node::zeros();
         let mut to_go = self.last(&plan.states[plan.inputs.len()]);

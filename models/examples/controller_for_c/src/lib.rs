@@ -1,5 +1,5 @@
-//! The regulator of the example `lqr_double_pendulum` as a static library that C programs call:
-//! `controller.h` declares what is here. Neither the standard library nor an allocator is needed.
+//! The regulator of the example `lqr_double_pendulum` as a static library for C programs; `controller.h`
+//! declares its functions. It needs neither the standard library nor an allocator.
 //!
 //! ```text
 //! cargo build --release
@@ -17,15 +17,15 @@ use controller::{Cart, Regulator, control, costs};
 use linkwork::discrete;
 use linkwork::prelude::{Rk4, SVector};
 
-/// Gains of the push on place, lean and bend, and on their rates.
+/// Gains of the input force for the cart's position and the poles' angles, and for their rates.
 #[repr(C)]
 pub struct Gains {
     q: [f64; 3],
     v: [f64; 3],
 }
 
-/// Gains for a controller that is called every `period` seconds; false if there are none, as for a period
-/// that is not positive.
+/// Computes the gains of a controller that runs every `period` seconds. Returns `false` if no stabilising
+/// gains exist, as for a period that is not positive.
 #[unsafe(no_mangle)]
 pub extern "C" fn cart_design(period: f64, gains: &mut Gains) -> bool {
     let (upright, still) = (SVector::zeros(), SVector::zeros());
@@ -37,7 +37,7 @@ pub extern "C" fn cart_design(period: f64, gains: &mut Gains) -> bool {
     true
 }
 
-/// The push for the state of an instant, N.
+/// Returns the force on the cart for the current state, N.
 #[unsafe(no_mangle)]
 pub extern "C" fn cart_push(gains: &Gains, q: &[f64; 3], v: &[f64; 3]) -> f64 {
     let [by_q, by_v] = [gains.q, gains.v].map(|gain| SVector::from(gain).transpose());
@@ -45,8 +45,8 @@ pub extern "C" fn cart_push(gains: &Gains, q: &[f64; 3], v: &[f64; 3]) -> f64 {
     control(&regulator, &(*q).into(), &(*v).into())
 }
 
-/// What the cart does in a period, for a simulation; false if the state afterwards is not finite, and it
-/// stays as it was.
+/// Simulates the cart for one period. If the state after it is not finite, it returns `false` and leaves the
+/// state unchanged.
 #[unsafe(no_mangle)]
 pub extern "C" fn cart_step(period: f64, push: f64, q: &mut [f64; 3], v: &mut [f64; 3]) -> bool {
     let (from, method) = ((SVector::from(*q), SVector::from(*v)), Rk4::step(period));
@@ -57,7 +57,7 @@ pub extern "C" fn cart_step(period: f64, push: f64, q: &mut [f64; 3], v: &mut [f
     true
 }
 
-/// Nothing here panics.
+/// Required without the standard library; no code here panics.
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}
