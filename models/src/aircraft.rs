@@ -1,23 +1,23 @@
 use linkwork::mechanism;
 
-/// An aircraft as a rigid body with linear aerodynamics in pitch: lift, drag, pitching moment, elevator and
+/// Aircraft as a rigid body with linear aerodynamics in pitch: lift, drag, pitching moment, elevator and
 /// thrust.
 ///
 /// Source: Bernstein, Goel and Ansari, *Geometry, Kinematics, Statics, and Dynamics*, on aircraft; Etkin and
 /// Reid, *Dynamics of Flight* (1996), ch. 2 and 4.
 ///
-/// - Axes: forward, right, down, of the ground too. Configuration: place and unit quaternion of `flight`;
-///   velocity: linear and angular in the aircraft's axes, (u, v, w) and (p, q, r). Inputs: `elevator`, rad;
-///   `thrust`, N, forward.
+/// - Axes: forward, right, down, also those of the ground. Configuration: position and unit quaternion of
+///   `flight`; velocity: linear and angular in the aircraft's axes, (u, v, w) and (p, q, r). Inputs:
+///   `elevator`, rad; `thrust`, N, forward.
 /// - Angle of attack `α = atan2(w, u)`, dynamic pressure `Q = ½ ρ V²`. In the plane of symmetry: lift
 ///   `Q S (C_L0 + C_Lα α)`, drag `Q S (C_D0 + K C_L²)`, pitching moment
 ///   `Q S c (C_m0 + C_mα α + C_mq q c / (2 V) + C_mδ δ)`.
-/// - Level flight: `L + T sin α = m g`, `T cos α = D`, no moment. Level turn with the bank `φ` without drag:
-///   `L = m g / cos φ`, and the path turns at the rate `g tan φ / V`.
+/// - Level flight: `L + T sin α = m g`, `T cos α = D`, zero moment. Level turn with the bank `φ` without
+///   drag: `L = m g / cos φ`, and the path turns at the rate `g tan φ / V`.
 #[mechanism(gravity = g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aircraft {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,

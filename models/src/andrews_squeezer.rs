@@ -6,7 +6,7 @@ use linkwork::mechanism;
 /// Source: Hairer and Wanner, *Solving Ordinary Differential Equations II* (1996), §VI.9; parameters of the
 /// Test Set for IVP Solvers (Mazzia and Magherini), problem `andrews`.
 ///
-/// - Coordinates: seven angles `β`, `Θ`, `γ`, `Φ`, `δ`, `Ω`, `ε`, rad. The pins `e3`, `e4` and `e6` close
+/// - Coordinates: seven angles `β`, `Θ`, `γ`, `Φ`, `δ`, `Ω`, `ε`, rad. The pins `e3`, `e4` and `e6` close the
 ///   loops, all at one point of `k2`.
 #[mechanism(derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ pub struct AndrewsSqueezer {
 }
 
 impl AndrewsSqueezer {
-    /// The configuration of the test set at the start, at rest: the loops are closed.
+    /// Initial configuration of the test set, at rest, with closed loops.
     pub const START: [f64; 7] = [
         -0.061_713_890_014_276_45,
         0.0,

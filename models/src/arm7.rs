@@ -1,6 +1,6 @@
 use linkwork::mechanism;
 
-/// The Panda of Franka Emika: an arm with seven joints and a hand with two fingers that move together.
+/// Panda of Franka Emika: an arm with seven joints and a hand with two fingers that move together.
 ///
 /// Source: `franka_ros` (Apache-2.0) by way of `example-robot-data` 5.0.0; see the head of `urdf/panda.urdf`.
 ///
@@ -10,7 +10,7 @@ use linkwork::mechanism;
 ///   Craig's convention, d = (333, 0, 316, 0, 384, 0, 0) mm, a = (0, 0, 0, 82.5, −82.5, 0, 88) mm, α = (0,
 ///   −90, 90, 90, −90, 90, 90)°, flange 107 mm.
 ///
-/// For control see [`PandaArm`].
+/// [`PandaArm`] is the model for control.
 #[mechanism(urdf = "urdf/panda.urdf")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Panda;
@@ -22,8 +22,7 @@ pub struct Panda;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PandaArm;
 
-/// A [`PandaArm`] that holds a load between its fingertips: what a controller that knows only the arm has to
-/// cope with.
+/// [`PandaArm`] with a load between its fingertips, which the model of a controller may not contain.
 #[mechanism(urdf = "urdf/panda.urdf", lock = ["panda_finger_joint1", "panda_finger_joint2"])]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadedPanda {

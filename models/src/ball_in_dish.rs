@@ -1,21 +1,21 @@
 use linkwork::mechanism;
 
-/// A ball that rolls without slipping in a paraboloid of revolution, a surface given by its points.
+/// Ball that rolls without slipping in a paraboloid of revolution, a parametric surface.
 ///
 /// Source: Routh, *Advanced Dynamics of a System of Rigid Bodies* (1905), ch. V; Neimark and Fufaev,
 /// *Dynamics of Nonholonomic Systems* (1972), ch. II: a ball on a surface of revolution.
 ///
-/// - Configuration: the point `u`, `w` of the dish `z = (u² + w²) / (2 c)` that the ball touches, m; place
+/// - Configuration: the point `u`, `w` of the dish `z = (u² + w²) / (2 c)` that the ball touches, m; position
 ///   and unit quaternion of `pose`. Velocity: rates of `u` and `w`; linear and angular velocity in the ball's
 ///   axes. z points up.
-/// - In a level circle at the distance `ρ` of the ball's centre from the axis, where the tangent has the
+/// - On a level circle at the distance `ρ` of the ball's centre from the axis, where the tangent has the
 ///   angle `β` to the vertical, at the rate `Ω`, with the spin `ν` about the normal (towards the ball):
 ///   `(7/5) Ω² ρ sin β + (2/5) r ν Ω cos β = g cos β`.
 /// - The energy is constant.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallInDish {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the ball, kg.
     pub mass: f64,

@@ -1,19 +1,19 @@
 use linkwork::mechanism;
 
-/// A ball that rolls without slipping inside a vertical tube. It does not fall: it sinks, turns back and
-/// rises again, as a golf ball that leaves the hole.
+/// Ball that rolls without slipping inside a vertical tube. It does not fall: it descends, reverses and rises
+/// again, as a golf ball that leaves the hole.
 ///
 /// Source: Gualtieri, Tokieda, Advis-Gaete, Carry, Reffet and Guthmann, *Golfer's dilemma*, Am. J. Phys. 74
 /// (2006); Neimark and Fufaev, *Dynamics of Nonholonomic Systems* (1972), ch. II.
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes; z
-///   points up along the tube's axis.
-/// - The rate `Ω` of the way round is constant, and with the spin `n` about the line from the axis:
-///   `r ṅ = Ω ż`, `(7/5) z̈ + (2/5) r n Ω + g = 0`, an oscillation with the frequency `√(2/7) Ω`.
+/// - Configuration: position and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes;
+///   z points up along the tube's axis.
+/// - The rate `Ω` of the motion around the axis is constant, and with the spin `n` about the radial
+///   direction: `r ṅ = Ω ż`, `(7/5) z̈ + (2/5) r n Ω + g = 0`, an oscillation with the frequency `√(2/7) Ω`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallInTube {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the ball, kg.
     pub mass: f64,

@@ -1,19 +1,19 @@
 use linkwork::mechanism;
 
-/// A ball that rolls without slipping on a turntable that is driven: it neither flies off nor comes to rest,
-/// but goes round in a circle, anywhere on the table.
+/// Ball that rolls without slipping on a driven turntable: it neither leaves the table nor comes to rest, but
+/// moves in a circle, anywhere on the table.
 ///
 /// Source: Routh, *Advanced Dynamics of a System of Rigid Bodies* (1905), ch. V; Weltner, *Stable circular
 /// orbits of freely moving balls on rotating discs*, Am. J. Phys. 47 (1979).
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes. z
-///   points up; the table turns about z at the constant rate `spin` `Ω`.
-/// - Seen from the ground the ball's centre moves with `v̇ = (2/7) Ω z × v`: in a circle at the rate
-///   `(2/7) Ω`, whatever its mass and size.
+/// - Configuration: position and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes.
+///   z points up; the table rotates about z at the constant rate `spin` `Ω`.
+/// - In the ground frame the ball's centre moves with `v̇ = (2/7) Ω z × v`: in a circle at the rate
+///   `(2/7) Ω`, for any mass and size.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallOnTurntable {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the ball, kg.
     pub mass: f64,

@@ -1,27 +1,27 @@
 use linkwork::mechanism;
 
-/// The bicycle with a rigid rider whose hands are off the bar: four rigid bodies, two of them wheels that
+/// Bicycle with a rigid rider whose hands are off the handlebar: four rigid bodies, two of them wheels that
 /// roll on their sharp rims. In a range of speeds it balances itself.
 ///
 /// Source: Whipple, *The stability of the motion of a bicycle*, Q. J. Pure Appl. Math. 30 (1899); Meijaard,
 /// Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance and steer of a bicycle: a
 /// benchmark and review*, Proc. R. Soc. A 463 (2007), whose parameters are [`BENCHMARK`](Self::BENCHMARK).
 ///
-/// - Configuration: place and unit quaternion `pose` of the rear frame, then the turn of the rear wheel
-///   `hub`, the steering angle `steer` and the turn of the front wheel `front_hub`, rad. In the upright
-///   straight configuration x points forward, y to the right, z down, and the origin is where the rear wheel
-///   touches the road.
+/// - Configuration: position and unit quaternion `pose` of the rear frame, then the rotation of the rear
+///   wheel `hub`, the steering angle `steer` and the rotation of the front wheel `front_hub`, rad. In the
+///   upright straight configuration x points forward, y to the right, z down, and the origin is where the
+///   rear wheel touches the road.
 /// - Riding straight at the speed `v`, lean and steer obey `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q = 0`. The
 ///   benchmark weaves up to 4.292 m/s, balances itself from there to 6.024 m/s, and falls over slowly
 ///   (capsizes) above.
 #[mechanism(gravity = g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bicycle {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Distance of the points where the wheels touch the road, m.
+    /// Distance between the contact points of the wheels, m.
     pub wheelbase: f64,
-    /// How far the front wheel touches the road behind the steering axis, m.
+    /// Distance of the front wheel's contact point behind the steering axis, m.
     pub trail: f64,
     /// Angle of the steering axis from the vertical, rad.
     pub tilt: f64,
@@ -33,9 +33,9 @@ pub struct Bicycle {
     pub rear_across: f64,
     /// Moment of inertia of the rear wheel about its axle, kg·m².
     pub rear_axial: f64,
-    /// Way forward to the centre of mass of frame and rider, m.
+    /// Forward position of the centre of mass of frame and rider, m.
     pub frame_x: f64,
-    /// Way down to the centre of mass of frame and rider, m.
+    /// Downward position of the centre of mass of frame and rider, m.
     pub frame_z: f64,
     /// Mass of frame and rider, kg.
     pub frame_mass: f64,
@@ -47,9 +47,9 @@ pub struct Bicycle {
     pub frame_izz: f64,
     /// Product of inertia of frame and rider (entry of the matrix), kg·m².
     pub frame_ixz: f64,
-    /// Way forward to the centre of mass of fork and handlebar, m.
+    /// Forward position of the centre of mass of fork and handlebar, m.
     pub fork_x: f64,
-    /// Way down to the centre of mass of fork and handlebar, m.
+    /// Downward position of the centre of mass of fork and handlebar, m.
     pub fork_z: f64,
     /// Mass of fork and handlebar, kg.
     pub fork_mass: f64,

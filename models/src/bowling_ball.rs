@@ -1,20 +1,20 @@
 use linkwork::mechanism;
 
-/// A ball that is thrown without spin onto a level lane: it slides, and dry friction brings it to roll.
+/// Ball that is thrown without spin onto a level lane: it slides, and dry friction brings it to roll.
 ///
 /// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), § 5.9 (exercises); Sommerfeld,
 /// *Mechanics* (1952), § 27 (billiards).
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes; z
-///   points up.
-/// - While it slides, with the slip `s` of its lowest point, `v̇ = −μ g s / √(|s|² + v₀²)`, which tends to
-///   Coulomb's law as the `regular_speed` `v₀` goes to zero. The slip keeps its direction: the path is a
-///   parabola, then straight.
+/// - Configuration: position and unit quaternion of `pose`; velocity: linear and angular, in the ball's axes;
+///   z points up.
+/// - While it slides, with the slip velocity `s` of its lowest point, `v̇ = −μ g s / √(|s|² + v₀²)`, which
+///   tends to Coulomb's law as the `regular_speed` `v₀` tends to zero. The slip keeps its direction: the path
+///   is a parabola, then straight.
 /// - Thrown with the speed `v` it rolls from the time `2 v / (7 μ g)` on, at `5 v / 7`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BowlingBall {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,
@@ -22,7 +22,7 @@ pub struct BowlingBall {
     pub radius: f64,
     /// Coefficient of friction `μ`.
     pub friction: f64,
-    /// Speed around which friction is smooth `v₀`, m/s.
+    /// Speed below which friction is smooth, `v₀`, m/s.
     pub regular_speed: f64,
 
     #[body(mass = mass, inertia = sphere(mass, radius))]

@@ -1,6 +1,6 @@
 use linkwork::mechanism;
 
-/// A flywheel on a shaft with a brake: dry friction brings it to rest.
+/// Flywheel on a shaft with a brake: dry friction brings it to rest.
 ///
 /// Source: Coulomb, *Théorie des machines simples* (1785); Bernstein, Goel and Ansari, *Geometry, Kinematics,
 /// Statics, and Dynamics*, on dashpots and friction.
@@ -9,7 +9,7 @@ use linkwork::mechanism;
 /// - Equation of motion: `J ω̇ = τ − f tanh(ω / ω₀)`: the smooth form of `τ − f sign ω`; below the small
 ///   speed `ω₀` it creeps.
 /// - Running down from `ω(0)`: `sinh(ω / ω₀) = sinh(ω(0) / ω₀) exp(−f t / (J ω₀))`, so that
-///   `ω = ω(0) − f t / J` until it is all but at rest, after `J ω(0) / f`.
+///   `ω = ω(0) − f t / J` until it is nearly at rest, after `J ω(0) / f`.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrakedFlywheel {
@@ -17,7 +17,7 @@ pub struct BrakedFlywheel {
     pub inertia: f64,
     /// Torque of the brake, N·m.
     pub brake_torque: f64,
-    /// Speed below which the wheel counts as resting, rad/s.
+    /// Speed below which the wheel is considered at rest, rad/s.
     pub creep: f64,
 
     #[body(inertia = diagonal(inertia / 2, inertia / 2, inertia))]

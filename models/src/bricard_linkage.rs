@@ -1,20 +1,21 @@
 use linkwork::mechanism;
 
-/// Bricard's linkage: six rods in a ring, joined by six pins, along the edges of a cube. Grübler's count
-/// gives no freedom at all, and yet it moves: one of its conditions follows from the others.
+/// Bricard's linkage: six rods in a ring, joined by six pins, along the edges of a cube. It is mobile
+/// although Grübler's count gives no degree of freedom: one of its conditions follows from the others.
 ///
 /// Source: Bricard, *Leçons de cinématique* II (1927); IFToMM library of computational benchmark problems,
 /// A04: rods of one metre and one kilogram, released from the cube for ten seconds; González, Dopico, Lugrís
 /// and Cuadrado, *A benchmarking system for MBS simulation software*, Multibody Syst. Dyn. 16 (2006).
 ///
 /// - Coordinates: `p1` to `p5`, the angles of five pins, rad. The sixth rod is the ground, and the pin `p6`
-///   closes the ring. y points up. With all angles zero the ring goes along `x`, `−y`, `z`, `−x`, `y`, `−z`.
-/// - The pins turn in turn by `θ` (`p1`, `p3`, `p5`) and `φ` (`p2`, `p4`), with
+///   closes the ring. y points up. With all angles zero the ring extends along `x`, `−y`, `z`, `−x`, `y`,
+///   `−z`.
+/// - The angles of the pins are alternately `θ` (`p1`, `p3`, `p5`) and `φ` (`p2`, `p4`), with
 ///   `sin θ + sin φ + sin θ sin φ = 0`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BricardLinkage {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of each rod, kg.
     pub mass: f64,

@@ -1,14 +1,14 @@
 use linkwork::mechanism;
 
-/// A car's axle on a road that is bumpy on one side: each wheel carries a mass on a spring, a massless bar
-/// joins the masses, and the left spring stays at right angles to the line from wheel to wheel.
+/// Car's axle on a road that is bumpy on one side: each wheel carries a mass on a spring, a massless bar
+/// joins the masses, and the left spring is always perpendicular to the line from wheel to wheel.
 ///
 /// Source: Test Set for IVP Solvers (Mazzia and Magherini), problem `caraxis`; Hairer and Wanner, *Solving
 /// Ordinary Differential Equations II* (1996), ch. VII.
 ///
-/// - Coordinates: `xl`, `yl` and `xr`, `yr`, the places of the left and the right mass, m; y points up. The
-///   left wheel is the origin, the right one is at `(√(1 − b²), b)` with the bump `b = 0.1 sin 10 t`: the
-///   functions take the time first.
+/// - Coordinates: `xl`, `yl` and `xr`, `yr`, the positions of the left and the right mass, m; y points up.
+///   The left wheel is the origin, the right one is at `(√(1 − b²), b)` with the bump `b = 0.1 sin 10 t`: the
+///   functions have the time as their first argument.
 /// - All numbers are those of the test set: masses of 0.5 g, springs of 1 N/m and 0.5 m, a bar of 1 m, and
 ///   gravity of 1 m/s².
 #[mechanism(gravity = -1 * y, derivatives)]

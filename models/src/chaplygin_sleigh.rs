@@ -4,10 +4,10 @@ use linkwork::mechanism;
 ///
 /// Source: Neimark and Fufaev, *Dynamics of Nonholonomic Systems* (1972), ch. III.
 ///
-/// - Coordinates: `ice.x`, `ice.y`, place of the knife, m; `ice.angle`, its heading from x, rad.
+/// - Coordinates: `ice.x`, `ice.y`, position of the knife, m; `ice.angle`, its heading from x, rad.
 /// - With the speed `u` along the knife and the turning rate `ω`: `u̇ = a ω²`, `(J + m a²) ω̇ = −m a u ω`.
-///   The energy is constant, and yet the motion settles: the sleigh comes to run straight, centre of mass
-///   ahead, with `u = V tanh(a V t / b² + const)`, `b² = a² + J/m`.
+///   The energy is constant; nevertheless the sleigh approaches a straight motion with its centre of mass
+///   ahead, `u = V tanh(a V t / b² + const)`, `b² = a² + J/m`.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChaplyginSleigh {

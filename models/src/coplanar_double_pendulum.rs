@@ -1,19 +1,19 @@
 use linkwork::mechanism;
 
-/// The double pendulum of two particles, in the angles of both rods from the vertical.
+/// Double pendulum of two particles, in the angles of both rods from the vertical.
 ///
 /// Source: Landau and Lifshitz, *Mechanics* (1976), §5, problem 1 (coplanar double pendulum), and §23,
 /// problem 2.
 ///
-/// - Coordinates: `phi1` and `phi2`, rad, counter-clockwise seen from +z; y points up. The particles are
-///   placed by them; there is no joint.
+/// - Coordinates: `phi1` and `phi2`, rad, counter-clockwise seen from +z; y points up. The positions of the
+///   particles are functions of these angles; there is no joint.
 /// - Lagrangian:
 ///   `½ (m₁ + m₂) l₁² φ̇₁² + ½ m₂ l₂² φ̇₂² + m₂ l₁ l₂ φ̇₁ φ̇₂ cos(φ₁ − φ₂) + (m₁ + m₂) g l₁ cos φ₁ + m₂ g l₂ cos φ₂`.
-/// - Small swings with equal lengths: `ω² = (g/l) (m₁ + m₂ ± √((m₁ + m₂) m₂)) / m₁`.
+/// - Small oscillations with equal lengths: `ω² = (g/l) (m₁ + m₂ ± √((m₁ + m₂) m₂)) / m₁`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoplanarDoublePendulum {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the upper particle, kg.
     pub m1: f64,

@@ -1,22 +1,22 @@
 use linkwork::mechanism;
 
-/// An aircraft by its non-dimensional derivatives about level cruise, `α̇` derivatives among them.
+/// Aircraft given by its non-dimensional derivatives about level cruise, including `α̇` derivatives.
 ///
-/// Source: Etkin and Reid, *Dynamics of Flight* (1996), ch. 4 and 6; the figures of
+/// Source: Etkin and Reid, *Dynamics of Flight* (1996), ch. 4 and 6; the values of
 /// [`BOEING_747`](Self::BOEING_747) from their tables, those of [`NAVION`](Self::NAVION) from Nelson, *Flight
 /// Stability and Automatic Control* (1998), appendix B.
 ///
-/// - Axes: forward, right, down, of the ground too; the stability axes of the cruise. Inputs: `elevator`,
-///   `aileron`, `rudder`, rad; `thrust`, N, beyond that of the cruise.
-/// - With `û = V / u₀ − 1`, the dynamic pressure `Q = ½ ρ V²`, and turning made dimensionless by `2 V / c`
-///   and `2 V / b`: forces and moments are `Q S`, `Q S c`, `Q S b` times coefficients that are linear, as
+/// - Axes: forward, right, down, also those of the ground; the stability axes of the cruise. Inputs:
+///   `elevator`, `aileron`, `rudder`, rad; `thrust`, N, in addition to that of the cruise.
+/// - With `û = V / u₀ − 1`, the dynamic pressure `Q = ½ ρ V²`, and rates made dimensionless by `2 V / c` and
+///   `2 V / b`: forces and moments are `Q S`, `Q S c`, `Q S b` times linear coefficients, as
 ///   `C_Z = C_Z0 + C_Zu û + C_Zα α + (C_Zq q + C_Zα̇ α̇) c / (2 V) + C_Zδ δ`. In the cruise `C_X = 0` and
 ///   `C_Z0 = −m g / (Q S)`.
-/// - What depends on `α̇` multiplies accelerations, and makes that matrix unsymmetric.
+/// - Terms in `α̇` multiply accelerations and make the matrix of the accelerations unsymmetric.
 #[mechanism(gravity = g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CruisingAircraft {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,
@@ -32,7 +32,7 @@ pub struct CruisingAircraft {
     /// Density of the air, kg/m³.
     #[unit(kg / m3)]
     pub density: f64,
-    /// Speed of the cruise, m/s.
+    /// Cruise speed, m/s.
     pub cruise: f64,
     /// Wing area, m².
     #[unit(m2)]
@@ -43,55 +43,55 @@ pub struct CruisingAircraft {
     /// Wing span, m.
     #[unit(m)]
     pub span: f64,
-    /// `C_Xu`.
+    /// Derivative `C_Xu` of the forward force.
     pub cx_u: f64,
-    /// `C_Xα`.
+    /// Derivative `C_Xα` of the forward force.
     pub cx_alpha: f64,
-    /// `C_Xδ` of the elevator.
+    /// Derivative `C_Xδ` of the forward force by the elevator.
     pub cx_elevator: f64,
-    /// `C_Zu`.
+    /// Derivative `C_Zu` of the downward force.
     pub cz_u: f64,
-    /// `C_Zα`.
+    /// Derivative `C_Zα` of the downward force.
     pub cz_alpha: f64,
-    /// `C_Zq`.
+    /// Derivative `C_Zq` of the downward force.
     pub cz_q: f64,
-    /// `C_Zα̇`.
+    /// Derivative `C_Zα̇` of the downward force.
     pub cz_alpha_rate: f64,
-    /// `C_Zδ` of the elevator.
+    /// Derivative `C_Zδ` of the downward force by the elevator.
     pub cz_elevator: f64,
-    /// `C_mu`.
+    /// Derivative `C_mu` of the pitching moment.
     pub cm_u: f64,
-    /// `C_mα`.
+    /// Derivative `C_mα` of the pitching moment.
     pub cm_alpha: f64,
-    /// `C_mq`.
+    /// Derivative `C_mq` of the pitching moment.
     pub cm_q: f64,
-    /// `C_mα̇`.
+    /// Derivative `C_mα̇` of the pitching moment.
     pub cm_alpha_rate: f64,
-    /// `C_mδ` of the elevator.
+    /// Derivative `C_mδ` of the pitching moment by the elevator.
     pub cm_elevator: f64,
-    /// `C_Yβ`.
+    /// Derivative `C_Yβ` of the side force.
     pub cy_beta: f64,
-    /// `C_Yδ` of the rudder.
+    /// Derivative `C_Yδ` of the side force by the rudder.
     pub cy_rudder: f64,
-    /// `C_lβ`.
+    /// Derivative `C_lβ` of the rolling moment.
     pub cl_beta: f64,
-    /// `C_lp`.
+    /// Derivative `C_lp` of the rolling moment.
     pub cl_p: f64,
-    /// `C_lr`.
+    /// Derivative `C_lr` of the rolling moment.
     pub cl_r: f64,
-    /// `C_lδ` of the ailerons.
+    /// Derivative `C_lδ` of the rolling moment by the ailerons.
     pub cl_aileron: f64,
-    /// `C_lδ` of the rudder.
+    /// Derivative `C_lδ` of the rolling moment by the rudder.
     pub cl_rudder: f64,
-    /// `C_nβ`.
+    /// Derivative `C_nβ` of the yawing moment.
     pub cn_beta: f64,
-    /// `C_np`.
+    /// Derivative `C_np` of the yawing moment.
     pub cn_p: f64,
-    /// `C_nr`.
+    /// Derivative `C_nr` of the yawing moment.
     pub cn_r: f64,
-    /// `C_nδ` of the ailerons.
+    /// Derivative `C_nδ` of the yawing moment by the ailerons.
     pub cn_aileron: f64,
-    /// `C_nδ` of the rudder.
+    /// Derivative `C_nδ` of the yawing moment by the rudder.
     pub cn_rudder: f64,
 
     elevator: Input,
@@ -165,7 +165,7 @@ pub struct CruisingAircraft {
 }
 
 impl CruisingAircraft {
-    /// The Boeing 747-100 at Mach 0.8 in 40 000 ft (Etkin and Reid, tables 6.1 and 6.6 and ch. 7).
+    /// Boeing 747-100 at Mach 0.8 in 40 000 ft (Etkin and Reid, tables 6.1 and 6.6 and ch. 7).
     pub const BOEING_747: Self = Self {
         g: 9.81,
         mass: 2.83176e6 / 9.81,
@@ -205,9 +205,9 @@ impl CruisingAircraft {
         cn_rudder: -0.1257,
     };
 
-    /// The Navion, a light aircraft with four seats, at 176 ft/s by the sea: 2750 lb, 184 ft², with
-    /// `C_L = 0.41`, `C_D = 0.05`, `C_Lα = 4.44`, `C_Dα = 0.33`. Forces by pitch rate are left out, as Nelson
-    /// does.
+    /// Navion, a light aircraft with four seats, at 176 ft/s at sea level: 2750 lb, 184 ft², with
+    /// `C_L = 0.41`, `C_D = 0.05`, `C_Lα = 4.44`, `C_Dα = 0.33`. Forces due to the pitch rate are neglected,
+    /// as in Nelson.
     pub const NAVION: Self = Self {
         g: 32.2 * FOOT,
         mass: 2750.0 / 32.2 * SLUG,
@@ -248,8 +248,8 @@ impl CruisingAircraft {
     };
 }
 
-/// m.
+/// Length of a foot, m.
 const FOOT: f64 = 0.3048;
 
-/// kg.
+/// Mass of a slug, kg.
 const SLUG: f64 = 14.593_902_937_206_36;

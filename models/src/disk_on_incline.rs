@@ -1,19 +1,20 @@
 use linkwork::mechanism;
 
-/// A disk, hoop, cylinder or ball that rolls down an incline without slipping.
+/// Disk, hoop, cylinder or ball that rolls down an incline without slipping.
 ///
 /// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), §2.4; Galilei, *Discorsi* (1638).
 ///
-/// - Coordinate: `s`, the way down the incline, m; place and attitude of the disk follow from it, so that
-///   rolling without slip needs no constraint. x points level towards the downhill side, y up.
+/// - Coordinate: `s`, the distance down the incline, m; position and orientation of the disk are functions of
+///   it, so that rolling without slip needs no constraint. x points horizontally towards the downhill side, y
+///   up.
 /// - Equation of motion: `(m + J/R²) s̈ = m g sin α`. With `J = κ m R²` the acceleration is
 ///   `g sin α / (1 + κ)`: `κ` is 1 for a hoop, ½ for a disk or a solid cylinder, ⅔ for a shell and ⅖ for a
-///   solid ball, whatever its mass and size.
+///   solid ball, for any mass and size.
 /// - Output: `rim`, the velocity of that point of the rim which touches the incline at `s = 0`, m/s.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiskOnIncline {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,

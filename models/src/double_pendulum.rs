@@ -14,7 +14,7 @@ use linkwork::mechanism;
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DoublePendulum {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the upper rod, kg.
     pub m1: f64,

@@ -1,13 +1,13 @@
 use linkwork::mechanism;
 
-/// The Duffing oscillator: a mass on a spring that becomes stiffer (or softer) the further it is stretched,
-/// with a dashpot and a harmonic force.
+/// Duffing oscillator: a mass on a spring with a cubic stiffness (hardening or softening), with a dashpot and
+/// a harmonic force.
 ///
 /// Source: Duffing, *Erzwungene Schwingungen bei veränderlicher Eigenfrequenz* (1918); Nayfeh and Mook,
 /// *Nonlinear Oscillations* (1979), ch. 4; Kovacic and Brennan, *The Duffing Equation* (2011).
 ///
-/// - Coordinate: `slide`, the displacement `x`, m. The force is a function of time, so the functions take the
-///   time first.
+/// - Coordinate: `slide`, the displacement `x`, m. The force is a function of time, so the functions have the
+///   time as their first argument.
 /// - Equation of motion: `m ẍ + c ẋ + α x + β x³ = F cos Ωt`.
 /// - Free and undamped from rest at `A`: period `4 K(k) √(m / (α + β A²))` with `k² = ½ β A² / (α + β A²)`.
 /// - With `α < 0 < β` there are two wells at `±√(−α/β)`, in which small oscillations have the frequency

@@ -2,26 +2,26 @@ use linkwork::{Table, mechanism};
 
 mod tables;
 
-/// A fighter with tabulated aerodynamics and an engine that follows its throttle late: the F-16 at subsonic
-/// speeds.
+/// Fighter with tabulated aerodynamics and an engine with a lag: the F-16 at subsonic speeds.
 ///
 /// Source: Stevens, Lewis and Johnson, *Aircraft Control and Simulation* (2015), § 3.5 and appendix A, after
 /// Nguyen and others, NASA TP 1538 (1979).
 ///
-/// - Axes: forward, right, down, of the ground too, from the centre of mass. Inputs: `throttle`, from 0 to 1;
-///   `elevator`, `aileron`, `rudder`, in degrees, as are the tables' angles. State: `power`, of the engine,
-///   in per cent.
-/// - Coefficients are sums of tables of the angles of attack and sideslip and of deflections, and of tables
-///   by the angle of attack times turning made dimensionless. The centre of mass lies `place` chords behind
+/// - Axes: forward, right, down, also those of the ground, from the centre of mass. Inputs: `throttle`, from
+///   0 to 1; `elevator`, `aileron`, `rudder`, in degrees, as are the tables' angles. State: `power`, of the
+///   engine, in per cent.
+/// - Coefficients are sums of tables over the angles of attack and sideslip and over deflections, and of
+///   tables over the angle of attack times dimensionless rates. The centre of mass is `place` chords behind
 ///   the leading edge, the moments' reference `reference`.
-/// - The power follows what the throttle commands at a rate that depends on both, by 40 and 60 per cent when
-///   the afterburner goes off or on: pieces, which `signum` puts together.
+/// - The power follows the throttle's command at a rate that depends on both, with an intermediate target of
+///   60 per cent while the afterburner is switched on, and of 40 per cent while it is switched off: a
+///   piecewise law, whose pieces `signum` selects.
 /// - The rotor of the engine has an angular momentum, `spin`.
-/// - The air is the source's: `ρ = ρ₀ (1 − h / h₀)^4.14`, `T = T₀ (1 − h / h₀)`, up to 35 000 ft.
+/// - The atmosphere is the source's: `ρ = ρ₀ (1 − h / h₀)^4.14`, `T = T₀ (1 − h / h₀)`, up to 35 000 ft.
 #[mechanism(gravity = g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fighter {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,
@@ -42,55 +42,55 @@ pub struct Fighter {
     pub span: f64,
     /// Mean chord, m.
     pub chord: f64,
-    /// Where the centre of mass lies, in chords behind the leading edge.
+    /// Position of the centre of mass, in chords behind the leading edge.
     pub place: f64,
-    /// Where moments are given about, in chords behind the leading edge.
+    /// Reference point of the moments, in chords behind the leading edge.
     pub reference: f64,
-    /// Density at the sea, kg/m³.
+    /// Density at sea level, kg/m³.
     pub sea_density: f64,
-    /// Speed of sound at the sea, m/s.
+    /// Speed of sound at sea level, m/s.
     pub sea_sound: f64,
-    /// Height at which the law of density would end, m.
+    /// Height at which the law of density becomes zero, m.
     pub depth: f64,
     /// Unit of the engine's time constants, s.
     pub second: f64,
-    /// Force forward, by elevator and angle of attack.
+    /// Coefficient of the forward force over elevator and angle of attack.
     pub cx: Table<2>,
-    /// Force downward, by the angle of attack.
+    /// Coefficient of the downward force over the angle of attack.
     pub cz: Table<1>,
-    /// Rolling moment, by sideslip and angle of attack.
+    /// Coefficient of the rolling moment over sideslip and angle of attack.
     pub cl: Table<2>,
-    /// Pitching moment, by elevator and angle of attack.
+    /// Coefficient of the pitching moment over elevator and angle of attack.
     pub cm: Table<2>,
-    /// Yawing moment, by sideslip and angle of attack.
+    /// Coefficient of the yawing moment over sideslip and angle of attack.
     pub cn: Table<2>,
-    /// Rolling moment of 20° of aileron, by sideslip and angle of attack.
+    /// Rolling moment of 20° of aileron over sideslip and angle of attack.
     pub cl_aileron: Table<2>,
-    /// Rolling moment of 30° of rudder, by sideslip and angle of attack.
+    /// Rolling moment of 30° of rudder over sideslip and angle of attack.
     pub cl_rudder: Table<2>,
-    /// Yawing moment of 20° of aileron, by sideslip and angle of attack.
+    /// Yawing moment of 20° of aileron over sideslip and angle of attack.
     pub cn_aileron: Table<2>,
-    /// Yawing moment of 30° of rudder, by sideslip and angle of attack.
+    /// Yawing moment of 30° of rudder over sideslip and angle of attack.
     pub cn_rudder: Table<2>,
-    /// Force forward by pitch rate.
+    /// Derivative of the forward force with respect to the pitch rate.
     pub cx_q: Table<1>,
-    /// Force to the right by yaw rate.
+    /// Derivative of the side force with respect to the yaw rate.
     pub cy_r: Table<1>,
-    /// Force to the right by roll rate.
+    /// Derivative of the side force with respect to the roll rate.
     pub cy_p: Table<1>,
-    /// Force downward by pitch rate.
+    /// Derivative of the downward force with respect to the pitch rate.
     pub cz_q: Table<1>,
-    /// Rolling moment by yaw rate.
+    /// Derivative of the rolling moment with respect to the yaw rate.
     pub cl_r: Table<1>,
-    /// Rolling moment by roll rate.
+    /// Derivative of the rolling moment with respect to the roll rate.
     pub cl_p: Table<1>,
-    /// Pitching moment by pitch rate.
+    /// Derivative of the pitching moment with respect to the pitch rate.
     pub cm_q: Table<1>,
-    /// Yawing moment by yaw rate.
+    /// Derivative of the yawing moment with respect to the yaw rate.
     pub cn_r: Table<1>,
-    /// Yawing moment by roll rate.
+    /// Derivative of the yawing moment with respect to the roll rate.
     pub cn_p: Table<1>,
-    /// Thrust, N, by Mach number, height (m) and power.
+    /// Thrust, N, over Mach number, height (m) and power.
     pub thrust: Table<3>,
 
     throttle: Input,
@@ -110,7 +110,7 @@ pub struct Fighter {
     target: Scalar,
     #[define(burns * 5 + (1 - burns) * min(max(1.9 - 0.036 * (target - power), 0.1), 1))]
     quickness: Scalar,
-    /// The power of the engine, per cent.
+    /// Power of the engine, per cent.
     #[state(rate = quickness * (target - power) / second)]
     pub power: State,
 

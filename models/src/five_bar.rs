@@ -1,20 +1,20 @@
 use linkwork::mechanism;
 
-/// The planar five-bar: a parallel robot whose two motors both stand on the ground and move one tool.
+/// Planar five-bar linkage: a parallel robot with both motors on the ground that move one tool.
 ///
 /// Source: Liu, Wang and Pritschow, *Kinematics, singularity and workspace of planar 5R symmetrical parallel
 /// mechanisms*, Mech. Mach. Theory 41 (2006).
 ///
 /// - Coordinates: `left` and `right` `θ₁`, `θ₂`, the angles of the two cranks from x; `left_elbow` and
-///   `right_elbow`, the angles of the forearms from their cranks; rad. y points up. The left crank turns
+///   `right_elbow`, the angles of the forearms from their cranks; rad. y points up. The left crank rotates
 ///   about the origin, the right one about `(base, 0)`. The pin `wrist` closes the loop; the tool is there.
 ///   Inputs: `left_motor` and `right_motor`, torques on the cranks, N·m.
-/// - The tool `P` lies on circles about both elbows `Eᵢ`: `|P − Eᵢ| = forearm`. The rates follow from
+/// - The tool `P` is on circles about both elbows `Eᵢ`: `|P − Eᵢ| = forearm`. The rates follow from
 ///   `(P − Eᵢ) · (Ṗ − Ėᵢ) = 0`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FiveBar {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of each crank, kg.
     pub crank_mass: f64,

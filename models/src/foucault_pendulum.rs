@@ -1,23 +1,24 @@
 use linkwork::mechanism;
 
-/// Foucault's pendulum: a pendulum over the turning earth.
+/// Foucault's pendulum: a pendulum over the rotating earth.
 ///
 /// Source: Foucault, *Démonstration physique du mouvement de rotation de la terre* (1851); Landau and
 /// Lifshitz, *Mechanics* (1976), §39, problem 3.
 ///
-/// - The ground does not turn; the laboratory turns with the earth about z, its own x up, y east, z north.
-///   The centrifugal force on the suspension belongs to the local `g`, as usual. Functions take the time
-///   first.
+/// - The ground frame is inertial; the laboratory rotates with the earth about z, with its own x up, y east,
+///   z north. The centrifugal force on the suspension is included in the local `g`, as usual. Functions have
+///   the time as their first argument.
 /// - Coordinates: `suspension.first`, `a`, about the direction south, `suspension.second`, `b`, about the
-///   carried east, rad. The bob is at `x = −l sin b` south, `y = l sin a cos b` east, `−l cos a cos b` up.
-/// - Small swings, with `ω² = g/l` and `Ωᵥ = Ω sin λ`, the vertical part of the earth's rotation at the
-///   latitude `λ`: `ẍ + ω² x = 2 Ωᵥ ẏ`, `ÿ + ω² y = −2 Ωᵥ ẋ` up to terms in `Ω²`: the plane of the swing
-///   turns with `−Ωᵥ`, clockwise in the north.
-/// - At the pole (`λ = ½π`) the motion is that of the spherical pendulum in a frame at rest, exactly.
+///   rotated east axis, rad. The bob is at `x = −l sin b` south, `y = l sin a cos b` east, `−l cos a cos b`
+///   up.
+/// - Small oscillations, with `ω² = g/l` and `Ωᵥ = Ω sin λ`, the vertical component of the earth's rotation
+///   at the latitude `λ`: `ẍ + ω² x = 2 Ωᵥ ẏ`, `ÿ + ω² y = −2 Ωᵥ ẋ` up to terms in `Ω²`: the plane of
+///   oscillation rotates with `−Ωᵥ`, clockwise in the north.
+/// - At the pole (`λ = ½π`) the motion is exactly that of the spherical pendulum in a frame at rest.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoucaultPendulum {
-    /// Local acceleration of free fall, m/s².
+    /// Local gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the bob, kg.
     pub mass: f64,

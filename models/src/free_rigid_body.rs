@@ -1,16 +1,16 @@
 use linkwork::mechanism;
 
-/// A rigid body that flies freely, without gravity: Euler's top. Spun about its middle axis it turns over
-/// again and again (Dzhanibekov's effect, the tennis racket theorem).
+/// Rigid body in free flight without gravity: Euler's top. Spun about its intermediate axis it turns over
+/// periodically (Dzhanibekov's effect, the tennis racket theorem).
 ///
 /// Source: Euler, *Theoria motus corporum* (1765); Landau and Lifshitz, *Mechanics* (1976), §37; Ashbaugh,
 /// Chicone and Cushman, *The twisting tennis racket*, J. Dyn. Diff. Eq. 3 (1991).
 ///
-/// - Configuration: place and unit quaternion of `flight`; velocity: linear `v` and angular `ω`, in the
+/// - Configuration: position and unit quaternion of `flight`; velocity: linear `v` and angular `ω`, in the
 ///   body's axes.
 /// - Newton's and Euler's equations: `m (v̇ + ω × v) = 0`, `I ω̇ + ω × I ω = 0`.
-/// - Energy and angular momentum (fixed in space) are constant. With the principal moments of inertia
-///   `I₁ < I₂ < I₃`, the energy `E` of the turning and the angular momentum `L` such that `L² > 2 E I₂`, the
+/// - Energy and angular momentum (in the ground frame) are constant. With the principal moments of inertia
+///   `I₁ < I₂ < I₃`, the rotational energy `E` and the angular momentum `L` such that `L² > 2 E I₂`, the
 ///   angular velocity returns after `4 K(k) √(I₁ I₂ I₃ / ((I₃ − I₂)(L² − 2 E I₁)))`,
 ///   `k² = (I₂ − I₁)(2 E I₃ − L²) / ((I₃ − I₂)(L² − 2 E I₁))`.
 #[mechanism]

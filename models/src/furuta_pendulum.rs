@@ -1,7 +1,7 @@
 use linkwork::mechanism;
 
-/// Furuta's pendulum, or rotary pendulum: an arm that a motor turns about the vertical, and a pendulum pinned
-/// to its end that swings across the arm.
+/// Furuta's pendulum, or rotary pendulum: a motor rotates an arm about the vertical, and a pendulum pinned to
+/// the arm's end swings across the arm.
 ///
 /// Source: Furuta, Yamakita and Kobayashi, *Swing up control of inverted pendulum* (1991); Cazzolato and
 /// Prime, *On the dynamics of the Furuta pendulum*, J. Control Sci. Eng. (2011).
@@ -12,12 +12,12 @@ use linkwork::mechanism;
 ///   `M₁₁ = ⅓ M r² + m r² + ⅓ m l² sin² θ`, `M₁₂ = ½ m r l cos θ`, `M₂₂ = ⅓ m l²`.
 /// - Bias forces: `h₁ = ⅔ m l² sin θ cos θ θ̇ φ̇ − ½ m r l sin θ θ̇²`,
 ///   `h₂ = −⅓ m l² sin θ cos θ φ̇² + ½ m g l sin θ`.
-/// - With the arm free, small swings have the frequency `√(½ m g l M₁₁ / (M₁₁ M₂₂ − M₁₂²))`, taken at
-///   `θ = 0`.
+/// - With the arm free, small oscillations have the frequency `√(½ m g l M₁₁ / (M₁₁ M₂₂ − M₁₂²))`, evaluated
+///   at `θ = 0`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FurutaPendulum {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the arm, kg.
     pub arm_mass: f64,

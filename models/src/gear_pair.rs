@@ -1,14 +1,14 @@
 use linkwork::mechanism;
 
-/// Two gears in mesh, on axles that stand still: a constraint ties their angles.
+/// Two gears in mesh, on fixed axles: a constraint couples their angles.
 ///
-/// Source: Norton, *Design of Machinery* (2004), ch. 9; Shabana, *Dynamics of Multibody Systems* (2013),
-/// ch. 3.
+/// Source: Norton, *Design of Machinery* (2004), ch. 9; Shabana, *Dynamics of Multibody Systems* (2013), ch.
+/// 3.
 ///
 /// - Coordinates: `pinion` and `wheel`, the angles of the two gears about z, rad. Input: `motor`, a torque on
-///   the pinion, N·m. They turn against each other: `r₁ θ₁ + r₂ θ₂ = 0`, a length of arc.
+///   the pinion, N·m. They rotate in opposite directions: `r₁ θ₁ + r₂ θ₂ = 0`, a length of arc.
 /// - With the motor's torque `M`: `(J₁ + (r₁/r₂)² J₂) θ̈₁ = M`, and the multiplier of `teeth` is the force
-///   between the teeth, `−(r₁ J₂ / r₂²) θ̈₁`, N: negative where it holds the pinion back.
+///   between the teeth, `−(r₁ J₂ / r₂²) θ̈₁`, N: negative if it retards the pinion.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GearPair {

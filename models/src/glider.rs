@@ -1,22 +1,23 @@
 use linkwork::mechanism;
 
-/// A glider with a parabolic polar, `C_D = C_D0 + K C_L²`, and linear moments.
+/// Glider with a parabolic polar, `C_D = C_D0 + K C_L²`, and linear moments.
 ///
 /// Source: Anderson, *Aircraft Performance and Design* (1999), § 5.10, on gliding; Etkin and Reid, *Dynamics
 /// of Flight* (1996), ch. 6, on the spiral.
 ///
-/// - Axes: forward, right, down, of the ground too. Input: `elevator`, rad, which sets the angle of attack.
-/// - Steady: the whole force of the air is the weight, and the path goes down at `tan γ = C_D / C_L`. It is
-///   flattest where `C_L = √(C_D0 / K)`, with `C_L / C_D = 1 / (2 √(K C_D0))`, and sinks slowest near
-///   `C_L = √(3 C_D0 / K)`.
-/// - Where the angle of attack hardly changes the phugoid takes `√2 π V / g` seconds, with the damping ratio
+/// - Axes: forward, right, down, also those of the ground. Input: `elevator`, rad, which determines the angle
+///   of attack.
+/// - In a steady glide the aerodynamic force balances the weight, and the path descends at
+///   `tan γ = C_D / C_L`. The glide is flattest at `C_L = √(C_D0 / K)`, with `C_L / C_D = 1 / (2 √(K C_D0))`,
+///   and the sink rate is smallest near `C_L = √(3 C_D0 / K)`.
+/// - With a nearly constant angle of attack the phugoid has the period `√2 π V / g`, with the damping ratio
 ///   `3 C_D / (2 √2 C_L)`.
 /// - The static margin is `−C_mα / (C_Lα + C_D)` chords.
 /// - Near level flight the spiral is stable if `C_lβ C_nr > C_nβ C_lr`.
 #[mechanism(gravity = g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glider {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,
@@ -34,31 +35,31 @@ pub struct Glider {
     pub chord: f64,
     /// Wing span, m.
     pub span: f64,
-    /// Lift at zero angle of attack.
+    /// Lift coefficient at zero angle of attack.
     pub cl_0: f64,
-    /// Slope of the lift with the angle of attack, 1/rad.
+    /// Slope of the lift coefficient with the angle of attack, 1/rad.
     pub cl_alpha: f64,
-    /// Drag without lift.
+    /// Drag coefficient without lift.
     pub cd_0: f64,
-    /// `K`, of the drag by lift.
+    /// Coefficient `K` of the induced drag.
     pub cd_induced: f64,
-    /// Pitching moment by the angle of attack, 1/rad.
+    /// Derivative of the pitching moment with respect to the angle of attack, 1/rad.
     pub cm_alpha: f64,
-    /// Pitching moment by the pitch rate.
+    /// Derivative of the pitching moment with respect to the pitch rate.
     pub cm_rate: f64,
-    /// Pitching moment by the elevator, 1/rad.
+    /// Derivative of the pitching moment with respect to the elevator, 1/rad.
     pub cm_elevator: f64,
-    /// Force to the right by sideslip, 1/rad.
+    /// Derivative of the side force with respect to sideslip, 1/rad.
     pub cy_beta: f64,
-    /// Rolling moment by sideslip, 1/rad: negative with dihedral.
+    /// Derivative of the rolling moment with respect to sideslip (negative with dihedral), 1/rad.
     pub roll_beta: f64,
-    /// Rolling moment by the roll rate.
+    /// Derivative of the rolling moment with respect to the roll rate.
     pub roll_p: f64,
-    /// Rolling moment by the yaw rate.
+    /// Derivative of the rolling moment with respect to the yaw rate.
     pub roll_r: f64,
-    /// Yawing moment by sideslip, 1/rad.
+    /// Derivative of the yawing moment with respect to sideslip, 1/rad.
     pub yaw_beta: f64,
-    /// Yawing moment by the yaw rate.
+    /// Derivative of the yawing moment with respect to the yaw rate.
     pub yaw_r: f64,
 
     elevator: Input,

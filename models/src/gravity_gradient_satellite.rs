@@ -1,18 +1,18 @@
 use linkwork::mechanism;
 
-/// A satellite in orbit, which gravity turns because it is weaker at the far end.
+/// Satellite in orbit with a gravity-gradient torque, since gravity is weaker at its far end.
 ///
 /// Source: Hughes, *Spacecraft Attitude Dynamics* (1986), ch. 9; Bernstein, Goel and Ansari, *Geometry,
 /// Kinematics, Statics, and Dynamics*, on central gravity.
 ///
-/// - Configuration: place and unit quaternion of `flight`, the free joint from the centre of attraction;
+/// - Configuration: position and unit quaternion of `flight`, the free joint from the centre of attraction;
 ///   velocity: linear and angular, in the satellite's axes.
-/// - At the place `r`, with `n = r/|r|` and the inertia matrix `I`, the torque of gravity is
-///   `3 μ / r³ · n × I n`, to second order in size over distance. The force is `−μ m r / r³` and a part of
-///   second order, which `I` decides as it does the torque.
-/// - On a circular orbit with the rate `Ω = √(μ/r³)`, one axis up (yaw), one forward (roll), one across
-///   (pitch), the satellite stays so; small oscillations in pitch have the frequency
-///   `Ω √(3 (I_roll − I_yaw) / I_pitch)`. Stable if the long axis is up.
+/// - At the position `r`, with `n = r/|r|` and the inertia matrix `I`, the torque of gravity is
+///   `3 μ / r³ · n × I n`, to second order in size over distance. The force is `−μ m r / r³` and a term of
+///   second order, which depends on `I` as the torque does.
+/// - On a circular orbit with the rate `Ω = √(μ/r³)`, the orientation with one axis up (yaw), one forward
+///   (roll), one across (pitch) is an equilibrium; small oscillations in pitch have the frequency
+///   `Ω √(3 (I_roll − I_yaw) / I_pitch)`. It is stable if the long axis is up.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GravityGradientSatellite {

@@ -1,6 +1,6 @@
 use linkwork::{Real, mechanism};
 
-/// The heavy symmetric top: a body of revolution that spins about a fixed point on its axis. Also called
+/// Heavy symmetric top: a body of revolution that spins about a fixed point on its axis. Also called
 /// Lagrange's top.
 ///
 /// Source: Landau and Lifshitz, *Mechanics* (1976), §35, problem 1; Goldstein, Poole and Safko, *Classical
@@ -12,13 +12,13 @@ use linkwork::{Real, mechanism};
 ///   mass above the tip and the moments of inertia `C` about the axis and `A = transverse + m h²` across it:
 ///   the mass matrix is `M = diag(A, A, C)`, the bias forces are `ω × M ω − h e₃ × m g`.
 /// - Steady precession `Ω` at the inclination `θ` with the axial spin `n`: `A Ω² cos θ − C n Ω + m g h = 0`.
-/// - Upright it sleeps if `C² n² > 4 A m g h`.
+/// - The upright top is stable ("sleeps") if `C² n² > 4 A m g h`.
 ///
-/// Generic over its numbers.
+/// Generic over the scalar type.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeavyTop<T: Real> {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: T,
     /// Mass, kg.
     pub mass: T,

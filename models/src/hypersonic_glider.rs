@@ -1,32 +1,33 @@
 use linkwork::mechanism;
 
-/// A craft that glides from orbit, in six degrees of freedom over the round Earth, which turns below with its
-/// air.
+/// Vehicle that glides from orbit, in six degrees of freedom over the round Earth, which rotates with its
+/// atmosphere.
 ///
 /// Source: Vinh, Busemann and Culp, *Hypersonic and Planetary Entry Flight Mechanics* (1980), ch. 2; Stevens,
 /// Lewis and Johnson, *Aircraft Control and Simulation* (2015), § 1.7.
 ///
 /// - Ground: inertial axes in the centre of the Earth, z to the North Pole. `flight` is the pose in axes that
-///   turn with the Earth and are those of the ground at the time 0. Axes of the craft: forward, right, down.
-///   Inputs: `lift`, upwards in them, and `thrust`, forward, N; `moment`, about the right axis, N·m.
-/// - In the axes that turn, `a = −μ r / r³ − 2 Ω × v − Ω × (Ω × r) + f / m`.
-/// - Level to the east over the equator at `V` it needs the lift `m (μ / r² − (V + Ω r)² / r)`, less than to
-///   the west.
-/// - Drag is `½ ρ V² S_D`, with `ρ = ρ₀ e^{−(r − R) / H}` and the velocity `V` over the Earth, with which the
-///   air goes.
+///   rotate with the Earth and coincide with those of the ground at the time 0. Axes of the vehicle: forward,
+///   right, down. Inputs: `lift`, upwards in them, and `thrust`, forward, N; `moment`, about the right axis,
+///   N·m.
+/// - In the rotating axes, `a = −μ r / r³ − 2 Ω × v − Ω × (Ω × r) + f / m`.
+/// - Level flight to the east over the equator at `V` needs the lift `m (μ / r² − (V + Ω r)² / r)`, which is
+///   less than to the west.
+/// - Drag is `½ ρ V² S_D`, with `ρ = ρ₀ e^{−(r − R) / H}` and the velocity `V` relative to the Earth and its
+///   atmosphere.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HypersonicGlider {
     /// Gravitational parameter, m³/s².
     pub mu: f64,
-    /// How fast the Earth turns, rad/s.
+    /// Rotation rate of the Earth, rad/s.
     pub turning: f64,
     /// Radius of the Earth, m.
     pub radius: f64,
-    /// Density of the air there, kg/m³.
+    /// Density of the air at this radius, kg/m³.
     #[unit(kg / m3)]
     pub density: f64,
-    /// Height in which it falls to a part of `1/e`, m.
+    /// Scale height, in which the density decreases by the factor `1/e`, m.
     pub scale: f64,
     /// Mass, kg.
     pub mass: f64,

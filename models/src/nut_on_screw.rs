@@ -1,24 +1,24 @@
 use linkwork::mechanism;
 
-/// A heavy nut on an upright screw without friction: its weight turns it as it comes down.
+/// Heavy nut on an upright screw without friction: its weight rotates it as it descends.
 ///
 /// Source: Ball, *A Treatise on the Theory of Screws* (1900); Bernstein, Goel and Ansari, *Geometry,
 /// Kinematics, Statics, and Dynamics*, on the screw joint.
 ///
-/// - Coordinate: `thread`, the angle `θ` of the nut, rad; it rises by the pitch `p` each radian, `2π p` each
+/// - Coordinate: `thread`, the angle `θ` of the nut, rad; it rises by the pitch `p` per radian, `2π p` per
 ///   turn. Input: `spanner`, a torque on the nut, N·m.
 /// - Equation of motion, with the nut's moment of inertia `J` about the screw: `(J + m p²) θ̈ + m g p = τ`.
-///   It falls with the constant acceleration `g / (1 + J / (m p²))`, and is held by the torque `m g p`.
+///   It falls with the constant acceleration `g / (1 + J / (m p²))`, and the torque `m g p` holds it at rest.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NutOnScrew {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the nut, kg.
     pub mass: f64,
     /// Radius of the nut, a uniform disk, m.
     pub radius: f64,
-    /// Rise in a radian, m.
+    /// Rise per radian, m.
     pub pitch: f64,
 
     #[body(mass = mass, inertia = disk(mass, radius, z))]

@@ -1,6 +1,6 @@
 use linkwork::{Real, mechanism};
 
-/// The simple pendulum: a particle at the end of a massless rod that turns about a horizontal pin.
+/// Simple pendulum: a particle at the end of a massless rod that rotates about a horizontal pin.
 ///
 /// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), ch. 1; the period: Landau and Lifshitz,
 /// *Mechanics* (1976), §11.
@@ -10,11 +10,11 @@ use linkwork::{Real, mechanism};
 /// - Period from rest at `θ₀`: `T = 4 √(l/g) K(sin ½θ₀) = 2π √(l/g) / agm(1, cos ½θ₀)`, with the
 ///   arithmetic–geometric mean `agm`.
 ///
-/// Generic over its numbers: `Pendulum<f32>`, `Pendulum<f64>` or anything that is [`Real`].
+/// Generic over the scalar type: `Pendulum<f32>`, `Pendulum<f64>` or any other type that implements [`Real`].
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pendulum<T: Real> {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: T,
     /// Mass of the particle, kg.
     pub mass: T,

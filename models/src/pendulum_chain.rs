@@ -1,7 +1,7 @@
 use linkwork::mechanism;
 
-/// Writes a chain of particles on massless rods: for each link its joint, what it hangs from, its rod, its
-/// particle, mass and length. (`[…]` because an endpoint is more than one token.)
+/// Declares a chain of particles on massless rods: for each link its joint, the point from which it hangs,
+/// its rod, its particle, mass and length. (`[…]` because an endpoint is more than one token.)
 macro_rules! pendulum_chain {
     (
         $(#[$doc:meta])* $name:ident:
@@ -20,12 +20,12 @@ macro_rules! pendulum_chain {
         #[mechanism(gravity = -g * y)]
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct $name {
-            /// Acceleration of free fall, m/s².
+            /// Gravitational acceleration, m/s².
             pub g: f64,
             $(
                 /// Mass of the particle with this number from the top, kg.
                 pub $m: f64,
-                /// Length of the rod that holds the particle with this number from the top, m.
+                /// Length of the rod above the particle with this number from the top, m.
                 pub $l: f64,
             )+
             $(

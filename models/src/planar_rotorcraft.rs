@@ -1,6 +1,6 @@
 use linkwork::mechanism;
 
-/// A rotorcraft with two propellers that flies in a vertical plane.
+/// Rotorcraft with two propellers that flies in a vertical plane.
 ///
 /// Source: Hauser, Sastry and Meyer, *Nonlinear control design for slightly non-minimum phase systems:
 /// application to V/STOL aircraft*, Automatica 28 (1992); Tedrake, *Underactuated Robotics*, ch. 3.
@@ -8,11 +8,12 @@ use linkwork::mechanism;
 /// - Coordinates: `flight.x`, `flight.y`, m, with y up, and `flight.angle`, `θ`, rad, counter-clockwise.
 ///   Inputs: `left` and `right`, the thrusts along the hull's y at `∓l`, N.
 /// - Equations of motion: `m ẍ = −(u₁ + u₂) sin θ`, `m ÿ = (u₁ + u₂) cos θ − m g`, `J θ̈ = l (u₂ − u₁)`.
-/// - It hovers at `u₁ = u₂ = ½ m g`, `θ = 0`. Without thrust it flies along a parabola, turning steadily.
+/// - It hovers at `u₁ = u₂ = ½ m g`, `θ = 0`. Without thrust it moves on a parabola with constant angular
+///   velocity.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanarRotorcraft {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,

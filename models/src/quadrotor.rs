@@ -1,21 +1,22 @@
 use linkwork::mechanism;
 
-/// A quadrotor whose rotors follow their commands late.
+/// Quadrotor whose rotors follow their commands with a lag.
 ///
 /// Source: Mahony, Kumar and Corke, *Multirotor Aerial Vehicles*, IEEE Robotics and Automation Magazine 19
 /// (2012).
 ///
-/// - Axes: forward, left, up, from the centre of mass; the ground's z is up. Inputs: speeds that the rotors
-///   shall have, rad/s; states: those they have, with `τ ω̇ = u − ω`. Front and back turn against left and
-///   right.
-/// - Each rotor gives the thrust `k ω²`, and turns the hull about its upward axis by `∓ d ω²`.
-/// - It hovers at `ω₀ = √(m g / (4 k))`. There, near rest: the height follows all four commands by
-///   `8 k ω₀ / (m s² (τ s + 1))`, the roll rate that of the left rotor by `2 l k ω₀ / (I s (τ s + 1))`, the
-///   yaw rate that of the front by `2 d ω₀ / (I s (τ s + 1))`; sideways it goes by `−g / s²` of the roll.
+/// - Axes: forward, left, up, from the centre of mass; the ground's z is up. Inputs: commanded speeds of the
+///   rotors, rad/s; states: their actual speeds, with `τ ω̇ = u − ω`. Front and back rotate in the opposite
+///   direction of left and right.
+/// - Each rotor has the thrust `k ω²`, and the reaction torque `∓ d ω²` on the hull about its upward axis.
+/// - It hovers at `ω₀ = √(m g / (4 k))`. Transfer functions near hovering at rest:
+///   `8 k ω₀ / (m s² (τ s + 1))` from all four commands to the height, `2 l k ω₀ / (I s (τ s + 1))` from the
+///   left rotor to the roll rate, `2 d ω₀ / (I s (τ s + 1))` from the front rotor to the yaw rate, and
+///   `−g / s²` from the roll angle to the lateral position.
 #[mechanism(gravity = -g * z, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadrotor {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,
@@ -27,27 +28,27 @@ pub struct Quadrotor {
     pub izz: f64,
     /// Distance of the rotors from the centre of mass, m.
     pub arm: f64,
-    /// Thrust by the squared speed of a rotor, N·s².
+    /// Thrust per squared speed of a rotor, N·s².
     pub thrust: f64,
-    /// Torque by the squared speed of a rotor, N·m·s².
+    /// Torque per squared speed of a rotor, N·m·s².
     pub drag: f64,
-    /// How late the rotors are, s.
+    /// Time constant of the rotors, s.
     pub lag: f64,
 
     front: Input,
     left: Input,
     back: Input,
     right: Input,
-    /// Speed of the rotor, rad/s.
+    /// Speed of the front rotor, rad/s.
     #[state(rate = (front - front_speed) / lag)]
     pub front_speed: State,
-    /// Speed of the rotor, rad/s.
+    /// Speed of the left rotor, rad/s.
     #[state(rate = (left - left_speed) / lag)]
     pub left_speed: State,
-    /// Speed of the rotor, rad/s.
+    /// Speed of the back rotor, rad/s.
     #[state(rate = (back - back_speed) / lag)]
     pub back_speed: State,
-    /// Speed of the rotor, rad/s.
+    /// Speed of the right rotor, rad/s.
     #[state(rate = (right - right_speed) / lag)]
     pub right_speed: State,
 

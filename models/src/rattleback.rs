@@ -1,22 +1,22 @@
 use linkwork::mechanism;
 
-/// The rattleback, or celt: a half ellipsoid whose heavy axes are turned against those of its shape. Spun one
-/// way it begins to rattle, stops and turns the other way.
+/// Rattleback, or celt: a half ellipsoid whose principal axes of inertia are rotated against those of its
+/// shape. Spun in one direction it begins to rattle, stops and reverses its rotation.
 ///
 /// Source: Kane and Levinson, *Realistic mathematical modeling of the rattleback*, Int. J. Non-Linear Mech.
 /// 17 (1982); Walker, *On a dynamical top*, Q. J. Pure Appl. Math. 28 (1896). [`BENCHMARK`](Self::BENCHMARK)
-/// has the figures of the first.
+/// has the parameters of the first.
 ///
-/// - Configuration: place and unit quaternion of `pose`; velocity: linear and angular, in the body's axes,
+/// - Configuration: position and unit quaternion of `pose`; velocity: linear and angular, in the body's axes,
 ///   which are those of the ellipsoid `x²/a² + y²/b² + z²/c² = 1`. z points up; the centre of mass is below
-///   its middle.
-/// - It touches the table at `−(a² n₁, b² n₂, c² n₃) / √(a² n₁² + b² n₂² + c² n₃²)` from the middle, where
-///   `n` are the components of the upward normal, and that point is at rest.
-/// - Nothing dissipates: the energy is constant.
+///   the ellipsoid's centre.
+/// - It touches the table at `−(a² n₁, b² n₂, c² n₃) / √(a² n₁² + b² n₂² + c² n₃²)` from the centre, where
+///   `n` are the components of the upward normal, and the contact point is at rest.
+/// - No force dissipates: the energy is constant.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rattleback {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,
@@ -26,7 +26,7 @@ pub struct Rattleback {
     pub b: f64,
     /// Semi-axis of the ellipsoid along z, m.
     pub c: f64,
-    /// Depth of the centre of mass below the ellipsoid's middle, m.
+    /// Depth of the centre of mass below the ellipsoid's centre, m.
     pub depth: f64,
     /// Moment of inertia about x, kg·m².
     pub ixx: f64,
@@ -46,7 +46,7 @@ pub struct Rattleback {
 }
 
 impl Rattleback {
-    /// The stone of Kane and Levinson.
+    /// Parameters of Kane and Levinson's rattleback.
     pub const BENCHMARK: Rattleback = Rattleback {
         g: 9.81,
         mass: 1.0,

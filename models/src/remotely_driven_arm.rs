@@ -1,14 +1,14 @@
 use linkwork::mechanism;
 
-/// A planar arm with two links whose motors both stand on the ground: geared, and the second drives the
-/// forearm by a belt, so that the coordinates are the links' absolute angles.
+/// Planar arm with two links whose geared motors are both on the ground. The second motor drives the forearm
+/// by a belt, so that the coordinates are the links' absolute angles.
 ///
 /// Source: Spong and Vidyasagar, *Robot Dynamics and Control* (1989), §6.4 (planar elbow manipulator with
 /// remotely driven link).
 ///
 /// - Coordinates: `p1` and `p2`, the angles of both links from x, rad; y points up. Inputs: `motor1` and
 ///   `motor2`, torques on the links from the ground (a motor's own times the gear ratio), N·m. Output:
-///   `hand`, the place of the forearm's end, m.
+///   `hand`, the position of the forearm's end, m.
 /// - With uniform links and rotors `J` behind gears of ratio `n`: `M₁₁ = (⅓ m₁ + m₂) l₁² + n² J`,
 ///   `M₁₂ = ½ m₂ l₁ l₂ cos(p₂ − p₁)`, `M₂₂ = ⅓ m₂ l₂² + n² J`.
 /// - `h₁ = −½ m₂ l₁ l₂ sin(p₂ − p₁) ṗ₂² + (½ m₁ + m₂) g l₁ cos p₁`,
@@ -17,7 +17,7 @@ use linkwork::mechanism;
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RemotelyDrivenArm {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the upper arm, kg.
     pub m1: f64,
@@ -29,7 +29,7 @@ pub struct RemotelyDrivenArm {
     pub l2: f64,
     /// Moment of inertia of each motor's rotor about its axis, kg·m².
     pub rotor: f64,
-    /// Turns of a rotor for one turn of its link.
+    /// Gear ratio: rotation of a rotor per rotation of its link.
     pub ratio: f64,
 
     p1: Coordinate,

@@ -1,19 +1,19 @@
 use linkwork::mechanism;
 
-/// A round body on an incline, as [`DiskOnIncline`](crate::DiskOnIncline), but free in the plane: that it
-/// rolls is a constraint, whose multipliers are the forces of the contact.
+/// Round body on an incline, as [`DiskOnIncline`](crate::DiskOnIncline), but free in the plane: rolling is a
+/// constraint, whose multipliers are the contact forces.
 ///
 /// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), §2.4.
 ///
 /// - Coordinates: `pose.x`, `pose.y` of the centre, m, and the angle `pose.angle` about z, rad; x points
-///   level towards the downhill side, y up.
+///   horizontally towards the downhill side, y up.
 /// - The acceleration down the incline is `g sin α / (1 + κ)` with `J = κ m R²`: `5/7`, `2/3`, `1/2` of
-///   `g sin α` for a ball, a disk and a hoop. The normal force is `m g cos α`, friction holds
+///   `g sin α` for a ball, a disk and a hoop. The normal force is `m g cos α`, the friction force
 ///   `κ / (1 + κ) m g sin α`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollerOnIncline {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass, kg.
     pub mass: f64,

@@ -1,6 +1,6 @@
 use linkwork::mechanism;
 
-/// A slider on a rotating shaft: an arm turns about a vertical pin and carries a sleeve that slides freely
+/// Slider on a rotating shaft: an arm rotates about a vertical pin and carries a sleeve that slides freely
 /// along it, outwards, as in a centrifugal governor.
 ///
 /// Source: Meriam and Kraige, *Engineering Mechanics: Dynamics* (2012), ch. 2 (polar coordinates); Landau and

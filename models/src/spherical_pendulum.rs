@@ -1,19 +1,19 @@
 use linkwork::mechanism;
 
-/// The spherical pendulum: a particle on a massless rod that hangs from a universal joint.
+/// Spherical pendulum: a particle on a massless rod that hangs from a universal joint.
 ///
 /// Source: Landau and Lifshitz, *Mechanics* (1976), §14, problem 1.
 ///
-/// - Coordinates: `suspension.first` about x, then `suspension.second` about the carried y, `a` and `b`, rad;
+/// - Coordinates: `suspension.first` about x, then `suspension.second` about the rotated y, `a` and `b`, rad;
 ///   z points up. The particle is at `l (−sin b, sin a cos b, −cos a cos b)`; the coordinates are singular
-///   where the rod lies along x.
+///   where the rod is along x.
 /// - Equations of motion: `m l² cos²b ä − 2 m l² sin b cos b ȧ ḃ + m g l sin a cos b = 0`,
 ///   `m l² b̈ + m l² sin b cos b ȧ² + m g l cos a sin b = 0`.
-/// - Conical motion: at the inclination `α` the particle goes round in `T = 2π √(l cos α / g)`.
+/// - Conical motion: at the inclination `α` the period of revolution is `T = 2π √(l cos α / g)`.
 #[mechanism(gravity = -g * z)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphericalPendulum {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of the particle, kg.
     pub mass: f64,

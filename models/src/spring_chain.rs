@@ -3,15 +3,15 @@ use linkwork::{Real, mechanism};
 /// Three equal carts in a row: the first is coupled to a wall, each other to the one before, by equal springs
 /// and dashpots; the last end is free.
 ///
-/// Source: Rayleigh, *The Theory of Sound* (1877), §120; Meirovitch, *Fundamentals of Vibrations* (2001),
-/// ch. 7.
+/// Source: Rayleigh, *The Theory of Sound* (1877), §120; Meirovitch, *Fundamentals of Vibrations* (2001), ch.
+/// 7.
 ///
-/// - Coordinates: `rail1`, `rail2`, `rail3`, the displacement of each cart from its place of rest, m.
+/// - Coordinates: `rail1`, `rail2`, `rail3`, the displacement of each cart from its equilibrium position, m.
 /// - Equations of motion: `m q̈ + c K q̇ + k K q = 0`, `K = [[2, −1, 0], [−1, 2, −1], [0, −1, 1]]`.
 /// - Natural frequencies `ωⱼ = 2 √(k/m) sin ½βⱼ` with `βⱼ = (2j − 1)π/7`, mode shapes `sin iβⱼ`, damping
 ///   ratios `ζⱼ = ½ c ωⱼ / k`.
 ///
-/// Generic over its numbers.
+/// Generic over the scalar type.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringChain<T: Real> {

@@ -1,31 +1,30 @@
 use linkwork::mechanism;
 
-/// Writes the legs of the platform: for each the fields of its two halves and its joints, and where it
-/// stands.
+/// Declares the legs of the platform: for each the fields of its two halves and its joints, and the angles of
+/// its ends.
 macro_rules! stewart_platform {
     ($($lower:ident $upper:ident $foot:ident $slide:ident $head:ident $force:ident ($a:literal, $b:literal)),+) => {
-        /// The Stewart platform: six legs that change their length carry and move a free platform. Also
-        /// called a hexapod; Gough's tyre testing machine and flight simulators are its best known uses.
+        /// Stewart platform: six legs of variable length support and move a free platform. Also called a
+        /// hexapod; Gough's tyre testing machine and flight simulators are its best known uses.
         ///
         /// Source: Stewart, *A platform with six degrees of freedom*, Proc. Inst. Mech. Eng. 180 (1965);
         /// Merlet, *Parallel Robots* (2006), ch. 3 and 9.
         ///
-        /// - Coordinates of a leg: `foot.first` and `foot.second`, angles about x and the carried y, rad, and
-        ///   `slide`, its length, m. The ball joints `head` close the loops. Of the platform: place and unit
-        ///   quaternion of `pose`. z points up.
+        /// - Coordinates of a leg: `foot.first` and `foot.second`, angles about x and the rotated y, rad, and
+        ///   `slide`, its length, m. The ball joints `head` close the loops. Of the platform: position and
+        ///   unit quaternion of `pose`. z points up.
         /// - Inputs: the forces along the legs, N.
         /// - Inverse kinematics: with the platform at `p`, `R` a leg has the length `|p + R bᵢ − aᵢ|`, where
-        ///   `aᵢ` and `bᵢ` lie on circles of the two radii.
-        /// - Statics: with `nᵢ` along the legs, `Σ fᵢ (nᵢ, R bᵢ × nᵢ)` is the force and torque that the load
-        ///   takes.
+        ///   `aᵢ` and `bᵢ` are on circles of the two radii.
+        /// - Statics: with `nᵢ` along the legs, `Σ fᵢ (nᵢ, R bᵢ × nᵢ)` is the force and torque on the load.
         #[mechanism(gravity = -g * z)]
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct StewartPlatform {
-            /// Acceleration of free fall, m/s².
+            /// Gravitational acceleration, m/s².
             pub g: f64,
-            /// Radius on which the feet stand, m.
+            /// Radius of the circle of the feet, m.
             pub base_radius: f64,
-            /// Radius on which the heads hold the platform, m.
+            /// Radius of the circle of the heads on the platform, m.
             pub platform_radius: f64,
             /// Mass of the platform, kg.
             pub platform_mass: f64,

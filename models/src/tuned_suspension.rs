@@ -1,7 +1,7 @@
 use linkwork::mechanism;
 
-/// Two carts with springs, a dashpot and an inerter: a mass that is kept quiet by another one tuned to the
-/// disturbance.
+/// Two carts with springs, a dashpot and an inerter: the second mass is tuned to absorb the vibration of the
+/// first.
 ///
 /// Source: Den Hartog, *Mechanical Vibrations* (1956), ch. 3 (tuned absorber); Smith, *Synthesis of
 /// mechanical networks: the inerter*, IEEE Trans. Automatic Control 47 (2002).
@@ -11,8 +11,8 @@ use linkwork::mechanism;
 /// - Equations of motion: `M = [[m₁ + b, −b], [−b, m₂ + b]]`, `C = c [[1, −1], [−1, 1]]`,
 ///   `K = [[k₁ + k₂, −k₂], [−k₂, k₂]]`: the inerter adds to the mass matrix as a spring does to the
 ///   stiffness.
-/// - Without the dashpot and shaken with `ω = √(k₂ / (m₂ + b))` the first cart stands still, while the second
-///   moves by `F / (ω² b − k₂)`.
+/// - Without the dashpot and with excitation at `ω = √(k₂ / (m₂ + b))` the first cart is at rest, while the
+///   second moves by `F / (ω² b − k₂)`.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TunedSuspension {

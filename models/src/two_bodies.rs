@@ -4,11 +4,12 @@ use linkwork::mechanism;
 ///
 /// Source: Newton, *Principia* (1687); Goldstein, Poole and Safko, *Classical Mechanics* (2002), ch. 3.
 ///
-/// - Coordinates: `orbit1.x`, `.y`, `.z`, `orbit2.x`, `.y`, `.z`, the places of both in an inertial frame, m.
+/// - Coordinates: `orbit1.x`, `.y`, `.z`, `orbit2.x`, `.y`, `.z`, the positions of both in an inertial frame,
+///   m.
 /// - Equations of motion: `m₁ r̈₁ = G m₁ m₂ (r₂ − r₁) / r³ = −m₂ r̈₂`, with the distance `r`.
 /// - The centre of mass moves on a straight line. About it both describe ellipses with the period
-///   `2π √(a³ / (G (m₁ + m₂)))`, where `a` is half the sum of the smallest and largest distance;
-///   the relative speed is `v² = G (m₁ + m₂) (2/r − 1/a)`.
+///   `2π √(a³ / (G (m₁ + m₂)))`, where `a` is half the sum of the smallest and largest distance; the relative
+///   speed is `v² = G (m₁ + m₂) (2/r − 1/a)`.
 /// - Energy, momentum, angular momentum and Laplace's vector, `v × (r × v) / (G (m₁ + m₂)) − r / |r|` (of the
 ///   relative motion), are constant.
 #[mechanism]

@@ -1,17 +1,18 @@
 use linkwork::mechanism;
 
-/// A satellite that turns by its reaction wheels, one about each axis.
+/// Satellite that rotates by means of reaction wheels, one about each axis.
 ///
 /// Source: Hughes, *Spacecraft Attitude Dynamics* (1986), ch. 6 and 7, on gyrostats.
 ///
 /// - `attitude` is that of the hull in inertial axes, a ball joint in the common centre of mass; `x_spin`,
-///   `y_spin`, `z_spin` are the wheels' turns in the hull, rad. Inputs: torques of the motors, N·m.
-/// - The motors change no angular momentum of the whole. From rest about one axis the hull turns by
-///   `−C / (I + C)` of the turn of the wheel, with its moment of inertia `C` and that of all the rest, `I`.
+///   `y_spin`, `z_spin` are the wheels' rotations in the hull, rad. Inputs: torques of the motors, N·m.
+/// - The motors do not change the total angular momentum. From rest about one axis the hull rotates by
+///   `−C / (I + C)` times the rotation of the wheel, with the wheel's moment of inertia `C` and that of all
+///   other bodies, `I`.
 /// - With the angular momentum `h` in the wheel about y, the hull near rest nutates at `h / √(I₁ I₃)`, where
-///   the moments of inertia about x and z leave out the wheels that turn freely about these axes.
-/// - Turning at `ν` about x, with the momentum `h` in the wheel there, it nutates at
-///   `√((h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) / (I₂ I₃))`, and tumbles where the product is negative.
+///   the moments of inertia about x and z exclude the wheels that rotate freely about these axes.
+/// - Rotating at `ν` about x, with the momentum `h` in that axis's wheel, it nutates at
+///   `√((h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) / (I₂ I₃))`, and tumbles if the product is negative.
 #[mechanism(derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheeledSatellite {
@@ -19,9 +20,9 @@ pub struct WheeledSatellite {
     pub mass: f64,
     /// Moment of inertia of the hull about x, kg·m², with the wheels' masses as points.
     pub ixx: f64,
-    /// About y.
+    /// Moment of inertia of the hull about y, kg·m².
     pub iyy: f64,
-    /// About z.
+    /// Moment of inertia of the hull about z, kg·m².
     pub izz: f64,
     /// Mass of a wheel, kg.
     pub wheel_mass: f64,

@@ -1,15 +1,17 @@
 use linkwork::mechanism;
 
-/// Wilberforce's pendulum: a weight on a coil spring that bounces and twists by turns.
+/// Wilberforce's pendulum: a weight on a coil spring whose motion alternates between translation and
+/// rotation.
 ///
 /// Source: Wilberforce, *On the vibrations of a loaded spiral spring*, Phil. Mag. 38 (1894); Berg and
 /// Marshall, *Wilberforce pendulum oscillations and normal modes*, Am. J. Phys. 59 (1991).
 ///
-/// - Coordinates: `coil.slide`, the height `z` above the place of rest, m; `coil.turn`, the twist `θ`, rad.
+/// - Coordinates: `coil.slide`, the height `z` above the equilibrium position, m; `coil.turn`, the twist `θ`,
+///   rad.
 /// - Equations of motion: `m z̈ + k z + ½ ε θ = 0`, `J θ̈ + δ θ + ½ ε z = 0`.
 /// - Tuned, so that `k/m = δ/J = ω²`, the modes have the frequencies `ω₁,₂² = ω² ± ½ ε / √(m J)`. Released at
 ///   `z₀`, untwisted: `z = ½ z₀ (cos ω₁t + cos ω₂t)`, `θ = ½ z₀ √(m/J) (cos ω₁t − cos ω₂t)`: all the energy
-///   goes over and back.
+///   is transferred to the rotation and back.
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WilberforcePendulum {

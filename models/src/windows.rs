@@ -7,15 +7,15 @@ use linkwork::mechanism;
 /// benchmarking system for MBS simulation software*, Multibody Syst. Dyn. 16 (2006).
 ///
 /// - Coordinates: `b0`, `b1`, `b2`, the angles of the uprights from the vertical, and `t0`, `t1`, the angles
-///   of the level rods from the uprights that carry them, rad; y points up. The pins `close1` and `close2`
-///   close the loops.
-/// - Where all links are on one line, twice in each turn, the constraints lose rank and other motions branch
-///   off. The motion on the parallelogram's branch is that of a pendulum, with `N = 2` windows and the angle
-///   `θ` of all uprights: `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
+///   of the horizontal rods from the uprights that carry them, rad; y points up. The pins `close1` and
+///   `close2` close the loops.
+/// - With all links on one line, twice in each turn, the constraints lose rank and other motions branch off.
+///   In the parallelogram's assembly mode the motion is that of a pendulum, with `N = 2` windows and the
+///   angle `θ` of all uprights: `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
 #[mechanism(gravity = -g * y)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoWindows {
-    /// Acceleration of free fall, m/s².
+    /// Gravitational acceleration, m/s².
     pub g: f64,
     /// Mass of each rod, kg.
     pub mass: f64,
