@@ -1,8 +1,8 @@
 //! Ready-made mechanisms for Linkwork, from the textbook's first page to humanoid robots.
 //!
-//! Each has a file of its own that states the problem, its source, its parameters and, where there is one,
-//! the closed form of its motion; a test of the same name in `tests/gallery` holds the generated equations
-//! against that closed form.
+//! Each mechanism has its own file, which states the problem, its source, its parameters and, if one exists,
+//! the closed form of its motion. A test of the same name in `tests/gallery` compares the generated equations
+//! with that closed form.
 //!
 //! ```
 //! use linkwork::prelude::*;
@@ -16,7 +16,7 @@
 //! # }
 //! ```
 //!
-//! The examples beside this crate are the next step: `cargo run --release --example tour -p linkwork-models`.
+//! The examples of this package are the next step: `cargo run --release --example tour -p linkwork-models`.
 //!
 //! # By class
 //!
@@ -30,26 +30,26 @@
 //! | [`CoplanarDoublePendulum`] (particles, absolute angles) | 2 | Lagrangian, normal modes |
 //! | [`TriplePendulum`], [`QuintuplePendulum`] | 3, 5 | mass matrix and bias forces in absolute angles |
 //! | [`SphericalPendulum`] | 2 | conical motion |
-//! | [`ElasticPendulum`] | 2 | bouncing, small swings |
-//! | [`KapitzaPendulum`] (shaken pivot) | 1 | stands upright, slow frequency |
-//! | [`FoucaultPendulum`] (on the turning earth) | 2 | turning of the plane with the latitude; exact at the pole |
+//! | [`ElasticPendulum`] | 2 | radial oscillations, small swings |
+//! | [`KapitzaPendulum`] (vibrating pivot) | 1 | stable upright position, slow frequency |
+//! | [`FoucaultPendulum`] (on the rotating earth) | 2 | rotation of the plane as a function of the latitude; exact at the pole |
 //! | [`CartPole`] | 2 | mass matrix and bias forces |
 //! | [`FurutaPendulum`] (rotary) | 2 | mass matrix and bias forces, small swings |
-//! | [`RodInSlot`] | 2 | centre of mass falls straight down |
-//! | [`PendulumOnCollar`] (governor) | 3 | mass matrix, steady turning, conserved momentum |
-//! | [`WilberforcePendulum`] | 2 | beats between bouncing and twisting |
+//! | [`RodInSlot`] | 2 | vertical fall of the centre of mass |
+//! | [`PendulumOnCollar`] (governor) | 3 | mass matrix, steady rotation, conserved momentum |
+//! | [`WilberforcePendulum`] | 2 | beats between translation and rotation |
 //!
 //! | mass, dashpot (`c`) and spring (`k`) systems | freedom | closed form in the test |
 //! | --- | --- | --- |
 //! | [`SpringChain`] | 3 | natural frequencies, modal damping |
-//! | [`TunedSuspension`] (with inerter) | 2 | mass and stiffness matrix, the shaken cart at rest |
+//! | [`TunedSuspension`] (with inerter) | 2 | mass and stiffness matrix, the excited cart at rest |
 //! | [`DuffingOscillator`] | 1 | period by an elliptic integral, two wells |
 //! | [`CarAxle`] (on a bumpy road) | 2 | published motion |
 //!
 //! | gimbals | freedom | closed form in the test |
 //! | --- | --- | --- |
 //! | [`Gyroscope`] | 3 | steady precession |
-//! | [`RateGyroscope`] (on a turning base) | 2 | equations of motion, deflection by the rate |
+//! | [`RateGyroscope`] (on a rotating base) | 2 | equations of motion, deflection as a function of the rate |
 //!
 //! | shafts | freedom | closed form in the test |
 //! | --- | --- | --- |
@@ -61,11 +61,11 @@
 //! | linkages | freedom | closed form in the test |
 //! | --- | --- | --- |
 //! | [`FourBar`] | 1 | Freudenstein's equation, ratios of the rates, holding torque |
-//! | [`SliderCrank`] | 1 | place of the piston, reduced inertia |
-//! | [`FiveBar`] (parallel robot) | 2 | circles that meet, statics, reduced inertia |
+//! | [`SliderCrank`] | 1 | position of the piston, reduced inertia |
+//! | [`FiveBar`] (parallel robot) | 2 | intersection of circles, statics, reduced inertia |
 //! | [`StewartPlatform`] | 6 | inverse kinematics, forces by virtual work |
-//! | [`TwoWindows`] (through singular positions) | 1 | a pendulum's motion |
-//! | [`BricardLinkage`] (against Grübler's count) | 1 | relation of the angles, one redundant condition |
+//! | [`TwoWindows`] (through singular configurations) | 1 | motion of a pendulum |
+//! | [`BricardLinkage`] (mobile in spite of Grübler's count) | 1 | relation of the angles, one redundant condition |
 //! | [`AndrewsSqueezer`] | 1 | published accelerations and motion |
 //! | [`GearPair`] | 1 | reduced inertia, force between the teeth |
 //! | [`RemotelyDrivenArm`] (geared, absolute angles) | 2 | mass matrix and bias forces |
@@ -78,18 +78,18 @@
 //! | --- | --- | --- |
 //! | [`DiskOnIncline`] | 1 | accelerations of hoop, disk, shell and ball; no slip |
 //! | [`CylinderInTrough`] | 1 | period by an elliptic integral |
-//! | [`RollerOnIncline`] (with contact forces) | 1 | accelerations, forces of the contact |
+//! | [`RollerOnIncline`] (with contact forces) | 1 | accelerations, contact forces |
 //! | [`BallInBowl`] | 3 | swings by an elliptic integral, level circles |
-//! | [`BallInDish`] (a surface given by its points) | 3 | accelerations, level circles with spin, constant energy |
+//! | [`BallInDish`] (a parametric surface) | 3 | accelerations, level circles with spin, constant energy |
 //! | [`BallInFunnel`] | 3 | level circles with spin, two integrals of the motion |
-//! | [`BallInTube`] | 3 | rises again, with `√(2/7)` of the rate round |
+//! | [`BallInTube`] | 3 | vertical oscillation with `√(2/7)` of the rate around the axis |
 //! | [`BallOnTurntable`] (driven) | 3 | circles at 2/7 of the table's rate |
-//! | [`BowlingBall`] (slides with friction) | 5 | accelerations, when it rolls and how fast, parabola |
-//! | [`SlidingRod`] (Painlevé's) | 2 | accelerations, normal force, where friction jams |
-//! | [`RollingCone`] | 1 | energies, swings by an elliptic integral, where the line of contact presses |
+//! | [`BowlingBall`] (slides with friction) | 5 | accelerations, start and speed of rolling, parabola |
+//! | [`SlidingRod`] (Painlevé's) | 2 | accelerations, normal force, jamming by friction |
+//! | [`RollingCone`] | 1 | energies, swings by an elliptic integral, point of action of the normal force |
 //! | [`RollingDisk`] | 3 | accelerations, critical speed, circles |
-//! | [`Rattleback`] | 3 | turns back, constant energy |
-//! | [`ChaplyginSleigh`] | 2 | hyperbolic tangent |
+//! | [`Rattleback`] | 3 | reversal of the rotation, constant energy |
+//! | [`ChaplyginSleigh`] | 2 | speed as a hyperbolic tangent |
 //! | [`Bicycle`] (Whipple's, the benchmark) | 3 | published matrices, eigenvalues, weave and capsize speeds |
 //!
 //! | spinning tops | freedom | closed form in the test |
@@ -104,17 +104,17 @@
 //! | [`TwoBodies`] (Kepler) | 6 | ellipse, Laplace's vector |
 //! | [`GravityGradientSatellite`] | 6 | torque, pitch oscillation |
 //! | [`Aircraft`] | 6 | trim in level flight, level turn |
-//! | [`CruisingAircraft`] (a transport and a light aircraft by their derivatives) | 6 | published matrices and modes |
-//! | [`Fighter`] (tables, an engine that lags) | 6 and 1 state | published rates, trims and matrices |
+//! | [`CruisingAircraft`] (a transport and a light aircraft given by their derivatives) | 6 | published matrices and modes |
+//! | [`Fighter`] (tables, an engine with a lag) | 6 and 1 state | published rates, trims and matrices |
 //! | [`Glider`] | 6 | flattest glide and slowest sink, phugoid, stability of the spiral |
-//! | [`HypersonicGlider`] (over the round Earth, which turns) | 6 | lift to the east and west, Coriolis, ground track |
+//! | [`HypersonicGlider`] (over the round rotating Earth) | 6 | lift to the east and west, Coriolis, ground track |
 //! | [`PlanarRotorcraft`] | 3 | hovering, free fall |
-//! | [`Quadrotor`] (rotors that lag) | 6 and 4 states | hovering, transfer functions |
-//! | [`WheeledSatellite`] (reaction wheels) | 6 | turns by its wheels, nutation |
+//! | [`Quadrotor`] (rotors with a lag) | 6 and 4 states | hovering, transfer functions |
+//! | [`WheeledSatellite`] (reaction wheels) | 6 | rotation by its wheels, nutation |
 //!
 //! # By joint
 //!
-//! | joint | freedom | word of the language | shown in |
+//! | joint | freedom | element of the language | example |
 //! | --- | --- | --- | --- |
 //! | pin, hinge | 1 | `Pin` | [`Pendulum`], [`BrakedFlywheel`] |
 //! | dual pin | 2 | `Pin`, then `Pin` | parallel: [`DoublePendulum`]; crossed: [`FurutaPendulum`] |
@@ -132,17 +132,17 @@
 //!
 //! # By element
 //!
-//! | element | shown in |
+//! | element | example |
 //! | --- | --- |
 //! | a free `Coordinate` | [`ElasticPendulum`], [`CoplanarDoublePendulum`], [`CylinderInTrough`] |
-//! | motion prescribed in time (`t`) | [`BeadOnSpinningHoop`], [`KapitzaPendulum`], [`JeffcottRotor`] |
+//! | motion prescribed as a function of time (`t`) | [`BeadOnSpinningHoop`], [`KapitzaPendulum`], [`JeffcottRotor`] |
 //! | springs and dashpots between bodies | [`SpringChain`], [`TunedSuspension`] |
-//! | a spring with a law | [`DuffingOscillator`] |
+//! | a spring with a force law | [`DuffingOscillator`] |
 //! | inerter | [`TunedSuspension`] |
 //! | dry friction | [`BrakedFlywheel`] |
 //! | central gravity | [`TwoBodies`], [`GravityGradientSatellite`] |
 //! | forces and torques with a value | [`Aircraft`], [`ChargedParticle`], [`DuffingOscillator`] |
-//! | an energy of one's own (`Potential`) | [`WilberforcePendulum`], [`FoucaultPendulum`], [`ElasticPendulum`] |
+//! | a user-defined potential energy (`Potential`) | [`WilberforcePendulum`], [`FoucaultPendulum`], [`ElasticPendulum`] |
 //! | definitions, outputs | [`Aircraft`], [`RemotelyDrivenArm`], [`Gyroscope`] |
 //! | joints that close loops | [`FourBar`], [`StewartPlatform`] |
 //! | conditions on coordinates (`Holonomic`) | [`CarAxle`], [`GearPair`] |
@@ -151,30 +151,29 @@
 //! | rolling pairs (`Rolling`) | [`RollingDisk`], [`BallInBowl`], [`Bicycle`] |
 //! | slipping pairs with friction (`Slipping`) | [`BowlingBall`], [`SlidingRod`] |
 //! | a base whose motion is prescribed (`massive`) | [`RateGyroscope`], [`BallOnTurntable`] |
-//! | a robot from a file, and more around it | [`Ur5`], [`LoadedPanda`] |
+//! | a robot from a file, with additional elements | [`Ur5`], [`LoadedPanda`] |
 //!
 //! # The book, section by section
 //!
-//! What a reader of Bernstein, Goel and Ansari asks of a mechanism, topic by topic in the order of the
-//! chapters: mechanisms and their classes (1), geometry (2), tensors (3), kinematics (4), frames (5), statics
-//! (6), Newton's and Euler's dynamics (7), energy (8), Lagrange's, Hamilton's, Gibbs's, Appell's and Kane's
-//! equations (9); aircraft, linearisation, flight modes, linear systems and frequency response (10–16). The
-//! last column names a mechanism, or a test by its file in `tests` (of `linkwork-design` where it says so)
-//! and its function.
+//! Topics of Bernstein, Goel and Ansari that concern a mechanism, in the order of the chapters: mechanisms and
+//! their classes (1), geometry (2), tensors (3), kinematics (4), frames (5), statics (6), Newton's and Euler's
+//! dynamics (7), energy (8), Lagrange's, Hamilton's, Gibbs's, Appell's and Kane's equations (9); aircraft,
+//! linearisation, flight modes, linear systems and frequency response (10–16). The last column names a
+//! mechanism, or a test by its file in `tests` (of `linkwork-design` where indicated) and its function.
 //!
-//! | chapter | topic | words | shown and proved by |
+//! | chapter | topic | words | example and test |
 //! | --- | --- | --- | --- |
 //! | 1 | classes of mechanisms: pendulums, springs and masses, gimbals, shafts, linkages, rolling bodies, tops | the gallery | the tables above, a test each: [`Pendulum`], [`SpringChain`], [`Gyroscope`], [`ShaftWithSlider`], [`FourBar`], [`RollingDisk`], [`HeavyTop`] |
 //! | 1 | joints and their degrees of freedom | `Pin`, `Sleeve`, `Screw`, `Collar`, `Slot`, `Universal`, `Ball`, `Planar`, `Stage`, `Free`, `Weld` | the table by joint above; `invariants`: `joints.rs` |
-//! | 1 | forces that conserve, dissipate, control and disturb | `dissipated_power`, `control_power`, `disturbance_power`, `power(element)` | `power_balance`; `measurements.rs`: `elements_deliver_what_energies_gain` |
-//! | 2 | points, relative positions, frames with and without a place | `Point`, `Frame`, `r(y / x)`, `body.at(vector)` | `textbook/orientations.rs`: `words_for_vectors`; [`Gyroscope`] |
+//! | 1 | conservative, dissipative, control and disturbance forces | `dissipated_power`, `control_power`, `disturbance_power`, `power(element)` | `power_balance`; `measurements.rs`: `elements_deliver_what_energies_gain` |
+//! | 2 | points, relative positions, frames with and without an origin | `Point`, `Frame`, `r(y / x)`, `body.at(vector)` | `textbook/orientations.rs`: `words_for_vectors`; [`Gyroscope`] |
 //! | 2 | physical vectors, `dot`, `cross`, angles, projections | expressions | `textbook/orientations.rs`: `words_for_vectors` |
 //! | 2 | orientation: Euler angles, eigenaxis, quaternions, Gibbs and Rodrigues vectors, their rates | `linkwork::rotation`, `rotated(…)`, `#[frame(…)]` | [`HeavyTop`] in two charts: `heavy_top_in_two_charts` |
 //! | 2 | physical matrices: projectors, rotation and cross-product matrices, their products and transposes, resolved in any frame | `Matrix`: `projector`, `rotation`, `skew`, `outer`, `transpose`, `trace` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
 //! | 2 | resolving in a frame, orientation matrices | `resolved_in = frame`, `rotation(B / A)`, `linkwork::rotation` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
-//! | 2 | nonstandard and reciprocal frames | `linkwork::rotation::reciprocal`, and components along any three vectors as expressions, `dot(v, cross(f2, f3)) / dot(f1, cross(f2, f3))`; frames that carry bodies are orthonormal, because rigid bodies turn by rotations | `textbook/matrices.rs`: `components_in_oblique_frames`, `outputs_have_components_in_oblique_frames` |
+//! | 2 | nonstandard and reciprocal frames | `linkwork::rotation::reciprocal`, and components along any three vectors as expressions, `dot(v, cross(f2, f3)) / dot(f1, cross(f2, f3))`; frames that carry bodies are orthonormal, because the orientation of a rigid body is a rotation | `textbook/matrices.rs`: `components_in_oblique_frames`, `outputs_have_components_in_oblique_frames` |
 //! | 2 | gradients of scalar fields | `gradient(field / point)` | `textbook/curves.rs`: `a_force_is_the_gradient_of_its_field` |
-//! | 3 | tensors of second order as matrices, dyads, how components change with the frame | `Matrix`, `outer(a, b)`, `resolved_in` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
+//! | 3 | tensors of second order as matrices, dyads, transformation of components between frames | `Matrix`, `outer(a, b)`, `resolved_in` | `textbook/matrices.rs`: `matrices_are_what_their_vectors_say` |
 //! | 3 | Kronecker products, vectorised matrices, wedge products | nalgebra's `kronecker`; `vectorized`, `wedge` of `linkwork::rotation` | `textbook/matrices.rs`: `kronecker_products_solve_sylvester_s_equation` |
 //! | 3 | tensors of higher order and their coordinates | left out: no equation of a mechanism's user contains one | |
 //! | 4 | position, velocity, acceleration, angular velocity and acceleration with respect to a frame | `r`, `v`, `a`, `omega`, `alpha` with slashes | [`RateGyroscope`]; `accelerations.rs` |
@@ -182,59 +181,59 @@
 //! | 4 | instantaneous centres of velocity and acceleration | `instant_center`, `acceleration_center` | `textbook/motions.rs`: `a_ladder_turns_about_its_instantaneous_centre`, `a_wheel_turns_about_its_contact_and_accelerates_about_its_hub` |
 //! | 4 | screw of a motion (Chasles, Mozzi) | `screw_axis`, `screw_pitch` | `textbook/motions.rs`: `two_turns_make_a_screw_of_the_cylindroid`, `a_nut_has_the_pitch_and_the_axis_of_its_thread` |
 //! | 4 | closed loops, rolling, sliding | `Pin` and others that close loops, `Rolling`, `Slipping` | [`FourBar`], [`RollingDisk`], [`BowlingBall`] |
-//! | 4 | rolling said by the velocity of the lowest point | `wheel.at(-radius * fork.z)` in a `Nonholonomic` | `a_wheel_rolls_on_a_point_in_the_axes_of_its_fork` |
+//! | 4 | rolling as a condition on the velocity of the lowest point | `wheel.at(-radius * fork.z)` in a `Nonholonomic` | `a_wheel_rolls_on_a_point_in_the_axes_of_its_fork` |
 //! | 5 | cylindrical and spherical coordinates and their frames | `#[frame(ground, cylindrical(r(point / ground)))]`, `spherical`; a chain of joints or `Coordinate`s | `accelerations_in_spherical_and_cylindrical_frames`; [`SphericalPendulum`]; `spherical_pendulum_in_two_charts` |
 //! | 5 | frames along curves (Frenet and Serret), curvature, torsion | `#[frame(ground, frenet(curve, s))]`, `curvature(curve, s)`, `torsion(curve, s)` | `textbook/curves.rs`: `a_helix_has_constant_curvature_and_torsion`, `cubics_and_ellipses_bend_as_geometry_says` |
 //! | 5 | a coordinate along a curve of any form | a `Coordinate`, `at = expression` | `beads_on_wires` |
 //! | 6 | reactions of joints, equilibrium of each free body | `reaction_force`, `reaction_torque` | `constraints/reactions.rs`: `reactions_balance_every_free_body` |
-//! | 6 | free-body diagrams: all that acts on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams/main.rs`: `what_acts_on_a_body_changes_its_momenta` |
-//! | 6 | forces along lines, ropes by way of pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length`, `cables_take_the_shortest_way_around`, `cables_have_exact_derivatives` |
-//! | 6 | equilibria with held coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
+//! | 6 | free-body diagrams: all forces on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams/main.rs`: `what_acts_on_a_body_changes_its_momenta` |
+//! | 6 | forces along lines, ropes over pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length`, `cables_take_the_shortest_way_around`, `cables_have_exact_derivatives` |
+//! | 6 | equilibria with fixed coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
 //! | 6 | a chain's catenary, an unstable column, three legs, a platform on six | `linkwork_design::steady` | `a_chain_hangs_in_its_catenary`, `a_column_buckles_at_eulers_load`, `three_legs_share_what_stands_on_a_table`, `six_legs_hold_a_platform` of design |
-//! | 6 | stability by energy and by eigenvalues | `stiffness`, `linear_system` of it | `a_bead_on_a_hoop_has_four_equilibria` |
-//! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that name them | `what_is_wrong_is_named` of design |
+//! | 6 | stability by energy and by eigenvalues | `stiffness`, `linear_system` of an equilibrium | `a_bead_on_a_hoop_has_four_equilibria` |
+//! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that report them | `what_is_wrong_is_named` of design |
 //! | 7 | Newton's and Euler's equations | `inverse_dynamics`, `forward_dynamics` | [`FreeRigidBody`], every mechanism |
-//! | 7 | inertia of solids, parallel axes, rotated inertias; principal moments that a body can have | `inertia = …`, `validate()` | `validate.rs` |
+//! | 7 | inertia of solids, parallel axes, rotated inertias; physically consistent principal moments | `inertia = …`, `validate()` | `validate.rs` |
 //! | 7 | inertia about any point, of one body or several, in any frame | `inertia(body / point)`, `moment_of_inertia(body / point, x, y)`, `about = point` of a `Body` | `moments_of_inertia_are_those_of_energies`, `inertias_about_another_point_are_moved_to_the_centre_of_mass`, `matrices_are_what_their_vectors_say` |
 //! | 7 | momentum and angular momentum of bodies, about any point | `momentum`, `angular_momentum`, the function `momentum` | `measurements.rs`: `bodies_share_momentum_and_energy` |
-//! | 7 | momenta of a set of bodies, forces and torques from outside | `momentum((first, second))`, `angular_momentum((first, second) / point)`, `center_of_mass((first, second) / point)` | `euler_s_laws_hold_for_a_set_of_bodies` |
+//! | 7 | momenta of a set of bodies, external forces and torques | `momentum((first, second))`, `angular_momentum((first, second) / point)`, `center_of_mass((first, second) / point)` | `euler_s_laws_hold_for_a_set_of_bodies` |
 //! | 7 | centre of percussion | `center_of_percussion(body / point, axis)` | `a_blow_at_the_centre_of_percussion_leaves_the_grip_at_rest` |
 //! | 7 | springs, dashpots, inerters, friction, central gravity | force elements | `textbook/elements.rs`, `textbook/gravity.rs` |
-//! | 7 | steady motions: precession, governor, circles of disk and bicycle, climbing and turning flight | `Trim` of it | `tests/steady.rs` here, [`HeavyTop`], [`Aircraft`] |
+//! | 7 | steady motions: precession, governor, circles of disk and bicycle, climbing and turning flight | `Trim` of an equilibrium | `tests/steady.rs` here, [`HeavyTop`], [`Aircraft`] |
 //! | 8 | kinetic and potential energy; conservative, dissipative, control and disturbance power | functions of every mechanism, `kinetic_energy(body)` | `textbook/elements.rs`: `power_balance` |
 //! | 8 | work and power of one force | `power(element)`, `#[state(rate = power(motor))] work: State` | `work_is_what_energy_gains_and_drag_takes`, `elements_deliver_what_energies_gain` |
-//! | 8 | what is conserved: energy, Jacobi's integral, cyclic coordinates, momenta | the word `conserved` | `conserved.rs` |
+//! | 8 | conserved quantities: energy, Jacobi's integral, cyclic coordinates, momenta | the option `conserved` | `conserved.rs` |
 //! | 9 | Lagrange's equations, with multipliers | `EQUATIONS`, `equations = lagrange` | [`DoublePendulum`]; `derivations.rs` |
-//! | 9 | Hamilton's equations | the word `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
+//! | 9 | Hamilton's equations | the option `hamilton`, `equations = hamilton` | `conserved.rs`: `hamiltons_form_agrees` |
 //! | 9 | Kane's equations in independent speeds | `formulation = speeds` | `constraints/formulations.rs` |
-//! | 9 | Gibbs's, Appell's and Kane's equations in print | `EQUATIONS` of mechanisms with a `Speed` | `a_rolling_disk_moves_alike_in_kanes_speeds` |
+//! | 9 | printed equations of Gibbs, Appell and Kane | `EQUATIONS` of mechanisms with a `Speed` | `a_rolling_disk_moves_alike_in_kanes_speeds` |
 //! | 9 | Kane's equations without multipliers, nonholonomic constraints | `equations = kane` | [`ChaplyginSleigh`]; `printed_equations_are_those_of_the_motion` |
-//! | 9 | Routh's reduction over cyclic coordinates | the word `routh`, `equations = routh` | `lagranges_equations_hold_for_the_routhian`, `printed_reduction_is_that_of_the_functions` of the compiler |
-//! | 9 | speeds of one's own choice | `#[speed(expression)] wx: Speed` | `methods_keep_their_orders`, `frames_move_alike` |
-//! | 10–16 | linear equations in the user's parameters, characteristic polynomial, Routh's conditions, in print | `#[equilibrium(theta = 0)] upright: Equilibrium` | `a_pendulum`, `rows_are_derivatives` of the compiler |
-//! | 10–16 | equations linear in small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
+//! | 9 | Routh's reduction over cyclic coordinates | the option `routh`, `equations = routh` | `lagranges_equations_hold_for_the_routhian`, `printed_reduction_is_that_of_the_functions` of the compiler |
+//! | 9 | user-defined generalized speeds | `#[speed(expression)] wx: Speed` | `methods_keep_their_orders`, `frames_move_alike` |
+//! | 10–16 | printed linear equations in the user's parameters, characteristic polynomial, Routh's conditions | `#[equilibrium(theta = 0)] upright: Equilibrium` | `a_pendulum`, `rows_are_derivatives` of the compiler |
+//! | 10–16 | linearisation for small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
 //! | 10–16 | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
 //! | 10–16 | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |
 //! | 10–16 | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`], [`Quadrotor`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
 //! | 10–16 | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_is_that_of_the_book`; `tests/steady.rs` here and in design |
-//! | 10–16 | gliding, hovering, turning by wheels | `value = …` of forces, `#[state(rate = …)]`, a `Pin` for each wheel | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
-//! | 10–16 | six degrees of freedom over the round Earth, which turns | a `Free` joint on a body whose motion is prescribed | [`HypersonicGlider`] |
-//! | 10–16 | forces linear in accelerations (derivatives by `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
-//! | 10–16 | stability and control derivatives with and without dimension, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
+//! | 10–16 | gliding, hovering, rotation by wheels | `value = …` of forces, `#[state(rate = …)]`, a `Pin` for each wheel | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
+//! | 10–16 | six degrees of freedom over the round rotating Earth | a `Free` joint on a body whose motion is prescribed | [`HypersonicGlider`] |
+//! | 10–16 | forces linear in accelerations (derivatives with respect to `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
+//! | 10–16 | dimensional and dimensionless stability and control derivatives, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
 //! | 10–16 | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
-//! | 10–16 | modes of printed derivatives and matrices: an airliner, an attack aircraft, a fighter | `linkwork_design::flight::FlightModes` | `an_airliner_has_the_modes_of_cook`, `modes_of_printed_matrices_are_named`, `the_centre_of_mass_decides_on_the_modes_of_a_fighter` |
-//! | 10–16 | satellites: nutation, wheels that hold a spin about the middle axis | a `Pin` for each wheel, `linear_system` | [`WheeledSatellite`]; `a_wheel_holds_a_satellite_that_turns_about_its_middle_axis` |
+//! | 10–16 | modes from published derivatives and matrices: an airliner, an attack aircraft, a fighter | `linkwork_design::flight::FlightModes` | `an_airliner_has_the_modes_of_cook`, `modes_of_printed_matrices_are_named`, `the_centre_of_mass_decides_on_the_modes_of_a_fighter` |
+//! | 10–16 | satellites: nutation, wheels that stabilise a spin about the intermediate axis | a `Pin` for each wheel, `linear_system` | [`WheeledSatellite`]; `a_wheel_holds_a_satellite_that_turns_about_its_middle_axis` |
 //! | 10–16 | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `transport_channels` and `step_responses` in `anchors` of design |
 //! | 10–16 | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutates`, `rotor_with_internal_damping`, `gravity_holds_a_satellite` in `flight` of design |
 //! | 10–16 | mass, damping, gyroscopic, stiffness and circulatory matrices under constraints | `Trim::second_order_form` | [`Bicycle`]: `a_bicycle_has_the_published_matrices`; `constrained_forms` of design |
-//! | 10–16 | motions with stabilised constraints to first order | `constraint::stabilized`, `linear_system` | `decaying_constraints_have_their_exponents` in `flight` of design |
+//! | 10–16 | linearised motions with stabilised constraints | `constraint::stabilized`, `linear_system` | `decaying_constraints_have_their_exponents` in `flight` of design |
 //! | 10–16 | eigenvalues of a bicycle | `Trim::linear_system` | `a_bicycle_weaves_and_capsizes` in `tests/steady.rs` here |
 //! | 10–16 | responses over time by the matrix exponential, repeated eigenvalues | `step_response`, `forced_response`, `matrices::exponential` | `straight_inputs_are_exact`, `repeated_poles_have_their_results` |
 //! | 10–16 | invariant zeros, minimal realisations, controllability, observability | `zeros`, `minimal`, `kalman_ranks` | `zeros_lose_rank`, `realisations_are_minimal` |
 //! | 10–16 | Lyapunov's and Riccati's equations, regulators, estimators, placed poles | `matrices::lyapunov`, `lqr`, `kalman`, `place` | `linear_matrix_equations`, `regulators_are_optimal`, `riccati_benchmarks`, `poles_are_put_where_they_should_be` |
-//! | 10–16 | digital control: systems from sample to sample | `discretize`, `lqr_held` | `discretised_and_back`, `discrete_riccati_benchmarks` |
+//! | 10–16 | digital control: discrete-time systems | `discretize`, `lqr_held` | `discretised_and_back`, `discrete_riccati_benchmarks` |
 //! | 10–16 | block diagrams | `series`, `parallel`, `feedback` | `connections` in `properties` of design |
-//! | 10–16 | what does not exist: unstable, uncontrollable, improper | `linkwork_design::Error` | `bad_input` of design |
+//! | 10–16 | errors: unstable, uncontrollable and improper systems | `linkwork_design::Error` | `bad_input` of design |
 //! | 10–16 | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh`, `routh_of_ogata` in `anchors` of design; `routh_counts_roots`, `margins_miss_no_crossing` |
 //! | 10–16 | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `transport_frequency_response` in `anchors`, `pictures` of design |
 
