@@ -1,5 +1,5 @@
-/* Functions of a robot on a microcontroller that QEMU emulates: instructions of a call, bytes of stack, and the result, whose sum is
- * compared with that of this computer. `ROBOT` is the prefix, `MEASURED` the number of the function; none measures nothing. */
+/* Measures a function of a robot on an emulated (QEMU) microcontroller: instructions of a call, bytes of stack, and the result, whose
+ * sum is compared with that of the host. `ROBOT` is the prefix, `MEASURED` the number of the function; without it nothing is measured. */
 #include <stdint.h>
 
 #define JOINED(a, b) a##b
@@ -9,7 +9,7 @@
 
 enum { CALLS = 100, PAINTED = 16384 };
 
-/* Only what is measured names all of them. */
+/* Only the measured function uses all of them. */
 float q[NQ], v[NV], a[NV], first[NV * NV], second[NV * NV], third[NV * NV], start[NQ];
 
 #ifndef MEASURED
@@ -118,7 +118,7 @@ static void put_number(int32_t number) {
     }
 }
 
-/* Time in instructions, QEMU's `-icount shift=0`. */
+/* Number of executed instructions, by QEMU's `-icount shift=0`. */
 #ifdef __riscv
 static uint32_t now(void) {
     uint32_t count;
@@ -129,7 +129,7 @@ static uint32_t elapsed(uint32_t from, uint32_t to) {
     return to - from;
 }
 #else
-/* SysTick counts down, at 25 MHz of 1 GHz. */
+/* SysTick counts down at 25 MHz, with a processor clock of 1 GHz. */
 static volatile uint32_t *const systick = (volatile uint32_t *)0xe000e010u;
 static uint32_t now(void) {
     return systick[2];
@@ -160,20 +160,20 @@ static void measure(void) {
     put(' ');
     put_number(deepest ? deepest + 256 : 0);
     put(' ');
-    /* Thousandths, which this computer's program compares. */
+    /* Printed in thousandths, which the host's program compares. */
     put_number((int32_t)(sum() * 1000.0f));
     put('\n');
 }
 
 void start_here(void) {
 #ifndef __riscv
-    *(volatile uint32_t *)0xe000ed88u |= 0xfu << 20; /* floating-point unit */
+    *(volatile uint32_t *)0xe000ed88u |= 0xfu << 20; /* enables the floating-point unit */
     __asm__ volatile("dsb\nisb");
     systick[1] = 0xffffffu;
     systick[2] = 0;
     systick[0] = 5;
 #else
-    __asm__ volatile("csrs mstatus, %0" : : "r"(0x2000)); /* floating-point unit */
+    __asm__ volatile("csrs mstatus, %0" : : "r"(0x2000)); /* enables the floating-point unit */
 #endif
     begin();
     measure();

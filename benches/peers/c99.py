@@ -1,10 +1,10 @@
-"""C99 by `linkwork export c` next to the same mechanism in Rust and to CasADi's C: times and sizes of the same functions, in turns.
+"""Compares C99 by `linkwork export c` with the same mechanism in Rust and with CasADi's C: times and sizes of functions, in turns.
 
     python c99.py LINKWORK SOURCES FOLDER ROBOT.urdf …
 
-LINKWORK: the command; SOURCES: the repository; FOLDER: where everything is made. Needs the packages pin and casadi, gcc, clang and
-cargo. C is compiled with `-O3 -march=native`, CasADi's by gcc, also with `-ffast-math`, and both plain and with common subexpressions shared: the
-fastest of the four counts. Rust is compiled for the same processor. Results agree to 1e-9 before anything is timed.
+LINKWORK: path of the command; SOURCES: the repository; FOLDER: the output folder. Needs the packages pin and casadi, gcc, clang and
+cargo. C is compiled with `-O3 -march=native`. CasADi's C is compiled by gcc, with and without `-ffast-math`, plain and with common
+subexpressions shared; the fastest of the four is reported. Rust is compiled for the same processor. Results must agree to 1e-9 before the measurement.
 """
 
 import ctypes
@@ -35,7 +35,7 @@ linkwork = { path = "%s" }
 
 [workspace]
 """
-# The generated functions themselves, on vectors that stand where the arrays stand.
+# The generated functions, on vectors with the memory layout of the arrays.
 RUST = """
 use linkwork::nalgebra::SMatrix;
 use linkwork::prelude::*;
@@ -94,15 +94,15 @@ def run(words, **more):
 
 
 def code_size(library, name):
-    """Bytes of a function in a library, with the parts that the compiler made of it."""
+    """Returns the bytes of a function in a library, with the parts into which the compiler has split it."""
     text = subprocess.run(["nm", "-S", library], capture_output=True, text=True, check=True).stdout
     rows = [line.split() for line in text.splitlines()]
     return sum(int(row[1], 16) for row in rows if len(row) == 4 and row[2] in "tT" and re.fullmatch(name, row[3]))
 
 
 class Chain:
-    """The recursions of Featherstone's Rigid Body Dynamics Algorithms (2008) on CasADi's symbols, for robots of pins, with the numbers
-    of Pinocchio's model; spatial vectors with the linear part first."""
+    """Recursions of Featherstone's Rigid Body Dynamics Algorithms (2008) on CasADi's symbols, for robots of pins, with the parameters
+    of Pinocchio's model. Spatial vectors have the linear part first."""
 
     def __init__(self, model, q):
         self.model, self.q, self.n = model, q, model.nv
@@ -131,7 +131,7 @@ class Chain:
         return -self.number(self.model.gravity.linear)
 
     def inverse(self, v, a):
-        """Newton and Euler's equations, link by link."""
+        """Returns inverse dynamics by the recursive Newton-Euler algorithm."""
         cross, of_link, forces = casadi.cross, [], []
         for k, (turn, place, axis, parent) in enumerate(zip(self.turns, self.places, self.axes, self.parents)):
             zero = casadi.SX(3, 1)
@@ -156,7 +156,7 @@ class Chain:
         return casadi.vertcat(*torques)
 
     def transform(self, k):
-        """Of motions of the parent to those of a link."""
+        """Returns the transformation of motion vectors from the parent to a link."""
         turn = self.turns[k].T
         return casadi.blockcat([[turn, -turn @ casadi.skew(self.places[k])], [casadi.SX(3, 3), turn]])
 
@@ -164,7 +164,7 @@ class Chain:
         return casadi.vertcat(casadi.SX(3, 1), self.axes[k])
 
     def mass(self):
-        """Composite rigid bodies."""
+        """Returns the mass matrix by the composite-rigid-body algorithm."""
         composite = [self.number(inertia.matrix()) for inertia in self.inertias]
         matrix = casadi.SX(self.n, self.n)
         for k in reversed(range(self.n)):
@@ -180,7 +180,7 @@ class Chain:
         return casadi.densify(matrix)
 
     def forward(self, v, torques):
-        """Articulated bodies."""
+        """Returns forward dynamics by the articulated-body algorithm."""
         def crossed(w, m):
             return casadi.vertcat(casadi.cross(w[3:], m[:3]) + casadi.cross(w[:3], m[3:]), casadi.cross(w[3:], m[3:]))
 
@@ -217,7 +217,7 @@ class Chain:
 
 
 def generated(model, folder):
-    """CasADi's C: by function, the libraries and the functions' names."""
+    """Compiles CasADi's C. Returns the libraries and the names of their functions, by function."""
     q, v, x = (casadi.SX.sym(name, model.nv) for name in "qvx")
     chain = Chain(model, q)
     of = {"inverse_dynamics": chain.inverse(v, x), "mass_matrix": chain.mass(), "forward_dynamics": chain.forward(v, x)}
@@ -245,12 +245,12 @@ def main():
     for urdf in map(Path, sys.argv[4:]):
         here = folder / urdf.stem
         here.mkdir(exist_ok=True)
-        # Pins alone: other joints stay at zero.
+        # The recursions support only pins: other joints are locked at zero.
         model = pinocchio.buildModelFromUrdf(str(urdf))
         others = [name for name, joint in zip(model.names, model.joints) if joint.shortname().startswith("JointModelP")]
         model = pinocchio.buildReducedModel(model, [model.getJointId(name) for name in others], pinocchio.neutral(model))
         n = model.nv
-        # Pinocchio knows no friction of joints.
+        # Pinocchio has no joint friction.
         words = ", ".join(["passive = ignore", *(["lock = [" + ", ".join(f'"{name}"' for name in others) + "]"] if others else [])])
         for compiler in COMPILERS:
             about = ["--out", here, "--prefix", compiler, "--no-derivatives", "--with", words]
@@ -270,7 +270,7 @@ def main():
         for function in FUNCTIONS:
             arguments = "q" if function == "mass_matrix" else "q, v, x"
             peers = casadis[function]
-            # Each library is loaded for itself: the variants have the same names.
+            # Each library is loaded separately, since the variants have the same names.
             declared = "".join(f"int (*peer{k})(const double **, double **, long long *, double *, int);\n" for k in range(4))
             called = "".join(
                 f"static void call_{k}(const double *q, const double *v, const double *x) {{ const double *in[3] = {{q, v, x}}; "

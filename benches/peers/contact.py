@@ -1,8 +1,8 @@
-"""MuJoCo and Drake on the quadruped of `benches/src/bin/contact.rs`, and MuJoCo on its humanoid: the time of a step, and how exact it is.
+"""Time and accuracy of a step of MuJoCo and Drake for the quadruped of `benches/src/bin/contact.rs`, and of MuJoCo for its humanoid.
 
     python contact.py URDF_FOLDER LINKWORK_PROGRAM
 
-Runs the program, and prints a table of all.
+Runs the program, and prints a table of all results.
 """
 
 import json
@@ -58,7 +58,7 @@ def run(m, d, duration):
 
 
 def timed(m, prepare, duration):
-    """Microseconds of the process in a step: the least of several runs."""
+    """Returns the processor time of a step, µs: the minimum of several runs."""
     times = []
     for _ in range(15):
         d = prepare()
@@ -101,7 +101,7 @@ def measured(folder):
 
 
 def humanoid(folder):
-    """The robot on the four corners of each sole, with the drives of the same program."""
+    """Returns the humanoid with contacts at the four corners of each sole, with the drives of the Rust program."""
     with open(f"{folder}/simple_humanoid.urdf", encoding="utf-8") as file:
         spec = mujoco.MjSpec.from_string(file.read().replace("</robot>", EXTENSION + "</robot>"))
     spec.option.timestep = 1e-3

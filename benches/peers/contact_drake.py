@@ -1,4 +1,4 @@
-"""Drake on the quadruped of `contact.py`: its discrete solver for contacts (SAP) with rigid ground, and the same drives."""
+"""Simulates the quadruped of `contact.py` in Drake, with its discrete contact solver (SAP), rigid ground, and the same drives."""
 
 import time
 
@@ -22,7 +22,7 @@ RADIUS = 0.016
 
 
 class Solo:
-    """The robot at a posture, in steps of fixed length."""
+    """The robot in a posture, simulated with fixed steps."""
 
     def __init__(self, folder, slope, step, stiffness=6.0):
         builder = DiagramBuilder()
@@ -76,7 +76,7 @@ class Solo:
         return RADIUS - min(heights)
 
     def timed(self, prepare, duration):
-        """Microseconds of the process in a step: the least of several runs."""
+        """Returns the processor time of a step, µs: the minimum of several runs."""
         times = []
         for _ in range(15):
             prepare()

@@ -1,6 +1,6 @@
-"""Printed equations of ten mechanisms next to SymPy's: the same by numbers, and how many names, numbers, exponents and
-functions each has to read. SymPy's is the shortest of some hundred forms that its functions give in which every second rate stands
-once, with its inertia before it; the last column is the shortest of all of them.
+"""Compares the printed equations of ten mechanisms with SymPy's: equality by numerical evaluation, and the number of names,
+numbers, exponents and functions in each. SymPy's form is the shortest of some hundred in which every second derivative occurs
+once, with its inertia as a factor; the last column is the shortest of all forms.
 
 equations.py LINKWORK: the command `linkwork` prints the equations."""
 
@@ -24,7 +24,7 @@ class Mechanism:
     gravity: str
     fields: str
     coordinates: str
-    lagrangian: object  # from a table of names to numbers, coordinates and their rates
+    lagrangian: object  # a function of a mapping from names to parameters, coordinates and their rates
     forces: dict = field(default_factory=dict)
 
 
@@ -197,7 +197,7 @@ TOKEN = re.compile(r"\d+(?:\.\d+)?|[A-Za-z_][A-Za-z_0-9]*'*|[²³⁴]|[()+\-/]")
 
 
 def printed(command, mechanism, folder):
-    """The equations of a mechanism as the command prints them, a line each."""
+    """Returns the equations of a mechanism as the command prints them, a line each."""
     path = Path(folder) / f"{mechanism.name}.rs"
     path.write_text(
         f"#[mechanism(gravity = {mechanism.gravity})]\npub struct {mechanism.name} {{ {mechanism.fields} }}\n"
@@ -216,7 +216,7 @@ def printed(command, mechanism, folder):
 
 
 def spelled(text):
-    """Text as Python writes it: products by stars, powers by two, rates as names."""
+    """Returns the text as Python: `*` for products, `**` for powers, and names for rates."""
     text = re.sub(r"(sin|cos|tan)([²³⁴])(\([^()]*\))", r"\1\3\2", text)
     out, operand = "", False
     for token in TOKEN.findall(text):
@@ -231,12 +231,12 @@ def spelled(text):
 
 
 def symbols_of(text):
-    """Names, numbers, exponents and functions; a fraction of two numbers is one."""
+    """Returns the number of names, numbers, exponents and functions; a fraction of two numbers counts as one."""
     return len(re.findall(r"[A-Za-z_]\w*|\d+(?:\.\d+)?(?:/\d+)?", text))
 
 
 class Names:
-    """Parameters and coordinates by name, made as they are asked for."""
+    """Parameters and coordinates by name, created at the first access."""
 
     def __init__(self, coordinates):
         self.__dict__.update({name: sp.Function(name)(t) for name in coordinates})
@@ -247,7 +247,7 @@ class Names:
 
 
 def derived(mechanism):
-    """Lagrange's equations, what is zero, in plain symbols."""
+    """Returns the left sides of Lagrange's equations (zero on the right), in plain symbols."""
     names = mechanism.coordinates.split()
     s = Names(names)
     energy = mechanism.lagrangian(s)
@@ -266,7 +266,7 @@ def derived(mechanism):
 
 
 def forms(e):
-    """What SymPy's functions make of an equation."""
+    """Returns the forms of an equation that SymPy's functions give."""
     first = []
     for e in (e, sp.expand(sp.expand_trig(e))):
         plain = sp.expand(e)
@@ -279,7 +279,7 @@ def forms(e):
             first += [sp.collect(plain, rates), sp.collect(plain, rates, sp.factor)]
             first.append(sp.collect(plain, rates, sp.simplify))
 
-    # Sines of multiple angles are other terms than those of the mechanism.
+    # Forms with sines of multiple angles are excluded.
     def is_plain(form):
         angles = [angle.args[0] for angle in form.atoms(sp.sin, sp.cos)]
         return all(abs(angle.as_coeff_Mul()[0]) == 1 for angle in angles)
@@ -288,7 +288,7 @@ def forms(e):
 
 
 def has_inertias(form):
-    """Whether every second rate stands once."""
+    """Whether every second derivative occurs once."""
     rates = re.findall(r"[A-Za-z_0-9]+_d_d", form)
     return len(rates) == len(set(rates))
 

@@ -1,7 +1,7 @@
-// Writes C by CasADi from Pinocchio's algorithms on symbols: generate LIMIT FOLDER
+// Generates C by CasADi from Pinocchio's algorithms on symbols: generate LIMIT FOLDER
 //
-// Into every folder go `FUNCTION_plain.c` and `FUNCTION_shared.c` (common subexpressions eliminated), each from the
-// formulation that takes the fewest instructions. Derivatives of robots with more than LIMIT velocities are left out.
+// Writes to every folder `FUNCTION_plain.c` and `FUNCTION_shared.c` (common subexpressions eliminated), each from the
+// formulation that takes the fewest instructions. Derivatives of robots with more than LIMIT velocities are omitted.
 #include <pinocchio/autodiff/casadi.hpp>
 #include "model.hpp"
 #include <pinocchio/algorithm/aba-derivatives.hpp>
@@ -21,7 +21,7 @@ using Data = pinocchio::DataTpl<SX>;
 using Vector = Eigen::Matrix<SX, Eigen::Dynamic, 1>;
 using Matrix = Eigen::Matrix<SX, Eigen::Dynamic, Eigen::Dynamic>;
 
-// Up to how many velocities algorithmic differentiation is tried next to the analytic recursions.
+// Maximum number of velocities for which algorithmic differentiation is tried in addition to the analytic recursions.
 const int DIFFERENTIATE = 12;
 
 static Vector numbers(const SX &symbols) {
@@ -115,7 +115,7 @@ static void generate(const char *folder, int limit) {
 }
 
 int main(int count, char **arguments) {
-    // CasADi writes to the working directory alone.
+    // CasADi writes only to the working directory.
     if (count != 3 || chdir(arguments[2])) return 2;
     generate(".", std::atoi(arguments[1]));
 }

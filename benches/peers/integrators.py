@@ -1,9 +1,9 @@
-"""Linkwork's methods of integration next to SciPy's and SUNDIALS's: errors at the end against evaluations and time.
+"""Compares Linkwork's integration methods with those of SciPy and SUNDIALS: final errors, evaluations and times.
 
     integrators.py PROGRAM LIBRARY     the program `integrators` and the example `right_hand_sides` of linkwork-benches
 
 All integrate the same generated accelerations. Linkwork calls them in Rust, the others through Python, which costs some
-microseconds a call: compare evaluations, and times with that in mind. SUNDIALS is left out where `sksundae` is not installed.
+microseconds per call: compare the evaluations, not the times. SUNDIALS is omitted if `sksundae` is not installed.
 """
 import ctypes
 import subprocess
@@ -80,7 +80,7 @@ def main():
     print(f"{versions}; error of the configuration at the end beside its largest entry")
     for number, name in enumerate(NAMES):
         problem = Problem(number)
-        # A method and a program that are not ours.
+        # The reference is an independent implementation.
         method, tolerance = ("Radau", 1e-12) if number in STIFF else ("DOP853", 3e-14)
         reference = problem.scipy(method, tolerance)[: problem.n // 2]
         error = lambda q: float(np.max(np.abs(np.asarray(q) - reference)) / np.max(np.abs(reference)))

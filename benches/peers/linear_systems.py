@@ -1,4 +1,4 @@
-"""linkwork-design next to python-control with slycot on 200 random systems: differences and times.
+"""Compares linkwork-design with python-control and slycot on 200 random systems: differences and times.
 
     linear_systems.py PROGRAM     PROGRAM is the example `peer` of linkwork-design.
 """
@@ -106,7 +106,7 @@ def pole_residual(s, x):
     return max(least) / linalg.norm(s.A)
 
 
-# How far a result is from the exact one of a neighbouring problem, and how far that is from this.
+# Backward error: relative residual of a result in its equation.
 RESIDUALS = {
     "poles": pole_residual,
     "lyap": lambda s, x: lyapunov_residual(s, x, np.eye(s.nstates)),
@@ -117,7 +117,7 @@ RESIDUALS = {
 
 
 def matched(found, expected):
-    """Roots in the order of the others; the difference beside the largest."""
+    """Orders the roots as the expected ones; returns their difference relative to the largest."""
     x, y = found[::2] + 1j * found[1::2], list(expected[::2] + 1j * expected[1::2])
     order = []
     for root in x:

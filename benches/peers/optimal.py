@@ -1,8 +1,8 @@
-"""Crocoddyl on the problems of `benches/src/bin/optimal.rs`: times of the parts of an iteration, and the costs of its iterates.
+"""Crocoddyl on the problems of `benches/src/bin/optimal.rs`: times of the phases of an iteration, and the costs of its iterates.
 
     python optimal.py URDF_FOLDER LINKWORK_PROGRAM [--quick]
 
-Runs the program, compares the costs of all iterates, and prints a table of nanoseconds a node.
+Runs the program, compares the costs of all iterates, and prints a table of nanoseconds per node.
 """
 
 import json
@@ -33,7 +33,7 @@ def solo(folder):
 
 
 def problem(model, own, gravity):
-    """A problem from the start to the goal of Linkwork's."""
+    """Returns a problem with the start and the goal of Linkwork's."""
     model.damping[:] = 0
     model.friction[:] = 0
     state = crocoddyl.StateMultibody(model)
@@ -59,7 +59,7 @@ def problem(model, own, gravity):
 
 
 def trot(folder, own):
-    """The trot of Crocoddyl's example (`crocoddyl.utils.quadruped`): its models of swing and touchdown, with Linkwork's gait."""
+    """Returns the trot of Crocoddyl's example (`crocoddyl.utils.quadruped`): its models of swing and touchdown, with Linkwork's gait."""
     model = solo(folder)
     model.damping[:] = 0
     model.friction[:] = 0
@@ -77,7 +77,7 @@ def trot(folder, own):
             return gait.createImpulseModel(held, task)
         centre = phase["centre"] and np.array(phase["centre"])
         action = gait.createSwingFootModel(PERIOD, held, centre, task)
-        # The file has no limits that a state comes near.
+        # No state comes near the limits of the file.
         action.differential.costs.removeCost("stateBounds")
         return action
 
@@ -129,7 +129,7 @@ def main():
     for name, shooting in problems.items():
         mine = own[name]
         peer = measure(shooting, mine, repeats)
-        # Ours linearises and goes backwards in one pass, which keeps no matrices but those of the policies.
+        # Linkwork linearises and runs backwards in one pass, which stores only the matrices of the policies.
         peer["iteration"] = sum(peer[part] for part in PARTS)
         mine["iteration"] = mine["sweep"] + mine["rollout"]
         for who, times in (("Crocoddyl", peer), ("Linkwork", mine)):

@@ -1,5 +1,5 @@
-// Pinocchio's algorithms behind the interface of src/bin/peers/library.rs. Header-only, so that they are compiled for
-// the host's processor.
+// Pinocchio's algorithms with the interface of src/bin/peers/library.rs. They are used header-only, so that they are
+// compiled for the host's processor.
 #include "model.hpp"
 #include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>

@@ -1,6 +1,6 @@
-// Writes a step of the classical Runge-Kutta method with its Jacobians as C by CasADi from Pinocchio's algorithms on symbols: steps FOLDER
+// Generates a step of the classical Runge-Kutta method with its Jacobians as C by CasADi from Pinocchio's algorithms on symbols: steps FOLDER
 //
-// Into the folder go `step_plain.c` and `step_shared.c` (common subexpressions eliminated), each from the formulation that takes the
+// Writes to the folder `step_plain.c` and `step_shared.c` (common subexpressions eliminated), each from the formulation that takes the
 // fewest instructions: the Jacobians by algorithmic differentiation of the step, or through its stages from Pinocchio's analytic
 // derivatives of forward dynamics. All joints of the arm have one coordinate.
 #include <pinocchio/autodiff/casadi.hpp>
@@ -35,7 +35,7 @@ static SX sparse(const Matrix &m) {
     return result;
 }
 
-// The end of a step of something with a rate, by the acceleration at a state.
+// Returns the state after a step, from the acceleration as a function of the state.
 static SX step(const SX &q, const SX &v, const std::function<SX(const SX &, const SX &)> &acceleration) {
     const double h = PERIOD;
     const SX a1 = acceleration(q, v);
@@ -46,7 +46,7 @@ static SX step(const SX &q, const SX &v, const std::function<SX(const SX &, cons
 }
 
 int main(int count, char **arguments) {
-    // CasADi writes to the working directory alone.
+    // CasADi writes only to the working directory.
     if (count != 2 || chdir(arguments[1])) return 2;
     const Model model = load(".").cast<SX>();
     const int n = model.nv;
@@ -58,7 +58,7 @@ int main(int count, char **arguments) {
     });
     const SX differentiated = SX::horzcat({SX::jacobian(end, q), SX::jacobian(end, v), SX::jacobian(end, u)});
 
-    // States with their derivatives by the start beside them.
+    // States, followed by their derivatives with respect to the start.
     const SX one = SX::eye(n), none(n, n);
     const SX whole = step(SX::horzcat({q, one, none, none}), SX::horzcat({v, none, one, none}), [&](const SX &q, const SX &v) {
         Data data(model);

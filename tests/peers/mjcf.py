@@ -1,15 +1,15 @@
-"""Robot files of Python packages: Linkwork's functions next to MuJoCo's.
+"""Compares Linkwork's functions with MuJoCo's on the robot files of Python packages.
 
     python mjcf.py EVALUATE [PACKAGE ...]
 
-EVALUATE is the example of this name of linkwork-compiler. Every file of the packages that MuJoCo reads and that moves is compared at
-random states, without contacts, limits and the softness of constraints: the mass matrix, the bias forces (with springs, dampers,
-friction and the constant forces of servos), the forces of the actuators and the accelerations. Where a file has what Linkwork does
-not take over, the option that its message names leaves it out, in MuJoCo too.
+EVALUATE is the example of this name of linkwork-compiler. Every file of the packages that MuJoCo reads and that has degrees of
+freedom is compared at random states, without contacts, limits and soft constraints: the mass matrix, the bias forces (with springs,
+dampers, friction and the constant forces of servos), the forces of the actuators and the accelerations. If Linkwork does not support
+an element of a file, the option that its message suggests omits the element, in MuJoCo, too.
 
-Differences are relative to the largest entry, or to one where all are smaller. MuJoCo finds the principal axes of an inertia with
-errors of some 1e-11, which light links and ill-conditioned mass matrices enlarge: files that are too far apart are compared once more
-with the masses, centres and principal axes in them that it has found.
+Differences are relative to the largest entry, or to one if all entries are smaller. MuJoCo computes the principal axes of an inertia
+with errors of some 1e-11, which light links and ill-conditioned mass matrices amplify. Files with too large differences are therefore
+compared again with the masses, centres and principal axes that MuJoCo has computed.
 """
 
 import collections
@@ -25,21 +25,21 @@ import numpy as np
 PACKAGES = ["gymnasium", "gymnasium_robotics", "metaworld", "dm_control", "robosuite", "mujoco"]
 TOLERANCE = 1e-9
 STATES = 2
-# Velocities of the largest robot, and seconds that one may take.
+# Maximum number of velocities of a robot, and maximum seconds per robot.
 MOST = 128
 PATIENCE = 240
-# The width of the smooth friction that stands for Coulomb's, rad/s and m/s.
+# The velocity width of the smooth friction that approximates Coulomb's, rad/s and m/s.
 SLIP = 0.01
 
 FREE, BALL, SLIDE, HINGE = range(4)
 
 
 class Refused(Exception):
-    """What Linkwork says of a file that it does not read."""
+    """Linkwork's message for a file that it rejects."""
 
 
 class Evaluated:
-    """A file in Linkwork."""
+    """A file as read by Linkwork."""
 
     def __init__(self, program, path, options):
         command = [program, "mjcf", str(path), *options]
@@ -69,7 +69,7 @@ class Evaluated:
 
 
 def load(path, options):
-    """The model without what is left out on both sides."""
+    """Returns MuJoCo's model without the elements that both sides omit."""
     model = mujoco.MjModel.from_xml_path(str(path))
     off = mujoco.mjtDisableBit
     flags = off.mjDSBL_CONTACT | off.mjDSBL_LIMIT | off.mjDSBL_EQUALITY | off.mjDSBL_FRICTIONLOSS | off.mjDSBL_CLAMPCTRL
@@ -87,7 +87,7 @@ def load(path, options):
 
 
 def rows(model):
-    """Linear conditions of joints and fixed tendons: weights of velocities, and what the sum is."""
+    """Returns the linear conditions of joints and fixed tendons: weights of the velocities, and the value of the sum."""
     at = model.jnt_dofadr
     zero = {at[joint]: model.qpos0[model.jnt_qposadr[joint]] for joint in range(model.njnt)}
 
@@ -114,7 +114,7 @@ def rows(model):
 
 
 def couplings(model, velocities):
-    """q = q0 + P y and v = P w, where y and w are those of the joints that lead: those that Linkwork has kept."""
+    """Returns q0 and P of q = q0 + P y and v = P w, where y and w belong to the independent joints, which Linkwork retains."""
     dofs = {model.joint(joint).name: model.jnt_dofadr[joint] for joint in range(model.njnt)}
     single = {name for name, joint in zip(dofs, range(model.njnt)) if model.jnt_type[joint] in (SLIDE, HINGE)}
     led = {dofs[name] for name in single if name and name not in velocities}
@@ -134,7 +134,7 @@ def couplings(model, velocities):
 
 
 def random_state(model, P, q0, kept, rng):
-    """A state for both: q of MuJoCo, q of Linkwork, and v of Linkwork with T and its rate, where T v is MuJoCo's."""
+    """Returns a state for both: q of MuJoCo, q of Linkwork, and v of Linkwork with T and its rate, where T v is MuJoCo's velocity."""
     nv = model.nv
     v, T, rate = P @ rng.normal(size=len(kept)), np.eye(nv), np.zeros((nv, nv))
     q, own, alone = np.zeros(model.nq), [], np.zeros(nv)
@@ -180,7 +180,7 @@ def difference(found, expected):
 
 
 def compare(program, path, options):
-    """The largest differences of mass matrix, bias forces, actuators' forces and accelerations."""
+    """Returns the largest differences of mass matrix, bias forces, actuators' forces and accelerations."""
     model = load(path, options)
     if model.nv > MOST:
         raise Refused(f"more than {MOST} velocities")
@@ -210,7 +210,7 @@ def compare(program, path, options):
             M = TP.T @ inertia @ TP
             h = TP.T @ (passive + inertia @ (rate @ v))
             g = TP.T @ (data.qfrc_actuator - idle)
-            # Without friction, which is a constraint there.
+            # Without friction, which is a constraint in MuJoCo.
             a = np.linalg.solve(M, g - h + TP.T @ loss)
             if len(kept) == model.nv:
                 a = np.linalg.solve(T, data.qacc - rate @ v)
@@ -219,7 +219,7 @@ def compare(program, path, options):
             worst["h"] = max(worst["h"], difference(found[1], h))
             if driven:
                 worst["g"] = max(worst["g"], difference(found[2], g))
-            # Mechanisms with loops have another function.
+            # Mechanisms with loops are evaluated by another function.
             if found[3].size:
                 worst["a"] = max(worst["a"], difference(found[3], a))
         return worst
@@ -228,7 +228,7 @@ def compare(program, path, options):
 
 
 def options_of(message):
-    """What the help of a message says to write."""
+    """Returns the options that the help of a message suggests."""
     found = set(re.findall(r"`#\[mechanism\(…, ([^)]*)\)\]`", message))
     return {"inputs = none" if option.startswith("inputs") else option for option in found}
 
@@ -240,7 +240,7 @@ def reasons(message):
 
 
 def files(package):
-    """The files that MuJoCo reads, and that move."""
+    """Yields the files that MuJoCo reads and that have degrees of freedom."""
     folder = pathlib.Path(mujoco.__file__).parent.parent / package
     for path in sorted(folder.rglob("*.xml")):
         try:
@@ -252,14 +252,14 @@ def files(package):
 
 
 def bodies(body):
-    """A body and all that it carries, in the order of the compiled model."""
+    """Yields a body and its descendants, in the order of the compiled model."""
     yield body
     for child in body.bodies:
         yield from bodies(child)
 
 
 def write_anew(path):
-    """The file with the mass properties in it that MuJoCo has found, and principal axes of them."""
+    """Returns the file with the inertial parameters and principal axes that MuJoCo has computed."""
     spec = mujoco.MjSpec.from_file(str(path))
     model = spec.compile()
     for k, body in enumerate(bodies(spec.worldbody)):
@@ -276,7 +276,7 @@ def write_anew(path):
 
 
 def compare_written(program, path, options):
-    """The differences after MuJoCo has written the file anew, beside it: meshes are looked up there."""
+    """Returns the differences for a copy of the file that MuJoCo writes next to it, where meshes are found."""
     written = path.with_name("linkwork_written.xml")
     try:
         written.write_text(write_anew(path), encoding="utf-8")
@@ -288,7 +288,7 @@ def compare_written(program, path, options):
 
 
 def look(program, path):
-    """Differences, the options that were needed, and why."""
+    """Returns the differences, the options that were needed, and the reasons."""
     options, why = [], []
     for _ in range(4):
         try:

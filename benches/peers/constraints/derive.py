@@ -1,11 +1,11 @@
 """Derives equations of motion with SymPy, prints them as C, and times them in Python.
 
 derive.py NAME FOLDER: writes FOLDER/sympy.c. derive.py --python NAME FOLDER: writes FOLDER/python, from FOLDER/states:
-nanoseconds of a call of what lambdify makes, of what PyDy makes by Cython, and milliseconds of a motion as long as a
+nanoseconds per call of the functions of lambdify and of PyDy (Cython), and milliseconds of a motion with the duration of a
 thousand steps.
 
-KanesMethod gives mass matrix and forces of the tree, the velocities of points the constraints; accelerations and
-multipliers follow from the one system `[[M, -Jᵀ], [J, 0]]`.
+KanesMethod gives mass matrix and forces of the tree, the velocities of points give the constraints. Accelerations and
+multipliers follow from the system `[[M, -Jᵀ], [J, 0]]`.
 """
 
 import pathlib
@@ -21,7 +21,7 @@ import mechanisms
 
 
 class Derivation:
-    """A mechanism in SymPy's words."""
+    """A mechanism as objects of SymPy."""
 
     def __init__(self, mechanism):
         self.mechanism = mechanism
@@ -37,7 +37,7 @@ class Derivation:
         self.apply()
 
     def number(self):
-        """Coordinates and speeds in Linkwork's order."""
+        """Creates coordinates and generalized speeds in Linkwork's order."""
         self.q_of, self.u_of = {}, {}
         nq = nu = 0
         for name in self.mechanism.joints():
@@ -76,7 +76,7 @@ class Derivation:
         self.loads.append((centre, vector(self.n, (body.mass * g for g in self.mechanism.gravity))))
 
     def free(self, body, name):
-        """Place and unit quaternion; linear and angular velocity in the body's axes."""
+        """Adds a free joint: position and unit quaternion; linear and angular velocity in the body's axes."""
         q, u = self.q[self.q_of[name] :][:7], self.u[self.u_of[name] :][:6]
         x, y, z, w = q[3:]
         frame = self.n.orientnew(body.name, "Quaternion", (w, x, y, z))
@@ -91,14 +91,14 @@ class Derivation:
         return frame, at
 
     def point(self, body, at):
-        """A point of a body, with its velocity."""
+        """Returns a point of a body, with its velocity."""
         frame, origin = self.frames[body], self.origins[body]
         point = origin.locatenew(f"{body}_point", vector(frame, at))
         point.v2pt_theory(origin, self.n, frame)
         return point
 
     def apply(self):
-        """Torques and the spring."""
+        """Adds the torques and the spring."""
         for name, torque in self.mechanism.torques.items():
             body, axis = next((b, j[2]) for b in self.mechanism.bodies for j in b.joints if j[0] == name)
             self.loads.append((self.frames[body.name], torque * vector(self.n, axis)))
@@ -112,7 +112,7 @@ class Derivation:
             self.loads.append((end, vector(self.n, [force * c for c in components])))
 
     def constraint_rates(self):
-        """What has to stay zero, linear in the speeds."""
+        """Returns the constraint velocities, which are linear in the generalized speeds."""
         rates = []
         for loop in self.mechanism.loops:
             gap = self.point(loop.first, loop.first_at).vel(self.n) - self.point(loop.second, loop.second_at).vel(self.n)
@@ -121,7 +121,7 @@ class Derivation:
                 first, second = self.frames[loop.first], self.frames[loop.second]
                 axis, turning = vector(second, loop.axis), first.ang_vel_in(second)
                 across = [e for e in (mechanisms.X, mechanisms.Y, mechanisms.Z) if e != loop.axis]
-                # Bricard's last condition follows from the others, and the system would be singular.
+                # Bricard's last condition is redundant and would make the system singular.
                 rates += [dot(cross(turning, vector(first, e)), axis) for e in across[:1]]
         if self.mechanism.rows:
             word, *arguments = self.mechanism.rows
@@ -129,23 +129,23 @@ class Derivation:
         return rates
 
     def at_rest(self, body, arm):
-        """The velocity of the point of a body at an arm from its origin."""
+        """Returns the velocity of the point of a body with a given offset from its origin."""
         velocity = self.origins[body].vel(self.n) + cross(self.frames[body].ang_vel_in(self.n), arm)
         return [dot(velocity, axis) for axis in (self.n.x, self.n.y, self.n.z)]
 
     def rims(self, wheels, up):
-        """Sharp rims about y that touch the ground where they are lowest."""
+        """Returns the constraint velocities of wheels with sharp rims about y, whose lowest points touch the ground."""
         rows = []
         for name, radius in wheels:
             axle, down = self.frames[name].y, -up * self.n.z
             across = dot(down, axle)
-            # Of a vector in two frames the square has to be told.
+            # SymPy does not simplify the square of a vector with components in two frames.
             lowest = (down - across * axle) * (radius / sympy.sqrt(1 - across**2))
             rows += self.at_rest(name, lowest)
         return rows
 
     def bowl(self, ball, radius):
-        """Inside a bowl about the origin."""
+        """Returns the constraint velocities of a ball inside a bowl about the origin."""
         place = self.q[:3]
         return self.at_rest(ball, vector(self.n, [radius * x / sympy.sqrt(sum(x**2 for x in place)) for x in place]))
 
@@ -153,14 +153,14 @@ class Derivation:
         return [dot(self.origins[sleigh].vel(self.n), self.frames[sleigh].y)]
 
     def ellipsoid(self, stone, axes):
-        """On the ground."""
+        """Returns the constraint velocities of an ellipsoid on the ground."""
         frame = self.frames[stone]
         normal = self.n.z.to_matrix(frame)
         size = sympy.sqrt(sum((a * n) ** 2 for a, n in zip(axes, normal)))
         return self.at_rest(stone, vector(frame, [-a * a * n / size for a, n in zip(axes, normal)]))
 
     def equations(self):
-        """M, forces, J, biases and rates of the coordinates, in plain symbols."""
+        """Returns M, forces, J, biases and rates of the coordinates, in plain symbols."""
         t = dynamicsymbols._t
         kinematics = [q.diff(t) - rate for q, rate in zip(self.q, self.rates)]
         kane = mechanics.KanesMethod(self.n, q_ind=self.q, u_ind=self.u, kd_eqs=kinematics)
@@ -183,12 +183,12 @@ class Derivation:
 
 
 def vector(frame, components):
-    """A vector by its components."""
+    """Returns the vector with these components."""
     return sum((c * e for c, e in zip(components, (frame.x, frame.y, frame.z))), mechanics.Vector(0))
 
 
 def as_c(equations):
-    """Functions `equations` and `kinematics`, with sizes."""
+    """Returns the C functions `equations` and `kinematics`, with their array sizes."""
     q, u = equations["q"], equations["u"]
     text = f"#include <math.h>\nenum {{ NQ = {len(q)}, NV = {len(u)}, NC = {equations['jacobian'].rows} }};\n"
     text += f"static const double STEP = {equations['step']};\n"
@@ -213,7 +213,7 @@ def write(mechanism, folder):
 
 
 def least_time(call, seconds):
-    """The least processor time of a call."""
+    """Returns the minimum processor time of a call."""
     least, end = float("inf"), time.process_time() + seconds
     while time.process_time() < end:
         start = time.perf_counter_ns()
@@ -223,7 +223,7 @@ def least_time(call, seconds):
 
 
 def in_python(mechanism, folder):
-    """`lambdify` and `numpy.linalg.solve`; PyDy."""
+    """Measures `lambdify` with `numpy.linalg.solve`, and PyDy."""
     from pydy.codegen.ode_function_generators import generate_ode_function
     from scipy.integrate import solve_ivp
 
@@ -243,14 +243,14 @@ def in_python(mechanism, folder):
     def by_lambdify(x, _t):
         return numpy.concatenate([moving(x[:nq], x[nq:])[:, 0], accelerations(x[:nq], x[nq:])])
 
-    # Multipliers stand as further speeds: the system gives them in the place of their rates.
+    # Multipliers are additional speeds, whose rates in the solution are the multipliers.
     timed = {x: dynamicsymbols(x.name) for x in q + u}
     multipliers = list(dynamicsymbols(f"lambda:{nc}"))
     compiled = generate_ode_function(
         right.xreplace(timed),
         [timed[x] for x in q],
         [timed[x] for x in u] + multipliers,
-        # PyDy's compiled functions want one parameter at least.
+        # PyDy's compiled functions need at least one parameter.
         [sympy.Symbol("unused")],
         mass_matrix=system.xreplace(timed),
         coordinate_derivatives=equations["moving"].xreplace(timed),
@@ -263,7 +263,7 @@ def in_python(mechanism, folder):
     longer = [numpy.concatenate([x, zeros]) for x in states]
     for word, found in (
         ("lambdify", [by_lambdify(x, 0.0)[nq:] for x in states]),
-        # It gives the same array every time.
+        # The function returns the same array each time.
         ("PyDy", [compiled(x, 0.0, none)[nq : nq + nv].copy() for x in longer]),
     ):
         error = max(

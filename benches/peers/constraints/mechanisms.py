@@ -1,4 +1,4 @@
-"""The mechanisms that are compared under constraints, as data: numbers, bodies with their joints, what closes loops.
+"""The constrained mechanisms of the comparison as data: parameters, bodies with their joints, and loop closures.
 
 Coordinates have the names and the order of linkwork_models; `benches/src/bin/peers/mechanisms.rs` has the same numbers.
 """
@@ -12,22 +12,22 @@ ZERO = (0, 0, 0)
 
 @dataclass
 class Body:
-    """A body at the end of joints that stand at a point of another body, in its axes."""
+    """A body with the joints that connect it to a point of another body, in that body's axes."""
 
     name: str
     parent: str
     at: tuple
-    # Name of the coordinate, "turn" or "slide", axis; or the name of a free joint, "free", nothing.
+    # Name of the coordinate, "turn" or "slide", axis; or the name of a free joint, "free", None.
     joints: list
     mass: float
     com: tuple = ZERO
-    # xx, yy, zz, xy, xz, yz about the centre of mass.
+    # Components xx, yy, zz, xy, xz, yz about the centre of mass.
     inertia: tuple = (0, 0, 0, 0, 0, 0)
 
 
 @dataclass
 class Loop:
-    """Points of two bodies that coincide; with an axis, the same for both where all coordinates are zero, a pin about it."""
+    """Coincident points of two bodies; with an axis, a pin about it. The axis is common to both bodies if all coordinates are zero."""
 
     first: str
     first_at: tuple
@@ -39,30 +39,30 @@ class Loop:
 
 @dataclass
 class Mechanism:
-    """All of it."""
+    """A mechanism of the comparison."""
 
     name: str
     gravity: tuple
     bodies: list
     loops: list = field(default_factory=list)
-    # Order of the joints in q, if it is not that of the bodies.
+    # Order of the joints in q, if it differs from that of the bodies.
     order: list = None
-    # Constant torques by joint.
+    # Constant torque of each joint.
     torques: dict = field(default_factory=dict)
-    # Point of the ground, body, point of it, stiffness, free length.
+    # Point of the ground, body, point of the body, stiffness, free length.
     spring: tuple = None
-    # Rows that only SymPy gets: a word of derive.py with its arguments.
+    # Constraints for SymPy only: a name of derive.py with its arguments.
     rows: tuple = None
-    # Seconds of a step: 30 µs for Andrews' squeezer, whose motion lasts 30 ms.
+    # Step in seconds: 30 µs for Andrews' squeezer, whose motion lasts 30 ms.
     step: float = 1e-3
 
     def joints(self):
-        """Names of the joints in the order of q."""
+        """Returns the names of the joints in the order of q."""
         return self.order or [name for body in self.bodies for name, *_ in body.joints]
 
 
 def rod(mass, length, axis):
-    """Inertia of a thin rod."""
+    """Returns the inertia of a thin rod."""
     value = mass * length**2 / 12
     return tuple(0 if along else value for along in axis) + (0, 0, 0)
 
@@ -72,7 +72,7 @@ def along(axis, distance):
 
 
 def link(name, parent, at, joint, mass, length, axis=X, about=Z):
-    """A rod on a pin at its start."""
+    """Returns a rod on a pin at its start."""
     turn = [(joint, "turn", about)]
     direction = tuple(abs(a) for a in axis)
     return Body(name, parent, at, turn, mass, along(axis, length / 2), rod(mass, length, direction))
@@ -152,7 +152,7 @@ def bricard_linkage():
 
 def five_bar():
     base, crank, forearm, m_crank, m_forearm, tool = 0.25, 0.3, 0.4, 0.4, 0.3, 0.9
-    # The tool at the end of the left forearm is a part of it.
+    # The left forearm includes the tool at its end.
     mass = m_forearm + tool
     com = (m_forearm * forearm / 2 + tool * forearm) / mass
     about = m_forearm * forearm**2 / 3 + tool * forearm**2 - mass * com**2

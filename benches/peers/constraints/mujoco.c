@@ -1,4 +1,4 @@
-// MuJoCo behind the interface of src/bin/peers/library.rs.
+// MuJoCo with the interface of src/bin/peers/library.rs.
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,15 +7,15 @@
 typedef struct {
     mjModel *model;
     mjData *data;
-    // By joint in Linkwork's order.
+    // MuJoCo's joints in Linkwork's order.
     int *joints;
     int count;
-    // Positions and velocities as MuJoCo has them, one state after another.
+    // Positions and velocities in MuJoCo's form, one state after another.
     double *states;
     size_t length;
 } Robot;
 
-// Linear velocity of a free joint between the body's axes and those of the world.
+// Rotates the linear velocity of a free joint between the body's axes and those of the world.
 static void turn(double *v, const double *quaternion, int back) {
     double q[4];
     memcpy(q, quaternion, sizeof q);
@@ -81,7 +81,7 @@ static void accelerations(Robot *r, size_t k) {
     mj_forward(r->model, r->data);
 }
 
-// A hundred steps by MuJoCo's own method.
+// Simulates a hundred steps by MuJoCo's own method.
 static void motion(Robot *r, size_t k) {
     place(r, k);
     for (int step = 0; step < 100; ++step) mj_step(r->model, r->data);

@@ -1,4 +1,4 @@
-// Pinocchio's constrained dynamics behind the interface of src/bin/peers/library.rs.
+// Pinocchio's constrained dynamics with the interface of src/bin/peers/library.rs.
 #include "../model.hpp"
 #include <fstream>
 #include <pinocchio/algorithm/constrained-dynamics.hpp>
@@ -21,8 +21,8 @@ struct Spring {
     double stiffness, free_length;
 };
 
-// Planar loops have a row that says nothing: the proximal method needs a little compliance. Where all rows are
-// independent it does without.
+// Planar loops have a redundant row, for which the proximal method needs a small compliance. With independent rows it
+// needs none.
 const ProximalSettings SETTINGS[] = {ProximalSettings(1e-12, 0., 1), ProximalSettings(1e-12, 1e-10, 10),
                                      ProximalSettings(1e-12, 1e-7, 10)};
 constexpr size_t VARIANTS = sizeof SETTINGS / sizeof *SETTINGS;
@@ -82,7 +82,7 @@ struct Robot {
     const VectorXd &accelerations(const VectorXd &q, const VectorXd &v, ProximalSettings &settings) {
         tau = torques;
         for (const Spring &s : springs) {
-            // On a body that turns about z at a place of the ground.
+            // The body rotates about z at a point of the ground.
             const auto &joint = model.joints[s.joint];
             const double angle = q[joint.idx_q()], c = std::cos(angle), n = std::sin(angle);
             const Vector3d arm(c * s.at[0] - n * s.at[1], n * s.at[0] + c * s.at[1], 0);
@@ -101,7 +101,7 @@ void evaluate(Robot *r, size_t k) {
     r->a = r->accelerations(r->states[k].q, r->states[k].v, settings);
 }
 
-// A hundred steps of the classical Runge-Kutta method, without projections.
+// Simulates a hundred steps of the classical Runge-Kutta method, without projections.
 template <int VARIANT>
 void motion(Robot *r, size_t k) {
     ProximalSettings settings = SETTINGS[VARIANT];

@@ -1,4 +1,4 @@
-# The part of ../run that compares mechanisms with constraints; it has defined everything that is used here.
+# Part of ../run that compares mechanisms with constraints; ../run defines all variables that are used here.
 # shellcheck shell=bash disable=SC2154
 
 here=$sources/constraints
@@ -10,7 +10,7 @@ mujoco=$site/mujoco
 cc -O3 -march=native -shared -fPIC "-I$mujoco/include" "$here/mujoco.c" -o "$into/libmujoco.so" \
     "$mujoco"/libmujoco.so.* "-Wl,-rpath,$mujoco"
 
-# One build of the program a target: constraints [default | native] ARGUMENTS...
+# Runs the program, with one build per target: constraints [default | native] ARGUMENTS...
 constraints() {
     local rust="" build=$1 && shift
     [ "$build" = native ] && rust="-C target-cpu=native"

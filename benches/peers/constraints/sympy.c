@@ -1,4 +1,4 @@
-// What follows the functions of a mechanism: the system of multipliers, and the interface of src/bin/peers/library.rs.
+// Follows the generated functions of a mechanism: solution for the multipliers, and the interface of src/bin/peers/library.rs.
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@ typedef struct {
     double a[NV];
 } Robot;
 
-// Gauss with partial pivoting on [[M, -J'], [J, 0]].
+// Gaussian elimination with partial pivoting of [[M, -J'], [J, 0]].
 static void by_elimination(const double *q, const double *u, double *a) {
     double mass[NV * NV], force[NV], jacobian[NC * NV], bias[NC], m[N][N + 1];
     equations(q, u, mass, force, jacobian, bias);
@@ -49,7 +49,7 @@ static void by_elimination(const double *q, const double *u, double *a) {
     for (int i = 0; i < NV; ++i) a[i] = m[i][N];
 }
 
-// Cholesky: A = L L' in place, lower triangle.
+// Cholesky factorisation A = L L' in place, lower triangle.
 static inline void factor(int n, double *a) {
     for (int j = 0; j < n; ++j) {
         double d = a[j * n + j];
@@ -79,7 +79,7 @@ static inline void backward(int n, const double *l, double *x) {
     }
 }
 
-// Cholesky of M, and of J M⁻¹ J'.
+// Cholesky factorisations of M and of J M⁻¹ J'.
 static void by_complement(const double *q, const double *u, double *a) {
     double mass[NV * NV], force[NV], jacobian[NC * NV], bias[NC], s[NC * NC], lambda[NC];
     equations(q, u, mass, force, jacobian, bias);
@@ -112,7 +112,7 @@ static inline void evaluate(Robot *r, size_t k, Solver solve) {
     solve(q, q + NQ, r->a);
 }
 
-// A hundred steps of the classical Runge-Kutta method, without projections.
+// Simulates a hundred steps of the classical Runge-Kutta method, without projections.
 static inline void motion(Robot *r, size_t k, Solver solve) {
     enum { ALL = NQ + NV };
     const double h = STEP, part[] = {0, h / 2, h / 2, h}, weight[] = {h / 6, h / 3, h / 3, h / 6};

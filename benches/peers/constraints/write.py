@@ -1,8 +1,9 @@
-"""Writes the mechanisms for MuJoCo and Pinocchio: write.py FOLDER makes a folder of each.
+"""Writes the mechanisms for MuJoCo and Pinocchio: write.py FOLDER creates a folder for each.
 
-mujoco.xml; model.txt, Pinocchio's own archive; order, the joints in Linkwork's order; torques, constant ones by joint; step, s; loops and springs, a line each:
-`point JOINT x y z JOINT x y z`, `spring JOINT x y z x y z stiffness free_length` (of the ground, of
-the body; its joint has the ground's axes at zero).
+Files: mujoco.xml; model.txt, Pinocchio's own archive; order, the joints in Linkwork's order; torques, a constant for each
+joint; step, s; loops and springs, a line each: `point JOINT x y z JOINT x y z`,
+`spring JOINT x y z x y z stiffness free_length` (point of the ground, point of the body; its joint has the ground's axes
+at zero).
 """
 
 import pathlib
@@ -13,7 +14,7 @@ import pinocchio
 
 import mechanisms
 
-# MuJoCo refuses bodies without inertia about an axis, even where they cannot turn about it.
+# MuJoCo rejects bodies without inertia about an axis, even if they cannot rotate about it.
 LEAST_INERTIA = 1e-12
 
 
@@ -22,7 +23,7 @@ def numbers(values):
 
 
 def points(loop):
-    """Pairs of points that coincide: two along the axis of a pin."""
+    """Returns pairs of coincident points: two along the axis of a pin."""
     pairs = [(loop.first_at, loop.second_at)]
     if loop.axis:
         shifted = lambda at: tuple(a + b for a, b in zip(at, loop.axis))

@@ -1,4 +1,4 @@
-/* Balances two poles for six seconds, and says how they stand. Returns zero if they do. */
+/* Balances two poles for six seconds, and prints the final state. Returns zero if both are upright. */
 #include "controller.h"
 #include <stdio.h>
 

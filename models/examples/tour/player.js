@@ -1,6 +1,6 @@
-// Plays the scenes of the page: points that move (x right, y away, z up), parts drawn between them from back to front.
+// Plays the scenes of the page: moving points (x right, y away, z up), with parts drawn between them from back to front.
 "use strict";
-// With `#picture` behind its address the page is a picture of the scenes, each at one instant.
+// If the address ends with `#picture`, the page is a picture of the scenes, each at one instant.
 const still = location.hash === "#picture";
 document.documentElement.classList.toggle("picture", still);
 for (const figure of document.querySelectorAll(".scene")) play(figure);
@@ -94,7 +94,7 @@ function play(figure) {
     const parts = scene.parts.map(part => {
       const ends = part[0] === "face" ? part[1] : part[0] === "ball" ? [part[1]] : [part[1], part[2]];
       const seen = ends.map(k => see(points[k]));
-      // Balls cap the rods that they sit on.
+      // Balls are drawn over the rods that end in them.
       const bias = part[0] === "ball" ? 3 * part[2] : 0;
       return { part, seen, ends, depth: seen.reduce((sum, p) => sum + p[2], 0) / seen.length - bias };
     });
@@ -107,7 +107,7 @@ function play(figure) {
     function paint([kind, ...rest], seen, ends) {
       const tone = tones[rest[rest.length - 1]];
       if (kind === "rod") {
-        // A dark edge, the colour, and a light along the middle.
+        // A dark edge, the colour, and a highlight along the middle.
         const width = rest[2] * (seen[0][3] + seen[1][3]);
         line(seen);
         for (const [part, mix] of [[1, -0.35], [0.82, 0], [0.3, 0.25]]) { pen.lineWidth = Math.max(1, width * part); pen.strokeStyle = mixed(tone, mix); pen.stroke(); }
@@ -143,7 +143,7 @@ function play(figure) {
   }
 }
 
-// A colour #rrggbb made lighter (positive) or darker (negative).
+// Returns a colour #rrggbb made lighter (positive amount) or darker (negative).
 function mixed(hex, amount) {
   const to = amount > 0 ? 255 : 0, part = Math.abs(amount);
   return "rgb(" + [1, 3, 5].map(k => Math.round(parseInt(hex.slice(k, k + 2), 16) * (1 - part) + to * part)).join(",") + ")";

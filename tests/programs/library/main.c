@@ -1,4 +1,4 @@
-/* A bead on a wire: it is assembled, held by a controller, and its forces are those of statics. */
+/* Tests the library of a bead on a wire: assembly, a controller that holds the bead, and forces that equal those of statics. */
 #include "bead.h"
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
         } \
     } while (0)
 
-/* Holds the bead at x = 0.6, y = -0.8, and counts its calls. */
+/* Controller that holds the bead at x = 0.6, y = -0.8, and counts its calls. */
 static int hold(void *user, double t, const double *q, const double *v, double *u) {
     const double mass = 3.0;
     (void)(t);
@@ -49,7 +49,7 @@ int main(void) {
     const double *end = samples[200];
     CHECK(fabs(end[0] - 20.0) < 1e-12 && fabs(end[1] - 0.6) < 1e-6 && fabs(end[2] + 0.8) < 1e-6);
 
-    /* At rest there, the wire bears weight and push. */
+    /* At rest in this position, the wire balances the weight and the input force. */
     const double there[BEAD_NQ] = {0.6, -0.8}, push[BEAD_NU] = {3.0 * 9.81 * 0.75};
     double tau[BEAD_NV], a[BEAD_NV], lambda, jacobian[BEAD_NV];
     CHECK(bead_generalized_forces(own, there, push, tau) == 0);
@@ -58,26 +58,26 @@ int main(void) {
     CHECK(fabs(a[0]) < 1e-9 && fabs(a[1]) < 1e-9);
     CHECK(fabs(fabs(lambda) * hypot(jacobian[0], jacobian[1]) - 3.0 * 9.81 * 1.25) < 1e-9);
 
-    /* Swings about where it hangs: the frequency of a pendulum of 1 m. */
+    /* Small oscillations about the lowest point have the frequency of a pendulum of 1 m. */
     const double down[BEAD_NQ] = {0.0, -1.0}, none[BEAD_NU] = {0.0}, preferred[BEAD_NV] = {1.0, 0.0};
     double state[4], input[2], coordinates[1], speeds[1];
     CHECK(bead_linearize(own, down, v, none, preferred, state, input, coordinates, speeds) == 0);
     CHECK(fabs(state[1] + 9.81) < 1e-9 && fabs(state[2] - 1.0) < 1e-12 && fabs(input[1] - 1.0 / 3.0) < 1e-12);
 
-    /* A controller may end a run, and a method must have a name. */
+    /* A controller may end a run, and the name of the method must exist. */
     settings.control = give_up;
     CHECK(bead_simulate(own, q, v, &settings, &samples[0][0], 201, &count) == 1 && count == 6);
     settings.method = "euler";
     CHECK(bead_simulate(own, q, v, &settings, &samples[0][0], 201, &count) == 1);
     CHECK(strstr(bead_message(), "no method `euler`"));
 
-    /* Many states at once, where one has no result. */
+    /* Several states in one call, one of which has no result. */
     const double many[3 * BEAD_NQ] = {0.6, -0.7, 1.5, 0.0, 0.0, -0.9};
     const double marks[3 * BEAD_NV] = {1.0, 0.0, 1.0, 0.0, 1.0, 0.0};
     double found[3 * BEAD_NQ];
     const double *arguments[2] = {many, marks};
     double *results[1] = {found};
-    /* Its number is the place of its name in the description. */
+    /* The number of a function is the index of its name in the description. */
     const char *at = strstr(bead_description(), "\"functions\"");
     const char *until = strstr(at, "\"name\":\"assemble\"");
     size_t function = 0;
