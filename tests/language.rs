@@ -371,8 +371,8 @@ struct Winged {
     air: Force,
 }
 
-/// The rotations of Etkin and Reid, *Dynamics of Flight* (1996), appendix A.7: by the sideslip about z, then
-/// by the angle of attack about y.
+/// Stability and wind axes follow from the rotations of Etkin and Reid, *Dynamics of Flight* (1996), appendix
+/// A.7: by the sideslip about z, then by the angle of attack about y.
 #[test]
 fn stability_and_wind_axes_turn_by_their_angles() {
     let (m, mut random) = (Winged {}, support::random::Random::new(5));

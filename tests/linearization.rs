@@ -242,7 +242,8 @@ struct CartAndPole {
     push: Force,
 }
 
-/// Upright: `(m_c + m) ẍ − m l θ̈ = u` and `l θ̈ − ẍ = g θ`, with the angle counter-clockwise seen from +z.
+/// In the upright position `(m_c + m) ẍ − m l θ̈ = u` and `l θ̈ − ẍ = g θ`, with the angle counter-clockwise
+/// seen from +z.
 #[test]
 fn cart_and_pole() {
     let c = CartAndPole { g: 9.81, cart_mass: 1.2, mass: 0.3, length: 0.5 };

@@ -1,4 +1,4 @@
-//! Generated functions and integrators never allocate.
+//! Generated functions and integrators never allocate memory on the heap.
 #![expect(unsafe_code, reason = "a global allocator is unsafe to implement")]
 
 use linkwork::batch::{Rollout, unwatched};
@@ -14,7 +14,7 @@ use support::mechanisms::*;
 use support::random::Random;
 use support::robots::*;
 
-/// The system's allocator, counting what each thread asks of it.
+/// Allocator of the system that counts the calls of each thread.
 struct Counting;
 
 thread_local! {
@@ -22,21 +22,21 @@ thread_local! {
 }
 
 fn count() {
-    // A thread that is ending has nothing left to count.
+    // During the destruction of a thread the counter no longer exists.
     let _ = COUNT.try_with(|count| count.set(count.get() + 1));
 }
 
-// SAFETY: every call is handed on to the system's allocator as it is.
+// SAFETY: every call is passed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller guarantees the conditions of the allocator.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         count();
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller guarantees the conditions of the allocator.
         unsafe { System.dealloc(pointer, layout) }
     }
 }
@@ -44,7 +44,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// How often the heap is touched while `f` runs.
+/// Returns the number of heap allocations and deallocations while `f` runs.
 fn heap_calls<T>(f: impl FnOnce() -> T) -> usize {
     let before = COUNT.get();
     black_box(f());
@@ -57,7 +57,7 @@ fn heap_calls_are_seen() {
     assert_eq!(heap_calls(|| black_box([1])), 0);
 }
 
-/// Everything in the trait `Mechanism`, and every integrator.
+/// Checks all functions of the trait `Mechanism`, and every integrator.
 fn check<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
@@ -94,7 +94,7 @@ where
     assert_eq!(heap_calls(|| driven().count()), 0, "control, samples and events");
 }
 
-/// What is not in the trait.
+/// Checks the functions that are not in the trait.
 macro_rules! check_kinematics {
     ($mechanism:expr, $type:ident, $frame:literal) => {
         let m = $mechanism;
@@ -137,7 +137,7 @@ fn generated_functions() {
     check_kinematics!(Spacecraft {}, Spacecraft, "weight");
 }
 
-/// A robot with its derivatives.
+/// Arm with the derivatives of its dynamics.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, derivatives)]
 struct PandaWithDerivatives;
 
@@ -154,7 +154,7 @@ fn derivatives() {
     assert_eq!(heap_calls(|| m.linearize(q, v, u)), 0, "linearize");
 }
 
-/// A robot for several states at once.
+/// Quadruped with batched functions.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch)]
 struct Solo12InLanes;
 
@@ -177,7 +177,7 @@ fn batches() {
     assert_eq!(heap_calls(run), 0, "roll_out");
 }
 
-/// An arm with parameters and the rest of what can be asked for.
+/// Arm with parameters and all other options of generated functions.
 #[mechanism(gravity = -g * z, prepare, centroidal, regressor, sensitivities, packed)]
 struct Arm {
     g: f64,
@@ -214,7 +214,7 @@ fn on_request() {
     assert_eq!(heap_calls(|| m.mass_matrix_into(q, &mut kept)), 0, "mass_matrix_into");
 }
 
-/// Everything in the trait `Constrained`, about a state that fulfils the constraints.
+/// Checks all functions of the trait `Constrained`, at a state that satisfies the constraints.
 fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     near: &SVector<f64, NQ>,
@@ -238,7 +238,7 @@ fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const
     assert_eq!(heap_calls(run), 0, "simulate");
 }
 
-/// A loop, one with a redundant condition, and two rolling wheels.
+/// Constrained mechanisms: a loop, a loop with a redundant condition, and two rolling wheels.
 #[test]
 fn constraints() {
     let four_bar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
@@ -252,7 +252,7 @@ fn constraints() {
     assert_eq!(heap_calls(linear), 0, "linearize");
 }
 
-/// A box that falls on its face, and slides.
+/// Box that falls on its face and slides.
 #[mechanism(gravity = -9.81 * z)]
 struct Crate {
     #[body(mass = 2, inertia = cuboid(2, 0.3, 0.2, 0.1))]

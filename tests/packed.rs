@@ -14,8 +14,8 @@ struct Quadruped;
 #[mechanism(urdf = "../models/urdf/panda.urdf", packed)]
 struct Panda;
 
-/// Humanoid with so many results that they exceed the registers: neighbouring entries are stored together as
-/// soon as they are computed.
+/// Humanoid with more results than registers: neighbouring entries are stored together immediately after they
+/// are computed.
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, packed)]
 struct Humanoid;
 

@@ -55,7 +55,7 @@ fn with_the_figures_of_the_file_it_is_the_robot_of_the_file() {
     assert_same_dynamics(&quadruped.prepare(), &linkwork_models::Solo12, 10, TOLERANCE);
 }
 
-/// The same arm with the constant values of two different files.
+/// Arm with the constant values of two different files.
 #[mechanism(urdf = "data/urdf/arm_before.urdf")]
 struct Before;
 #[mechanism(urdf = "data/urdf/arm_after.urdf")]

@@ -148,7 +148,8 @@ fn robot_with_a_load() {
     assert_similar("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
 }
 
-/// `m r² θ̈ = m r (r Ω² cos θ − g) sin θ`.
+/// The hoop's bead satisfies `m r² θ̈ = m r (r Ω² cos θ − g) sin θ`, whose derivatives with respect to the
+/// parameters are known.
 #[test]
 fn driven_in_time() {
     let hoop = Hoop { g: 9.81, m: 0.1, radius: 0.3, spin: 8.0 };

@@ -48,8 +48,8 @@ pub struct Aircraft {
     pub cm_0: f64,
     /// Slope of the pitching moment's coefficient with the angle of attack, 1/rad, negative if stable.
     pub cm_alpha: f64,
-    /// Slope of the pitching moment's coefficient with the pitch rate, which half the chord over the speed
-    /// makes dimensionless.
+    /// Slope of the pitching moment's coefficient with the pitch rate, made dimensionless by half the chord
+    /// over the speed.
     pub cm_rate: f64,
     /// Slope of the pitching moment's coefficient with the elevator's angle, 1/rad.
     pub cm_elevator: f64,

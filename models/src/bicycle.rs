@@ -101,7 +101,7 @@ pub struct Bicycle {
 }
 
 impl Bicycle {
-    /// The benchmark's parameters.
+    /// Parameters of the published benchmark.
     pub const BENCHMARK: Bicycle = Bicycle {
         g: 9.81,
         wheelbase: 1.02,

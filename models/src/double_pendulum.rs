@@ -1,13 +1,13 @@
 use linkwork::mechanism;
 
-/// The double pendulum of two uniform rods, the second pinned to the end of the first.
+/// Double pendulum of two uniform rods, the second pinned to the end of the first.
 ///
 /// Source: Goldstein, Poole and Safko, *Classical Mechanics* (2002), ch. 1; chaotic for large swings.
 ///
 /// - Coordinates: `shoulder` from the vertical and `elbow` relative to the upper rod, `θ₁` and `θ₂`, rad,
 ///   counter-clockwise seen from +z; y points up.
-/// - Mass matrix: `M₁₁ = (m₁/3 + m₂) l₁² + m₂ l₂²/3 + m₂ l₁ l₂ cos θ₂`,
-///   `M₁₂ = m₂ l₂²/3 + ½ m₂ l₁ l₂ cos θ₂`, `M₂₂ = m₂ l₂²/3`.
+/// - Mass matrix: `M₁₁ = (m₁/3 + m₂) l₁² + m₂ l₂²/3 + m₂ l₁ l₂ cos θ₂`, `M₁₂ = m₂ l₂²/3 + ½ m₂ l₁ l₂ cos θ₂`,
+///   `M₂₂ = m₂ l₂²/3`.
 /// - Bias forces:
 ///   `h₁ = −m₂ l₁ l₂ sin θ₂ (θ̇₁ + ½ θ̇₂) θ̇₂ + (½ m₁ + m₂) g l₁ sin θ₁ + ½ m₂ g l₂ sin(θ₁ + θ₂)`,
 ///   `h₂ = ½ m₂ l₁ l₂ sin θ₂ θ̇₁² + ½ m₂ g l₂ sin(θ₁ + θ₂)`.

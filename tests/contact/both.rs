@@ -1,5 +1,5 @@
-//! Both methods of simulating contacts (located events and time stepping) satisfy the contact conditions and
-//! converge to the same motion.
+//! Time stepping and event location, the two methods of simulating contacts, satisfy the contact conditions
+//! and converge to the same motion.
 
 use linkwork::contact::Contacts;
 use linkwork::integrate::EventDriven;

@@ -66,8 +66,8 @@ where
     most
 }
 
-/// Where the motion does not determine the distribution of impulses between surfaces, the distribution is
-/// independent of the order of declaration.
+/// The distribution of impulses between surfaces is independent of the order of declaration, also if the
+/// motion does not determine it.
 #[test]
 fn orders_of_declaration_make_no_difference() {
     let (mut random, run) = (Random(5), (2e-3, 60));
@@ -138,9 +138,9 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     (gain, least)
 }
 
-/// Neither impulses nor the removal of overlaps add energy. The remaining gain is the error of a second-order
-/// step for bodies that rotate about their edges: `½ m g r ω² h²` with about 3 kg, 0.15 m and 3 rad/s.
-/// Corners that collide at 4 m/s overlap by at most their approach in one step.
+/// Impulses and the removal of overlaps add no energy. The remaining gain is the error of a second-order step
+/// for bodies that rotate about their edges: `½ m g r ω² h²` with about 3 kg, 0.15 m and 3 rad/s. Corners
+/// that collide at 4 m/s overlap by at most their approach in one step.
 #[test]
 fn drops_gain_no_energy() {
     let h = 2e-3;

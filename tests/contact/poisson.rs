@@ -76,8 +76,8 @@ fn an_oblique_rod_leaves_faster_than_by_newton() {
     }
 }
 
-/// Both laws agree while the slip continues: the end leaves with `−e uₙ`, and the slip is reduced by `μ`
-/// times the impulse.
+/// Poisson's and Newton's laws agree while the slip continues: the end leaves with `−e uₙ`, and the slip is
+/// reduced by `μ` times the impulse.
 #[test]
 fn while_a_rod_slips_both_laws_are_one() {
     let (friction, e, gravity) = (0.1, 0.6, 0.0);

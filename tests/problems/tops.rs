@@ -76,7 +76,8 @@ struct TopOnBall {
     tip: Ball,
 }
 
-/// `I1 Ω² cos θ − I3 ω3 Ω + m g l = 0` with I1 = 5 (about the tip), I3 = 1, m g l = 20, θ = 0.3, ω3 = 50.
+/// Steady precession satisfies `I1 Ω² cos θ − I3 ω3 Ω + m g l = 0` with I1 = 5 (about the tip), I3 = 1, m g l
+/// = 20, θ = 0.3, ω3 = 50.
 #[test]
 fn steady_precession() {
     let (i1, i3, mgl, angle, w3) = (5.0, 1.0, 20.0, 0.3_f64, 50.0);

@@ -242,7 +242,7 @@ fn a_factor_too_many_is_refused() {
     assert!(refused > 15, "{refused} mistakes");
 }
 
-/// Its ratio to itself removes a factor while the parameter is still used.
+/// The ratio of a parameter to itself removes the factor while the parameter is still used.
 #[test]
 fn a_factor_too_few_is_refused() {
     let refused = refuse_all(|p| format!("{p} / {p}"), true);

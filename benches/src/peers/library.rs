@@ -96,7 +96,7 @@ impl Contender for Peer {
 
     fn pass(&mut self) {
         for state in 0..self.states {
-            // SAFETY: the robot is open, and it has as many states.
+            // SAFETY: the robot is open, and `state` is the index of one of its states.
             unsafe { (self.step)(self.robot, state) };
         }
     }

@@ -38,7 +38,7 @@ fn circles_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// Both integrals of motion of a surface of revolution, in closed form for a cone, are constant while the
+/// The two integrals of motion of a surface of revolution, in closed form for a cone, are constant while the
 /// ball descends and rises.
 #[test]
 fn keeps_its_integrals() -> Result<(), Error> {

@@ -11,7 +11,7 @@ fn accelerations_of_round_bodies() {
     }
 }
 
-/// The point of the rim that touches the incline is at rest.
+/// The disk rolls without slip: the point of the rim that touches the incline is at rest.
 #[test]
 fn rolls_without_slip() {
     let disk = DiskOnIncline { g: 9.81, mass: 0.8, radius: 0.15, shape: 0.5, slope: 0.35 };

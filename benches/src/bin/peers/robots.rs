@@ -30,7 +30,7 @@ pub struct Robot {
     pub nv: usize,
     /// `q`, `v`, `a` and `τ` of every state, one after another.
     pub numbers: Vec<f64>,
-    /// Its generated functions.
+    /// Generated functions of the robot.
     pub functions: Vec<Generated>,
 }
 
