@@ -22,7 +22,7 @@ pub struct Library {
 /// Cost of a run of rustc.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
-    /// Processor time.
+    /// Processor time of the run.
     pub time: Duration,
     /// Peak resident memory, bytes.
     pub memory: f64,

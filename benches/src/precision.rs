@@ -186,7 +186,7 @@ where
 
 /// Result of a method on a problem.
 pub struct Found {
-    /// Final configuration.
+    /// Final configuration of the motion.
     pub q: Vec<f64>,
     /// Number of evaluations of the accelerations.
     pub evaluations: usize,

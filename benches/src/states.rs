@@ -10,13 +10,13 @@ pub const STATES: usize = 256;
 /// Arguments of the functions.
 #[derive(Clone, Copy, Debug)]
 pub struct State<const NQ: usize, const NV: usize> {
-    /// Configuration.
+    /// Configuration of the robot.
     pub q: SVector<f64, NQ>,
-    /// Velocity.
+    /// Velocity of the robot.
     pub v: SVector<f64, NV>,
-    /// Acceleration.
+    /// Acceleration of the robot.
     pub a: SVector<f64, NV>,
-    /// Generalized force.
+    /// Generalized force on the robot.
     pub tau: SVector<f64, NV>,
 }
 

@@ -6,9 +6,9 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 /// Twist (velocity of the origin, angular velocity) or wrench (force, moment about the origin).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spatial {
-    /// Velocity or force.
+    /// Velocity of the origin, or force.
     pub linear: Vector3<f64>,
-    /// Angular velocity or moment.
+    /// Angular velocity, or moment about the origin.
     pub angular: Vector3<f64>,
 }
 

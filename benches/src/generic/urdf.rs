@@ -109,7 +109,7 @@ impl Reader<'_, '_, '_> {
     }
 }
 
-/// Reads an `<origin>`.
+/// Reads an `<origin>` element as a placement.
 fn origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
     let Some(node) = parent.children().find(|n| n.has_tag_name("origin")) else {
         return Ok(Placement::identity());
@@ -119,7 +119,7 @@ fn origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
     Ok(Placement::new(rotation.into_inner(), vector(&node, "xyz")?))
 }
 
-/// Reads an `<inertial>`.
+/// Reads an `<inertial>` element about the link's origin.
 fn inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
     let find = |tag: &str| inertial.children().find(|n| n.has_tag_name(tag));
     let mass = find("mass").map_or(Ok(0.0), |n| number(&n, "value"))?;

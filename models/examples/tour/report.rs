@@ -16,11 +16,11 @@ pub struct Section {
     pub equations: &'static str,
     /// Tables of results.
     pub tables: Vec<Table>,
-    /// Checks of the results.
+    /// Checks of the section's results.
     pub checks: Vec<Check>,
     /// Animated scenes.
     pub scenes: Vec<Scene>,
-    /// Plots.
+    /// Plots of the section.
     pub pictures: Vec<Picture>,
 }
 
@@ -60,9 +60,9 @@ pub struct Table {
 pub struct Check {
     /// Name of the value, with its unit.
     pub what: &'static str,
-    /// Measured value.
+    /// Measured value of the quantity.
     pub value: f64,
-    /// Upper bound.
+    /// Upper bound of the value.
     pub bound: f64,
 }
 
