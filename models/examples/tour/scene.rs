@@ -22,7 +22,7 @@ pub struct Scene {
     pub still: f64,
     /// Captions, each with its first frame.
     pub captions: Vec<(usize, String)>,
-    /// Fixed lines.
+    /// Fixed lines of the scene, as lists of points.
     pub guides: Vec<Vec<Point>>,
     /// Index of a point that leaves a trail, and the length of the trail in frames.
     pub trail: Option<(usize, usize)>,
@@ -36,7 +36,7 @@ pub enum Part {
     Rod(usize, usize, f64, Tone),
     /// Sphere with its radius, m.
     Ball(usize, f64, Tone),
-    /// Polygon.
+    /// Polygon with these points as corners.
     Face(Vec<usize>, Tone),
     /// Arrow from one point to another.
     Arrow(usize, usize, Tone),
