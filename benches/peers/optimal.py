@@ -1,4 +1,4 @@
-"""Crocoddyl on the problems of `benches/src/bin/optimal.rs`: times of the phases of an iteration, and the costs of its iterates.
+"""Crocoddyl on the problems of `benches/src/bin/optimal/main.rs`: times of the phases of an iteration, and the costs of its iterates.
 
     python optimal.py URDF_FOLDER LINKWORK_PROGRAM [--quick]
 

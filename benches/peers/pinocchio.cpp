@@ -1,4 +1,4 @@
-// Pinocchio's algorithms with the interface of src/bin/peers/library.rs. They are used header-only, so that they are
+// Pinocchio's algorithms with the interface of src/peers/library.rs. They are used header-only, so that they are
 // compiled for the host's processor.
 #include "model.hpp"
 #include <pinocchio/algorithm/aba-derivatives.hpp>

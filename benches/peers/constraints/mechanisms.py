@@ -1,6 +1,6 @@
 """The constrained mechanisms of the comparison as data: parameters, bodies with their joints, and loop closures.
 
-Coordinates have the names and the order of linkwork_models; `benches/src/bin/peers/mechanisms.rs` has the same numbers.
+Coordinates have the names and the order of linkwork_models; `benches/src/bin/constraints/mechanisms.rs` has the same numbers.
 """
 
 from dataclasses import dataclass, field

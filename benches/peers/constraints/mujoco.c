@@ -1,4 +1,4 @@
-// MuJoCo with the interface of src/bin/peers/library.rs.
+// MuJoCo with the interface of src/peers/library.rs.
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// Pinocchio's constrained dynamics with the interface of src/bin/peers/library.rs.
+// Pinocchio's constrained dynamics with the interface of src/peers/library.rs.
 #include "../model.hpp"
 #include <fstream>
 #include <pinocchio/algorithm/constrained-dynamics.hpp>

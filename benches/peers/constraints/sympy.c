@@ -1,4 +1,4 @@
-// Follows the generated functions of a mechanism: solution for the multipliers, and the interface of src/bin/peers/library.rs.
+// Follows the generated functions of a mechanism: solution for the multipliers, and the interface of src/peers/library.rs.
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>

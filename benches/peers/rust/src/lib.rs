@@ -1,4 +1,4 @@
-//! The crate dynibo behind the C interface that is documented in `src/bin/peers/library.rs` of the benches.
+//! The crate dynibo behind the C interface that is documented in `src/peers/library.rs` of the benches.
 //!
 //! dynibo stores the velocity, acceleration and force of a free base in world axes, angular part first, and
 //! has its own value of g. These conversions are outside of the measured time: they occur when a robot is
