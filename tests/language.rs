@@ -191,7 +191,7 @@ fn structure_without_motion() {
 }
 
 /// With the crank at a right angle, the position of the piston follows from Pythagoras's theorem, and its
-/// velocity equals that of the crank's end. Its rows have the names of the coordinates.
+/// velocity equals that of the crank's end. The coordinates and the constraint rows have names.
 #[test]
 fn joint_that_closes_a_loop() {
     let engine = SliderCrank { g: 9.81, r: 0.3, l: 0.5, m_crank: 1.0, m_rod: 0.8, m_piston: 0.4 };

@@ -216,7 +216,7 @@ fn heavy_bodies_are_held_on_light_ones() {
     }
 }
 
-/// A stop with a prescribed sticking mode contradicts another condition on the same crank.
+/// A stop with a prescribed closed mode contradicts a constraint that accelerates the same hinge.
 #[test]
 fn contacts_that_contradict_each_other_are_errors() {
     #[mechanism]

@@ -41,8 +41,8 @@ fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
     assert!((m.contact_rates(&end.q, &end.v)[0] + 0.1 * (-10.0_f64).exp()).abs() < 1e-7);
 }
 
-/// A step with given accelerations equals the step that computes them, and its contact forces enforce the
-/// contacts.
+/// A step from given accelerations and their derivatives has the state and the Jacobians of the step that
+/// computes them, and its contact forces enforce the contacts.
 #[test]
 fn steps_are_made_of_known_accelerations() {
     let (q, v, _) = stance();
