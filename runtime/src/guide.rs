@@ -1,21 +1,23 @@
-//! The guide, chapter by chapter. All examples are tests, and assert the statements of the text.
+//! The guide, chapter by chapter. Its Rust examples are compiled and run as tests, and assert the statements
+//! of the text. Begin with [`first_mechanism`]; the other chapters can be read in any order.
 //!
 //! | chapter | about |
 //! | --- | --- |
 //! | [`first_mechanism`] | a pendulum, from its declaration to its motion; a controller |
-//! | [`recipes`] | how do I …? |
+//! | [`recipes`] | short answers to frequent questions, with code |
 //! | [`language`] | all declarations of a mechanism's struct |
 //! | [`robots`] | mechanisms from URDF, MJCF and SDF files |
 //! | [`constraints`] | closed loops, gears, rolling and sliding |
-//! | [`contact`] | unilateral contacts and stops: impacts, friction |
-//! | [`functions`] | generated functions |
+//! | [`contact`] | contacts that open and close, joint stops: impacts, friction |
+//! | [`functions`] | generated functions, printed equations |
 //! | [`simulating`] | integrators, inputs, events |
 //! | [`control`] | code for any mechanism: steps with Jacobians, regulators, Kalman filters, names |
 //! | [`batches`] | evaluation of many states at once |
 //! | [`without_std`] | microcontrollers |
 //! | [`python`] | classes of Python from robot files and declarations |
-//! | [`speed`] | what makes generated code fast, in release and in debug builds; accuracy |
+//! | [`speed`] | speed of generated code in release and debug builds; accuracy, stack, worst case |
 //! | [`from_other_tools`] | corresponding names in SymPy, Pinocchio, MuJoCo and Drake |
+//! | [`glossary`] | terms and symbols |
 //!
 //! These modules exist in the documentation only.
 
@@ -60,3 +62,6 @@ pub mod speed {}
 
 #[doc = include_str!("../guide/from_other_tools.md")]
 pub mod from_other_tools {}
+
+#[doc = include_str!("../guide/glossary.md")]
+pub mod glossary {}

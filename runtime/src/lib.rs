@@ -5,6 +5,8 @@
 //! functions for them, specialised for this one mechanism. They do not allocate, do not panic in release
 //! builds, and need no standard library.
 //!
+//! The example declares a pendulum, computes the torque that holds it, and simulates its motion:
+//!
 //! ```
 //! use linkwork::prelude::*;
 //!
@@ -42,14 +44,25 @@
 //!
 //! # Further reading
 //!
-//! The [guide](guide/index.html) begins with a [first mechanism](guide/first_mechanism/index.html) and a list
-//! of [recipes](guide/recipes/index.html), and has chapters on the [language](guide/language/index.html),
-//! [robots](guide/robots/index.html) from URDF, MJCF and SDF files,
-//! [constraints](guide/constraints/index.html), generated [functions](guide/functions/index.html),
-//! [simulating](guide/simulating/index.html), [control](guide/control/index.html),
-//! [batches](guide/batches/index.html) of states, targets [without std](guide/without_std/index.html),
-//! [Python](guide/python/index.html), [speed](guide/speed/index.html), and the corresponding names [in other
-//! tools](guide/from_other_tools/index.html).
+//! The [guide](guide/index.html) has a chapter for each subject:
+//!
+//! - [first mechanism](guide/first_mechanism/index.html): a pendulum and a controlled cart-pole, step by step;
+//! - [recipes](guide/recipes/index.html): short answers to frequent questions;
+//! - [language](guide/language/index.html): all declarations of a mechanism's struct;
+//! - [robots](guide/robots/index.html) from URDF, MJCF and SDF files;
+//! - [constraints](guide/constraints/index.html): closed loops, gears, rolling and sliding;
+//! - [contact](guide/contact/index.html): impacts, friction, joint stops;
+//! - [functions](guide/functions/index.html) that are generated, and printed equations;
+//! - [simulating](guide/simulating/index.html): integrators, inputs, events;
+//! - [control](guide/control/index.html): regulators, estimators, optimal control;
+//! - [batches](guide/batches/index.html): many states at once;
+//! - [without std](guide/without_std/index.html): microcontrollers;
+//! - [Python](guide/python/index.html): mechanisms as classes of Python;
+//! - [speed](guide/speed/index.html): release and debug builds, accuracy, stack;
+//! - [from other tools](guide/from_other_tools/index.html): names in SymPy, Pinocchio, MuJoCo and Drake;
+//! - [glossary](guide/glossary/index.html): terms and symbols.
+//!
+//! The main items of the crate:
 //!
 //! - [`prelude`]: all items that a program with a mechanism needs, in one import.
 //! - [`mechanism`](macro@mechanism): the attribute and its arguments.
