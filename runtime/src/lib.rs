@@ -46,7 +46,7 @@
 //!
 //! The [guide](guide/index.html) has a chapter for each subject:
 //!
-//! - [first mechanism](guide/first_mechanism/index.html): a pendulum and a controlled cart-pole, step by step;
+//! - [first mechanism](guide/first_mechanism/index.html): a pendulum and a controlled cart-pole;
 //! - [recipes](guide/recipes/index.html): short answers to frequent questions;
 //! - [language](guide/language/index.html): all declarations of a mechanism's struct;
 //! - [robots](guide/robots/index.html) from URDF, MJCF and SDF files;
