@@ -424,22 +424,23 @@ where
     }
     let laws = lawful(mechanism)?;
     let responses = mechanism.contact_responses(t, q, &closed);
+    let slip = mechanism.contact_rates(t, q, v);
     let solved = |free: &SVector<T, NR>| {
         let mut problem = Problem::new(layout, &laws, &closed, free);
+        problem.stick(&laws, |k| phase::length(&slip, layout.tangents(k)) <= near());
         problem.weigh(&responses.rates);
-        let found = problem.solve().map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?;
+        let found = problem.solve_sticking().map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?;
         Ok((problem.spread(&found), problem.touches(&found).0))
     };
     // Rates change in the short time as the accelerations of contacts that stick do, if their forces press
     // and friction holds them.
-    let slip = mechanism.contact_rates(t, q, v);
     let sticking = closed.map(|is_closed| if is_closed { Touch::Sticks } else { Touch::Open });
     if phase::stopped_contact(&slip, &sticking, &laws, layout).is_none()
         && let Some((_, impulses)) = light::sticking_change(mechanism, t, q, (&sticking, &laws), &-free)
     {
         let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
             let (_, first) = layout.pressing(k);
-            let largest = laws.get(k).map_or(T::zero(), |law| law.friction) * entry(&impulses, first);
+            let largest = laws.get(k).map_or(T::zero(), |law| law.stiction) * entry(&impulses, first);
             entry(&impulses, first) >= T::zero() && phase::length(&impulses, layout.tangents(k)) <= largest
         });
         if presses {
@@ -510,8 +511,13 @@ where
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let after = mechanism.contact_rates(t, q, free);
     let laws = lawful(mechanism)?;
+    let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let problem = &mut acted.problem;
-    problem.select(Layout::new(M::CONTACT_ROWS, M::PRESSED_BY), &laws, closed, &after);
+    problem.select(layout, &laws, closed, &after);
+    if laws.iter().any(|law| law.stiction > law.friction) {
+        let rates = before();
+        problem.stick(&laws, |k| phase::length(&rates, layout.tangents(k)) <= near());
+    }
     let is_loaded = problem.is_loaded();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
         true => SVector::zeros(),
@@ -539,7 +545,11 @@ where
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
         driven.iter().all(|rate| *rate == T::zero())
     };
-    let impulses = match problem.solve_from(start.as_ref().map(|(start, _)| start), &mut equations) {
+    let mut found = problem.solve_from(start.as_ref().map(|(start, _)| start), &mut equations);
+    while found.as_ref().is_ok_and(|impulses| problem.slide(impulses)) {
+        found = problem.solve();
+    }
+    let impulses = match found {
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
         Err(contact) if !problem.rebounds() => return Err(failed(contact)),
         _ => tempered(problem, &laws, &before, may_gain).map_err(failed)?,

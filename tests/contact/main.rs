@@ -20,5 +20,6 @@ mod poisson;
 mod ratchet;
 mod soft;
 mod starts;
+mod stiction;
 mod terrain;
 mod turning;

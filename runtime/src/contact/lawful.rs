@@ -8,8 +8,11 @@ use crate::private::to_f64;
 /// Coefficients of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law<T> {
-    /// Of friction, `μ`: zero or more. Of a moment of friction the largest by the normal force, m.
+    /// Coefficient of friction `μ` while surfaces slide, zero or more. Of a friction moment the largest moment
+    /// per unit of normal force, m.
     pub friction: T,
+    /// Coefficient of friction `μₛ` of surfaces at rest: `friction`, or more where that is positive.
+    pub stiction: T,
     /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they
     /// met.
     pub restitution: T,
@@ -32,8 +35,8 @@ pub enum Restitution {
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Coefficient`] for the first that is none: friction that is negative or not finite,
-/// restitution beside zero to one.
+/// [`ConstraintError::Coefficient`] for the first invalid coefficient: friction that is negative or not
+/// finite, static friction below kinetic friction or beside none, restitution outside of zero to one.
 pub(super) fn lawful<
     M,
     T,
@@ -50,11 +53,20 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let laws = mechanism.contact_laws();
-    for (Law { friction, restitution, .. }, constraint) in laws.iter().zip(M::CONTACTS) {
+    for (Law { friction, stiction, restitution, .. }, constraint) in laws.iter().zip(M::CONTACTS) {
         let rubs = *friction >= T::zero() && friction.is_finite();
         let bounces = *restitution >= T::zero() && *restitution <= T::one();
-        if !(rubs && bounces) {
-            let value = to_f64(if rubs { *restitution } else { *friction });
+        let sticks =
+            stiction == friction || *stiction > *friction && *friction > T::zero() && stiction.is_finite();
+        if !(rubs && sticks && bounces) {
+            let invalid = if !rubs {
+                friction
+            } else if !sticks {
+                stiction
+            } else {
+                restitution
+            };
+            let value = to_f64(*invalid);
             return Err(ConstraintError::Coefficient { constraint, value });
         }
     }

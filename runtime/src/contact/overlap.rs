@@ -100,7 +100,7 @@ where
 {
     let layout = Layout::new(M::CONTACT_ROWS, M::PRESSED_BY);
     let hypothesis = Restitution::Newton;
-    let smooth = [Law { friction: T::zero(), restitution: T::zero(), hypothesis }; NK];
+    let smooth = [Law { friction: T::zero(), stiction: T::zero(), restitution: T::zero(), hypothesis }; NK];
     let enough = near::<T>() * constant(1e-2);
     let (mut q, mut pushes) = (*q, SVector::<T, NR>::zeros());
     for step in 0.. {

@@ -176,10 +176,12 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
             if free.iter().any(|rate| !rate.is_finite()) {
                 return Err(ConstraintError::NotFinite);
             }
-            let mut problem = Problem::new(layout, &lawful(mechanism)?, &closed, &free);
             let responses = mechanism.contact_responses(t, q, &closed);
+            let laws = lawful(mechanism)?;
+            let mut problem = Problem::new(layout, &laws, &closed, &free);
+            problem.stick(&laws, |k| length(&rates, layout.tangents(k)) <= still * constant(2.0));
             problem.weigh(&responses.rates);
-            let forces = problem.solve().map_err(|k| ConstraintError::Contact {
+            let forces = problem.solve_sticking().map_err(|k| ConstraintError::Contact {
                 constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
             })?;
             let (touches, along) = problem.touches(&forces);
@@ -341,11 +343,11 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let (gaps, still) = (mechanism.contact_gaps(t, q), still(&rates));
         let rounding = held.forces.iter().fold(T::zero(), |most, f| most.max(f.abs()));
         let rounding = rounding * epsilon::<T>() * constant(64.0);
-        let friction = mechanism.contact_laws().map(|Law { friction, .. }| friction);
+        let stiction = mechanism.contact_laws().map(|Law { stiction, .. }| stiction);
         let mut moving = constant::<T>(1.0);
         let mut forces = moving;
-        let contacts = phase.touches.into_iter().zip(phase.flights).zip(gaps.iter().zip(friction));
-        for (k, ((touch, flight), (gap, friction))) in contacts.enumerate() {
+        let contacts = phase.touches.into_iter().zip(phase.flights).zip(gaps.iter().zip(stiction));
+        for (k, ((touch, flight), (gap, stiction))) in contacts.enumerate() {
             let ((_, first), tangents) = (layout.pressing(k), layout.tangents(k));
             let (rate, normal) = (entry(&rates, first), entry(&held.forces, first));
             let least = match touch {
@@ -362,9 +364,9 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
             if touch != Touch::Open {
                 forces = forces.min(normal + rounding);
             }
-            if touch == Touch::Sticks && !tangents.is_empty() && friction > T::zero() {
+            if touch == Touch::Sticks && !tangents.is_empty() && stiction > T::zero() {
                 let size = length(&held.forces, tangents);
-                forces = forces.min(friction * normal - size + rounding);
+                forces = forces.min(stiction * normal - size + rounding);
             }
         }
         let numbers = moving.is_finite() && forces.is_finite();

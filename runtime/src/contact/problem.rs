@@ -62,6 +62,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// The part of the normal impulse of restitution that acts anyway, and presses friction as well.
     floor: Total<T, NK>,
     friction: Total<T, NK>,
+    /// Coefficients of friction while surfaces slide.
+    kinetic: Total<T, NK>,
     /// A step for the rates of a contact that is shorter than the inverse of its part of `W`; zero where
     /// impulses move nothing.
     step: Total<T, NK>,
@@ -89,6 +91,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             least: Total::repeat(T::zero()),
             floor: Total::repeat(T::zero()),
             friction: Total::repeat(T::zero()),
+            kinetic: Total::repeat(T::zero()),
             step: Total::repeat(T::zero()),
             scale: T::one(),
         }
@@ -129,6 +132,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             problem.rows[c] = Rows { first, count: of.count };
             problem.pressed_by[c] = by;
             problem.friction[c] = law.friction;
+            problem.kinetic[c] = law.friction;
             for i in 0..of.count {
                 problem.places[first + i] = of.first + i;
                 problem.free[first + i] = entry(free, of.first + i);
@@ -229,15 +233,66 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.step[self.pressed_by[k]] * self.scale
     }
 
+    /// Sets the static coefficient of friction at contacts `at_rest`.
+    pub(super) fn stick(&mut self, laws: &[Law<T>; NK], at_rest: impl Fn(usize) -> bool) {
+        for c in 0..self.count {
+            let (k, _) = self.contacts[c];
+            if let Some(law) = laws.get(k).filter(|law| law.stiction > law.friction && at_rest(k)) {
+                self.friction[c] = law.stiction;
+            }
+        }
+    }
+
+    /// Sets the kinetic coefficient of friction at contacts that leave their static cone with these impulses,
+    /// and returns true if there are any.
+    pub(super) fn slide(&mut self, impulses: &List<T, NR>) -> bool {
+        if (0..self.count).all(|c| self.friction[c] == self.kinetic[c]) {
+            return false;
+        }
+        let (touches, _) = self.touches(impulses);
+        let mut slides = false;
+        for c in 0..self.count {
+            let is_sliding = touches.get(self.contacts[c].0) == Some(&Touch::Slips);
+            if is_sliding && self.friction[c] != self.kinetic[c] {
+                self.friction[c] = self.kinetic[c];
+                slides = true;
+            }
+        }
+        slides
+    }
+
+    /// Returns the impulses with the static coefficient of friction where [`stick`](Self::stick) has set it
+    /// and surfaces do not slip, and with the kinetic one elsewhere.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`solve`](Self::solve).
+    pub(super) fn solve_sticking(&mut self) -> Result<List<T, NR>, usize> {
+        loop {
+            let impulses = self.solve()?;
+            if !self.slide(&impulses) {
+                return Ok(impulses);
+            }
+        }
+    }
+
     /// What contacts do under impulses that fulfil their laws, and of those that slip where to, as unit
     /// vectors at the places of their rates.
     pub(super) fn touches(&self, impulses: &List<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
         let (mut touches, mut along) = (Total::<_, NK>::repeat(Touch::Open), SVector::<T, NR>::zeros());
-        let modes = self.modes(&self.friction, impulses, &self.rates(impulses));
+        let rates = self.rates(impulses);
+        let modes = self.modes(&self.friction, impulses, &rates);
+        // At the edge of the static cone surfaces stick until they move.
+        let still = self.rounding(impulses);
+        let sticks = |k: usize| {
+            let square = self.of(k).1.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]);
+            self.friction[k] != self.kinetic[k] && square <= still * still
+        };
         for k in 0..self.count {
             let (contact, rows) = self.contacts[k];
             touches[contact] = match modes[k].1 {
                 Mode::Open => Touch::Open,
+                Mode::Slip { .. } if sticks(k) => Touch::Sticks,
                 Mode::Slip { direction, .. } if self.friction[k] > T::zero() => {
                     let start = usize::from(self.is_gap(k));
                     for (place, component) in (rows.first + start..rows.first + rows.count).zip(direction) {

@@ -142,6 +142,10 @@ pub enum Slipping {}
 /// dynamics are those of the mechanism without contacts, and the module [`contact`](crate::contact) adds
 /// their effects.
 ///
+/// `stiction = mu_s`, at least `friction`, is the coefficient of surfaces that do not slip: they stick up to
+/// that part of the normal force, and slide with `friction`. Impacts take it where there is no slip before
+/// them.
+///
 /// `torsional = a`, m, adds a moment of friction about the normal, of at most `a` times the normal force,
 /// against the relative angular velocity about it: a ball that spins in place comes to rest. `rolling = b`,
 /// m, adds a moment about the tangents, against rolling. Both moments stick below their maximum, as friction

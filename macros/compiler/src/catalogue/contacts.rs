@@ -44,7 +44,7 @@ pub const ROWS: &[Row] = &[
     }),
     Row::derived(Id::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
         timeless: true,
-        shape: Shape::Array(2 * f.contacts.count),
+        shape: Shape::Array(3 * f.contacts.count),
         ..Declaration::default()
     })
     .alone(),

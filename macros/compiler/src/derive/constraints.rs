@@ -32,9 +32,9 @@ pub(super) fn contact_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     motion_rates(model.space(), &model.contact_rates(), false)
 }
 
-/// Returns the coefficients of friction and restitution of each contact.
+/// Returns the coefficients of friction, restitution and static friction of each contact.
 pub(super) fn contact_laws<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    model.contacts.iter().flat_map(|contact| [contact.friction, contact.restitution]).collect()
+    model.contacts.iter().flat_map(|c| [c.friction, c.restitution, c.stiction]).collect()
 }
 
 /// First derivatives of the contributions of contacts to the equations of motion, at constant accelerations

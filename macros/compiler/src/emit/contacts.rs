@@ -19,8 +19,10 @@ pub struct Touching {
     turns: bool,
     /// Restitution is a ratio of impulses.
     of_impulses: bool,
-    /// Coefficients of friction and restitution, if they are numbers.
-    laws: [Option<f64>; 2],
+    /// Coefficients of friction, restitution and static friction, if they are numbers.
+    laws: [Option<f64>; 3],
+    /// The static coefficient of friction differs from the kinetic one.
+    has_stiction: bool,
 }
 
 impl Touching {
@@ -32,7 +34,8 @@ impl Touching {
             pressed_by: c.pressed_by,
             turns: c.turns,
             of_impulses: c.of_impulses,
-            laws: [c.friction.value(), c.restitution.value()],
+            laws: [c.friction, c.restitution, c.stiction].map(|law| law.value()),
+            has_stiction: c.stiction != c.friction,
         };
         model.contacts.iter().map(touching).collect()
     }
@@ -45,7 +48,8 @@ impl Touching {
             pressed_by: None,
             turns: false,
             of_impulses: false,
-            laws: [None; 2],
+            laws: [None; 3],
+            has_stiction: false,
         }
     }
 }
@@ -81,9 +85,10 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         .map(|k| {
             let of_impulses = i.contacts.get(k).is_some_and(|contact| contact.of_impulses);
             format!(
-                "::linkwork::contact::Law {{ friction: laws[{}], restitution: laws[{}], hypothesis: ::linkwork::contact::Restitution::{} }}",
-                2 * k,
-                2 * k + 1,
+                "::linkwork::contact::Law {{ friction: laws[{}], restitution: laws[{}], stiction: laws[{}], hypothesis: ::linkwork::contact::Restitution::{} }}",
+                3 * k,
+                3 * k + 1,
+                3 * k + 2,
                 if of_impulses { "Poisson" } else { "Newton" }
             )
         })
@@ -194,10 +199,12 @@ pub fn write_docs(text: &mut String, contacts: &[Touching]) {
         "\n# Contacts\n\nThey open and close: `linkwork::contact`. Without contact in the functions of the dynamics.\n\n| | contact | gap | rates of slip | friction | restitution |\n| --- | --- | --- | ---: | ---: | ---: |\n",
     );
     for (k, contact) in contacts.iter().enumerate() {
-        let [friction, restitution] =
+        let [friction, restitution, stiction] =
             contact.laws.map(|law| law.map_or("by parameters".to_string(), |law| law.to_string()));
         let restitution =
             if contact.of_impulses { format!("{restitution}, of impulses") } else { restitution };
+        let friction =
+            if contact.has_stiction { format!("{friction}, at rest {stiction}") } else { friction };
         let unit = if contact.turns { "rad" } else { "m" };
         // A moment of friction turns against the spin or the rolling of its contact.
         let (slip, friction) = match contact.pressed_by {

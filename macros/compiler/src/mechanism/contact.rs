@@ -20,6 +20,8 @@ pub struct Contact<'g> {
     pub rates: Vec<Expr<'g>>,
     /// Coefficient of friction; for a friction moment, the maximum moment per unit of normal force.
     pub friction: Expr<'g>,
+    /// Coefficient of friction at rest; that of sliding unless `stiction` is given.
+    pub stiction: Expr<'g>,
     /// Coefficient of restitution.
     pub restitution: Expr<'g>,
     /// True for a restitution coefficient of impulses (Poisson), false for one of velocities (Newton).

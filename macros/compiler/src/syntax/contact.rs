@@ -4,8 +4,17 @@ use super::arguments::Arguments;
 use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
 use crate::diag::Diagnostics;
 
-const KEYS: [&str; 8] =
-    ["friction", "torsional", "rolling", "restitution", "stiffness", "hertz", "dissipation", "speed"];
+const KEYS: [&str; 9] = [
+    "friction",
+    "stiction",
+    "torsional",
+    "rolling",
+    "restitution",
+    "stiffness",
+    "hertz",
+    "dissipation",
+    "speed",
+];
 
 /// How a contact is written.
 pub const EXAMPLE: &str = "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]";
@@ -21,10 +30,25 @@ pub fn read_contact(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let [friction, torsional, rolling] =
-        ["friction", "torsional", "rolling"].map(|key| arguments.take_expr(key, cx));
+    let [friction, stiction, torsional, rolling] =
+        ["friction", "stiction", "torsional", "rolling"].map(|key| arguments.take_expr(key, cx));
     let restitution = take_restitution(arguments, cx);
     let soft = read_softness(&name, restitution.as_ref().map(|e| &e.value), arguments, cx);
+    if let Some(e) = &stiction {
+        if soft.is_some() {
+            cx.error(
+                e.place.clone(),
+                "the friction of surfaces that yield is smooth in the slip: it has no stiction",
+            )
+            .help("leave out `stiffness` or `hertz`, or `stiction`");
+        } else if friction.is_none() {
+            cx.error(
+                e.place.clone(),
+                format!("`{}` has stiction, but no friction while it slides", name.text),
+            )
+            .help("add `friction = …`: the coefficient of sliding, at most that of stiction");
+        }
+    }
     let mut surfaces = arguments.take_plain().into_iter();
     let is_empty = arguments.is_empty();
     arguments.finish("a Contact", &KEYS, cx);
@@ -35,6 +59,7 @@ pub fn read_contact(
                 first,
                 second,
                 friction,
+                stiction,
                 torsional,
                 rolling,
                 restitution,

@@ -106,6 +106,7 @@ impl Touching {
             first: method(body(link), "collision", Expr::number(self.number as f64, at)),
             second: method(point, "plane", normal),
             friction,
+            stiction: None,
             torsional,
             rolling,
             restitution: None,

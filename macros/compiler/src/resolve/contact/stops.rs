@@ -29,7 +29,7 @@ impl<'g> Builder<'_, 'g> {
             let gap = (own - bound) * g.num(side);
             let name = format!("{}.{word}", limit.name.text);
             let (friction, torsional, rolling) = (g.zero(), g.zero(), g.zero());
-            let laws = Laws { friction, torsional, rolling, restitution, of_impulses };
+            let laws = Laws { friction, stiction: friction, torsional, rolling, restitution, of_impulses };
             self.push_contact(name, (gap, turns), None, vec![rate * g.num(side)], laws);
         }
     }

@@ -33,6 +33,8 @@ const STAND_IN: &str = "a capsule of the same radius, or several spheres, may st
 #[derive(Clone, Copy)]
 pub(super) struct Laws<'g> {
     pub(super) friction: Expr<'g>,
+    /// Coefficient of friction at rest.
+    pub(super) stiction: Expr<'g>,
     /// Largest moment about the normal by the normal force.
     pub(super) torsional: Expr<'g>,
     /// Largest moment about the tangents by the normal force.
@@ -205,7 +207,8 @@ impl<'g> Builder<'_, 'g> {
                 }
                 let rates = turns.into_iter().map(|(_, rate)| rate).collect();
                 let name = format!("{name}.{word}");
-                let laws = Laws { friction: most, restitution: none, of_impulses: false, ..laws };
+                let laws =
+                    Laws { friction: most, stiction: most, restitution: none, of_impulses: false, ..laws };
                 self.push_contact(name, (point.gap, false), Some(presses), rates, laws);
             }
         }
@@ -217,9 +220,10 @@ impl<'g> Builder<'_, 'g> {
         (gap, turns): (Expr<'g>, bool),
         pressed_by: Option<usize>,
         rates: Vec<Expr<'g>>,
-        Laws { friction, restitution, of_impulses, .. }: Laws<'g>,
+        Laws { friction, stiction, restitution, of_impulses, .. }: Laws<'g>,
     ) {
-        let contact = Contact { name, gap, turns, pressed_by, rates, friction, restitution, of_impulses };
+        let contact =
+            Contact { name, gap, turns, pressed_by, rates, friction, stiction, restitution, of_impulses };
         self.model.contacts.push(contact);
     }
 
@@ -229,12 +233,35 @@ impl<'g> Builder<'_, 'g> {
         let mut read =
             |e: &Option<syntax::Expr>, what, rule| self.coefficient(e.as_ref(), what, rule, name, cx);
         let friction = read(&contact.friction, "friction", Rule::NotNegative);
+        let stiction = match &contact.stiction {
+            Some(_) => read(&contact.stiction, "static friction", Rule::NotNegative),
+            None => friction,
+        };
         let torsional = read(&contact.torsional, "torsional friction", Rule::NotNegative);
         let rolling = read(&contact.rolling, "rolling friction", Rule::NotNegative);
         let (value, of_impulses) = apart(contact.restitution.as_ref());
         let restitution = self.coefficient(value, "restitution", Rule::Fraction, name, cx);
+        let (friction, stiction) = (friction?, stiction?);
+        if let Some(e) = contact.stiction.as_ref().filter(|_| contact.friction.is_some()) {
+            match (friction.value(), stiction.value()) {
+                (Some(kinetic), Some(most)) if most < kinetic || kinetic == 0.0 => {
+                    let message = match kinetic == 0.0 {
+                        true => format!("`{name}` has stiction, but no friction while it slides"),
+                        false => format!("stiction, {most}, is less than friction, {kinetic}"),
+                    };
+                    cx.error(e.place.clone(), message)
+                        .help("`friction` is the coefficient while surfaces slide, `stiction` the larger one at rest");
+                    return None;
+                }
+                _ => {
+                    let figure = || format!("the friction of `{name}` and its stiction");
+                    self.scope.require(Rule::Order, figure, &[friction, stiction]);
+                }
+            }
+        }
         Some(Laws {
-            friction: friction?,
+            friction,
+            stiction,
             torsional: torsional?,
             rolling: rolling?,
             restitution: restitution?,

@@ -97,7 +97,15 @@ pub fn collect<'a>(
     for contact in &d.contacts {
         places.surface(&contact.first);
         places.surface(&contact.second);
-        places.all(contact.friction.iter().chain(contact.restitution.iter().map(|e| &e.value)), &PLAIN, "1");
+        places.all(
+            contact
+                .friction
+                .iter()
+                .chain(&contact.stiction)
+                .chain(contact.restitution.iter().map(|e| &e.value)),
+            &PLAIN,
+            "1",
+        );
         places.all(contact.torsional.iter().chain(&contact.rolling), &LENGTH, "m");
         if let Some(soft) = &contact.soft {
             let power = if soft.hertz { Ratio::new(3, 2) } else { Some(Ratio::integer(1)) };

@@ -85,6 +85,8 @@ pub struct Contact {
     pub second: Expr,
     /// Coefficient of friction; none if absent.
     pub friction: Option<Expr>,
+    /// Coefficient of friction at rest; that of sliding if absent.
+    pub stiction: Option<Expr>,
     /// Largest moment of friction about the normal, by the normal force; none if absent.
     pub torsional: Option<Expr>,
     /// Largest moment of friction about the tangents, by the normal force; none if absent.

@@ -242,7 +242,8 @@ pub const TORQUE: Words = &[
 
 /// Arguments of a contact.
 pub const CONTACT: Words = &[
-    ("mu muk mus coefficient frictioncoefficient coulomb", "friction"),
+    ("mu muk coefficient frictioncoefficient coulomb kinetic kineticfriction sliding", "friction"),
+    ("mus static staticfriction breakaway stick fs", "stiction"),
     ("spinning spin torsion torsionalfriction spinningfriction mutorsion drilling", "torsional"),
     ("rollingfriction rollingresistance resistance murolling roll", "rolling"),
     ("e cor bounce bounciness elasticity rebound restitutioncoefficient", "restitution"),

@@ -360,7 +360,9 @@ impl Source {
             }
             (30 | 31, _, Some(body)) => {
                 let surfaces = self.one_of(&SURFACES).replace('H', &body);
-                format!("#[contact({surfaces}, friction = 0.4, restitution = 0.2)] contact{k}: Contact")
+                format!(
+                    "#[contact({surfaces}, friction = 0.4, stiction = 0.6, restitution = 0.2)] contact{k}: Contact"
+                )
             }
             (12, ..) => format!("#[output({})] output{k}: Scalar", self.value()),
             _ => self.further(kind, k),
