@@ -69,6 +69,10 @@ type MultipliersOf<M, const NQ: usize, const NV: usize> =
 type OutputsOf<M, const NQ: usize, const NV: usize, const NU: usize> =
     fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> Measured;
 
+/// A quantity of configuration, velocity and inputs.
+type Quantity<'m, M, const NQ: usize, const NV: usize, const NU: usize> =
+    Box<dyn Fn(&M, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>) -> f64 + 'm>;
+
 /// Unknowns and conditions of a steady state.
 ///
 /// All coordinates are unknown by default, velocities and inputs are fixed at zero, and all accelerations are
@@ -90,6 +94,8 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     /// Accelerations with their required values; `None` for accelerations without a condition.
     accelerations: Vec<(String, Option<f64>)>,
     conditions: Vec<(String, f64)>,
+    /// Quantities that are no outputs, with their values.
+    quantities: Vec<(String, f64, Quantity<'m, M, NQ, NV, NU>)>,
     constraints: Option<(ConstraintsOf<M, NQ, NV>, MultipliersOf<M, NQ, NV>)>,
     outputs: Option<OutputsOf<M, NQ, NV, NU>>,
     nearest: bool,
@@ -203,6 +209,7 @@ where
             inputs: Vec::new(),
             accelerations: Vec::new(),
             conditions: Vec::new(),
+            quantities: Vec::new(),
             constraints: None,
             outputs: None,
             nearest: false,
@@ -310,6 +317,58 @@ where
     {
         self.outputs = Some(problem::measured::<M, NQ, NV, NU, NY>);
         self.conditions.push((name.into(), value));
+        self
+    }
+
+    /// Adds a condition without a declared output: a quantity of configuration, velocity and inputs has this
+    /// value. Errors show `name`. The derivatives of the quantity are central differences.
+    ///
+    /// ```
+    /// use linkwork::prelude::*;
+    /// use linkwork_design::steady::equilibrium;
+    ///
+    /// /// A wing whose attitude is free to choose, without moments about its centre of mass.
+    /// #[mechanism(gravity = 9.81 * z, derivatives)]
+    /// struct Wing {
+    ///     #[body(mass = 400, inertia = diagonal(900, 800, 1600))]
+    ///     airframe: Body,
+    ///     #[joint(ground -> airframe)]
+    ///     flight: Free,
+    ///     #[define(v(airframe / ground / ground))]
+    ///     velocity: Vector,
+    ///     #[define(angle_of_attack(airframe, velocity))]
+    ///     alpha: Scalar,
+    ///     #[define(6 * dot(velocity, velocity))]
+    ///     load: Scalar,
+    ///     #[acts(on = airframe, value = load * (0.4 + 5 * alpha) * (sin(alpha) * airframe.x - cos(alpha) * airframe.z))]
+    ///     lift: Force,
+    ///     #[acts(on = airframe, value = -0.03 * load * unit(velocity))]
+    ///     drag: Force,
+    ///     #[acts(on = airframe, along = airframe.x)]
+    ///     thrust: Force,
+    /// }
+    ///
+    /// // Level flight at 40 m/s: the axes of the ground are forward, right and down.
+    /// let level = equilibrium(&Wing {})
+    ///     .moving([40.0, 0.0, 0.0, 0.0, 0.0, 0.0].into())
+    ///     .coordinates(["flight.wy"])
+    ///     .speeds(["flight.vx", "flight.vz"])
+    ///     .inputs(["thrust"])
+    ///     .condition("sink", 0.0, |wing, q, v, _| wing.frame_velocity(frame!(Wing, "airframe"), q, v)[2])
+    ///     .condition("speed", 40.0, |_, _, v, _| v.fixed_rows::<3>(0).norm())
+    ///     .find()?;
+    /// let alpha = level.v[2].atan2(level.v[0]);
+    /// let drag = 0.03 * 6.0 * 40.0_f64.powi(2);
+    /// assert!((level.u[0] * alpha.cos() - drag).abs() < 1e-9 * drag);
+    /// # Ok::<(), linkwork_design::Error>(())
+    /// ```
+    pub fn condition(
+        mut self,
+        name: impl Into<String>,
+        value: f64,
+        quantity: impl Fn(&M, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>) -> f64 + 'm,
+    ) -> Self {
+        self.quantities.push((name.into(), value, Box::new(quantity)));
         self
     }
 

@@ -5,7 +5,7 @@ use linkwork::constraint::stabilized;
 use linkwork::prelude::*;
 use linkwork_design::mechanism::{constrained_system, linear_system, measured_system, second_order_form};
 use linkwork_design::steady::{constrained_equilibrium, equilibrium};
-use linkwork_design::{Signal, StateSpace};
+use linkwork_design::{Error, Signal, StateSpace};
 use nalgebra::Complex;
 
 #[track_caller]
@@ -50,6 +50,63 @@ fn phugoid_of_lanchester() {
     close(period, 106.8375214181, 1e-11);
     close(period, std::f64::consts::PI * 2.0_f64.sqrt() * u0 / g, 1e-13);
     assert!(phugoid.pole.re.abs() < 1e-12);
+}
+
+/// A wing with constant coefficients of lift and drag and a thrust along the path, without outputs.
+#[mechanism(gravity = 9.81 * z, derivatives)]
+struct Wing {
+    mass: f64,
+    lift_area: f64,
+    drag_area: f64,
+    thrust: Input,
+    #[joint(ground -> wing, along = (x, z))]
+    place: Stage,
+    #[particle(mass = mass)]
+    wing: Particle,
+    #[define(v(wing / ground / ground))]
+    velocity: Vector,
+    #[define(1.2 / 2 * norm(velocity))]
+    pressure: Scalar,
+    #[acts(on = wing, value = pressure * lift_area * cross(ground.y, velocity))]
+    lift: Force,
+    #[acts(on = wing, value = -pressure * drag_area * velocity)]
+    drag: Force,
+    #[acts(on = wing, value = thrust * unit(velocity))]
+    engine: Force,
+}
+
+/// A glide descends at `tan γ = C_D / C_L`, level flight needs the thrust `m g C_D / C_L`, and with a given
+/// sink rate `w` the thrust is the drag less `m g w / V`.
+#[test]
+fn glide_and_level_flight_without_outputs() {
+    let wing = Wing { mass: 300.0, lift_area: 9.0, drag_area: 0.45 };
+    let weight = 300.0 * 9.81;
+    let trim = || equilibrium(&wing).moving([30.0, 1.0].into()).fix(["place.x", "place.y"]);
+    let glide = trim().speeds(["place.x", "place.y"]).find().unwrap();
+    close(glide.v[1].atan2(glide.v[0]), (0.45_f64 / 9.0).atan(), 1e-12);
+    close(0.6 * glide.v.norm_squared() * 9.0_f64.hypot(0.45), weight, 1e-12);
+
+    let sinking = |w: f64| {
+        let trim = trim().speeds(["place.x", "place.y"]).inputs(["thrust"]);
+        trim.condition("sink", w, |_, _, v, _| v[1]).find().unwrap()
+    };
+    let level = sinking(0.0);
+    assert!(level.v[1].abs() < 1e-12);
+    close(level.u[0], weight * 0.05, 1e-11);
+    close(0.6 * level.v[0].powi(2) * 9.0, weight, 1e-11);
+    for w in [-3.0, 0.5, glide.v[1]] {
+        let found = sinking(w);
+        let speed = found.v.norm();
+        close(found.v[1], w, 1e-11);
+        close(found.u[0], 0.6 * speed.powi(2) * 0.45 - weight * w / speed, 1e-9);
+        close(0.6 * speed.powi(2) * 9.0, weight * found.v[0] / speed, 1e-11);
+    }
+
+    // A condition that cannot hold is reported by its name, and so is one that is given twice.
+    let never = trim().speeds(["place.x", "place.y"]).condition("sink", 0.0, |_, _, v, _| v[1]).find();
+    assert!(matches!(never, Err(Error::NoSteadyState { .. })), "{never:?}");
+    let twice = trim().condition("sink", 0.0, |_, _, v, _| v[1]).condition("sink", 1.0, |_, _, v, _| v[1]);
+    assert!(matches!(twice.find(), Err(Error::Repeated { kind: "condition", .. })));
 }
 
 /// Boat whose thrust follows the throttle with a lag.

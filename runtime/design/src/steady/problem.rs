@@ -185,6 +185,8 @@ where
         check_repeated("parameter", &names(&trim.parameters))?;
         check_repeated("velocity", &names(&trim.accelerations))?;
         check_repeated("output", &names(&trim.conditions))?;
+        let quantities: Vec<String> = trim.quantities.iter().map(|(name, ..)| name.clone()).collect();
+        check_repeated("condition", &quantities)?;
         let held = indices("coordinate", &trim.held, &M::VELOCITIES)?;
         let fixed = indices("coordinate", &trim.fixed, &M::VELOCITIES)?;
         let among = match &trim.coordinates {
@@ -274,6 +276,7 @@ where
             names.extend(bounds.names.iter().map(|name| format!("{name}'")));
         }
         names.extend(self.trim.conditions.iter().map(|(name, _)| name.clone()));
+        names.extend(self.trim.quantities.iter().map(|(name, ..)| name.clone()));
         names
     }
 
@@ -336,6 +339,7 @@ where
             let seen = self.trim.with(parameters, |m| outputs(m, self.trim.t, q, v, &motion.value, u));
             self.push_outputs(&motion, &seen, &mut rows);
         }
+        self.push_quantities(place, &mut rows);
         let jacobian = DMatrix::from_fn(rows.len(), self.unknowns.len(), |i, j| rows[i].by[j]);
         let residuals = DVector::from_fn(rows.len(), |i, _| rows[i].residual);
         Ok(Equations { residuals, jacobian, floors: rows.iter().map(|row| row.floor).collect() })
@@ -374,6 +378,34 @@ where
             let all = [&seen.by_q, &seen.by_v, &seen.by_u].map(|by| by.row(*i).norm());
             let floor = BESIDE * all.into_iter().fold(0.0, f64::max);
             rows.push(Row { residual: seen.values[*i] - value, by: self.row(by), floor });
+        }
+    }
+
+    fn push_quantities(&self, place: &Place<NQ, NV, NU>, rows: &mut Vec<Row>) {
+        for (_, wanted, quantity) in &self.trim.quantities {
+            let at = |place: &Place<NQ, NV, NU>| {
+                self.trim.with(&place.parameters, |m| quantity(m, &place.q, &place.v, &place.u))
+            };
+            let by: Vec<f64> = (0..self.unknowns.len())
+                .map(|k| {
+                    let unknown = self.unknowns[k];
+                    if matches!(unknown, Unknown::Holding(_) | Unknown::Parameter(_)) {
+                        return 0.0;
+                    }
+                    let step = STEP * self.size(place, unknown);
+                    let side = |h: f64| {
+                        at(&self.moved(
+                            place,
+                            &DVector::from_fn(self.unknowns.len(), |i, _| if i == k { h } else { 0.0 }),
+                        ))
+                    };
+                    (side(step) - side(-step)) / (2.0 * step)
+                })
+                .collect();
+            // Differences of values leave this much rounding.
+            let rounding = f64::EPSILON * (at(place).abs() + wanted.abs()) / STEP;
+            let floor = BESIDE * by.iter().fold(0.0, |most: f64, x| most.max(x.abs())) + rounding;
+            rows.push(Row { residual: at(place) - wanted, by, floor });
         }
     }
 
