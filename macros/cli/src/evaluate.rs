@@ -4,7 +4,7 @@
 use crate::Stop;
 use crate::constrained::Metric;
 use crate::grid::Looked;
-use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
+use linkwork::nalgebra::{DMatrix, DVector, IsometryMatrix3, Matrix3, Rotation3, Vector3};
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::expr::{Lookup, Symbol};
@@ -193,6 +193,31 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     /// Returns whether the mechanism has constraints.
     pub fn is_constrained(&self) -> bool {
         !self.model.constraints.is_empty()
+    }
+
+    /// Returns whether the declared speeds do not determine the rates of all coordinates in this
+    /// configuration: the ratio of their smallest to their largest singular value is at most `ratio`.
+    pub fn has_singular_speeds(&self, q: &[f64], ratio: f64) -> bool {
+        let n = self.model.nv();
+        if self.model.speeds.is_none() || n == 0 {
+            return false;
+        }
+        let mut speeds = DMatrix::zeros(n, n);
+        for k in 0..n {
+            let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == k))).collect();
+            let state = Values { q, v: &unit, ..Values::default() };
+            let Some(column) = self.called("speeds_of_rates", state) else { return false };
+            speeds.set_column(k, &DVector::from_vec(column));
+        }
+        // Speeds may have different units.
+        for mut row in speeds.row_iter_mut() {
+            let size = row.norm();
+            if size > 0.0 {
+                row /= size;
+            }
+        }
+        let sizes = speeds.singular_values();
+        sizes.min() <= ratio * sizes.max()
     }
 
     /// Returns whether the mass matrix is positive definite at time zero.

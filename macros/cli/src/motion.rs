@@ -42,6 +42,10 @@ pub struct Start<'a, 'g> {
     is_guessed: bool,
 }
 
+/// Ratio of singular values below which declared speeds are singular at the beginning.
+const SINGULAR: f64 = 1e-10;
+/// The same where the integration stops in front of a singular configuration.
+const NEARLY_SINGULAR: f64 = 1e-3;
 /// Minimum relative change of an initial value that is reported, m and rad.
 const TOLD: f64 = 1e-6;
 /// Change of a specified value above which it is not explained by rounding, m and rad, or per second. The
@@ -191,9 +195,11 @@ impl<'a, 'g> Start<'a, 'g> {
                 };
                 let system = System { rates: &rates, settle: &settle };
                 integrator.advance(&system, (at, stop), &mut y).map_err(|t| {
-                    Stop::Failure(format!(
-                        "the motion cannot be continued beyond {t} s: it is singular there, or too stiff"
-                    ))
+                    let why = match self.mechanism.has_singular_speeds(&y[..nq], NEARLY_SINGULAR) {
+                        true => "declared speeds are singular there",
+                        false => "it is singular there, or too stiff",
+                    };
+                    Stop::Failure(format!("the motion cannot be continued beyond {t} s: {why}"))
                 })?;
                 if let Some(t) = integrator.stiff_from.take_if(|_| !is_told) {
                     is_told = true;
@@ -214,7 +220,7 @@ impl<'a, 'g> Start<'a, 'g> {
     /// possible, otherwise the nearest one. Prints the changes.
     fn begin(&self) -> Result<Vec<f64>, Stop> {
         let (m, [in_q, in_v]) = (&self.mechanism, &self.given);
-        if !m.has_inertia(&self.q) {
+        if !m.has_inertia(&self.q) && !m.has_singular_speeds(&self.q, SINGULAR) {
             return Err(Stop::Failure(format!(
                 "the mass matrix of `{}` is singular at the beginning: with these parameters something that moves has no inertia",
                 m.model.name
@@ -239,6 +245,14 @@ impl<'a, 'g> Start<'a, 'g> {
                 m.model.name
             ))
         })?;
+        if m.has_singular_speeds(&q, SINGULAR) {
+            let names: Vec<String> = m.model.configuration.iter().map(|name| format!("q.{name}")).collect();
+            return Err(Stop::Failure(format!(
+                "the speeds of `{}` are singular at the beginning: there they do not determine the rates of all coordinates; begin elsewhere (`--set` with {})",
+                m.model.name,
+                names.join(", ")
+            )));
+        }
         let mut v = self.v.clone();
         if m.move_along(0.0, &q, &mut v, &in_v).is_none() {
             kept = false;

@@ -610,6 +610,36 @@ fn driven_mechanisms_follow_time() {
     assert!(status != 0 && told.contains("cannot be assembled"), "{told}");
 }
 
+/// With declared speeds a driven mechanism follows its drive. Configurations in which the speeds do not
+/// determine the rates are reported at the beginning and during the motion.
+#[test]
+fn speeds_of_driven_mechanisms_may_be_singular() {
+    let here = folder("driven_speeds");
+    let run = |speeds: &str| {
+        let with = DRIVEN.replace("#[output(crank)]\n    loads: FreeBody,", speeds);
+        std::fs::write(here.join("driven.rs"), with).unwrap();
+        linkwork(&here, &["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"])
+    };
+    let (status, log, told) =
+        run("#[speed(3 * rate(big_end))] a: Speed, #[speed(rate(cylinder) + 0.1 * rate(big_end))] b: Speed,");
+    assert_eq!(status, 0, "{told}");
+    for row in rows(&log) {
+        let (sine, cosine) = (7.0 * row[0]).sin_cos();
+        let piston = 0.04 * cosine + (0.13_f64.powi(2) - (0.04 * sine).powi(2)).sqrt();
+        assert!((row[2] - piston).abs() < 1e-8, "{row:?}");
+    }
+    // The crank begins at zero, where the rod is in line with it.
+    let (status, _, told) =
+        run("#[speed(sin(big_end) * rate(cylinder))] a: Speed, #[speed(rate(big_end))] b: Speed,");
+    assert!(status == 2 && told.contains("the speeds of `Driven` are singular at the beginning"), "{told}");
+    // Their determinant is proportional to 1 + cos(big_end): zero after half a turn.
+    let (status, _, told) = run("#[speed(cos(big_end) * rate(cylinder) - 0.1 * rate(big_end))] a: Speed,
+         #[speed(2 * rate(cylinder) + 0.2 * rate(big_end))] b: Speed,");
+    let there =
+        told.split_once("beyond 0.448").is_some_and(|(_, why)| why.contains("speeds are singular there"));
+    assert!(status == 2 && there, "{told}");
+}
+
 /// Leg of Jansen's linkage.
 const LEG: &str = "
 #[mechanism(gravity = -9.81 * y)]
