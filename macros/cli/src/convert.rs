@@ -317,8 +317,8 @@ impl<'a> Struct<'a> {
         }
     }
 
-    /// Returns the point of application of a wrench, and its body. A wrench with a reaction on another body
-    /// is omitted and noted.
+    /// Returns the point of application of a wrench, and its body. A wrench with a reaction on another body, or
+    /// on a body that is fixed to the ground, is omitted and noted.
     fn body_of(&mut self, wrench: &Wrench, name: &str) -> Option<(String, String)> {
         if wrench.against.is_some() {
             self.notes.push(format!("`{name}`, which acts between points of two bodies, has no effect here"));
@@ -329,8 +329,30 @@ impl<'a> Struct<'a> {
             _ => wrench.on.name(),
         };
         let body = body.filter(|body| *body != GROUND)?;
+        if self.is_fixed(body) {
+            let note =
+                format!("`{name}`, which acts on a body that is fixed to the ground, has no effect here");
+            self.notes.push(note);
+            return None;
+        }
         let point = written::place(&wrench.on, &|name| self.links.known(name));
         Some((point, self.links.of(body)))
+    }
+
+    /// Whether welds alone lead from the ground to a body.
+    fn is_fixed(&self, body: &str) -> bool {
+        let joints = &self.description.joints;
+        let mut at = body;
+        // A chain is no longer than the list of joints.
+        for _ in 0..=joints.len() {
+            if at == GROUND {
+                return true;
+            }
+            let weld = joints.iter().find(|joint| joint.child.body.text == at);
+            let Some(weld) = weld.filter(|joint| joint.kind == JointKind::Weld) else { return false };
+            at = &weld.parent.body.text;
+        }
+        false
     }
 
     fn kind(&self, joint: &str) -> JointKind {

@@ -251,6 +251,9 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
   <body name="b"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/><joint name="j" axis="0 1 0"/>
     <site name="p" pos="0.1 0 0.2"/><site name="on_axis" pos="0 1 0"/>
     <body name="c"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/><joint name="k" type="slide" axis="0 1 0" stiffness="0"/></body>
+  </body>
+  <body name="base"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/>
+    <body name="bracket"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/><site name="fixed"/></body>
   </body></worldbody>
   <tendon>
     <spatial name="still" stiffness="5" springlength="0.1"><site site="o"/><site site="o2"/></spatial>
@@ -263,10 +266,11 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
   <actuator>
     <motor name="m" tendon="still"/><motor name="gear" joint="j" gear="12"/><motor name="both" tendon="slack"/>
     <general name="g" joint="j" biastype="affine" biasprm="1 -2 0.5"/><general name="h" tendon="slack" biastype="affine" biasprm="1 -2 0.5" gear="-3"/>
-    <position name="lazy" joint="j" kp="0"/>
+    <position name="lazy" joint="j" kp="0"/><motor name="thruster" site="fixed" gear="0 0 1 0 1 0"/>
   </actuator></mujoco>"#,
     );
-    check_beside("mjcf", &file, "", &["acts on a length that does not change"]);
+    let notes = ["acts on a length that does not change", "acts on a body that is fixed to the ground"];
+    check_beside("mjcf", &file, "", &notes);
     let inertia = |xx: &str, xy: &str| {
         format!(
             "<inertial><mass value='2'/><inertia ixx='{xx}' iyy='1' izz='1' ixy='{xy}' ixz='0' iyz='0'/></inertial>"
