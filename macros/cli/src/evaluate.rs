@@ -209,12 +209,11 @@ impl<'a, 'g> Evaluated<'a, 'g> {
             let Some(column) = self.called("speeds_of_rates", state) else { return false };
             speeds.set_column(k, &DVector::from_vec(column));
         }
-        // Speeds may have different units.
+        // Speeds may have different units: rows have the length one, except rows that rounding makes nonzero.
+        let largest = speeds.row_iter().map(|row| row.norm()).fold(0.0, f64::max);
         for mut row in speeds.row_iter_mut() {
             let size = row.norm();
-            if size > 0.0 {
-                row /= size;
-            }
+            row /= if size > 1e-12 * largest { size } else { 1.0 };
         }
         let sizes = speeds.singular_values();
         sizes.min() <= ratio * sizes.max()
