@@ -15,6 +15,7 @@
 //! | [`batches`] | evaluation of many states at once |
 //! | [`without_std`] | microcontrollers |
 //! | [`python`] | classes of Python from robot files and declarations |
+//! | [`run_time`] | robots that are loaded at run time, without a compiler |
 //! | [`speed`] | speed of generated code in release and debug builds; accuracy, stack, worst case |
 //! | [`from_other_tools`] | corresponding names in SymPy, Pinocchio, MuJoCo and Drake |
 //! | [`glossary`] | terms and symbols |
@@ -56,6 +57,9 @@ pub mod without_std {}
 
 #[doc = include_str!("../guide/python.md")]
 pub mod python {}
+
+#[doc = include_str!("../guide/run_time.md")]
+pub mod run_time {}
 
 #[doc = include_str!("../guide/speed.md")]
 pub mod speed {}

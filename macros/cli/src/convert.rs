@@ -147,7 +147,8 @@ impl<'a> Struct<'a> {
                 let _ = writeln!(text, "/// - {what} is `{field}`");
             });
         }
-        let _ = writeln!(text, "#[mechanism({})]\npub struct {} {{", options.join(", "), input.name);
+        let _ =
+            writeln!(text, "#[mechanism({})]\npub struct {} {{", options.join(", "), input.declaration.name);
         text.push_str(&self.fields);
         text.push_str("}\n");
         text

@@ -54,7 +54,7 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
 pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let given_prefix = given(matches, "prefix").map(ToString::to_string);
-    let prefix = c::identifier(&given_prefix.unwrap_or_else(|| c::prefix(&input.name)));
+    let prefix = c::identifier(&given_prefix.unwrap_or_else(|| c::prefix(&input.declaration.name)));
     let made = library::write(&input, &prefix, matches)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| PathBuf::from(&prefix));
     for (path, text) in &made.files {
@@ -114,7 +114,8 @@ pub fn rust(matches: &ArgMatches) -> Result<(), Stop> {
         linkwork_compiler::compile(&source, &linkwork_compiler::expr::Graph::new(), cx);
     }
     input.checked(Some(()), cx)?;
-    let tokens = expand(input.arguments.clone(), input.item.clone(), &input.folder).into_tokens()?;
+    let tokens = expand(input.declaration.arguments.clone(), input.declaration.item.clone(), &input.folder)
+        .into_tokens()?;
     let text = prettyplease::unparse(&syn::parse2(tokens)?);
     put(matches, &text)
 }

@@ -8,30 +8,21 @@ use linkwork_compiler::diag::{Diagnostic, Diagnostics};
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
-use linkwork_compiler::syntax::FileFormat;
-use linkwork_compiler::{Source, compile, derive_above, read};
+use linkwork_compiler::{DeclaredStruct, Source, compile, declarations, derive_above, read};
 use proc_macro2::{Span, TokenStream};
-use quote::ToTokens;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use syn::spanned::Spanned;
 
 /// Arguments and struct of a `#[mechanism]`, with their origin.
 pub struct Input {
     /// File, as named on the command line.
     pub file: PathBuf,
-    /// Arguments of the attribute.
-    pub arguments: TokenStream,
-    /// Struct.
-    pub item: TokenStream,
-    /// Name of the struct.
-    pub name: String,
+    /// Struct with its attribute.
+    pub declaration: DeclaredStruct,
     /// Folder to which paths in the arguments are relative.
     pub folder: PathBuf,
     /// Whether the file is a robot file, not a Rust file.
     pub is_robot: bool,
-    /// Location of the attribute, if a `#[derive(…)]` is above it.
-    pub derive_above: Option<Span>,
 }
 
 /// Mechanism without errors.
@@ -49,7 +40,7 @@ impl Input {
     pub fn one(matches: &ArgMatches) -> Result<Input, Stop> {
         let mut all = Input::all(matches)?;
         if all.len() > 1 {
-            let names: Vec<&str> = all.iter().map(|input| input.name.as_str()).collect();
+            let names: Vec<&str> = all.iter().map(|input| input.declaration.name.as_str()).collect();
             return Err(Stop::Failure(format!(
                 "{} has several mechanisms: choose one with `--struct NAME`: {}",
                 all[0].file.display(),
@@ -70,8 +61,8 @@ impl Input {
         let is_rust = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"));
         let mut found = if is_rust { from_rust(file)? } else { vec![from_robot(file)?] };
         if let Some(name) = given(matches, "struct") {
-            let names: Vec<String> = found.iter().map(|input| input.name.clone()).collect();
-            found.retain(|input| input.name == name);
+            let names: Vec<String> = found.iter().map(|input| input.declaration.name.clone()).collect();
+            found.retain(|input| input.declaration.name == name);
             if found.is_empty() {
                 let names = names.join(", ");
                 return Err(Stop::Failure(format!(
@@ -81,29 +72,18 @@ impl Input {
             }
         }
         for input in &mut found {
-            input.add(more.clone());
+            input.declaration.add(more.clone());
         }
         Ok(found)
     }
 
-    /// Appends arguments of the attribute.
-    pub fn add(&mut self, more: TokenStream) {
-        if more.is_empty() {
-            return;
-        }
-        let ends = self.arguments.clone().into_iter().last().is_none_or(|last| last.to_string() == ",");
-        if !ends {
-            self.arguments.extend(",".parse::<TokenStream>().unwrap_or_default());
-        }
-        self.arguments.extend(more);
-    }
-
     /// Parses the arguments and the struct. Errors are added to `cx`.
     pub fn read(&self, cx: &mut Diagnostics) -> Option<Source> {
-        if let Some(attribute) = self.derive_above {
+        let DeclaredStruct { arguments, item, .. } = &self.declaration;
+        if let Some(attribute) = self.declaration.derive_above {
             cx.add(derive_above(attribute));
         }
-        read(self.arguments.clone(), self.item.clone(), &self.folder, cx)
+        read(arguments.clone(), item.clone(), &self.folder, cx)
     }
 
     /// Prints the errors, if there are any.
@@ -138,7 +118,7 @@ impl Input {
         };
         let words = |text: &String| if self.is_robot { for_command(text) } else { text.clone() };
         Mistake {
-            mechanism: Some(self.name.clone()),
+            mechanism: Some(self.declaration.name.clone()),
             file,
             at,
             message: words(&one.message().to_string()),
@@ -235,65 +215,26 @@ fn text_of(path: &Path) -> Result<String, Stop> {
     String::from_utf8(bytes).map_err(|_| fail("is not UTF-8 text".to_string()))
 }
 
-fn is_mechanism(attribute: &syn::Attribute) -> bool {
-    attribute.path().segments.last().is_some_and(|segment| segment.ident == "mechanism")
-}
-
-fn is_derive(attribute: &syn::Attribute) -> bool {
-    attribute.path().segments.last().is_some_and(|segment| segment.ident == "derive")
-}
-
 /// Returns the mechanisms of a Rust file, including those in inline modules. Paths in them are relative to
 /// the package.
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
-    let parsed = syn::parse_file(&text).map_err(|error| {
+    let found = declarations(&text).map_err(|error| {
         Stop::Syntax(Box::new(Mistake { file: path.display().to_string(), ..syntax::located(&text, &error) }))
     })?;
     let whole = path.canonicalize()?;
     let package = whole.ancestors().find(|folder| folder.join("Cargo.toml").is_file());
     let folder = package.or(whole.parent()).unwrap_or(&whole).to_path_buf();
-    let mut found = Vec::new();
-    let mut todo = parsed.items;
-    while !todo.is_empty() {
-        for item in std::mem::take(&mut todo) {
-            match item {
-                syn::Item::Struct(mut item) if item.attrs.iter().any(is_mechanism) => {
-                    let mut arguments = TokenStream::new();
-                    for attribute in item.attrs.iter().filter(|a| is_mechanism(a)) {
-                        if let syn::Meta::List(list) = &attribute.meta {
-                            arguments = list.tokens.clone();
-                        }
-                    }
-                    let derive = item.attrs.iter().position(is_derive);
-                    let derive_above = item
-                        .attrs
-                        .iter()
-                        .enumerate()
-                        .find(|(k, attribute)| derive.is_some_and(|d| d < *k) && is_mechanism(attribute))
-                        .map(|(_, attribute)| attribute.span());
-                    item.attrs.retain(|attribute| !is_mechanism(attribute));
-                    found.push(Input {
-                        derive_above,
-                        file: path.to_path_buf(),
-                        arguments,
-                        name: item.ident.to_string(),
-                        item: item.to_token_stream(),
-                        folder: folder.clone(),
-                        is_robot: false,
-                    });
-                }
-                syn::Item::Mod(module) => {
-                    todo.extend(module.content.into_iter().flat_map(|(_, items)| items))
-                }
-                _ => {}
-            }
-        }
-    }
     if found.is_empty() {
         return Err(Stop::Failure(format!("{}: there is no struct with `#[mechanism]`", path.display())));
     }
-    Ok(found)
+    let input = |declaration| Input {
+        declaration,
+        file: path.to_path_buf(),
+        folder: folder.clone(),
+        is_robot: false,
+    };
+    Ok(found.into_iter().map(input).collect())
 }
 
 /// Returns a struct without fields whose arguments name a robot file.
@@ -310,47 +251,8 @@ fn from_robot(path: &Path) -> Result<Input, Stop> {
     if !is_known && !["<robot", "<sdf", "<mujoco"].iter().any(|element| text.contains(element)) {
         return Err(unknown());
     }
-    let name = type_name(path);
-    let ident = syn::Ident::new(&name, Span::call_site());
-    let written = path.to_string_lossy().into_owned();
+    let declaration = DeclaredStruct::of_file(path, &text);
     // The path remains as written, so that messages show it, and is resolved in the current directory.
-    let format = syn::Ident::new(format_of(path, &text).word(), Span::call_site());
-    let arguments = quote::quote!(#format = #written);
     let folder = std::env::current_dir()?;
-    Ok(Input {
-        file: path.to_path_buf(),
-        arguments,
-        item: quote::quote!(pub struct #ident;),
-        name,
-        folder,
-        is_robot: true,
-        derive_above: None,
-    })
-}
-
-/// Returns the format of a file, from its extension or otherwise from its content.
-fn format_of(path: &Path, text: &str) -> FileFormat {
-    let is = |end: &str| path.extension().is_some_and(|known| known.eq_ignore_ascii_case(end));
-    match () {
-        () if is("urdf") => FileFormat::Urdf,
-        () if is("sdf") || is("world") => FileFormat::Sdf,
-        () if is("mjcf") || text.contains("<mujoco") => FileFormat::Mjcf,
-        () if text.contains("<sdf") => FileFormat::Sdf,
-        () => FileFormat::Urdf,
-    }
-}
-
-/// Returns a type name derived from a file name: `simple_humanoid.urdf` becomes `SimpleHumanoid`.
-pub fn type_name(path: &Path) -> String {
-    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let words = stem.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
-    let capital = |word: &str| {
-        let (first, rest) = word.split_at(1);
-        format!("{}{rest}", first.to_ascii_uppercase())
-    };
-    let name: String = words.map(capital).collect();
-    match name.starts_with(|c: char| c.is_ascii_alphabetic()) && name != "Self" {
-        true => name,
-        false => format!("Robot{name}"),
-    }
+    Ok(Input { declaration, file: path.to_path_buf(), folder, is_robot: true })
 }

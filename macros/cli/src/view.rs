@@ -22,8 +22,8 @@ const PLOTTED: usize = 12;
 
 pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let mut input = Input::one(matches)?;
-    if !input.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
-        input.add(quote::quote!(drawing));
+    if !input.declaration.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
+        input.declaration.add(quote::quote!(drawing));
     }
     let graph = Graph::new();
     let Compiled { source, model, output } = input.compiled(&graph)?;

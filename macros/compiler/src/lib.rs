@@ -2,6 +2,7 @@
 
 pub mod algebra;
 pub mod catalogue;
+mod declarations;
 pub mod derive;
 pub mod diag;
 pub mod emit;
@@ -29,6 +30,7 @@ use source::can_be_a_function;
 use std::path::Path;
 use syntax::{Description, Mechanism};
 
+pub use declarations::{DeclaredStruct, declarations};
 pub use derive::{derive, derive_with, equations, equations_latex};
 pub use source::{Source, read};
 pub use syntax::second_definition;

@@ -22,7 +22,7 @@ pub fn description(known: &Known<'_, '_>) -> String {
     };
     let functions: Vec<Value> = known.functions.iter().map(|f| of_function(f, unit_of(&f.name))).collect();
     let all = json!({
-        "name": known.input.name,
+        "name": known.input.declaration.name,
         "prefix": known.prefix,
         "version": env!("CARGO_PKG_VERSION"),
         "number": known.number(),

@@ -11,7 +11,7 @@ pub fn header(known: &Known<'_, '_>) -> String {
     let upper = prefix.to_ascii_uppercase();
     let mut text = format!(
         "/* The mechanism `{}`, compiled by Linkwork: link lib{prefix}.a (with -lpthread -ldl -lm) or load the shared library.\n *\n * SI units, angles in radians. Vectors are plain arrays, matrices stand column by column. Quaternions are stored\n * x y z w. Functions keep nothing between calls, and any number of threads may call them. They return 0, or 1\n * where there is no result: then results are not numbers, and {prefix}_message() says why.\n",
-        known.input.name
+        known.input.declaration.name
     );
     let velocities: Vec<String> = m.velocities.iter().map(|(name, _)| name.clone()).collect();
     let inputs: Vec<String> = m.inputs.iter().map(|(name, _)| name.clone()).collect();

@@ -60,8 +60,8 @@ impl Known<'_, '_> {
     /// Returns the type of the struct with its generic argument.
     fn kind(&self) -> String {
         match self.source.mechanism.shell.generics.type_params().count() {
-            0 => self.input.name.clone(),
-            _ => format!("{}<{}>", self.input.name, self.number()),
+            0 => self.input.declaration.name.clone(),
+            _ => format!("{}<{}>", self.input.declaration.name, self.number()),
         }
     }
 
@@ -82,13 +82,13 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
         return Err(Stop::Failure(format!(
             "{}: `{}` has generic parameters beside that of its numbers",
             input.file.display(),
-            input.name
+            input.declaration.name
         )));
     }
     let emitted = source.emit(&model, &output);
     let expansion = format!("{}\n{}", emitted.tokens, emitted.text);
     let file = syn::parse_file(&expansion)?;
-    let (mut functions, left_out) = functions::read(&file.items, &input.name);
+    let (mut functions, left_out) = functions::read(&file.items, &input.declaration.name);
     functions.extend(frames(&model));
     functions.extend(limits(&model));
     let requests = source.mechanism.requests;
@@ -143,7 +143,7 @@ fn model_slips(functions: &[Function]) -> bool {
 fn declaration(input: &Input) -> Result<String, Stop> {
     let mut arguments = TokenStream::new();
     let mut names_file = false;
-    for token in input.arguments.clone() {
+    for token in input.declaration.arguments.clone() {
         let is_path = matches!(&token, TokenTree::Literal(_)) && names_file;
         if let TokenTree::Ident(word) = &token {
             names_file = ["urdf", "mjcf", "sdf"].iter().any(|format| word == format);
@@ -159,7 +159,7 @@ fn declaration(input: &Input) -> Result<String, Stop> {
         let path = path.canonicalize().unwrap_or(path);
         arguments.extend(path.to_string_lossy().to_token_stream());
     }
-    Ok(format!("#[mechanism({arguments})]\n{}\n", input.item))
+    Ok(format!("#[mechanism({arguments})]\n{}\n", input.declaration.item))
 }
 
 /// Returns the functions that take a frame by its index.

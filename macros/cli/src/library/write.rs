@@ -97,7 +97,7 @@ fn row(f: &Function, nv: usize) -> String {
 /// Returns the expression that constructs the mechanism from its parameters and tables.
 fn made(known: &Known<'_, '_>) -> String {
     let shell = &known.source.mechanism.shell;
-    let name = &known.input.name;
+    let name = &known.input.declaration.name;
     let tables = shell.tables.iter().filter_map(|f| f.ident.as_ref()).enumerate();
     let tables: Vec<[String; 2]> =
         tables.map(|(k, field)| [field.to_string(), format!("TABLE_{k}")]).collect();
@@ -263,7 +263,7 @@ fn write_defaults(text: &mut String, known: &Known<'_, '_>) {
                 shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
             let given = vec![format!("{number}::NAN"); own.len()].join(", ");
             let list = m.parameters.iter().map(|member| format!("m.{member}")).collect::<Vec<_>>().join(", ");
-            format!("{{ let m = {}::from_file({given}); [{list}] }}", known.input.name)
+            format!("{{ let m = {}::from_file({given}); [{list}] }}", known.input.declaration.name)
         }
     };
     let _ = write!(

@@ -149,6 +149,40 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// Returns name, rows and columns of the arrays that a function writes outside of Rust; none for a single
+    /// number and for results of hidden functions.
+    pub fn arrays(self) -> Vec<(&'static str, usize, usize)> {
+        match self {
+            Shape::Record(Record::InputDerivatives(n, m)) => {
+                vec![("by_q", n, n), ("by_v", n, n), ("by_u", n, m)]
+            }
+            Shape::Scalar | Shape::Record(_) | Shape::Symmetric(_) => Vec::new(),
+            Shape::Vector(n) | Shape::Array(n) => vec![("result", n, 1)],
+            Shape::Square(n) | Shape::Inverse(n) => vec![("result", n, n)],
+            Shape::Matrix(m, n) => vec![("result", m, n)],
+            Shape::Pair(n) => vec![("by_q", n, n), ("by_v", n, n)],
+            Shape::Forward(n) | Shape::CalledForward(n) => {
+                vec![("by_q", n, n), ("by_v", n, n), ("by_tau", n, n)]
+            }
+            Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
+                vec![("by_state", 2 * n, 2 * n), ("by_input", 2 * n, m)]
+            }
+            Shape::Jacobians(rows, n, m) => {
+                vec![("by_q", rows, n), ("by_v", rows, n), ("by_a", rows, n), ("by_u", rows, m)]
+            }
+            Shape::Hessian(n) => vec![("by_qq", n, n), ("by_qv", n, n), ("by_vv", n, n), ("by_qa", n, n)],
+            Shape::InputHessian(n, m) => vec![
+                ("by_qq", n, n),
+                ("by_qv", n, n),
+                ("by_vv", n, n),
+                ("by_qu", n, m),
+                ("by_vu", n, m),
+                ("by_uu", m, m),
+            ],
+            Shape::Accelerated(n) => vec![("result", n, 1), ("inverse", n, n)],
+        }
+    }
+
     /// Returns true for a result that is assembled from results of other functions.
     pub fn calls(self) -> bool {
         matches!(self, Shape::CalledForward(_) | Shape::CalledLinear(..))

@@ -5,7 +5,7 @@ use super::composed;
 use super::docs;
 use super::names::letters;
 use super::support::Support;
-use crate::catalogue::{Argument, Called, Id, Record, Shape};
+use crate::catalogue::{Argument, Called, Id, Shape};
 use crate::derive::Function;
 use crate::lower::Operand;
 use crate::mechanism::Quantity;
@@ -40,33 +40,7 @@ pub type Given = (&'static str, usize, usize);
 
 /// Returns the arrays that receive the results of a function; empty for a function that returns a number.
 pub fn results(shape: Shape) -> Vec<Given> {
-    match shape {
-        Shape::Record(Record::InputDerivatives(n, m)) => {
-            vec![("by_q", n, n), ("by_v", n, n), ("by_u", n, m)]
-        }
-        Shape::Scalar | Shape::Record(_) | Shape::Symmetric(_) => Vec::new(),
-        Shape::Vector(n) | Shape::Array(n) => vec![("result", n, 1)],
-        Shape::Square(n) | Shape::Inverse(n) => vec![("result", n, n)],
-        Shape::Matrix(m, n) => vec![("result", m, n)],
-        Shape::Pair(n) => vec![("by_q", n, n), ("by_v", n, n)],
-        Shape::Forward(n) | Shape::CalledForward(n) => vec![("by_q", n, n), ("by_v", n, n), ("by_tau", n, n)],
-        Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
-            vec![("by_state", 2 * n, 2 * n), ("by_input", 2 * n, m)]
-        }
-        Shape::Jacobians(rows, n, m) => {
-            vec![("by_q", rows, n), ("by_v", rows, n), ("by_a", rows, n), ("by_u", rows, m)]
-        }
-        Shape::Hessian(n) => vec![("by_qq", n, n), ("by_qv", n, n), ("by_vv", n, n), ("by_qa", n, n)],
-        Shape::InputHessian(n, m) => vec![
-            ("by_qq", n, n),
-            ("by_qv", n, n),
-            ("by_vv", n, n),
-            ("by_qu", n, m),
-            ("by_vu", n, m),
-            ("by_uu", m, m),
-        ],
-        Shape::Accelerated(n) => vec![("result", n, 1), ("inverse", n, n)],
-    }
+    shape.arrays()
 }
 
 impl Outline<'_> {

@@ -1,0 +1,79 @@
+//! Pointers of callers. The only module that reads and writes through them.
+
+#![allow(unsafe_code, reason = "pointers of callers in C")]
+
+use crate::Failure;
+use std::ffi::{CStr, c_char};
+
+/// Returns the value behind a pointer.
+///
+/// # Safety
+///
+/// The pointer is null or points to a value that outlives the result.
+pub unsafe fn shared<'a, T>(pointer: *const T) -> Result<&'a T, Failure> {
+    // SAFETY: as the caller promises.
+    unsafe { pointer.as_ref() }.ok_or(Failure::Null)
+}
+
+/// Returns the value behind a pointer for a change.
+///
+/// # Safety
+///
+/// The pointer is null or points to a value that outlives the result and that nothing else uses.
+pub unsafe fn unique<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
+    // SAFETY: as the caller promises.
+    unsafe { pointer.as_mut() }.ok_or(Failure::Null)
+}
+
+/// Returns a text.
+///
+/// # Safety
+///
+/// The pointer is null or points to a text that ends with a zero and outlives the result.
+pub unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, Failure> {
+    if pointer.is_null() {
+        return Err(Failure::Null);
+    }
+    // SAFETY: as the caller promises.
+    unsafe { CStr::from_ptr(pointer) }.to_str().map_err(|_| Failure::Null)
+}
+
+/// Returns an array; an empty one may be null.
+///
+/// # Safety
+///
+/// The pointer is null or points to `length` values that outlive the result.
+pub unsafe fn array<'a, T>(pointer: *const T, length: usize) -> Result<&'a [T], Failure> {
+    match (length, pointer.is_null()) {
+        (0, _) => Ok(&[]),
+        (_, true) => Err(Failure::Null),
+        // SAFETY: as the caller promises.
+        (_, false) => Ok(unsafe { std::slice::from_raw_parts(pointer, length) }),
+    }
+}
+
+/// Returns an array to be written; an empty one may be null.
+///
+/// # Safety
+///
+/// The pointer is null or points to `length` values that outlive the result and that nothing else uses.
+pub unsafe fn array_mut<'a, T>(pointer: *mut T, length: usize) -> Result<&'a mut [T], Failure> {
+    match (length, pointer.is_null()) {
+        (0, _) => Ok(&mut []),
+        (_, true) => Err(Failure::Null),
+        // SAFETY: as the caller promises.
+        (_, false) => Ok(unsafe { std::slice::from_raw_parts_mut(pointer, length) }),
+    }
+}
+
+/// Frees a value that [`Box::into_raw`] returned.
+///
+/// # Safety
+///
+/// The pointer is null, or of such a value that was not freed before.
+pub unsafe fn free<T>(pointer: *mut T) {
+    if !pointer.is_null() {
+        // SAFETY: as the caller promises.
+        drop(unsafe { Box::from_raw(pointer) });
+    }
+}

@@ -1,0 +1,104 @@
+//! Errors of loading and of calls.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// Error of loading a mechanism or of a call.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// A file cannot be read.
+    File {
+        /// Path of the file.
+        path: PathBuf,
+        /// Reason.
+        reason: String,
+    },
+    /// The text is not a declaration of a mechanism in Rust's syntax, or the options are not those of the
+    /// attribute.
+    Syntax(String),
+    /// Errors of the mechanism, as the compiler reports them.
+    Mechanism(Vec<String>),
+    /// The mechanism has nothing of this name.
+    Unknown {
+        /// Kind of the name: `function`, `parameter`, `frame`, `table` or `mechanism`.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// Nearest known name, or the list of them.
+        help: String,
+    },
+    /// A slice has the wrong length.
+    Length {
+        /// Name of the function or quantity.
+        of: String,
+        /// Name of the argument or result.
+        name: String,
+        /// Correct length.
+        expected: usize,
+        /// Length of the slice.
+        found: usize,
+    },
+    /// The number of arguments is wrong.
+    Arguments {
+        /// Name of the function.
+        of: String,
+        /// Names of its arguments.
+        expected: Vec<&'static str>,
+        /// Number of slices.
+        found: usize,
+    },
+    /// Parameters or tables have no value yet.
+    Missing(Vec<String>),
+    /// No physical mechanism can have this value, or it is not finite.
+    Value(String),
+    /// The function belongs to another mechanism.
+    OtherMechanism(String),
+    /// An internal error of Linkwork.
+    Internal(String),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::File { path, reason } => write!(f, "{}: {reason}", path.display()),
+            Error::Syntax(message) => f.write_str(message),
+            Error::Mechanism(messages) => f.write_str(&messages.join("\n")),
+            Error::Unknown { kind, name, help } => write!(f, "no {kind} `{name}`; {help}"),
+            Error::Length { of, name, expected, found } => {
+                write!(f, "`{name}` of `{of}` has {expected} entries, but the slice has {found}")
+            }
+            Error::Arguments { of, expected, found } => match expected.as_slice() {
+                [] => write!(f, "`{of}` takes no arguments, but {found} were passed"),
+                expected => write!(f, "`{of}` takes {}, but {found} slices were passed", expected.join(", ")),
+            },
+            Error::Missing(names) => {
+                write!(f, "no value for {}: set it before the first call", names.join(", "))
+            }
+            Error::Value(message) => f.write_str(message),
+            Error::OtherMechanism(name) => write!(f, "`{name}` is a function of another mechanism"),
+            Error::Internal(message) => {
+                write!(f, "internal error of Linkwork, please report it with the file: {message}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl Error {
+    /// Returns the error for an unknown name.
+    pub(crate) fn unknown<'a>(
+        kind: &'static str,
+        name: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Error {
+        let known: Vec<&str> = known.into_iter().collect();
+        let help = match linkwork_compiler::diag::nearest(name, &known) {
+            Some(nearest) => format!("did you mean `{nearest}`?"),
+            None if known.is_empty() => format!("the mechanism has no {kind}s"),
+            None => format!("known are {}", known.join(", ")),
+        };
+        Error::Unknown { kind, name: name.to_string(), help }
+    }
+}

@@ -1,0 +1,230 @@
+//! Frames: programs of placements, velocities, accelerations and Jacobians, composed of the steps of
+//! the links between the ground and a frame.
+
+use crate::functions::{Entry, Matrix, Plan};
+use crate::merge::Merged;
+use crate::routine::Routine;
+use linkwork_compiler::catalogue::{Argument, Id};
+use linkwork_compiler::derive::{FrameSteps, LinkSteps, Output, PLACEMENT, TWIST};
+use linkwork_compiler::lower::{Op, Operand, Program};
+use linkwork_compiler::mechanism::{Model, Quantity};
+
+/// A quantity of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Access {
+    Placement,
+    Velocity,
+    Acceleration,
+    Jacobian,
+}
+
+impl Access {
+    /// All quantities, in the order of their functions.
+    pub const ALL: [Access; 4] =
+        [Access::Placement, Access::Velocity, Access::Acceleration, Access::Jacobian];
+
+    fn name(self) -> &'static str {
+        match self {
+            Access::Placement => "frame_placement",
+            Access::Velocity => "frame_velocity",
+            Access::Acceleration => "frame_acceleration",
+            Access::Jacobian => "frame_jacobian",
+        }
+    }
+
+    fn documentation(self, frame: &str) -> String {
+        match self {
+            Access::Placement => format!(
+                "Placement of `{frame}` in the ground: the rotation matrix from the axes of the frame to those of the ground, and the position of the origin, m."
+            ),
+            Access::Velocity => format!(
+                "Velocity of `{frame}` relative to the ground, in ground axes: of the origin, m/s, then angular, rad/s."
+            ),
+            Access::Acceleration => format!(
+                "Acceleration of `{frame}` relative to the ground, in ground axes, without gravity: of the origin, m/s², then angular, rad/s²."
+            ),
+            Access::Jacobian => {
+                format!(
+                    "Jacobian of `{frame}`: its product with `v` is the velocity of the frame, but for motions prescribed in time."
+                )
+            }
+        }
+    }
+}
+
+/// Steps of the links and frames.
+pub(crate) struct Frames {
+    pub names: Vec<String>,
+    links: Vec<LinkSteps>,
+    frames: Vec<FrameSteps>,
+    /// Programs of the joint velocities, joint accelerations, and the matrix from speeds to joint velocities,
+    /// of a mechanism with generalized speeds.
+    speeds: Option<[Program; 3]>,
+    nv: usize,
+}
+
+impl Frames {
+    /// Takes the steps of a mechanism.
+    pub fn new(model: &Model<'_>, output: &mut Output) -> Frames {
+        let program = |id: Id| output.functions.iter().find(|f| f.id == id).map(|f| f.program.clone());
+        let speeds = [Id::RatesOfSpeeds, Id::RateAccelerations, Id::RateMatrix].map(program);
+        let speeds = match speeds {
+            [Some(rates), Some(accelerations), Some(matrix)] => Some([rates, accelerations, matrix]),
+            _ => None,
+        };
+        let frames = std::mem::take(&mut output.frames);
+        Frames {
+            names: frames.iter().map(|frame| frame.name.clone()).collect(),
+            links: std::mem::take(&mut output.links),
+            frames,
+            speeds,
+            nv: model.nv(),
+        }
+    }
+
+    /// Returns the functions of all frames.
+    pub fn entries(&self, time: bool) -> Vec<Entry> {
+        let each = |frame: usize| {
+            Access::ALL.into_iter().filter_map(move |access| {
+                use Argument::{A, Q, T, V};
+                let state: &[Argument] = match access {
+                    Access::Placement | Access::Jacobian => &[Q],
+                    Access::Velocity => &[Q, V],
+                    Access::Acceleration => &[Q, V, A],
+                };
+                let arguments: Vec<Argument> =
+                    time.then_some(T).into_iter().chain(state.iter().copied()).collect();
+                let matrix = |name, rows, columns| Matrix { name, rows, columns };
+                let results = match access {
+                    Access::Placement => vec![matrix("rotation", 3, 3), matrix("position", 3, 1)],
+                    Access::Jacobian => vec![matrix("result", TWIST, self.nv)],
+                    Access::Velocity | Access::Acceleration => vec![matrix("result", TWIST, 1)],
+                };
+                let length = results.iter().map(Matrix::length).sum();
+                let routine = Routine::deferred(&arguments, length)?;
+                let name = &self.names[frame];
+                let plan = Plan::Frame(access, frame, routine);
+                let documentation = access.documentation(name);
+                Some(Entry::new(
+                    &format!("{}({name})", access.name()),
+                    documentation,
+                    arguments,
+                    results,
+                    plan,
+                ))
+            })
+        };
+        (0..self.names.len()).flat_map(each).collect()
+    }
+
+    /// Returns the links between the ground and a frame, the first one first.
+    fn path(&self, frame: usize) -> Vec<&LinkSteps> {
+        let mut next = self.frames[frame].link;
+        let mut path = Vec::new();
+        while let Some(link) = next {
+            path.push(&self.links[link]);
+            next = self.links[link].parent;
+        }
+        path.reverse();
+        path
+    }
+
+    /// Returns the program of a quantity of a frame.
+    pub fn program(&self, access: Access, frame: usize) -> Program {
+        let mut merged = Merged::default();
+        if let Some([rates, accelerations, _]) = &self.speeds {
+            // Steps are in joint velocities. Both programs take speeds: they come before the exchange.
+            let accelerations = match access {
+                Access::Acceleration => merged.append(accelerations),
+                _ => Vec::new(),
+            };
+            let rates = merged.append(rates);
+            for (k, rate) in rates.into_iter().enumerate() {
+                merged.bind(Quantity::Velocity(k).symbol(), rate);
+            }
+            for (k, acceleration) in accelerations.into_iter().enumerate() {
+                merged.bind(Quantity::Acceleration(k).symbol(), acceleration);
+            }
+        }
+        let mut placement: Vec<Operand> =
+            (0..PLACEMENT).map(|k| Operand::Const(f64::from(u8::from(k < 9 && k % 4 == 0)))).collect();
+        let mut twist = vec![Operand::Const(0.0); TWIST];
+        let mut acceleration = twist.clone();
+        let mut placements = Vec::new();
+        let path = self.path(frame);
+        for link in &path {
+            placement = append_given(&mut merged, &[&placement], &link.placement);
+            placements.push(placement.clone());
+            if access == Access::Acceleration {
+                acceleration = append_given(&mut merged, &[&twist, &acceleration], &link.acceleration);
+            }
+            if matches!(access, Access::Velocity | Access::Acceleration) {
+                twist = append_given(&mut merged, &[&twist], &link.twist);
+            }
+        }
+        let steps = &self.frames[frame];
+        let outputs = match access {
+            Access::Placement => {
+                let placed = append_given(&mut merged, &[&placement], &steps.placement);
+                // Steps have rotations row by row.
+                let rotation = (0..9).map(|k| placed[3 * (k % 3) + k / 3]);
+                rotation.chain(placed[9..].iter().copied()).collect()
+            }
+            Access::Velocity => append_given(&mut merged, &[&placement, &twist], &steps.twist),
+            Access::Acceleration => {
+                append_given(&mut merged, &[&placement, &twist, &acceleration], &steps.acceleration)
+            }
+            Access::Jacobian => {
+                let placed = append_given(&mut merged, &[&placement], &steps.placement);
+                let mut jacobian = vec![Operand::Const(0.0); TWIST * self.nv];
+                for (link, placement) in path.iter().zip(&placements) {
+                    let columns = append_given(&mut merged, &[placement, &placed[9..]], &link.columns);
+                    for (column, v) in columns.chunks_exact(TWIST).zip(&link.velocities) {
+                        for (i, entry) in column.iter().enumerate() {
+                            // Joints that follow one coordinate share a column.
+                            let at = TWIST * v + i;
+                            jacobian[at] = sum(&mut merged, jacobian[at], *entry);
+                        }
+                    }
+                }
+                self.in_speeds(&mut merged, jacobian)
+            }
+        };
+        merged.finish(outputs)
+    }
+
+    /// Multiplies a Jacobian by the matrix from speeds to joint velocities, if there are speeds.
+    fn in_speeds(&self, merged: &mut Merged, jacobian: Vec<Operand>) -> Vec<Operand> {
+        let Some([.., matrix]) = &self.speeds else { return jacobian };
+        let matrix = merged.append(matrix);
+        let mut product = vec![Operand::Const(0.0); TWIST * self.nv];
+        for j in 0..self.nv {
+            for i in 0..TWIST {
+                for k in 0..self.nv {
+                    let (a, b) = (jacobian[TWIST * k + i], matrix[j * self.nv + k]);
+                    let at = TWIST * j + i;
+                    product[at] = match (a, b) {
+                        (Operand::Const(0.0), _) | (_, Operand::Const(0.0)) => continue,
+                        (a, b) => merged.push(Op::MulAdd(a, b, product[at])),
+                    };
+                }
+            }
+        }
+        product
+    }
+}
+
+/// Adds a program that takes these values; returns its outputs.
+fn append_given(merged: &mut Merged, values: &[&[Operand]], program: &Program) -> Vec<Operand> {
+    for (k, value) in values.iter().copied().flatten().enumerate() {
+        merged.bind(Quantity::Given(k).symbol(), *value);
+    }
+    merged.append(program)
+}
+
+fn sum(merged: &mut Merged, a: Operand, b: Operand) -> Operand {
+    match (a, b) {
+        (Operand::Const(0.0), other) | (other, Operand::Const(0.0)) => other,
+        (a, b) => merged.push(Op::Add(a, b)),
+    }
+}

@@ -1,0 +1,476 @@
+//! Functions of a loaded mechanism: their signatures, and how results follow from programs.
+
+use crate::constrained::Constrained;
+use crate::frames::Access;
+use crate::inverse::Inverse;
+use crate::kernels::{self, Columns};
+use crate::merge::Merged;
+use crate::routine::{Routine, Values};
+use crate::shared::Shared;
+use crate::space::Space;
+use linkwork_compiler::catalogue::{Argument, CONTACT_FORCES, Called, Id, REACTION, Record, Shape};
+use linkwork_compiler::derive::{self, Output};
+use linkwork_compiler::lower::{Operand, Program};
+use linkwork_compiler::mechanism::{Model, Quantity};
+
+/// A result of a function: a matrix, stored by columns behind the results before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Matrix {
+    /// Name of the result.
+    pub name: &'static str,
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns; one for a vector.
+    pub columns: usize,
+}
+
+impl Matrix {
+    /// Returns the number of entries.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        self.rows * self.columns
+    }
+}
+
+/// A function.
+pub(crate) struct Entry {
+    pub name: String,
+    pub documentation: String,
+    /// Hidden functions are called by others alone.
+    pub hidden: bool,
+    pub arguments: Vec<Argument>,
+    pub results: Vec<Matrix>,
+    /// Number of values of all results.
+    pub length: usize,
+    /// Number of values of work space.
+    pub work: usize,
+    pub plan: Plan,
+}
+
+/// Assembly of results from outputs of programs.
+pub(crate) enum Plan {
+    /// The outputs of a program.
+    Program(Routine),
+    /// The outputs of a program that is composed of the steps of links.
+    Frame(Access, usize, Routine),
+    Inverse(Routine, Inverse),
+    Forward {
+        routine: Routine,
+        inverse: Inverse,
+        columns: [Vec<Columns>; 2],
+        n: usize,
+    },
+    CalledForward(Box<CalledForward>),
+    Linear {
+        routine: Routine,
+        columns: [Vec<Columns>; 3],
+        n: usize,
+        m: usize,
+    },
+    CalledLinear {
+        routine: Routine,
+        derivatives: usize,
+        columns: [Vec<Columns>; 3],
+        n: usize,
+        m: usize,
+    },
+    Space(Space),
+    Constrained(Box<Constrained>),
+}
+
+/// Derivatives of forward dynamics that call other functions.
+pub(crate) struct CalledForward {
+    /// Accelerations, and the parts of the inverse.
+    accelerations: Routine,
+    inverse: Inverse,
+    /// Index of the derivatives of inverse dynamics.
+    forces: usize,
+    /// Columns that are known without products.
+    known: Routine,
+    /// Index of each known column in `∂v̇/∂q`, then in `∂v̇/∂v`.
+    places: Vec<usize>,
+    columns: [Vec<Columns>; 2],
+    n: usize,
+}
+
+impl Plan {
+    /// Returns the routines of the plan.
+    pub fn routines(&self) -> Vec<&Routine> {
+        match self {
+            Plan::Program(routine)
+            | Plan::Frame(_, _, routine)
+            | Plan::Inverse(routine, _)
+            | Plan::Forward { routine, .. }
+            | Plan::Linear { routine, .. }
+            | Plan::CalledLinear { routine, .. } => vec![routine],
+            Plan::CalledForward(called) => vec![&called.accelerations, &called.known],
+            Plan::Space(_) => Vec::new(),
+            Plan::Constrained(constrained) => vec![&constrained.elimination],
+        }
+    }
+
+    /// Returns the indices of the functions that the plan calls.
+    pub fn calls(&self) -> Vec<usize> {
+        match self {
+            Plan::CalledForward(called) => vec![called.forces],
+            Plan::CalledLinear { derivatives, .. } => vec![*derivatives],
+            Plan::Space(space) => space.calls(),
+            Plan::Constrained(constrained) => constrained.calls(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Entry {
+    /// Evaluates the function. Lengths are correct.
+    pub fn run(&self, shared: &Shared, values: Values<'_>, out: &mut [f64], work: &mut [f64]) {
+        match &self.plan {
+            Plan::Program(routine) => routine.run(values, out, &mut []),
+            Plan::Frame(access, frame, routine) => {
+                routine.ensure(|| shared.frames.program(*access, *frame));
+                routine.run(values, out, &mut []);
+            }
+            Plan::Inverse(routine, inverse) => {
+                let (beside, work) = work.split_at_mut(inverse.further_length());
+                routine.run(values, out, beside);
+                inverse.complete(out, beside, work);
+            }
+            Plan::Forward { routine, inverse, columns, n } => {
+                let (more, work) = work.split_at_mut(inverse.further_length());
+                routine.run(values, out, more);
+                let (forces, matrix) = out.split_at_mut(2 * n * n);
+                inverse.complete(matrix, more, work);
+                solve(*n, matrix, forces, columns, work);
+            }
+            Plan::CalledForward(called) => called.run(shared, values, &self.arguments, out, work),
+            Plan::Linear { routine, columns, n, m } => {
+                let (all, work) = work.split_at_mut(4 * n * n + n * m);
+                routine.run(values, all, &mut []);
+                let (forces, rest) = all.split_at_mut(2 * n * n);
+                let (inverse, rest) = rest.split_at_mut(n * n);
+                let (inputs, turning) = rest.split_at_mut(n * m);
+                let (by_q, by_v) = forces.split_at_mut(n * n);
+                let [q, v, u] = columns;
+                kernels::minus_products(
+                    *n,
+                    inverse,
+                    &mut [
+                        (&mut *by_q, q.as_slice()),
+                        (&mut *by_v, v.as_slice()),
+                        (&mut *inputs, u.as_slice()),
+                    ],
+                    work,
+                );
+                assemble(*n, *m, [by_q, by_v, inputs, turning], out);
+            }
+            Plan::CalledLinear { routine, derivatives, columns, n, m } => {
+                let square = n * n;
+                let (all, rest) = work.split_at_mut(n + 3 * square + n * m);
+                let (found, work) = rest.split_at_mut(3 * square);
+                routine.run(values, all, &mut []);
+                let (tau, rest) = all.split_at_mut(*n);
+                let (forces, rest) = rest.split_at_mut(2 * square);
+                let (inputs, turning) = rest.split_at_mut(n * m);
+                shared.call(*derivatives, values, &self.arguments, &[(Argument::Tau, tau)], found, work);
+                let (by, inverse) = found.split_at_mut(2 * square);
+                let (by_q, by_v) = forces.split_at_mut(square);
+                let [q, v, u] = columns;
+                kernels::minus_products(
+                    *n,
+                    inverse,
+                    &mut [
+                        (&mut *by_q, q.as_slice()),
+                        (&mut *by_v, v.as_slice()),
+                        (&mut *inputs, u.as_slice()),
+                    ],
+                    work,
+                );
+                by.iter_mut().zip(&*forces).for_each(|(by, more)| *by -= more);
+                let (by_q, by_v) = by.split_at(square);
+                assemble(*n, *m, [by_q, by_v, inputs, turning], out);
+            }
+            Plan::Space(space) => space.run(shared, values, &self.arguments, out, work),
+            Plan::Constrained(constrained) => constrained.run(shared, values, &self.arguments, out, work),
+        }
+    }
+}
+
+impl CalledForward {
+    fn run(
+        &self,
+        shared: &Shared,
+        values: Values<'_>,
+        arguments: &[Argument],
+        out: &mut [f64],
+        work: &mut [f64],
+    ) {
+        let n = self.n;
+        let (a, rest) = work.split_at_mut(n);
+        let (more, rest) = rest.split_at_mut(n * n + self.inverse.further_length());
+        let (forces, matrix) = out.split_at_mut(2 * n * n);
+        self.accelerations.run(values, a, more);
+        let (columns, beside) = more.split_at_mut(n * n);
+        matrix.copy_from_slice(columns);
+        self.inverse.complete(matrix, beside, rest);
+        self.inverse.solve(matrix, beside, a, rest);
+        shared.call(self.forces, values, arguments, &[(Argument::A, a)], forces, rest);
+        solve(n, matrix, forces, &self.columns, rest);
+        let known = &mut rest[..n * self.places.len()];
+        self.known.run(values, known, &mut []);
+        for (column, place) in known.chunks_exact(n).zip(&self.places) {
+            forces[place * n..(place + 1) * n].copy_from_slice(column);
+        }
+    }
+}
+
+/// Replaces derivatives of forces by derivatives of accelerations.
+fn solve(n: usize, inverse: &[f64], forces: &mut [f64], columns: &[Vec<Columns>; 2], work: &mut [f64]) {
+    let (by_q, by_v) = forces.split_at_mut(n * n);
+    let [q, v] = columns;
+    kernels::minus_products(n, inverse, &mut [(by_q, q.as_slice()), (by_v, v.as_slice())], work);
+}
+
+/// Writes the matrices of a linear system: derivatives of the accelerations by `q` and `v`, minus those by the
+/// inputs, and the matrix that the rates of displacements are multiplied by.
+fn assemble(n: usize, m: usize, [by_q, by_v, inputs, turning]: [&[f64]; 4], out: &mut [f64]) {
+    let (state, by_input) = out.split_at_mut(4 * n * n);
+    for j in 0..n {
+        let (first, second) = (2 * n * j, 2 * n * (n + j));
+        state[first..first + n].copy_from_slice(&turning[n * j..n * (j + 1)]);
+        state[first + n..first + 2 * n].copy_from_slice(&by_q[n * j..n * (j + 1)]);
+        state[second..second + n].fill(0.0);
+        state[second + j] = 1.0;
+        state[second + n..second + 2 * n].copy_from_slice(&by_v[n * j..n * (j + 1)]);
+    }
+    for j in 0..m {
+        let column = &mut by_input[2 * n * j..2 * n * (j + 1)];
+        column[..n].fill(0.0);
+        for (to, from) in column[n..].iter_mut().zip(&inputs[n * j..]) {
+            *to = -from;
+        }
+    }
+}
+
+/// Makes the functions of a mechanism.
+pub(crate) struct Maker<'a, 'g> {
+    pub model: &'a Model<'g>,
+    pub output: &'a Output,
+    pub entries: Vec<Entry>,
+}
+
+impl Maker<'_, '_> {
+    fn find(&self, id: Id) -> Option<&derive::Function> {
+        self.output.functions.iter().find(|f| f.id == id)
+    }
+
+    /// Returns the index of a function that was added.
+    pub fn index(&self, name: &str) -> Option<usize> {
+        self.entries.iter().position(|entry| entry.name == name)
+    }
+
+    /// Adds the functions that the compiler derives.
+    pub fn add_derived(&mut self) {
+        let output = self.output;
+        for f in &output.functions {
+            let made = self.entry(f);
+            self.entries.extend(made);
+        }
+    }
+
+    fn entry(&self, f: &derive::Function) -> Option<Entry> {
+        let hidden = matches!(f.id, Id::Limits | Id::Figures);
+        let has_dynamics = self.find(Id::ForwardDynamics).is_some();
+        let name = match f.id {
+            Id::InputDerivatives => "generalized_forces_derivatives",
+            Id::Reaction if has_dynamics && !f.arguments.iter().any(is_contact_forces) => {
+                return self.reaction(f);
+            }
+            // Variants that write to several matrices: here all functions do.
+            Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto => return None,
+            Id::Neutral => "neutral",
+            _ if hidden => f.name.trim_start_matches('_'),
+            _ if f.is_hidden() || f.name.starts_with("__") => return None,
+            _ => &f.name,
+        };
+        let arguments: Vec<Argument> = f.arguments.iter().copied().filter(is_passed).collect();
+        let (n, m) = (self.model.nv(), self.model.nu());
+        let program = self.whole(&f.program);
+        let all = |results: usize| Routine::new(program.clone(), &arguments, results);
+        let outputs = program.outputs.len();
+        let inverse = || Inverse::new(&f.structure.inverse, n);
+        let is_zero = |first: usize| {
+            let program = &program;
+            move |j: usize, i: usize| program.outputs[first + j * n + i] == Operand::Const(0.0)
+        };
+        let (plan, work) = match f.shape {
+            Shape::Inverse(_) => {
+                let inverse = inverse();
+                let work = inverse.further_length() + inverse.work();
+                (Plan::Inverse(all(n * n)?, inverse), work)
+            }
+            Shape::Forward(_) => {
+                let inverse = inverse();
+                let work = inverse.further_length() + inverse.work().max(kernels::work(n));
+                let columns = self.columns(f, &is_zero(0));
+                // The accelerations, which come last, have a function of their own.
+                let kept: Vec<usize> = (0..3 * n * n + inverse.further_length()).collect();
+                let routine = Routine::new(program.clone().with_outputs(&kept), &arguments, 3 * n * n)?;
+                (Plan::Forward { routine, inverse, columns, n }, work)
+            }
+            Shape::Accelerated(_) | Shape::Symmetric(_) => return None,
+            Shape::CalledForward(_) => {
+                let accelerations = self.find(Id::AccelerationsAndInverse)?;
+                let inverse = Inverse::new(&accelerations.structure.inverse, n);
+                let forces = self.index("inverse_dynamics_derivatives")?;
+                let known = f.structure.known.iter().zip([0, n]);
+                let places: Vec<usize> =
+                    known.flat_map(|(known, first)| known.iter().map(move |k| first + k)).collect();
+                let columns = self.columns(f, &|_, _| false);
+                let rest = inverse.work().max(kernels::work(n)).max(n * places.len());
+                let work = n + n * n + inverse.further_length() + rest.max(self.entries[forces].work);
+                let called = CalledForward {
+                    accelerations: Routine::new(self.whole(&accelerations.program), &arguments, n)?,
+                    inverse,
+                    forces,
+                    known: all(outputs)?,
+                    places,
+                    columns,
+                    n,
+                };
+                (Plan::CalledForward(Box::new(called)), work)
+            }
+            Shape::Linear(..) => {
+                let every: Vec<usize> = (0..n).collect();
+                let inputs: Vec<usize> = (0..m).collect();
+                let columns = [
+                    Columns::group(n, &every, is_zero(0)),
+                    Columns::group(n, &every, is_zero(n * n)),
+                    Columns::group(n, &inputs, is_zero(3 * n * n)),
+                ];
+                let work = 4 * n * n + n * m + kernels::work(n);
+                (Plan::Linear { routine: all(outputs)?, columns, n, m }, work)
+            }
+            Shape::CalledLinear(..) => {
+                let every: Vec<usize> = (0..n).collect();
+                let inputs: Vec<usize> = (0..m).collect();
+                let columns = [
+                    Columns::group(n, &every, is_zero(n)),
+                    Columns::group(n, &every, is_zero(n + n * n)),
+                    Columns::group(n, &inputs, is_zero(n + 2 * n * n)),
+                ];
+                let derivatives = self.index("forward_dynamics_derivatives")?;
+                let rest = kernels::work(n).max(self.entries[derivatives].work);
+                let work = n + 6 * n * n + n * m + rest;
+                (Plan::CalledLinear { routine: all(outputs)?, derivatives, columns, n, m }, work)
+            }
+            Shape::Record(Record::InputDerivatives(..)) => {
+                // The forces have a function of their own.
+                let program = program.clone().with_outputs(&(n..outputs).collect::<Vec<_>>());
+                (Plan::Program(Routine::new(program, &arguments, outputs - n)?), 0)
+            }
+            Shape::Record(_) => return None,
+            _ => (Plan::Program(all(outputs)?), 0),
+        };
+        let results = results(f.shape, outputs);
+        let documentation = f.docs.join("\n\n");
+        Some(Entry { hidden, work, ..Entry::new(name, documentation, arguments, results, plan) })
+    }
+
+    /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse.
+    fn columns(&self, f: &derive::Function, is_zero: &dyn Fn(usize, usize) -> bool) -> [Vec<Columns>; 2] {
+        let n = self.model.nv();
+        let zeros = &f.structure.zeros;
+        [0, 1].map(|k| {
+            let known = &f.structure.known[k];
+            let columns: Vec<usize> = (0..n).filter(|j| !known.contains(j)).collect();
+            Columns::group(n, &columns, |j, i| match zeros.get((k * n + j) * n + i) {
+                Some(zero) => *zero,
+                None => is_zero(k * n + j, i),
+            })
+        })
+    }
+
+    /// Returns the program preceded by those of the passive forces that it takes.
+    pub fn whole(&self, program: &Program) -> Program {
+        let symbols = program.symbols();
+        let takes = |called: Called| {
+            symbols.iter().any(|symbol| Argument::Called(called).index(Quantity::of(*symbol)).is_some())
+        };
+        let mut merged = Merged::default();
+        for (called, id, quantity) in [
+            (Called::PassiveForces, Id::PassiveForces, Quantity::PassiveForce as fn(usize) -> Quantity),
+            (Called::PassiveDerivatives, Id::PassiveDerivatives, Quantity::PassiveDerivative),
+        ] {
+            let Some(f) = self.find(id).filter(|_| takes(called)) else { continue };
+            for (k, output) in merged.append(&f.program).into_iter().enumerate() {
+                merged.bind(quantity(k).symbol(), output);
+            }
+        }
+        let outputs = merged.append(program);
+        merged.finish(outputs)
+    }
+
+    /// Returns the function of an output with reactions: of the motion that state and inputs determine.
+    fn reaction(&self, f: &derive::Function) -> Option<Entry> {
+        let name = f.name.strip_prefix(REACTION)?;
+        let mut merged = Merged::default();
+        let inputs = self.find(Id::GeneralizedForces).filter(|_| self.model.nu() > 0);
+        let n = self.model.nv();
+        let tau = match inputs {
+            Some(f) => merged.append(&self.whole(&f.program)),
+            None => vec![Operand::Const(0.0); n],
+        };
+        (0..n).zip(tau).for_each(|(k, tau)| merged.bind(Quantity::Force(k).symbol(), tau));
+        let a = merged.append(&self.whole(&self.find(Id::ForwardDynamics)?.program));
+        (0..n).zip(a).for_each(|(k, a)| merged.bind(Quantity::Acceleration(k).symbol(), a));
+        let outputs = merged.append(&self.whole(&f.program));
+        let time = self.model.time.then_some(Argument::T);
+        let u = (self.model.nu() > 0).then_some(Argument::U);
+        let arguments: Vec<Argument> = time.into_iter().chain([Argument::Q, Argument::V]).chain(u).collect();
+        let length = outputs.len();
+        let routine = Routine::new(merged.finish(outputs), &arguments, length)?;
+        let documentation = format!("Output `{name}` of the motion that state and inputs determine.");
+        Some(Entry::new(name, documentation, arguments, results(f.shape, length), Plan::Program(routine)))
+    }
+}
+
+impl Entry {
+    /// Returns a public function without work space.
+    pub fn new(
+        name: &str,
+        documentation: String,
+        arguments: Vec<Argument>,
+        results: Vec<Matrix>,
+        plan: Plan,
+    ) -> Entry {
+        let length = results.iter().map(Matrix::length).sum();
+        Entry {
+            name: name.to_string(),
+            documentation,
+            hidden: false,
+            arguments,
+            results,
+            length,
+            work: 0,
+            plan,
+        }
+    }
+}
+
+/// Returns the results of a shape; those of a scalar, and of an array, are called `result`.
+fn results(shape: Shape, outputs: usize) -> Vec<Matrix> {
+    let arrays = shape.arrays();
+    match arrays.is_empty() {
+        true => vec![Matrix { name: "result", rows: outputs, columns: 1 }],
+        false => arrays.into_iter().map(|(name, rows, columns)| Matrix { name, rows, columns }).collect(),
+    }
+}
+
+/// Whether callers pass the argument.
+pub(crate) fn is_passed(argument: &Argument) -> bool {
+    !matches!(argument, Argument::Into(..) | Argument::Called(_))
+}
+
+fn is_contact_forces(argument: &Argument) -> bool {
+    matches!(argument, Argument::Given(CONTACT_FORCES, ..))
+}

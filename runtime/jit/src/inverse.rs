@@ -1,0 +1,163 @@
+//! Inverse mass matrices of the parts that programs compute.
+
+use linkwork_compiler::catalogue::InverseForm;
+
+/// Assembly of an inverse mass matrix from the outputs of a program: columns, then a row of further values for
+/// each velocity.
+pub(crate) struct Inverse {
+    n: usize,
+    trunk: Vec<usize>,
+    /// Limb of each velocity, `None` for the trunk; no list for an update of low rank.
+    limbs: Option<Vec<Option<usize>>>,
+}
+
+impl Inverse {
+    pub fn new(form: &InverseForm, n: usize) -> Inverse {
+        match form {
+            InverseForm::Explicit => Inverse { n, trunk: Vec::new(), limbs: None },
+            InverseForm::LowRankUpdate(trunk) => Inverse { n, trunk: trunk.clone(), limbs: None },
+            InverseForm::BlockArrow { trunk, limbs } => {
+                let limb = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
+                Inverse { n, trunk: trunk.clone(), limbs: Some((0..n).map(limb).collect()) }
+            }
+        }
+    }
+
+    /// Returns the number of outputs after the columns.
+    pub fn further_length(&self) -> usize {
+        self.n * self.trunk.len()
+    }
+
+    /// Number of values of work space.
+    pub fn work(&self) -> usize {
+        let width = self.trunk.len();
+        self.n * width + width * width + 2 * self.n
+    }
+
+    /// Completes the inverse from its columns and the further outputs.
+    pub fn complete(&self, matrix: &mut [f64], beside: &[f64], work: &mut [f64]) {
+        match &self.limbs {
+            None => self.add_trunk(matrix, beside),
+            Some(limbs) => self.invert(limbs, matrix, beside, work),
+        }
+    }
+
+    /// Adds to every column its combination of the columns of the trunk.
+    fn add_trunk(&self, matrix: &mut [f64], factors: &[f64]) {
+        let (n, width) = (self.n, self.trunk.len());
+        for j in 0..n {
+            for (trunk, by) in self.trunk.iter().zip(&factors[j * width..]) {
+                if *by != 0.0 {
+                    for i in 0..n {
+                        matrix[j * n + i] += by * matrix[trunk * n + i];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Inverts a mass matrix of a trunk and limbs: the matrix has the inverse of the block of each limb,
+    /// `borders` the rows of the trunk.
+    fn invert(&self, limbs: &[Option<usize>], matrix: &mut [f64], borders: &[f64], work: &mut [f64]) {
+        let (n, width) = (self.n, self.trunk.len());
+        let (g, rest) = work.split_at_mut(n * width);
+        let inner = &mut rest[..width * width];
+        for (c, trunk) in self.trunk.iter().enumerate() {
+            inner[c * width..(c + 1) * width].copy_from_slice(&borders[trunk * width..(trunk + 1) * width]);
+        }
+        g.fill(0.0);
+        for k in (0..n).filter(|k| limbs[*k].is_some()) {
+            for j in (0..n).filter(|j| limbs[*j] == limbs[k]) {
+                let by = matrix[k * n + j];
+                for t in 0..width {
+                    g[k * width + t] -= by * borders[j * width + t];
+                }
+            }
+            for c in 0..width {
+                for t in 0..width {
+                    inner[c * width + t] += g[k * width + c] * borders[k * width + t];
+                }
+            }
+        }
+        invert(width, inner);
+        for (c, trunk) in self.trunk.iter().enumerate() {
+            for i in 0..n {
+                let products = g[i * width..].iter().zip(&inner[c * width..(c + 1) * width]);
+                matrix[trunk * n + i] = products.map(|(a, b)| a * b).sum();
+            }
+            for (t, row) in self.trunk.iter().enumerate() {
+                matrix[trunk * n + row] = inner[c * width + t];
+            }
+        }
+        let g = &work[..n * width];
+        self.add_trunk(matrix, g);
+    }
+
+    /// Replaces forces by accelerations, if the program computes forces: with limbs it does.
+    pub fn solve(&self, inverse: &[f64], beside: &[f64], column: &mut [f64], work: &mut [f64]) {
+        let Some(limbs) = &self.limbs else { return };
+        let (n, width) = (self.n, self.trunk.len());
+        let (x, rest) = work[..2 * n].split_at_mut(n);
+        rest.copy_from_slice(column);
+        column.fill(0.0);
+        // One correction where there are no limbs: the inverse of an ill-conditioned matrix is exact enough
+        // for it.
+        let passes = if limbs.iter().any(Option::is_some) { 1 } else { 2 };
+        for _ in 0..passes {
+            x.fill(0.0);
+            for k in 0..n {
+                for i in 0..n {
+                    x[i] += rest[k] * inverse[k * n + i];
+                }
+            }
+            column.iter_mut().zip(&*x).for_each(|(a, x)| *a += x);
+            for k in 0..n {
+                for (t, trunk) in self.trunk.iter().enumerate() {
+                    rest[*trunk] -= x[k] * beside[k * width + t];
+                }
+            }
+        }
+    }
+}
+
+/// Inverts a symmetric positive definite matrix in place: Gauss-Jordan elimination without interchanges (Golub
+/// and Van Loan 2013, section 3.2).
+fn invert(n: usize, m: &mut [f64]) {
+    for k in 0..n {
+        let by = 1.0 / m[k * n + k];
+        m[k * n + k] = 1.0;
+        (0..n).for_each(|i| m[i * n + k] *= by);
+        for i in (0..n).filter(|i| *i != k) {
+            let factor = m[k * n + i];
+            m[k * n + i] = 0.0;
+            (0..n).for_each(|j| m[j * n + i] -= factor * m[j * n + k]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An arrow of a trunk of one velocity and two limbs of one: the columns of the limbs have the inverses of
+    /// their blocks, the borders the row of the trunk.
+    #[test]
+    fn arrows_are_inverted() {
+        let form = InverseForm::BlockArrow { trunk: vec![0], limbs: vec![vec![1], vec![2]] };
+        let inverse = Inverse::new(&form, 3);
+        let mass = [4.0, 1.0, 2.0, 1.0, 2.0, 0.0, 2.0, 0.0, 5.0];
+        let mut matrix = [0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.2];
+        let borders = [4.0, 1.0, 2.0];
+        let mut work = vec![0.0; inverse.work()];
+        inverse.complete(&mut matrix, &borders, &mut work);
+        for j in 0..3 {
+            for i in 0..3 {
+                let entry: f64 = (0..3).map(|k| mass[k * 3 + i] * matrix[j * 3 + k]).sum();
+                assert!((entry - f64::from(u8::from(i == j))).abs() < 1e-14);
+            }
+        }
+        let mut column = [7.0, 3.0, 7.0];
+        inverse.solve(&matrix, &borders, &mut column, &mut work);
+        assert!(column.iter().all(|a| (a - 1.0).abs() < 1e-14), "{column:?}");
+    }
+}

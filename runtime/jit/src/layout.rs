@@ -1,0 +1,38 @@
+//! Inputs of a program: the parameters, then the arguments of its function.
+
+use linkwork_compiler::catalogue::Argument;
+use linkwork_compiler::expr::Symbol;
+use linkwork_compiler::mechanism::Quantity;
+
+/// Order of the inputs of a program.
+pub(crate) struct Layout {
+    arguments: Vec<Argument>,
+}
+
+impl Layout {
+    /// Maximum number of inputs.
+    pub const MOST: usize = 12;
+
+    /// Returns the layout of the parameters and these arguments; `None` if there are too many.
+    pub fn new(arguments: &[Argument]) -> Option<Layout> {
+        (arguments.len() < Layout::MOST).then(|| Layout { arguments: arguments.to_vec() })
+    }
+
+    /// Returns the number of inputs.
+    pub fn len(&self) -> usize {
+        1 + self.arguments.len()
+    }
+
+    /// Returns the input and the index in it of a symbol; `None` if no input contains it.
+    pub fn locate(&self, symbol: Symbol) -> Option<(usize, usize)> {
+        match Quantity::of(symbol) {
+            Quantity::Parameter(k) => Some((0, k)),
+            Quantity::Time => {
+                let at = self.arguments.iter().position(|argument| *argument == Argument::T)?;
+                Some((1 + at, 0))
+            }
+            quantity => (self.arguments.iter().enumerate())
+                .find_map(|(at, argument)| Some((1 + at, argument.index(quantity)?))),
+        }
+    }
+}

@@ -1,0 +1,27 @@
+#![doc = include_str!("../README.md")]
+
+mod code;
+mod constrained;
+mod error;
+mod frames;
+mod functions;
+mod inverse;
+mod kernels;
+mod layout;
+mod load;
+mod merge;
+mod methods;
+mod padded;
+mod robot;
+mod routine;
+mod shared;
+mod space;
+mod table;
+
+pub use error::Error;
+pub use functions::Matrix;
+pub use load::{Loader, declare, load};
+pub use padded::Padded;
+pub use robot::{Function, Limit, Robot};
+pub use shared::Quantity;
+pub use table::AnyTable;

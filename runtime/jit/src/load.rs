@@ -1,0 +1,308 @@
+//! Files and texts to mechanisms.
+
+use crate::constrained::Constrained;
+use crate::error::Error;
+use crate::frames::Frames;
+use crate::functions::Maker;
+use crate::methods::METHODS;
+use crate::robot::Robot;
+use crate::shared::{Quantity, Requirement, Shared, Sizes};
+use crate::space::Space;
+use linkwork::__private::Rule;
+use linkwork_compiler::diag::Diagnostics;
+use linkwork_compiler::expr::Graph;
+use linkwork_compiler::mechanism::{self, Model};
+use linkwork_compiler::passes::Passes;
+use linkwork_compiler::syntax::Printed;
+use linkwork_compiler::{DeclaredStruct, Source, compile_with, declarations, derive_above, import, read};
+use proc_macro2::TokenStream;
+use std::collections::HashMap;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Loads a robot from a URDF, MJCF or SDF file, or a mechanism from a Rust file that declares one.
+///
+/// # Errors
+///
+/// The file cannot be read, or its mechanism is wrong.
+pub fn load(path: impl AsRef<Path>) -> Result<Robot, Error> {
+    Loader::file(path).load()
+}
+
+/// Loads a mechanism from its declaration in Rust's syntax: a struct with `#[mechanism]`.
+///
+/// # Errors
+///
+/// The text is not a declaration, or its mechanism is wrong.
+pub fn declare(text: &str) -> Result<Robot, Error> {
+    Loader::text(text).load()
+}
+
+/// Source of a mechanism.
+#[derive(Clone, Debug)]
+enum Origin {
+    File(PathBuf),
+    Text(String),
+}
+
+/// Settings of loading.
+#[derive(Clone, Debug)]
+pub struct Loader {
+    origin: Origin,
+    options: String,
+    name: Option<String>,
+    folder: Option<PathBuf>,
+    interpreted: bool,
+}
+
+/// Stack of the thread that compiles mechanisms: deeply nested expressions fit in it.
+const STACK: usize = 256 << 20;
+
+impl Loader {
+    /// Loads a file.
+    pub fn file(path: impl AsRef<Path>) -> Loader {
+        Loader::new(Origin::File(path.as_ref().to_path_buf()))
+    }
+
+    /// Loads a declaration in Rust's syntax.
+    #[must_use]
+    pub fn text(text: &str) -> Loader {
+        Loader::new(Origin::Text(text.to_string()))
+    }
+
+    fn new(origin: Origin) -> Loader {
+        Loader { origin, options: String::new(), name: None, folder: None, interpreted: false }
+    }
+
+    /// Adds options of the attribute, in the same syntax: `base = free, derivatives`.
+    #[must_use]
+    pub fn options(mut self, options: &str) -> Loader {
+        let separator = if self.options.is_empty() || options.is_empty() { "" } else { ", " };
+        self.options = format!("{}{separator}{options}", self.options);
+        self
+    }
+
+    /// Chooses the struct of a text or Rust file that declares several mechanisms.
+    #[must_use]
+    pub fn name(mut self, name: &str) -> Loader {
+        self.name = Some(name.to_string());
+        self
+    }
+
+    /// Sets the folder in which the files that a text names are found; else that is the current one.
+    #[must_use]
+    pub fn folder(mut self, folder: impl AsRef<Path>) -> Loader {
+        self.folder = Some(folder.as_ref().to_path_buf());
+        self
+    }
+
+    /// Interprets the functions instead of generating machine code: slow, for tests.
+    #[must_use]
+    pub fn interpreted(mut self) -> Loader {
+        self.interpreted = true;
+        self
+    }
+
+    /// Loads the mechanism.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or its mechanism is wrong.
+    pub fn load(self) -> Result<Robot, Error> {
+        let interpreted = self.interpreted;
+        // Positions of tokens stay in the memory of the thread that reads them.
+        let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
+        let thread =
+            thread.spawn(move || self.compile()).map_err(|error| Error::Internal(error.to_string()))?;
+        let shared = thread.join().map_err(|panic| Error::Internal(message(&*panic)))??;
+        Ok(Robot::new(Arc::new(shared), interpreted))
+    }
+
+    fn compile(self) -> Result<Shared, Error> {
+        let (mut declaration, folder) = self.declaration()?;
+        let options: TokenStream = self
+            .options
+            .parse()
+            .map_err(|error| Error::Syntax(format!("options `{}`: {error}", self.options)))?;
+        declaration.add(options);
+        let cx = &mut Diagnostics::new();
+        if let Some(attribute) = declaration.derive_above {
+            cx.add(derive_above(attribute));
+        }
+        let DeclaredStruct { arguments, item, .. } = declaration;
+        let source = read(arguments, item, &folder, cx);
+        let Some(mut source) = source.filter(|_| cx.is_empty()) else { return Err(wrong(cx)) };
+        let requests = &mut source.mechanism.requests;
+        // Options of generated Rust.
+        (requests.prepare, requests.batch, requests.drawing, requests.packed) = (false, false, false, false);
+        if requests.equations == Printed::Readable {
+            requests.equations = Printed::Structure;
+        }
+        let graph = Graph::new();
+        let passes = Passes { lanes: false, ..Passes::default() };
+        let compiled = compile_with(&source, &graph, passes, cx);
+        let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else { return Err(wrong(cx)) };
+        Ok(shared(&source, &model, output))
+    }
+
+    /// Returns the declaration, and the folder of the files that it names.
+    fn declaration(&self) -> Result<(DeclaredStruct, PathBuf), Error> {
+        let current = || match &self.folder {
+            Some(folder) => Ok(folder.clone()),
+            None => std::env::current_dir()
+                .map_err(|error| Error::File { path: PathBuf::from("."), reason: error.to_string() }),
+        };
+        match &self.origin {
+            Origin::Text(text) => Ok((self.chosen(text, "the text")?, current()?)),
+            Origin::File(path) => {
+                let text = text_of(path)?;
+                let is_rust = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"));
+                if !is_rust {
+                    return Ok((DeclaredStruct::of_file(path, &text), current()?));
+                }
+                let folder = match &self.folder {
+                    Some(folder) => folder.clone(),
+                    None => path.parent().unwrap_or(Path::new("")).to_path_buf(),
+                };
+                Ok((self.chosen(&text, &path.display().to_string())?, folder))
+            }
+        }
+    }
+
+    fn chosen(&self, text: &str, origin: &str) -> Result<DeclaredStruct, Error> {
+        let mut found = declarations(text).map_err(|error| {
+            let at = error.span().start();
+            Error::Syntax(format!("{origin}: line {}, column {}: {error}", at.line, at.column + 1))
+        })?;
+        let names: Vec<String> = found.iter().map(|declaration| declaration.name.clone()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        if let Some(name) = &self.name {
+            let at = names.iter().position(|known| known == name);
+            let at = at.ok_or_else(|| Error::unknown("mechanism", name, names.iter().copied()))?;
+            return Ok(found.swap_remove(at));
+        }
+        match found.len() {
+            1 => Ok(found.swap_remove(0)),
+            0 => Err(Error::Syntax(format!("{origin} has no struct with `#[mechanism]`"))),
+            _ => Err(Error::Syntax(format!(
+                "{origin} has several mechanisms: choose one of {} by its name",
+                names.join(", ")
+            ))),
+        }
+    }
+}
+
+/// Returns the errors of a mechanism.
+fn wrong(cx: &Diagnostics) -> Error {
+    let messages = cx.messages();
+    match messages.is_empty() {
+        true => Error::Internal("the mechanism could not be compiled".to_string()),
+        false => Error::Mechanism(messages),
+    }
+}
+
+/// Returns the text of a panic.
+fn message(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+    text.or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "the compiler panicked".to_string())
+}
+
+fn text_of(path: &Path) -> Result<String, Error> {
+    let fail = |reason: String| Error::File { path: path.to_path_buf(), reason };
+    let about = std::fs::metadata(path).map_err(|error| fail(error.to_string()))?;
+    if !about.is_file() {
+        return Err(fail("not a file".to_string()));
+    }
+    let limit = import::LARGEST_FILE as u64;
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(|error| fail(error.to_string()))?;
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| fail(error.to_string()))?;
+    if bytes.len() as u64 > limit {
+        return Err(fail(format!("larger than {} MiB", limit >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|_| fail("not UTF-8 text".to_string()))
+}
+
+/// Takes what remains of a mechanism after its compilation.
+fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::derive::Output) -> Shared {
+    let frames = Frames::new(model, &mut output);
+    let mut maker = Maker { model, output: &output, entries: Vec::new() };
+    maker.add_derived();
+    Space::add(&mut maker);
+    Constrained::add(&mut maker);
+    maker.entries.extend(frames.entries(model.time));
+    let entries = maker.entries;
+    let index: HashMap<String, usize> =
+        entries.iter().enumerate().map(|(k, entry)| (entry.name.clone(), k)).collect();
+    let methods = METHODS.iter().map(|name| index.get(*name).copied()).collect();
+    let quantities = |names: &mut dyn Iterator<Item = &String>, units: &[String]| {
+        let unit = |k: usize| units.get(k).cloned().unwrap_or_default();
+        names.enumerate().map(|(k, name)| Quantity { name: name.clone(), unit: unit(k) }).collect::<Vec<_>>()
+    };
+    let mut defaults = vec![f64::NAN; model.parameters.len()];
+    for (_, k) in &source.mechanism.description.states {
+        defaults[*k] = 0.0;
+    }
+    let values: Vec<f64> =
+        source.mechanism.shell.file_fields.iter().flat_map(|field| field.values.iter().copied()).collect();
+    let first = defaults.len().saturating_sub(values.len());
+    defaults[first..].copy_from_slice(&values);
+    Shared {
+        name: model.name.clone(),
+        sizes: Sizes { nq: model.nq(), nv: model.nv(), nu: model.nu() },
+        configuration: quantities(&mut model.configuration.iter(), &model.units.configuration),
+        velocities: quantities(&mut model.velocities.iter().map(|(name, _)| name), &model.units.velocities),
+        inputs: quantities(&mut model.inputs.iter().map(|(name, _)| name), &model.units.inputs),
+        parameters: quantities(&mut model.parameters.iter(), &model.units.parameters),
+        defaults,
+        tables: source.tables(),
+        limits: model.limits.iter().map(|limit| (limit.v.0, limit.bounds().map(|b| b.is_some()))).collect(),
+        requirements: model.requirements.iter().map(|r| requirement(model, r)).collect(),
+        equations: output.equations.plain.clone(),
+        time: model.time,
+        obstacle: obstacle(source, model),
+        charts: output.charts.clone(),
+        frames,
+        entries,
+        index,
+        methods,
+    }
+}
+
+/// Returns the reason why the runtime cannot integrate a loaded mechanism, if there is one.
+fn obstacle(source: &Source, model: &Model<'_>) -> Option<&'static str> {
+    let reasons = [
+        (model.kinematic, "it has no inertia"),
+        (!model.constraints.is_empty(), "it has constraints"),
+        (!model.contacts.is_empty(), "it has contacts"),
+        (model.speeds.is_some(), "it has generalized speeds"),
+        (!model.acceleration_forces.is_empty(), "its forces depend on accelerations"),
+        (!source.mechanism.description.states.is_empty(), "it has states of first order"),
+        (model.time, "it depends on time"),
+    ];
+    reasons.into_iter().find_map(|(is_so, reason)| is_so.then_some(reason))
+}
+
+fn requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {
+    use mechanism::Rule as Known;
+    let rule = match requirement.rule {
+        Known::Finite => Rule::Finite,
+        Known::Mass => Rule::Mass,
+        Known::Length => Rule::Length,
+        Known::NotNegative => Rule::NotNegative,
+        Known::Positive => Rule::Positive,
+        Known::HalfAngle => Rule::HalfAngle,
+        Known::Unit => Rule::Unit,
+        Known::Fraction => Rule::Fraction,
+        Known::Order => Rule::Order,
+        Known::Inertia => Rule::Inertia,
+    };
+    Requirement {
+        rule,
+        figure: requirement.figure.clone(),
+        parameters: requirement.parameters.iter().map(|k| model.parameters[*k].clone()).collect(),
+        count: requirement.values.len(),
+    }
+}

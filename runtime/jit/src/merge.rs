@@ -1,0 +1,82 @@
+//! Programs of several programs, each of which may take results of those before it.
+
+use linkwork_compiler::expr::Symbol;
+use linkwork_compiler::lower::{Op, Operand, Program};
+use std::collections::HashMap;
+
+/// A program under construction, and replacements of symbols in the programs that follow.
+#[derive(Default)]
+pub(crate) struct Merged {
+    program: Program,
+    bound: HashMap<Symbol, Operand>,
+    /// Calls of elementary functions, which several programs may have in common.
+    calls: Vec<(Op, Operand)>,
+}
+
+impl Merged {
+    /// Adds the instructions of a program; returns its outputs.
+    pub fn append(&mut self, program: &Program) -> Vec<Operand> {
+        let mut values: Vec<Operand> = Vec::with_capacity(program.instructions.len());
+        for op in &program.instructions {
+            let op = op.mapped(|operand| self.renamed(operand, &values));
+            let known = self.calls.iter().find(|(known, _)| *known == op).map(|(_, value)| *value);
+            values.push(known.unwrap_or_else(|| {
+                let value = self.push(op);
+                if matches!(op, Op::Call(..)) {
+                    self.calls.push((op, value));
+                }
+                value
+            }));
+        }
+        program.outputs.iter().map(|output| self.renamed(*output, &values)).collect()
+    }
+
+    fn renamed(&self, operand: Operand, values: &[Operand]) -> Operand {
+        match operand {
+            Operand::Symbol(symbol) => self.bound.get(&symbol).copied().unwrap_or(operand),
+            other => other.among(values),
+        }
+    }
+
+    /// Replaces a symbol in the programs that follow.
+    pub fn bind(&mut self, symbol: Symbol, operand: Operand) {
+        self.bound.insert(symbol, operand);
+    }
+
+    /// Adds an instruction.
+    pub fn push(&mut self, op: Op) -> Operand {
+        self.program.instructions.push(op);
+        Operand::Value(self.program.instructions.len() - 1)
+    }
+
+    /// Returns the program of these outputs.
+    pub fn finish(mut self, outputs: Vec<Operand>) -> Program {
+        self.program.outputs = outputs;
+        self.program.sweep();
+        self.program
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use linkwork_compiler::expr::Graph;
+    use linkwork_compiler::lower::lower;
+    use linkwork_compiler::mechanism::Quantity;
+
+    /// sin(2 x) of the program `2 x` and the program `sin(y)`.
+    #[test]
+    fn results_replace_symbols() {
+        let graph = Graph::new();
+        let (x, y) = (Quantity::Configuration(0), Quantity::Given(0));
+        let twice = lower(&[x.expr(&graph) * graph.constant(2.0)]);
+        let sine = lower(&[y.expr(&graph).sin()]);
+        let mut merged = Merged::default();
+        let outputs = merged.append(&twice);
+        merged.bind(y.symbol(), outputs[0]);
+        let outputs = merged.append(&sine);
+        let program = merged.finish(outputs);
+        let found = program.run(&|symbol| if symbol == x.symbol() { 0.3 } else { f64::NAN });
+        assert_eq!(found, [0.6_f64.sin()]);
+    }
+}

@@ -1,0 +1,218 @@
+//! The main functions of mechanisms by methods, on slices and on vectors and matrices of nalgebra.
+
+use crate::error::Error;
+use crate::robot::{Robot, State};
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Rotation3, Translation3, Vector3};
+
+impl Robot {
+    /// Returns the index of a function that has a method.
+    fn index_of(&self, method: Method) -> Result<usize, Error> {
+        let name = METHODS[method as usize];
+        let index = self.shared.methods[method as usize];
+        index.ok_or_else(|| Error::unknown("function", name, self.shared.names()))
+    }
+
+    fn frame(&self, function: &str, frame: &str) -> Result<usize, Error> {
+        self.shared
+            .index
+            .get(&format!("{function}({frame})"))
+            .copied()
+            .ok_or_else(|| Error::unknown("frame", frame, self.frames().iter().map(String::as_str)))
+    }
+
+    fn vector(&self, method: Method, state: State<'_>) -> Result<DVector<f64>, Error> {
+        self.state_call(self.index_of(method)?, state).map(DVector::from_vec)
+    }
+
+    fn matrices<const N: usize>(&self, index: usize, state: State<'_>) -> Result<[DMatrix<f64>; N], Error> {
+        let values = self.state_call(index, state)?;
+        let results = &self.shared.entries[index].results;
+        let mut first = 0;
+        Ok(std::array::from_fn(|k| {
+            let Some(result) = results.get(k) else { return DMatrix::zeros(0, 0) };
+            let own = &values[first..first + result.length()];
+            first += result.length();
+            DMatrix::from_column_slice(result.rows, result.columns, own)
+        }))
+    }
+
+    /// Returns the placement of a frame in the ground.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such frame, or a slice has the wrong length.
+    pub fn frame_placement(&self, frame: &str, q: &[f64]) -> Result<Isometry3<f64>, Error> {
+        let index = self.frame("frame_placement", frame)?;
+        let mut values = [0.0; 12];
+        self.state_call_into(index, State { q, ..State::default() }, &mut values)?;
+        let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&values[..9]));
+        let position = Translation3::from(Vector3::from_column_slice(&values[9..]));
+        Ok(Isometry3::from_parts(position, rotation.into()))
+    }
+
+    /// Returns the velocity of a frame in ground axes: of its origin, then angular.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such frame, or a slice has the wrong length.
+    pub fn frame_velocity(&self, frame: &str, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
+        let index = self.frame("frame_velocity", frame)?;
+        self.state_call(index, State { q, v, ..State::default() }).map(DVector::from_vec)
+    }
+
+    /// Returns the acceleration of a frame in ground axes: of its origin, then angular.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such frame, or a slice has the wrong length.
+    pub fn frame_acceleration(
+        &self,
+        frame: &str,
+        q: &[f64],
+        v: &[f64],
+        a: &[f64],
+    ) -> Result<DVector<f64>, Error> {
+        let index = self.frame("frame_acceleration", frame)?;
+        self.state_call(index, State { q, v, a, ..State::default() }).map(DVector::from_vec)
+    }
+
+    /// Returns the Jacobian of a frame, whose product with the velocity is that of the frame.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such frame, or a slice has the wrong length.
+    pub fn frame_jacobian(&self, frame: &str, q: &[f64]) -> Result<DMatrix<f64>, Error> {
+        let index = self.frame("frame_jacobian", frame)?;
+        let [jacobian] = self.matrices(index, State { q, ..State::default() })?;
+        Ok(jacobian)
+    }
+}
+
+macro_rules! methods {
+    (@state $($name:ident)*) => { State { $($name,)* ..State::default() } };
+    ($($(#[$doc:meta])* $kind:ident $name:ident $into:ident ($($argument:ident),*);)*) => {
+        /// Functions with methods.
+        #[derive(Clone, Copy)]
+        #[allow(non_camel_case_types, reason = "names of functions")]
+        enum Method {
+            $($name,)*
+            neutral,
+            integrate,
+            difference,
+            tangent_rate,
+        }
+
+        /// Names of the functions with methods, in the order of [`Method`].
+        pub(crate) const METHODS: &[&str] = &[$(stringify!($name),)* "neutral", "integrate", "difference", "tangent_rate"];
+
+        impl Robot {
+            $(
+                $(#[$doc])*
+                ///
+                /// # Errors
+                ///
+                /// The mechanism lacks this function, a slice has the wrong length, or a parameter has no value.
+                pub fn $name(&self, $($argument: &[f64]),*) -> methods!(@type $kind) {
+                    let state = methods!(@state $($argument)*);
+                    methods!(@body $kind self $name state)
+                }
+
+                #[doc = concat!("Writes the result of [`", stringify!($name), "`](Self::", stringify!($name), ") without allocation, matrices by columns one after the other.")]
+                ///
+                /// # Errors
+                ///
+                #[doc = concat!("As [`", stringify!($name), "`](Self::", stringify!($name), ").")]
+                pub fn $into(&self, $($argument: &[f64],)* out: &mut [f64]) -> Result<(), Error> {
+                    self.state_call_into(self.index_of(Method::$name)?, methods!(@state $($argument)*), out)
+                }
+            )*
+        }
+    };
+    (@type scalar) => { Result<f64, Error> };
+    (@type vector) => { Result<DVector<f64>, Error> };
+    (@type matrix) => { Result<DMatrix<f64>, Error> };
+    (@type two) => { Result<[DMatrix<f64>; 2], Error> };
+    (@type three) => { Result<[DMatrix<f64>; 3], Error> };
+    (@body scalar $self:ident $name:ident $state:ident) => {{
+        let mut value = [0.0];
+        $self.state_call_into($self.index_of(Method::$name)?, $state, &mut value)?;
+        Ok(value[0])
+    }};
+    (@body vector $self:ident $name:ident $state:ident) => { $self.vector(Method::$name, $state) };
+    (@body matrix $self:ident $name:ident $state:ident) => {{
+        let [matrix] = $self.matrices($self.index_of(Method::$name)?, $state)?;
+        Ok(matrix)
+    }};
+    (@body $some:ident $self:ident $name:ident $state:ident) => {
+        $self.matrices($self.index_of(Method::$name)?, $state)
+    };
+}
+
+methods! {
+    /// Returns the mass matrix.
+    matrix mass_matrix mass_matrix_into(q);
+    /// Returns the generalized forces that keep the accelerations zero: of gravity, springs, dampers, and velocities.
+    vector bias_forces bias_forces_into(q, v);
+    /// Returns the accelerations under generalized forces.
+    vector forward_dynamics forward_dynamics_into(q, v, tau);
+    /// Returns the generalized forces of a motion.
+    vector inverse_dynamics inverse_dynamics_into(q, v, a);
+    /// Returns the generalized forces of the inputs.
+    vector generalized_forces generalized_forces_into(q, v, u);
+    /// Returns the generalized momentum.
+    vector generalized_momentum generalized_momentum_into(q, v);
+    /// Returns the rate of the generalized momentum without inputs.
+    vector momentum_rate momentum_rate_into(q, v);
+    /// Returns the kinetic energy, J.
+    scalar kinetic_energy kinetic_energy_into(q, v);
+    /// Returns the potential energy, J.
+    scalar potential_energy potential_energy_into(q);
+    /// Returns the center of mass in the ground, m.
+    vector center_of_mass center_of_mass_into(q);
+    /// Returns the inverse of the mass matrix (option `derivatives`).
+    matrix mass_matrix_inverse mass_matrix_inverse_into(q);
+    /// Returns the derivatives of inverse dynamics by `q` and `v` (option `derivatives`).
+    two inverse_dynamics_derivatives inverse_dynamics_derivatives_into(q, v, a);
+    /// Returns the derivatives of forward dynamics by `q`, `v` and `tau` (option `derivatives`).
+    three forward_dynamics_derivatives forward_dynamics_derivatives_into(q, v, tau);
+    /// Returns the matrices `A` and `B` of the linearised equations `ẋ = A x + B u` of displacements and
+    /// velocities (option `derivatives`).
+    two linearize linearize_into(q, v, u);
+}
+
+macro_rules! others {
+    ($($(#[$doc:meta])* $name:ident $into:ident ($($argument:ident),*) $state:expr;)*) => {
+        impl Robot {
+            $(
+                $(#[$doc])*
+                ///
+                /// # Errors
+                ///
+                /// A slice has the wrong length, or a parameter has no value.
+                pub fn $name(&self, $($argument: &[f64]),*) -> Result<DVector<f64>, Error> {
+                    self.vector(Method::$name, $state)
+                }
+
+                #[doc = concat!("Writes the result of [`", stringify!($name), "`](Self::", stringify!($name), ") without allocation.")]
+                ///
+                /// # Errors
+                ///
+                #[doc = concat!("As [`", stringify!($name), "`](Self::", stringify!($name), ").")]
+                pub fn $into(&self, $($argument: &[f64],)* out: &mut [f64]) -> Result<(), Error> {
+                    self.state_call_into(self.index_of(Method::$name)?, $state, out)
+                }
+            )*
+        }
+    };
+}
+
+others! {
+    /// Returns the configuration with all coordinates zero and identity quaternions.
+    neutral neutral_into() State::default();
+    /// Returns the configuration that is reached from `q` in one unit of time with the constant velocity `dv`.
+    integrate integrate_into(q, dv) State { q, other: [dv, &[]], ..State::default() };
+    /// Returns the velocity that leads from one configuration to another in one unit of time.
+    difference difference_into(from, to) State { other: [from, to], ..State::default() };
+    /// Returns the rate of `dv` for which `integrate(q, dv)` moves with velocity `v`.
+    tangent_rate tangent_rate_into(dv, v) State { v, other: [dv, &[]], ..State::default() };
+}

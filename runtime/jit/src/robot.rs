@@ -1,0 +1,491 @@
+//! A loaded mechanism with its parameters.
+
+use crate::AnyTable;
+use crate::error::Error;
+use crate::functions::Matrix;
+use crate::layout::Layout;
+use crate::routine::Values;
+use crate::shared::{Quantity, Shared};
+use linkwork::__private::{Figure, validate};
+use linkwork_compiler::catalogue::Argument;
+use std::cell::RefCell;
+use std::fmt;
+use std::sync::Arc;
+
+/// A mechanism that was loaded at run time, with values of its parameters.
+///
+/// Copies are cheap and share the machine code; each has parameters of its own. Threads may call the functions
+/// of one robot at the same time.
+#[derive(Clone)]
+pub struct Robot {
+    pub(crate) shared: Arc<Shared>,
+    parameters: Vec<f64>,
+    tables: Vec<AnyTable>,
+    /// Number of parameters and tables without a value.
+    missing: usize,
+    time: f64,
+    interpreted: bool,
+}
+
+impl fmt::Debug for Robot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (nq, nv, nu) = (self.nq(), self.nv(), self.nu());
+        write!(f, "Robot({}: {nq} coordinates, {nv} velocities, {nu} inputs)", self.name())
+    }
+}
+
+/// A function of a robot: looked up by its name once, then called without a search.
+#[derive(Clone)]
+pub struct Function {
+    shared: Arc<Shared>,
+    index: usize,
+}
+
+impl fmt::Debug for Function {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Function({})", self.name())
+    }
+}
+
+impl Function {
+    /// Returns the name of the function.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.shared.entries[self.index].name
+    }
+
+    /// Returns the documentation of the function.
+    #[must_use]
+    pub fn documentation(&self) -> &str {
+        &self.shared.entries[self.index].documentation
+    }
+
+    /// Returns name and length of each argument, in their order.
+    #[must_use]
+    pub fn arguments(&self) -> Vec<(&'static str, usize)> {
+        let entry = &self.shared.entries[self.index];
+        entry.arguments.iter().map(|a| (a.name(), self.shared.sizes.length(*a))).collect()
+    }
+
+    /// Returns the results. They are written one after the other, matrices by columns.
+    #[must_use]
+    pub fn results(&self) -> &[Matrix] {
+        &self.shared.entries[self.index].results
+    }
+
+    /// Returns the number of values of all results.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        self.shared.entries[self.index].length
+    }
+
+    /// Generates the machine code now instead of at the first call. Returns false if the function is
+    /// interpreted: on processors without code generator, and if the code would be too long.
+    pub fn compile(&self) -> bool {
+        self.shared.prepare(self.index)
+    }
+}
+
+/// Limits of a coordinate, infinite without a bound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// Index of the velocity.
+    pub index: usize,
+    /// Minimum value of the coordinate.
+    pub lower: f64,
+    /// Maximum value of the coordinate.
+    pub upper: f64,
+    /// Maximum velocity in both directions.
+    pub velocity: f64,
+    /// Maximum generalized force in both directions.
+    pub effort: f64,
+}
+
+/// State, accelerations, forces and inputs of a call of a function by its index.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct State<'a> {
+    pub q: &'a [f64],
+    pub v: &'a [f64],
+    pub a: &'a [f64],
+    pub tau: &'a [f64],
+    pub u: &'a [f64],
+    pub other: [&'a [f64]; 2],
+}
+
+thread_local! {
+    static WORK: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Robot {
+    pub(crate) fn new(shared: Arc<Shared>, interpreted: bool) -> Robot {
+        let parameters = shared.defaults.clone();
+        let tables = vec![AnyTable::Missing; shared.tables.len()];
+        let missing = parameters.iter().filter(|value| value.is_nan()).count() + tables.len();
+        Robot { shared, parameters, tables, missing, time: 0.0, interpreted }
+    }
+
+    /// Returns the name of the mechanism.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.shared.name
+    }
+
+    /// Returns the number of coordinates.
+    #[must_use]
+    pub fn nq(&self) -> usize {
+        self.shared.sizes.nq
+    }
+
+    /// Returns the number of velocities.
+    #[must_use]
+    pub fn nv(&self) -> usize {
+        self.shared.sizes.nv
+    }
+
+    /// Returns the number of inputs.
+    #[must_use]
+    pub fn nu(&self) -> usize {
+        self.shared.sizes.nu
+    }
+
+    /// Returns name and unit of each coordinate.
+    #[must_use]
+    pub fn configuration(&self) -> &[Quantity] {
+        &self.shared.configuration
+    }
+
+    /// Returns name and unit of each velocity. Accelerations and generalized forces have the same order.
+    #[must_use]
+    pub fn velocities(&self) -> &[Quantity] {
+        &self.shared.velocities
+    }
+
+    /// Returns name and unit of each input.
+    #[must_use]
+    pub fn inputs(&self) -> &[Quantity] {
+        &self.shared.inputs
+    }
+
+    /// Returns name and unit of each parameter.
+    #[must_use]
+    pub fn parameters(&self) -> &[Quantity] {
+        &self.shared.parameters
+    }
+
+    /// Returns the values of the parameters, NaN for those without a value.
+    #[must_use]
+    pub fn parameter_values(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// Returns name and number of variables of each table.
+    #[must_use]
+    pub fn tables(&self) -> &[(String, usize)] {
+        &self.shared.tables
+    }
+
+    /// Returns the names of the frames.
+    #[must_use]
+    pub fn frames(&self) -> &[String] {
+        &self.shared.frames.names
+    }
+
+    /// Returns the equations of motion as text, if the options ask for them.
+    #[must_use]
+    pub fn equations(&self) -> &str {
+        &self.shared.equations
+    }
+
+    /// Whether functions take time as their first argument.
+    #[must_use]
+    pub fn depends_on_time(&self) -> bool {
+        self.shared.time
+    }
+
+    /// Returns the functions.
+    pub fn functions(&self) -> impl Iterator<Item = Function> {
+        let all = self.shared.entries.iter().enumerate().filter(|(_, entry)| !entry.hidden);
+        all.map(|(index, _)| Function { shared: self.shared.clone(), index })
+    }
+
+    /// Returns a function by its name. Functions of frames have the frame in parentheses:
+    /// `frame_jacobian(hand)`.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such function.
+    pub fn function(&self, name: &str) -> Result<Function, Error> {
+        let index = self.shared.index.get(name).copied();
+        let index = index.filter(|index| !self.shared.entries[*index].hidden);
+        let index = index.ok_or_else(|| Error::unknown("function", name, self.shared.names()))?;
+        Ok(Function { shared: self.shared.clone(), index })
+    }
+
+    /// Returns the values of a parameter.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such parameter.
+    pub fn parameter(&self, name: &str) -> Result<f64, Error> {
+        Ok(self.parameters[self.parameter_index(name)?])
+    }
+
+    fn parameter_index(&self, name: &str) -> Result<usize, Error> {
+        let known = &self.shared.parameters;
+        known
+            .iter()
+            .position(|parameter| parameter.name == name)
+            .ok_or_else(|| Error::unknown("parameter", name, known.iter().map(|p| p.name.as_str())))
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such parameter, or the value is not finite.
+    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Error> {
+        let index = self.parameter_index(name)?;
+        self.set_parameter_at(index, value)
+    }
+
+    fn set_parameter_at(&mut self, index: usize, value: f64) -> Result<(), Error> {
+        if !value.is_finite() {
+            let name = &self.shared.parameters[index].name;
+            return Err(Error::Value(format!("the parameter `{name}` must be finite, but it is {value}")));
+        }
+        let before = std::mem::replace(&mut self.parameters[index], value);
+        self.missing -= usize::from(before.is_nan());
+        Ok(())
+    }
+
+    /// Sets all parameters, in their order.
+    ///
+    /// # Errors
+    ///
+    /// The number of values is wrong, or one of them is not finite.
+    pub fn set_parameters(&mut self, values: &[f64]) -> Result<(), Error> {
+        self.check_length("parameters", self.parameters.len(), values.len())?;
+        (0..values.len()).try_for_each(|k| self.set_parameter_at(k, values[k]))
+    }
+
+    /// Sets parameters by their names, and returns the robot.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism lacks one of the parameters, or a value is not finite.
+    pub fn with_parameters(mut self, values: &[(&str, f64)]) -> Result<Robot, Error> {
+        values.iter().try_for_each(|(name, value)| self.set_parameter(name, *value))?;
+        Ok(self)
+    }
+
+    /// Sets a table: a `Table<1>`, `Table<2>` or `Table<3>`.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no such table, or it has another number of variables.
+    pub fn set_table(&mut self, name: &str, table: impl Into<AnyTable>) -> Result<(), Error> {
+        let (table, known) = (table.into(), &self.shared.tables);
+        let index = known
+            .iter()
+            .position(|(known, _)| known == name)
+            .ok_or_else(|| Error::unknown("table", name, known.iter().map(|(name, _)| name.as_str())))?;
+        self.check_length(name, known[index].1, table.variables())?;
+        let before = std::mem::replace(&mut self.tables[index], table);
+        self.missing -= usize::from(before == AnyTable::Missing);
+        Ok(())
+    }
+
+    /// Checks whether a physical mechanism can have the values of the parameters.
+    ///
+    /// # Errors
+    ///
+    /// The first value that none can have.
+    pub fn validate(&self) -> Result<(), Error> {
+        self.check_values()?;
+        let Some(index) = self.shared.index.get("figures") else { return Ok(()) };
+        let values = self.state_call(*index, State::default())?;
+        let mut rest = values.as_slice();
+        for requirement in &self.shared.requirements {
+            let (own, others) = rest.split_at(requirement.count.min(rest.len()));
+            rest = others;
+            // The message of the runtime begins with the name of the value, which it takes as a constant.
+            let figure = Figure { rule: requirement.rule, name: "", parameters: &[] };
+            validate(&[figure], own).map_err(|error| {
+                let parameters = requirement.parameters.join("`, `");
+                let names =
+                    if parameters.is_empty() { String::new() } else { format!(" (by `{parameters}`)") };
+                Error::Value(format!("{}{error}{names}", requirement.figure))
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Returns the limits of the coordinates.
+    ///
+    /// # Errors
+    ///
+    /// A parameter has no value.
+    pub fn limits(&self) -> Result<Vec<Limit>, Error> {
+        let Some(index) = self.shared.index.get("limits") else { return Ok(Vec::new()) };
+        let mut values = self.state_call(*index, State::default())?.into_iter();
+        let mut bound = |present: bool, default: f64| match present {
+            true => values.next().unwrap_or(default),
+            false => default,
+        };
+        let limits = self.shared.limits.iter().map(|(index, [lower, upper, velocity, effort])| Limit {
+            index: *index,
+            lower: bound(*lower, f64::NEG_INFINITY),
+            upper: bound(*upper, f64::INFINITY),
+            velocity: bound(*velocity, f64::INFINITY),
+            effort: bound(*effort, f64::INFINITY),
+        });
+        Ok(limits.collect())
+    }
+
+    /// Returns the time of the functions of [`Robot`] that take a state: zero until it is set.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Sets the time of the functions of [`Robot`] that take a state.
+    pub fn set_time(&mut self, time: f64) {
+        self.time = time;
+    }
+
+    /// Evaluates a function of arguments in their order, and writes its results one after the other, matrices
+    /// by columns. Allocates nothing after the first call of a thread.
+    ///
+    /// # Errors
+    ///
+    /// A slice has the wrong length, a parameter has no value, or the function belongs to another mechanism.
+    pub fn evaluate_into(&self, f: &Function, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
+        self.evaluate_many_into(f, 1, arguments, out)
+    }
+
+    /// Evaluates a function; see [`evaluate_into`](Self::evaluate_into).
+    ///
+    /// # Errors
+    ///
+    /// As [`evaluate_into`](Self::evaluate_into).
+    pub fn evaluate(&self, f: &Function, arguments: &[&[f64]]) -> Result<Vec<f64>, Error> {
+        let mut out = vec![0.0; f.length()];
+        self.evaluate_into(f, arguments, &mut out)?;
+        Ok(out)
+    }
+
+    /// Evaluates a function for `count` sets of arguments. Each argument has the values of all sets one after
+    /// the other, or those of one set, which all share.
+    ///
+    /// # Errors
+    ///
+    /// As [`evaluate_into`](Self::evaluate_into).
+    pub fn evaluate_many_into(
+        &self,
+        f: &Function,
+        count: usize,
+        arguments: &[&[f64]],
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        match Arc::ptr_eq(&self.shared, &f.shared) {
+            true => self.call(f.index, count, arguments, out),
+            false => Err(Error::OtherMechanism(f.name().to_string())),
+        }
+    }
+
+    /// Evaluates a function by its index; see [`evaluate_many_into`](Self::evaluate_many_into).
+    fn call(&self, index: usize, count: usize, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), Error> {
+        self.check_values()?;
+        let entry = &self.shared.entries[index];
+        if arguments.len() != entry.arguments.len() {
+            let expected = entry.arguments.iter().map(|argument| argument.name()).collect();
+            return Err(Error::Arguments { of: entry.name.clone(), expected, found: arguments.len() });
+        }
+        let mut lengths = [0; Layout::MOST];
+        for ((argument, list), length) in entry.arguments.iter().zip(arguments).zip(&mut lengths) {
+            *length = self.shared.sizes.length(*argument);
+            if list.len() != *length && list.len() != *length * count {
+                let (of, name) = (entry.name.clone(), argument.name().to_string());
+                return Err(Error::Length { of, name, expected: *length * count, found: list.len() });
+            }
+        }
+        if out.len() != entry.length * count {
+            let (of, name) = (entry.name.clone(), "the result".to_string());
+            return Err(Error::Length { of, name, expected: entry.length * count, found: out.len() });
+        }
+        WORK.with_borrow_mut(|work| {
+            if work.len() < entry.work {
+                work.resize(entry.work, 0.0);
+            }
+            let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+            inputs[0] = &self.parameters;
+            for k in 0..count {
+                for ((input, list), length) in inputs[1..].iter_mut().zip(arguments).zip(&lengths) {
+                    let first = if list.len() == *length { 0 } else { k * length };
+                    *input = &list[first..first + length];
+                }
+                let values = Values {
+                    inputs: &inputs[..=arguments.len()],
+                    tables: &self.tables,
+                    interpreted: self.interpreted,
+                };
+                let out = &mut out[k * entry.length..(k + 1) * entry.length];
+                entry.run(&self.shared, values, out, work);
+            }
+        });
+        Ok(())
+    }
+
+    /// Evaluates a function by its index with the parts of the state that it takes.
+    pub(crate) fn state_call_into(
+        &self,
+        index: usize,
+        state: State<'_>,
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        let entry = &self.shared.entries[index];
+        let time = [self.time];
+        let mut arguments: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        let mut others = state.other.into_iter();
+        for (list, argument) in arguments.iter_mut().zip(&entry.arguments) {
+            *list = match argument {
+                Argument::T => &time,
+                Argument::Q => state.q,
+                Argument::V => state.v,
+                Argument::A => state.a,
+                Argument::Tau => state.tau,
+                Argument::U => state.u,
+                _ => others.next().unwrap_or(&[]),
+            };
+        }
+        self.call(index, 1, &arguments[..entry.arguments.len()], out)
+    }
+
+    pub(crate) fn state_call(&self, index: usize, state: State<'_>) -> Result<Vec<f64>, Error> {
+        let mut out = vec![0.0; self.shared.entries[index].length];
+        self.state_call_into(index, state, &mut out)?;
+        Ok(out)
+    }
+
+    pub(crate) fn check_length(&self, name: &str, expected: usize, found: usize) -> Result<(), Error> {
+        match expected == found {
+            true => Ok(()),
+            false => {
+                Err(Error::Length { of: self.shared.name.clone(), name: name.to_string(), expected, found })
+            }
+        }
+    }
+
+    fn check_values(&self) -> Result<(), Error> {
+        if self.missing == 0 {
+            return Ok(());
+        }
+        let parameters = self.shared.parameters.iter().zip(&self.parameters);
+        let parameters = parameters.filter(|(_, value)| value.is_nan()).map(|(p, _)| format!("`{}`", p.name));
+        let tables = self.shared.tables.iter().zip(&self.tables);
+        let tables = tables
+            .filter(|(_, table)| **table == AnyTable::Missing)
+            .map(|((name, _), _)| format!("`{name}`"));
+        Err(Error::Missing(parameters.chain(tables).collect()))
+    }
+}

@@ -1,0 +1,88 @@
+//! A program with its machine code, which is generated at the first call.
+
+use crate::AnyTable;
+use crate::code::Code;
+use crate::layout::Layout;
+use linkwork_compiler::catalogue::Argument;
+use linkwork_compiler::expr::Lookup;
+use linkwork_compiler::lower::Program;
+use std::sync::OnceLock;
+
+/// A program with the order of its inputs.
+pub(crate) struct Routine {
+    program: OnceLock<Program>,
+    layout: Layout,
+    /// Number of outputs that are results of the function.
+    results: usize,
+    code: OnceLock<Option<Code>>,
+}
+
+/// The values that a program is evaluated with.
+#[derive(Clone, Copy)]
+pub(crate) struct Values<'a> {
+    /// Parameters, then the arguments.
+    pub inputs: &'a [&'a [f64]],
+    /// Tables.
+    pub tables: &'a [AnyTable],
+    /// Whether programs are interpreted.
+    pub interpreted: bool,
+}
+
+impl Routine {
+    /// Returns the routine of a program whose first `results` outputs are results of the function; `None` if
+    /// the function has too many arguments.
+    pub fn new(program: Program, arguments: &[Argument], results: usize) -> Option<Routine> {
+        let routine = Routine::deferred(arguments, results)?;
+        Some(Routine { program: OnceLock::from(program), ..routine })
+    }
+
+    /// Returns the routine of a program that is made at the first call.
+    pub fn deferred(arguments: &[Argument], results: usize) -> Option<Routine> {
+        let layout = Layout::new(arguments)?;
+        Some(Routine { program: OnceLock::new(), layout, results, code: OnceLock::new() })
+    }
+
+    /// Makes the program at the first call.
+    pub fn ensure(&self, make: impl FnOnce() -> Program) {
+        self.program.get_or_init(make);
+    }
+
+    /// Generates machine code at the first call. Returns false if the program is interpreted.
+    pub fn prepare(&self) -> bool {
+        let compile = || Code::compile(self.program.get()?, &self.layout, self.results).ok();
+        self.code.get_or_init(compile).is_some()
+    }
+
+    /// Evaluates the program.
+    pub fn run(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
+        let code = match values.interpreted {
+            true => None,
+            false => {
+                if self.code.get().is_none() {
+                    self.prepare();
+                }
+                self.code.get().and_then(Option::as_ref)
+            }
+        };
+        match code {
+            Some(code) => code.call(values.inputs, values.tables, results, more),
+            None => self.interpret(values, results, more),
+        }
+    }
+
+    fn interpret(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
+        let Some(program) = self.program.get() else { return };
+        let symbol = |symbol| {
+            let place = self.layout.locate(symbol);
+            let value = place.and_then(|(slot, index)| values.inputs.get(slot)?.get(index));
+            value.copied().unwrap_or(f64::NAN)
+        };
+        let table = |lookup: Lookup, x| {
+            let table = values.tables.get(lookup.table());
+            table.map_or(f64::NAN, |table| table.value(x, [0, 1, 2].map(|k| lookup.order(k) as u8)))
+        };
+        let outputs = program.run_with(&symbol, &table);
+        let places = results[..self.results].iter_mut().chain(more);
+        places.zip(outputs).for_each(|(place, value)| *place = value);
+    }
+}

@@ -1,0 +1,121 @@
+//! Data that all robots of one loaded mechanism share: functions and names.
+
+use crate::frames::Frames;
+use crate::functions::Entry;
+use crate::layout::Layout;
+use crate::routine::Values;
+use linkwork_compiler::catalogue::Argument;
+use linkwork_compiler::mechanism::Chart;
+use std::collections::HashMap;
+
+/// Numbers of coordinates, velocities and inputs.
+#[derive(Clone, Copy)]
+pub(crate) struct Sizes {
+    pub nq: usize,
+    pub nv: usize,
+    pub nu: usize,
+}
+
+impl Sizes {
+    /// Returns the number of entries of an argument.
+    pub fn length(&self, argument: Argument) -> usize {
+        match argument {
+            Argument::T => 1,
+            Argument::Q => self.nq,
+            Argument::V | Argument::A | Argument::Tau => self.nv,
+            Argument::U => self.nu,
+            Argument::Given(_, _, n)
+            | Argument::Standard(n)
+            | Argument::Factors(n)
+            | Argument::Momenta(n) => n,
+            Argument::Into(..) | Argument::Called(_) => 0,
+        }
+    }
+}
+
+/// Name and unit of a coordinate, velocity, input or parameter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// Name.
+    pub name: String,
+    /// Unit, for example `rad/s`; empty for a pure number.
+    pub unit: String,
+}
+
+/// A condition on the parameters.
+pub(crate) struct Requirement {
+    pub rule: linkwork::__private::Rule,
+    pub figure: String,
+    pub parameters: Vec<String>,
+    pub count: usize,
+}
+
+/// A loaded mechanism.
+pub(crate) struct Shared {
+    pub name: String,
+    pub sizes: Sizes,
+    pub configuration: Vec<Quantity>,
+    pub velocities: Vec<Quantity>,
+    pub inputs: Vec<Quantity>,
+    pub parameters: Vec<Quantity>,
+    /// Values of a file, NaN for parameters that have none.
+    pub defaults: Vec<f64>,
+    /// Names and numbers of variables of the tables.
+    pub tables: Vec<(String, usize)>,
+    /// Index in `v`, and which of the bounds are present, of each limit.
+    pub limits: Vec<(usize, [bool; 4])>,
+    pub requirements: Vec<Requirement>,
+    pub equations: String,
+    pub time: bool,
+    /// Reason why the runtime cannot integrate the mechanism.
+    pub obstacle: Option<&'static str>,
+    pub charts: Vec<Chart>,
+    pub frames: Frames,
+    pub entries: Vec<Entry>,
+    pub index: HashMap<String, usize>,
+    /// Indices of the functions with methods.
+    pub methods: Vec<Option<usize>>,
+}
+
+impl Shared {
+    /// Returns the names of the functions, without those of frames.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let public = self.entries.iter().filter(|entry| !entry.hidden && !entry.name.contains('('));
+        public.map(|entry| entry.name.as_str())
+    }
+
+    /// Evaluates a function with the arguments of another one, some of them replaced.
+    pub fn call(
+        &self,
+        function: usize,
+        values: Values<'_>,
+        arguments: &[Argument],
+        replaced: &[(Argument, &[f64])],
+        out: &mut [f64],
+        work: &mut [f64],
+    ) {
+        let entry = &self.entries[function];
+        let mut inputs: [&[f64]; Layout::MOST] = [&[]; Layout::MOST];
+        inputs[0] = values.inputs[0];
+        for (input, argument) in inputs[1..].iter_mut().zip(&entry.arguments) {
+            let position = || arguments.iter().position(|known| known == argument);
+            *input = match replaced.iter().find(|(known, _)| known == argument) {
+                Some((_, list)) => list,
+                None => position().and_then(|at| values.inputs.get(1 + at)).copied().unwrap_or(&[]),
+            };
+        }
+        let inputs = &inputs[..=entry.arguments.len()];
+        entry.run(self, Values { inputs, ..values }, out, work);
+    }
+
+    /// Generates the machine code of a function and of those that it calls. Returns false if one of them is
+    /// interpreted.
+    pub fn prepare(&self, function: usize) -> bool {
+        let plan = &self.entries[function].plan;
+        let called = plan.calls().into_iter().map(|k| self.prepare(k)).fold(true, |all, one| all && one);
+        if let crate::functions::Plan::Frame(access, frame, routine) = plan {
+            routine.ensure(|| self.frames.program(*access, *frame));
+        }
+        plan.routines().into_iter().map(|routine| routine.prepare()).fold(called, |all, one| all && one)
+    }
+}

@@ -1,0 +1,177 @@
+//! The configuration space: motions along velocities, differences of configurations, rates of displacements.
+
+use crate::functions::{Entry, Maker, Matrix, Plan};
+use crate::routine::Values;
+use crate::shared::Shared;
+use linkwork::__private::{
+    ball_difference, ball_integrate, ball_tangent_rate, free_difference, free_integrate, free_tangent_rate,
+};
+use linkwork_compiler::catalogue::Argument;
+use linkwork_compiler::mechanism::{Chart, InQ, InV};
+
+/// A function of the configuration space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Integrate,
+    Difference,
+    TangentRate,
+    DisplacementRate,
+}
+
+/// A function of the configuration space, with the indices of the functions that exchange speeds and joint
+/// velocities, if the mechanism has speeds.
+pub(crate) struct Space {
+    kind: Kind,
+    speeds: Option<[usize; 2]>,
+}
+
+/// Returns the entries of a list from an index on.
+fn array<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
+    std::array::from_fn(|k| list[first + k])
+}
+
+/// Moves a configuration along a constant joint velocity for one unit of time.
+pub(crate) fn integrate(charts: &[Chart], q: &[f64], dv: &[f64], out: &mut [f64]) {
+    for chart in charts {
+        match *chart {
+            Chart::Plain(InQ(q0), InV(v0)) => out[q0] = q[q0] + dv[v0],
+            Chart::Ball(InQ(q0), InV(v0)) => {
+                out[q0..q0 + 4].copy_from_slice(&ball_integrate(array(q, q0), array(dv, v0)));
+            }
+            Chart::Free(InQ(q0), InV(v0)) => {
+                out[q0..q0 + 7].copy_from_slice(&free_integrate(array(q, q0), array(dv, v0)));
+            }
+        }
+    }
+}
+
+fn difference(charts: &[Chart], from: &[f64], to: &[f64], out: &mut [f64]) {
+    for chart in charts {
+        match *chart {
+            Chart::Plain(InQ(q0), InV(v0)) => out[v0] = to[q0] - from[q0],
+            Chart::Ball(InQ(q0), InV(v0)) => {
+                out[v0..v0 + 3].copy_from_slice(&ball_difference(array(from, q0), array(to, q0)));
+            }
+            Chart::Free(InQ(q0), InV(v0)) => {
+                out[v0..v0 + 6].copy_from_slice(&free_difference(array(from, q0), array(to, q0)));
+            }
+        }
+    }
+}
+
+fn tangent_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
+    for chart in charts {
+        match *chart {
+            Chart::Plain(_, InV(v0)) => out[v0] = v[v0],
+            Chart::Ball(_, InV(v0)) => {
+                out[v0..v0 + 3].copy_from_slice(&ball_tangent_rate(array(dv, v0), array(v, v0)));
+            }
+            Chart::Free(_, InV(v0)) => {
+                out[v0..v0 + 6].copy_from_slice(&free_tangent_rate(array(dv, v0), array(v, v0)));
+            }
+        }
+    }
+}
+
+impl Space {
+    /// Adds the functions to those of a mechanism.
+    pub fn add(maker: &mut Maker<'_, '_>) {
+        let (nq, nv) = (maker.model.nq(), maker.model.nv());
+        let speeds = match [maker.index("rates_of_speeds"), maker.index("speeds_of_rates")] {
+            [Some(rates), Some(speeds)] => Some([rates, speeds]),
+            _ => None,
+        };
+        let vector = |name| Argument::Given(name, 0, nv);
+        let configuration = |name| Argument::Given(name, 0, nq);
+        let mut add = |kind, name, documentation: &str, arguments: Vec<Argument>, rows| {
+            let results = vec![Matrix { name: "result", rows, columns: 1 }];
+            let plan = Plan::Space(Space { kind, speeds });
+            let calls = speeds.map_or(0, |all| all.map(|k| maker.entries[k].work).into_iter().sum());
+            let entry = Entry::new(name, documentation.to_string(), arguments, results, plan);
+            let work = 4 * nv + nq + calls;
+            maker.entries.push(Entry { work, ..entry });
+        };
+        let dv = vector("dv");
+        add(
+            Kind::Integrate,
+            "integrate",
+            "Configuration that is reached from `q` in one unit of time with the constant velocity `dv`; quaternions are normalised.",
+            vec![Argument::Q, dv],
+            nq,
+        );
+        add(
+            Kind::Difference,
+            "difference",
+            "Velocity that leads from one configuration to another in one unit of time.",
+            vec![configuration("from"), configuration("to")],
+            nv,
+        );
+        match speeds {
+            None => add(
+                Kind::TangentRate,
+                "tangent_rate",
+                "Rate of `dv` for which `integrate(q, dv)` moves with velocity `v`.",
+                vec![dv, Argument::V],
+                nv,
+            ),
+            Some(_) => add(
+                Kind::DisplacementRate,
+                "displacement_rate",
+                "Rate of `dv` for which `integrate(q, dv)` moves with the speeds `v`.",
+                vec![Argument::Q, dv, Argument::V],
+                nv,
+            ),
+        }
+    }
+
+    /// Returns the indices of the functions that are called.
+    pub fn calls(&self) -> Vec<usize> {
+        self.speeds.into_iter().flatten().collect()
+    }
+
+    /// Evaluates the function.
+    pub fn run(
+        &self,
+        shared: &Shared,
+        values: Values<'_>,
+        _: &[Argument],
+        out: &mut [f64],
+        work: &mut [f64],
+    ) {
+        let charts = &shared.charts;
+        let inputs = &values.inputs[1..];
+        let Some([rates, speeds]) = self.speeds else {
+            return match self.kind {
+                Kind::Integrate => integrate(charts, inputs[0], inputs[1], out),
+                Kind::Difference => difference(charts, inputs[0], inputs[1], out),
+                Kind::TangentRate | Kind::DisplacementRate => tangent_rate(charts, inputs[0], inputs[1], out),
+            };
+        };
+        let (nq, nv) = (shared.sizes.nq, shared.sizes.nv);
+        let (way, rest) = work.split_at_mut(nv);
+        let (rate, rest) = rest.split_at_mut(nv);
+        let (change, rest) = rest.split_at_mut(nv);
+        let (there, rest) = rest.split_at_mut(nq);
+        let mut call = |function: usize, q: &[f64], v: &[f64], out: &mut [f64]| {
+            let given = [(Argument::Q, q), (Argument::V, v)];
+            shared.call(function, values, &[], &given, out, rest);
+        };
+        match self.kind {
+            Kind::Integrate => {
+                call(rates, inputs[0], inputs[1], way);
+                integrate(charts, inputs[0], way, out);
+            }
+            Kind::Difference => {
+                difference(charts, inputs[0], inputs[1], way);
+                call(speeds, inputs[0], way, out);
+            }
+            Kind::TangentRate | Kind::DisplacementRate => {
+                call(rates, inputs[0], inputs[1], way);
+                integrate(charts, inputs[0], way, there);
+                call(rates, there, inputs[2], rate);
+                tangent_rate(charts, way, rate, change);
+                call(speeds, inputs[0], change, out);
+            }
+        }
+    }
+}
