@@ -84,10 +84,12 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             motion = motion.plots("Inputs", curves)?;
         }
     }
-    let out =
-        matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{}.html", input.name)));
+    let out = matches
+        .get_one("out")
+        .cloned()
+        .unwrap_or_else(|| PathBuf::from(format!("{}.html", input.declaration.name)));
     let about = without_links(&docs(&source.mechanism.shell.attributes).join("\n\n"));
-    Page::new(&input.name).text(&about).motion(motion).write(&out)?;
+    Page::new(&input.declaration.name).text(&about).motion(motion).write(&out)?;
     crate::say!("{}", out.display());
     Ok(())
 }

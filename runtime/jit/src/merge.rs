@@ -69,7 +69,7 @@ mod tests {
     fn results_replace_symbols() {
         let graph = Graph::new();
         let (x, y) = (Quantity::Configuration(0), Quantity::Given(0));
-        let twice = lower(&[x.expr(&graph) * graph.constant(2.0)]);
+        let twice = lower(&[x.expr(&graph) * graph.num(2.0)]);
         let sine = lower(&[y.expr(&graph).sin()]);
         let mut merged = Merged::default();
         let outputs = merged.append(&twice);

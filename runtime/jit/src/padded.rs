@@ -31,9 +31,9 @@ use linkwork::nalgebra::{SMatrix, SVector};
 /// )?;
 /// let exact = pendulum.padded::<1, 1, 0>()?;
 /// let padded = pendulum.padded::<4, 4, 2>()?;
-/// let end = simulate(&exact).from([0.5].into(), [0.0].into()).duration(1.0).finish()?;
-/// let q = [0.5, 0.0, 0.0, 0.0].into();
-/// let same = simulate(&padded).from(q, [0.0; 4].into()).duration(1.0).finish()?;
+/// let end = simulate(&exact).from([0.5], [0.0]).duration(1.0).finish()?;
+/// let q = [0.5, 0.0, 0.0, 0.0];
+/// let same = simulate(&padded).from(q, [0.0; 4]).duration(1.0).finish()?;
 /// assert!((end.q[0] - same.q[0]).abs() < 1e-6 && same.q[1] == 0.0);
 /// # Ok(())
 /// # }
@@ -120,7 +120,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
 
     fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        let mut all = SVector::zeros();
+        let mut all = SVector::<f64, NV>::zeros();
         for (k, entry) in all.iter_mut().enumerate().skip(nv) {
             *entry = to[k - nv + nq] - from[k - nv + nq];
         }
@@ -133,7 +133,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize> Mechanism<NQ, NV, NU> fo
 
     fn mass_matrix(&self, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let n = self.robot.nv();
-        let mut all = SMatrix::identity();
+        let mut all = SMatrix::<f64, NV, NV>::identity();
         if n == NV {
             if self.robot.mass_matrix_into(self.q(q), all.as_mut_slice()).is_err() {
                 all.fill(f64::NAN);

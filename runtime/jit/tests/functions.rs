@@ -16,10 +16,10 @@ macro_rules! both {
 both! {
     CART_POLE,
     #[mechanism(gravity = -9.81 * y, derivatives)]
-    pub struct CartPole {
-        pub cart_mass: f64,
-        pub pole_mass: f64,
-        pub pole_length: f64,
+    struct CartPole {
+        cart_mass: f64,
+        pole_mass: f64,
+        pole_length: f64,
         #[body(mass = cart_mass)]
         cart: Body,
         #[body(mass = pole_mass, com = pole_length / 2 * y, inertia = rod(pole_mass, pole_length, y))]
@@ -36,14 +36,14 @@ both! {
 both! {
     SPINNER,
     #[mechanism(gravity = -9.81 * z, derivatives)]
-    pub struct Spinner {
-        #[body(mass = 2, inertia = diag(0.3, 0.2, 0.1))]
+    struct Spinner {
+        #[body(mass = 2, inertia = diagonal(0.3, 0.2, 0.1))]
         base: Body,
-        #[body(mass = 0.5, com = 0.1 * x, inertia = diag(0.01, 0.02, 0.03))]
+        #[body(mass = 0.5, com = 0.1 * x, inertia = diagonal(0.01, 0.02, 0.03))]
         arm: Body,
         #[joint(ground -> base)]
         free: Free,
-        #[joint(base -> arm, at = 0.2 * x, about = y)]
+        #[joint(base.at(0.2 * x) -> arm, about = y)]
         hinge: Pin,
         #[acts(on = hinge)]
         motor: Torque,
@@ -53,17 +53,17 @@ both! {
 both! {
     SLIDER,
     #[mechanism(gravity = -9.81 * y)]
-    pub struct Slider {
-        #[body(mass = 1, com = 0.2 * x, inertia = diag(0, 0, 0.02))]
+    struct Slider {
+        #[body(mass = 1, com = 0.2 * x, inertia = rod(1, 0.4, x))]
         crank: Body,
-        #[body(mass = 1, com = 0.5 * x, inertia = diag(0, 0, 0.08))]
+        #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]
         rod: Body,
         #[joint(ground -> crank, about = z)]
         motor: Pin,
-        #[joint(crank -> rod, at = 0.4 * x, about = z)]
+        #[joint(crank.at(0.4 * x) -> rod, about = z)]
         knee: Pin,
-        #[constraint(dot(rod.at(1.0 * x) - ground.at(0.0 * x), y) = 0)]
-        guide: Constraint,
+        #[constraint(0.4 * sin(motor) = -sin(motor + knee))]
+        guide: Holonomic,
     }
 }
 

@@ -9,8 +9,8 @@ fn run(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     }
     let own = std::env::current_exe()?;
-    // The library is in the folder above that of the tests.
-    let folder = own.parent().and_then(Path::parent).ok_or("no folder")?;
+    // Cargo writes the library next to the tests.
+    let folder = own.parent().ok_or("no folder")?;
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = folder.join(format!("linkwork_{}", file.replace('.', "_")));
     let output = Command::new(compiler)
@@ -21,7 +21,7 @@ fn run(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Error>> {
         .arg(&program)
         .arg("-L")
         .arg(folder)
-        .args(["-llinkwork", "-lm"])
+        .args(["-llinkwork_c", "-lm"])
         .arg(format!("-Wl,-rpath,{}", folder.display()))
         .output()?;
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
