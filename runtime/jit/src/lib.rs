@@ -1,5 +1,9 @@
 #![doc = include_str!("../README.md")]
 
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod code;
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[path = "no_code.rs"]
 mod code;
 mod constrained;
 mod error;

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![allow(unsafe_code, reason = "functions of C, whose pointers `raw` reads")]
 #![allow(clippy::missing_safety_doc, reason = "the header says what pointers are")]
+#![allow(clippy::too_many_arguments, reason = "the header has these signatures")]
 #![allow(missing_docs, reason = "the header documents the functions")]
 
 mod raw;

@@ -1,0 +1,20 @@
+//! Processors without code generator: programs are interpreted.
+
+use crate::AnyTable;
+use crate::layout::Layout;
+use linkwork_compiler::lower::Program;
+
+/// A compiled program, of which there are none.
+pub(crate) enum Code {}
+
+impl Code {
+    /// Returns an error: there is no code generator.
+    pub fn compile(_program: &Program, _layout: &Layout, _results: usize) -> Result<Code, String> {
+        Err("there is no code generator for this processor".to_string())
+    }
+
+    /// Evaluates the program.
+    pub fn call(&self, _: &[&[f64]], _: &[AnyTable], _: &mut [f64], _: &mut [f64]) {
+        match *self {}
+    }
+}
