@@ -137,8 +137,11 @@ fn has_fused() -> bool {
     true
 }
 
-/// Names and addresses of the functions that generated code calls.
-const HELPERS: &[(&str, fn() -> *const u8)] = {
+/// Name of a function that generated code calls, and what returns its address.
+type Helper = (&'static str, fn() -> *const u8);
+
+/// Functions that generated code calls.
+const HELPERS: &[Helper] = {
     macro_rules! unary {
         ($($name:literal $f:expr),+ $(,)?) => {
             &[

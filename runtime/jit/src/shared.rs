@@ -112,10 +112,11 @@ impl Shared {
     /// interpreted.
     pub fn prepare(&self, function: usize) -> bool {
         let plan = &self.entries[function].plan;
-        let called = plan.calls().into_iter().map(|k| self.prepare(k)).fold(true, |all, one| all && one);
+        // All are prepared, whether one before is interpreted or not.
+        let interpreted = plan.calls().into_iter().filter(|k| !self.prepare(*k)).count();
         if let crate::functions::Plan::Frame(access, frame, routine) = plan {
             routine.ensure(|| self.frames.program(*access, *frame));
         }
-        plan.routines().into_iter().map(|routine| routine.prepare()).fold(called, |all, one| all && one)
+        interpreted + plan.routines().into_iter().filter(|routine| !routine.prepare()).count() == 0
     }
 }
