@@ -11,6 +11,7 @@ pub mod export;
 pub mod expr;
 pub mod import;
 pub mod kinematics;
+pub mod language;
 pub mod lower;
 mod machine;
 pub mod mechanics;

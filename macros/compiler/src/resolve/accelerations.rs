@@ -11,13 +11,13 @@ use crate::expr::replace::replace;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::{symbols_in, time_derivative, velocity_gradients};
 use crate::mechanism::{AccelerationForce, Load, Quantity, Space};
-use crate::syntax::{self, ExprKind, Name};
+use crate::syntax::{self, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
     /// The rate of an expression along the motion.
     pub fn rate_of_value(
         &self,
-        function: &Name,
+        function: &Place,
         argument: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Expr<'g>> {
@@ -40,7 +40,7 @@ impl<'g> Scope<'_, 'g> {
     /// components there.
     pub fn rate_in(
         &self,
-        function: &Name,
+        function: &Place,
         of: &syntax::Expr,
         frame: &syntax::Expr,
         cx: &mut Diagnostics,
@@ -72,7 +72,7 @@ impl<'g> Scope<'_, 'g> {
     /// The rates of several expressions along the motion.
     fn rates(
         &self,
-        function: &Name,
+        function: &Place,
         place: &Place,
         values: &[Expr<'g>],
         cx: &mut Diagnostics,
@@ -107,7 +107,7 @@ impl<'g> Scope<'_, 'g> {
             Allowed::Motion => "a rate",
             _ => "the rate of what depends on velocities",
         };
-        if !self.check_allowed(needed, what, &function.place, cx) {
+        if !self.check_allowed(needed, what, function, cx) {
             return None;
         }
         let kinematics = self.kinematics.borrow();

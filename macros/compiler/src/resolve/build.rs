@@ -1,13 +1,13 @@
 //! Puts the model together: scope, tree, links, bodies, force elements.
 
 use super::builder::{Builder, JointedBody};
-use super::functions::is_function;
 use super::scope::{Allowed, Axes, Context, Kinematics, Scope, Value};
 use super::tree::find_tree;
 use super::{drive, reaction, units};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::Partials;
+use crate::language::Callable;
 use crate::mechanism::{Constraint, Freedom, Gradients, Inertia, Model, Released, Rule, Units};
 use crate::syntax::{Description, GROUND, Inertias, Name, ScalarType};
 use std::collections::{BTreeMap, BTreeSet};
@@ -324,7 +324,7 @@ fn check_names(description: &Description, cx: &mut Diagnostics) {
     let written = written.chain(description.coordinates.iter().map(|c| &c.name));
     let written = written.chain(description.definitions.iter().map(|d| &d.name));
     let joints = description.joints.iter().map(|joint| &joint.name);
-    for table in description.tables.iter().filter(|table| is_function(&table.name.text)) {
+    for table in description.tables.iter().filter(|table| Callable::is_function(&table.name.text)) {
         cx.error(table.name.place.clone(), format!("the name `{}` is taken by a function", table.name.text))
             .help(format!("name the table otherwise, such as `{}_table`", table.name.text));
     }

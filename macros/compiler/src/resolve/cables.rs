@@ -1,12 +1,12 @@
 //! Cables that run around spheres and cylinders.
 
+use super::functions::Call;
 use super::quantities::flatten;
 use super::scope::{Allowed, Context, Placed, Scope, Value};
-use super::slips::wrong_count;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::mechanism::Rule;
-use crate::syntax::{self, ExprKind, Name};
+use crate::syntax::{self, ExprKind};
 use std::f64::consts::PI;
 
 impl<'g> Scope<'_, 'g> {
@@ -17,27 +17,14 @@ impl<'g> Scope<'_, 'g> {
     /// the points have distances `d`, and lie at an angle `θ` from each other; what touches is
     /// `φ = θ − acos(R / d_a) − acos(R / d_b)`. Where that is positive, the cable runs along tangents and a
     /// helix, which is straight on the unrolled cylinder; elsewhere it is straight.
-    pub fn cable(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let (parts, surface) = match arguments {
-            [of, surface] => (flatten(of), Some(surface)),
-            _ => (Vec::new(), None),
-        };
-        let ([a, b], Some(surface)) = (parts.as_slice(), surface) else {
-            cx.error(function.place.clone(), "`cable` takes two points and a surface").help(
-                "write `cable(a / b, drum.cylinder(radius, axis))` or `cable(a / b, ball.sphere(radius))`",
-            );
-            return None;
-        };
-        if !self.check_allowed(Allowed::Placement, "`cable(…)`", &function.place, cx) {
+    pub fn cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [of, surface] = call.take(cx)?;
+        let Ok(ends) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        if !self.check_allowed(Allowed::Placement, "`cable(…)`", call.place, cx) {
             return None;
         }
         let (frame, radius, axis) = self.round(surface, cx)?;
-        let (a, b) = (self.place_now(a, cx), self.place_now(b, cx));
+        let [a, b] = ends.map(|end| self.place_now(end, cx));
         let (a, b) = (a?, b?);
         let kinematics = self.kinematics.borrow();
         let from = |p: &Placed<'g>| {
@@ -52,7 +39,7 @@ impl<'g> Scope<'_, 'g> {
                 (across, a.dot(n) - b.dot(n))
             }
         };
-        for (end, p) in parts.iter().zip(across) {
+        for (end, p) in ends.into_iter().zip(across) {
             check_outside(end, p, radius, axis.is_some(), cx)?;
         }
         let [a, b] = across;
@@ -91,7 +78,10 @@ impl<'g> Scope<'_, 'g> {
         let (radius, axis) = match (word.text.as_str(), arguments.as_slice()) {
             ("sphere", [radius]) => (radius, None),
             ("cylinder", [radius, axis]) => (radius, Some(axis)),
-            ("sphere", _) => return wrong_count(word, 1, cx),
+            ("sphere", _) => {
+                cx.error(word.place.clone(), "`sphere` takes 1 argument").help("write `sphere(a)`");
+                return None;
+            }
             ("cylinder", _) => {
                 cx.error(
                     word.place.clone(),

@@ -1,13 +1,14 @@
 //! Points that a motion singles out: instantaneous centres, the screw axis, the centre of percussion. Each is
 //! a vector from a place of the body.
 
+use super::functions::Call;
 use super::quantities::{flatten, vector};
 use super::scope::{Allowed, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::sample::always;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Pose};
-use crate::syntax::{self, Name};
+use crate::syntax;
 
 /// The motion of a body with respect to a frame, in the axes of the body's link.
 struct Relative<'g> {
@@ -21,36 +22,54 @@ struct Relative<'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// With the velocity `v` of a body's origin and its angular velocity `ω`, both with respect to a frame:
-    ///
-    /// - `screw_axis(body / frame)` and `instant_center(body / frame)`: `ω × v / ω²`, from the origin to the
-    ///   nearest point of the screw axis (Mozzi, Chasles), which rests where the body does not slide along
-    ///   it;
-    /// - `screw_pitch(body / frame)`: `ω·v / ω²`, how far the body slides along the axis while it turns by 1
-    ///   rad;
-    /// - `acceleration_center(body / frame)`: `(ω² a + α × a) / (ω⁴ + α²)`, from the origin to the point of a
-    ///   body that moves in a plane whose acceleration is zero.
-    pub fn center(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let text = function.text.as_str();
-        let parts = if let [one] = arguments { flatten(one) } else { Vec::new() };
-        let [body, frame] = parts.as_slice() else {
-            cx.error(function.place.clone(), format!("`{text}` takes a body and a frame"))
-                .help(format!("write `{text}(body / frame)`"));
-            return None;
-        };
-        let accelerates = text == "acceleration_center";
-        let allowed = if accelerates { Allowed::Acceleration } else { Allowed::Motion };
-        if !self.check_allowed(allowed, &format!("`{text}(…)`"), &function.place, cx) {
+    /// `instant_center(body / frame)`: the vector from the body's origin to the point at rest, `ω × v / ω²`
+    /// with the velocity `v` of the origin.
+    pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
+        if !always(w.dot(v), 0.0) {
+            cx.error(call.place.clone(), "this body may slide along the axis that it turns about: no point of it rests")
+                .help("the nearest point of that axis is `screw_axis(body / frame)`, and `screw_pitch(body / frame)` tells how it slides");
             return None;
         }
-        let motion = self.relative(body, frame, accelerates, cx)?;
-        let Relative { link, v, w, rates } = motion;
-        if w.is_zero() {
+        Some(nearest_of_axis(link, v, w))
+    }
+
+    /// `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the screw axis
+    /// (Mozzi, Chasles), `ω × v / ω²`.
+    pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
+        Some(nearest_of_axis(link, v, w))
+    }
+
+    /// `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
+    pub fn screw_pitch(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let Relative { v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
+        Some(Value::Scalar(w.dot(v) / w.dot(w)))
+    }
+
+    /// `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to the point
+    /// without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
+    pub fn acceleration_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let Relative { link, w, rates, .. } = self.relative(call, Allowed::Acceleration, cx)?;
+        let [a, alpha] = rates?;
+        if !(vanishes(w.cross(alpha)) && always(w.dot(a), 0.0)) {
+            cx.error(call.place.clone(), "this body does not move in a plane")
+                .help("an acceleration centre is that of a motion in a plane; accelerations of points are `a(point / point / frame)`");
+            return None;
+        }
+        let square = w.dot(w);
+        let center = (a * square + alpha.cross(a)).map(|c| c / (square.square() + alpha.dot(alpha)));
+        Some(vector(vec![(link, center)]))
+    }
+
+    /// Reads the motion of a body that rotates relative to a frame, with accelerations where they are allowed.
+    fn relative(&self, call: &Call<'_>, allowed: Allowed, cx: &mut Diagnostics) -> Option<Relative<'g>> {
+        let Ok([body, frame]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
+        if !self.check_allowed(allowed, &format!("`{}(…)`", call.name()), call.place, cx) {
+            return None;
+        }
+        let motion = self.motion_of(body, frame, allowed == Allowed::Acceleration, cx)?;
+        if motion.w.is_zero() {
             cx.error(
                 body.place.clone(),
                 format!("`{}` does not turn with respect to `{}`", body.spelt(), frame.spelt()),
@@ -58,30 +77,10 @@ impl<'g> Scope<'_, 'g> {
             .help("what moves without turning has no centre: all its points move alike");
             return None;
         }
-        let square = w.dot(w);
-        let found = match (text, rates) {
-            ("screw_pitch", _) => return Some(Value::Scalar(w.dot(v) / square)),
-            ("acceleration_center", Some([a, alpha])) => {
-                if !(vanishes(w.cross(alpha)) && always(w.dot(a), 0.0)) {
-                    cx.error(function.place.clone(), "this body does not move in a plane")
-                        .help("an acceleration centre is that of a motion in a plane; accelerations of points are `a(point / point / frame)`");
-                    return None;
-                }
-                (a * square + alpha.cross(a)).map(|c| c / (square.square() + alpha.dot(alpha)))
-            }
-            _ => {
-                if text == "instant_center" && !always(w.dot(v), 0.0) {
-                    cx.error(function.place.clone(), "this body may slide along the axis that it turns about: no point of it rests")
-                        .help("the nearest point of that axis is `screw_axis(body / frame)`, and `screw_pitch(body / frame)` tells how it slides");
-                    return None;
-                }
-                w.cross(v).map(|c| c / square)
-            }
-        };
-        Some(vector(vec![(link, found)]))
+        Some(motion)
     }
 
-    fn relative(
+    fn motion_of(
         &self,
         body: &syntax::Expr,
         frame: &syntax::Expr,
@@ -111,22 +110,10 @@ impl<'g> Scope<'_, 'g> {
     /// `center_of_percussion(body / point, axis)`: the vector from a point, about which a body turns, to
     /// where a blow across the arm to its centre of mass leaves the point at rest. With the arm `r` across
     /// the axis `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
-    pub fn center_of_percussion(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let (parts, axis) = match arguments {
-            [of, axis] => (flatten(of), Some(axis)),
-            _ => (Vec::new(), None),
-        };
-        let ([body, about], Some(axis)) = (parts.as_slice(), axis) else {
-            cx.error(function.place.clone(), "`center_of_percussion` takes a body, a point and an axis")
-                .help("write `center_of_percussion(body / point, z)`: the body turns about the axis through the point");
-            return None;
-        };
-        if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", &function.place, cx) {
+    pub fn center_of_percussion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [of, axis] = call.take(cx)?;
+        let Ok([body, about]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", call.place, cx) {
             return None;
         }
         let heavy = self.heavy(body, cx)?;
@@ -149,7 +136,7 @@ impl<'g> Scope<'_, 'g> {
         let arm = arm + -(axis_here * axis_here.dot(arm));
         if vanishes(arm) {
             cx.error(
-                function.place.clone(),
+                call.place.clone(),
                 format!("the centre of mass of `{}` lies on this axis", body.spelt()),
             )
             .help(
@@ -172,6 +159,12 @@ impl<'g> Scope<'_, 'g> {
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
         Some(vector(vec![(link, arm * share)]))
     }
+}
+
+/// Returns the vector from a body's origin to the nearest point of its screw axis.
+fn nearest_of_axis<'g>(link: Option<LinkId>, v: Vec3<'g>, w: Vec3<'g>) -> Value<'g> {
+    let square = w.dot(w);
+    vector(vec![(link, w.cross(v).map(|c| c / square))])
 }
 
 /// True for a vector that is zero for all values of what it depends on.

@@ -13,6 +13,7 @@ use crate::expr::replace::replace;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{AXES, symbols_in, time_derivative, velocity_gradient};
+use crate::language::{Callable, FunctionId};
 use crate::mechanism::{Freedom, Measure, Pose, Quantity};
 use crate::syntax::{self, ConstraintKind, ExprKind, Formulation};
 
@@ -176,7 +177,7 @@ impl<'g> Builder<'_, 'g> {
         let name = &constraint.name.text;
         let context = || Context::new(allowed, Some((None, Pose::identity(self.scope.graph))));
         let turns = |e: &syntax::Expr| match &e.kind {
-            ExprKind::Call(word, _) => word.text == "angle",
+            ExprKind::Call(word, _) => word.id == Some(Callable::Function(FunctionId::Angle)),
             _ => self.is_angle(e),
         };
         let pair = [Some(&constraint.value), constraint.other.as_ref()];

@@ -1,6 +1,7 @@
 //! Curves and fields: what follows from derivatives of an expression by a coordinate or a place.
 
-use super::quantities::{flatten, in_links, vector};
+use super::functions::Call;
+use super::quantities::{in_links, vector};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
@@ -8,57 +9,53 @@ use crate::expr::replace::replace;
 use crate::expr::sample::always;
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
 use crate::kinematics::symbols_in;
+use crate::language;
 use crate::mechanism::{Coordinate, LinkId, Pose, Quantity};
-use crate::syntax::{self, ExprKind, Name};
-
-/// Frames that follow from a vector or a curve, as the first rotation of a `Frame`.
-pub const FRAMES: [&str; 3] = ["cylindrical", "spherical", "frenet"];
+use crate::syntax::{self, BinaryOp, Callee, ExprKind};
 
 /// The first number that a point is moved by, beyond those of laws such as `stretch`.
 const MOVES: usize = 1 << 19;
 
 impl<'g> Scope<'_, 'g> {
-    /// The axes that a vector or a curve gives, in those of a place: `cylindrical(vector)`,
+    /// Returns the axes that follow from a vector or a curve, in those of a place: `cylindrical(vector)`,
     /// `spherical(vector)`, `frenet(curve, coordinate)`.
     pub fn natural_axes(
         &self,
-        step: &syntax::Expr,
+        (rotation, name): (language::Rotation, &Callee),
+        arguments: &[syntax::Expr],
         start: &Placed<'g>,
         cx: &mut Diagnostics,
     ) -> Option<Rotation<'g>> {
-        let ExprKind::Call(word, arguments) = &step.kind else { return None };
         let context = Context::new(Allowed::Placement, Some((start.link, start.pose.clone())));
-        self.in_context(context, |scope| match (word.text.as_str(), arguments.as_slice()) {
-            ("frenet", [curve, along]) => scope.frenet(curve, along, start, cx),
-            ("cylindrical" | "spherical", [of]) => {
+        self.in_context(context, |scope| match (rotation, arguments) {
+            (language::Rotation::Frenet, [curve, along]) => scope.frenet(curve, along, start, cx),
+            (language::Rotation::Frenet, _) => {
+                cx.error(name.place.clone(), "`frenet` takes a curve and the coordinate along it")
+                    .help("write `frenet(curve, s)`, a vector that depends on a coordinate `s`");
+                None
+            }
+            (_, [of]) => {
                 let terms = scope.terms(of, cx)?;
                 let v = scope.kinematics.borrow().resolve(&terms, start.link, Vec3::zero(scope.graph));
                 let [x, y, z] = start.pose.rotation.to_child(v).0;
                 if always(x.square() + y.square(), 0.0) {
                     cx.error(
                         of.place.clone(),
-                        format!("this vector lies on the z axis, where `{}` has no directions", word.text),
+                        format!("this vector lies on the z axis, where `{}` has no directions", name.text),
                     )
                     .help("the axes follow from a vector that leaves the z axis of the frame it starts from");
                     return None;
                 }
                 let about = Rotation::about_axis(2, y.atan2(x));
-                Some(match word.text.as_str() {
-                    "spherical" => {
-                        let elevation = z.atan2((x.square() + y.square()).sqrt());
-                        about.then(&Rotation::about_axis(1, -elevation))
-                    }
-                    _ => about,
-                })
-            }
-            ("frenet", _) => {
-                cx.error(word.place.clone(), "`frenet` takes a curve and the coordinate along it")
-                    .help("write `frenet(curve, s)`, a vector that depends on a coordinate `s`");
-                None
+                if rotation != language::Rotation::Spherical {
+                    return Some(about);
+                }
+                let elevation = z.atan2((x.square() + y.square()).sqrt());
+                Some(about.then(&Rotation::about_axis(1, -elevation)))
             }
             _ => {
-                cx.error(word.place.clone(), format!("`{}` takes a vector", word.text))
-                    .help(format!("write `{}(r(point / ground))`", word.text));
+                cx.error(name.place.clone(), format!("`{}` takes a vector", name.text))
+                    .help(format!("write `{}(r(point / ground))`", name.text));
                 None
             }
         })
@@ -92,39 +89,37 @@ impl<'g> Scope<'_, 'g> {
         Some(Rotation::from_matrix(Mat3::from_fn(|i, j| axes[j][i])))
     }
 
-    /// `curvature(curve, s)` is `|r′ × r″| / |r′|³`, `torsion(curve, s)` is `(r′ × r″)·r‴ / |r′ × r″|²`, of a
-    /// curve `r` that depends on a coordinate.
-    pub fn bend(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let text = function.text.as_str();
-        let [curve, along] = arguments else {
-            cx.error(function.place.clone(), format!("`{text}` takes a curve and the coordinate along it"))
-                .help(format!("write `{text}(curve, s)`, a vector that depends on a coordinate `s`"));
-            return None;
-        };
-        if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), &function.place, cx) {
+    /// `curvature(curve, s)`: `|r′ × r″| / |r′|³` of a curve `r` that depends on a coordinate.
+    pub fn curvature(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [first, second, _] = self.curve_derivatives(call, cx)?;
+        let normal = first.cross(second);
+        if normal.0.iter().all(|c| always(*c, 0.0)) {
+            return Some(Value::Scalar(self.graph.zero()));
+        }
+        let speed = first.norm();
+        Some(Value::Scalar(normal.length() / (speed * speed * speed)))
+    }
+
+    /// `torsion(curve, s)`: `(r′ × r″)·r‴ / |r′ × r″|²` of a curve `r` that depends on a coordinate.
+    pub fn torsion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [first, second, third] = self.curve_derivatives(call, cx)?;
+        let normal = first.cross(second);
+        if normal.0.iter().all(|c| always(*c, 0.0)) {
+            cx.error(call.arguments[0].place.clone(), "this curve is straight, and has no torsion")
+                .help("its curvature is zero: it has no normal that could turn");
             return None;
         }
-        let ([first, second, third], _) = self.derivatives_along(text, curve, along, cx)?;
-        let normal = first.cross(second);
-        let straight = normal.0.iter().all(|c| always(*c, 0.0));
-        Some(Value::Scalar(match (text, straight) {
-            ("curvature", true) => self.graph.zero(),
-            ("curvature", false) => {
-                let speed = first.norm();
-                normal.length() / (speed * speed * speed)
-            }
-            (_, true) => {
-                cx.error(curve.place.clone(), "this curve is straight, and has no torsion")
-                    .help("its curvature is zero: it has no normal that could turn");
-                return None;
-            }
-            _ => normal.dot(third) / normal.dot(normal),
-        }))
+        Some(Value::Scalar(normal.dot(third) / normal.dot(normal)))
+    }
+
+    /// Returns three derivatives of the curve that a function takes, by the coordinate that it takes.
+    fn curve_derivatives(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<[Vec3<'g>; 3]> {
+        let [curve, along] = call.take(cx)?;
+        let text = call.name();
+        if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
+            return None;
+        }
+        Some(self.derivatives_along(text, curve, along, cx)?.0)
     }
 
     /// Three derivatives of a vector by a coordinate, in the axes of a link that do not depend on it.
@@ -181,21 +176,10 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// `gradient(field / point)`: how a scalar changes with the place of a point, all else held.
-    pub fn gradient(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let parts = if let [one] = arguments { flatten(one) } else { Vec::new() };
-        let (Some((at, field)), [whole]) = (parts.split_last(), arguments) else {
-            return self.no_gradient(function, cx);
-        };
-        let ExprKind::Binary(_, of, ..) = &whole.kind else { return self.no_gradient(function, cx) };
-        if field.is_empty() {
-            return self.no_gradient(function, cx);
-        }
-        if !self.check_allowed(Allowed::Placement, "`gradient(…)`", &function.place, cx) {
+    pub fn gradient(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [whole] = call.take(cx)?;
+        let ExprKind::Binary(BinaryOp::Div, of, at, _) = &whole.kind else { return call.reject(cx) };
+        if !self.check_allowed(Allowed::Placement, "`gradient(…)`", call.place, cx) {
             return None;
         }
         let placed = self.place(at, cx)?;
@@ -223,11 +207,5 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         Some(vector(vec![(placed.link, gradient)]))
-    }
-
-    fn no_gradient(&self, function: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        cx.error(function.place.clone(), "`gradient` takes a scalar and a point")
-            .help("write `gradient(field / point)`, an expression of `r(point / ground)`");
-        None
     }
 }

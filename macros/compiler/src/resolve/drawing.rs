@@ -7,10 +7,11 @@ use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
+use crate::language::{Callable, Solid};
 use crate::mechanism::drawing::{entries, rows};
 use crate::mechanism::{Input, LinkId, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
-    self, Action, ActionKind, BinaryOp, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
+    self, Action, ActionKind, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
 };
 use std::collections::BTreeSet;
 
@@ -180,26 +181,13 @@ impl<'g> Builder<'_, 'g> {
                 let Some(rotation) = self.scope.rotation(steps, &mut silent) else { return false };
                 self.solids(inner, &turned.clone().then(&rotation), com, found)
             }
-            ExprKind::Call(solid, arguments) => {
-                let kind = match solid.text.as_str() {
-                    "rod" => PieceKind::Rod,
-                    "ring" => PieceKind::Ring,
-                    "disk" => PieceKind::Disk,
-                    "cylinder" => PieceKind::Cylinder,
-                    "tube" => PieceKind::Tube,
-                    "cone" => PieceKind::Cone,
-                    "capsule" => PieceKind::Capsule,
-                    "sphere" | "shell" => PieceKind::Sphere,
-                    "cuboid" | "box" | "plate" => PieceKind::Cuboid,
-                    "ellipsoid" => PieceKind::Ellipsoid,
-                    _ => return false,
-                };
-                let axial = !matches!(kind, PieceKind::Sphere | PieceKind::Cuboid | PieceKind::Ellipsoid);
+            ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
+                let Some(kind) = solid.row().piece.clone() else { return false };
+                let mut numbers = entries(&[com]);
                 let (axis, sizes) = match arguments.split_last() {
-                    Some((axis, sizes)) if axial => (Some(axis), sizes),
+                    Some((axis, sizes)) if solid.has_axis() => (Some(axis), sizes),
                     _ => (None, arguments.as_slice()),
                 };
-                let mut numbers = entries(&[com]);
                 match axis {
                     Some(axis) => match self.scope.unit_vector(axis, false, &mut silent) {
                         Some(axis) => numbers.extend(entries(&[turned.to_parent(axis)])),
@@ -215,7 +203,7 @@ impl<'g> Builder<'_, 'g> {
                         None => return false,
                     }
                 }
-                if solid.text == "plate" {
+                if *solid == Solid::Plate {
                     numbers.push(self.scope.graph.zero());
                 }
                 found.push((kind, numbers));

@@ -2,96 +2,96 @@
 //! forward, right and down, the ground's north, east and down.
 
 use super::expression::sum;
+use super::functions::{Call, length};
 use super::scope::{Scope, Value};
-use super::slips::wrong_count;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, air};
 use crate::syntax::{self, ExprKind, GROUND, Name};
 
-/// Functions of a height above the sea.
-pub const OF_HEIGHT: [&str; 4] = ["density", "pressure", "temperature", "speed_of_sound"];
+/// The standard atmosphere at a height.
+pub struct Air<'g> {
+    /// Temperature, K.
+    pub temperature: Expr<'g>,
+    /// Pressure, Pa.
+    pub pressure: Expr<'g>,
+}
 
-/// Functions of a body, of a velocity, or of both.
-pub const ANGLES: [&str; 7] =
-    ["angle_of_attack", "sideslip", "heading", "elevation", "bank", "course", "flight_path"];
+impl<'g> Air<'g> {
+    /// Density, kg/m³.
+    pub fn density(&self) -> Expr<'g> {
+        self.pressure / (self.temperature * air::GAS)
+    }
+
+    /// Speed of sound, m/s.
+    pub fn speed_of_sound(&self) -> Expr<'g> {
+        (self.temperature * (air::HEATS * air::GAS)).sqrt()
+    }
+}
 
 impl<'g> Scope<'_, 'g> {
-    /// The standard atmosphere at a height above the sea.
+    /// Returns a value of the standard atmosphere at a height above the sea.
     pub fn air(
         &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
+        call: &Call<'_>,
+        value: fn(Air<'g>) -> Expr<'g>,
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let [height] = arguments else { return wrong_count(function, 1, cx) };
-        let height = self.scalar(height, cx)?;
+        let [height] = self.scalars(call, cx)?;
         let number = |n: f64| height.num(n);
         let geopotential = number(air::RADIUS) * height / (number(air::RADIUS) + height);
         let temperature = geopotential.call(Function::IsaTemperature);
         let pressure = geopotential.call(Function::IsaPressure);
-        Some(Value::Scalar(match function.text.as_str() {
-            "temperature" => temperature,
-            "pressure" => pressure,
-            "density" => pressure / (temperature * air::GAS),
-            _ => (temperature * (air::HEATS * air::GAS)).sqrt(),
-        }))
+        Some(Value::Scalar(value(Air { temperature, pressure })))
     }
 
-    /// An angle of a body, of a velocity, or of one against the other.
+    /// Returns an angle of a velocity relative to a body, by its components in the body's axes.
     pub fn flight_angle(
         &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
+        call: &Call<'_>,
         cx: &mut Diagnostics,
+        angle: fn([Expr<'g>; 3]) -> Expr<'g>,
     ) -> Option<Value<'g>> {
-        let text = function.text.as_str();
-        let place = &function.place;
-        let ground = named(GROUND, place);
-        Some(Value::Scalar(match (text, arguments) {
-            ("angle_of_attack" | "sideslip", [body, velocity]) => {
-                let [forward, right, down] = self.components(velocity, body, cx)?;
-                match text {
-                    "sideslip" => right.atan2(length(forward, down)),
-                    _ => down.atan2(forward),
-                }
-            }
-            ("angle_of_attack" | "sideslip", _) => return wrong_count(function, 2, cx),
-            ("course" | "flight_path", [velocity]) => {
-                let [north, east, down] = self.components(velocity, &ground, cx)?;
-                match text {
-                    "course" => east.atan2(north),
-                    _ => (-down).atan2(length(north, east)),
-                }
-            }
-            ("bank", [body]) => {
-                let down = axis(&ground, 2);
-                let [_, right, below] = self.components(&down, body, cx)?;
-                right.atan2(below)
-            }
-            (_, [body]) => {
-                let [north, east, down] = self.components(&axis(body, 0), &ground, cx)?;
-                match text {
-                    "heading" => east.atan2(north),
-                    _ => (-down).atan2(length(north, east)),
-                }
-            }
-            _ => return wrong_count(function, 1, cx),
-        }))
+        let [body, velocity] = call.take(cx)?;
+        self.components(velocity, body, cx).map(|parts| Value::Scalar(angle(parts)))
+    }
+
+    /// Returns an angle of a velocity, by its components in the axes of the ground.
+    pub fn velocity_angle(
+        &self,
+        call: &Call<'_>,
+        cx: &mut Diagnostics,
+        angle: fn([Expr<'g>; 3]) -> Expr<'g>,
+    ) -> Option<Value<'g>> {
+        let [velocity] = call.take(cx)?;
+        self.components(velocity, &ground(call.place), cx).map(|parts| Value::Scalar(angle(parts)))
+    }
+
+    /// Returns an angle of a body, by the components of its forward axis in the axes of the ground.
+    pub fn attitude_angle(
+        &self,
+        call: &Call<'_>,
+        cx: &mut Diagnostics,
+        angle: fn([Expr<'g>; 3]) -> Expr<'g>,
+    ) -> Option<Value<'g>> {
+        let [body] = call.take(cx)?;
+        self.components(&axis(body, 0), &ground(call.place), cx).map(|parts| Value::Scalar(angle(parts)))
+    }
+
+    /// Returns the bank angle of a body.
+    pub fn bank(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [body] = call.take(cx)?;
+        let [_, right, below] = self.components(&axis(&ground(call.place), 2), body, cx)?;
+        Some(Value::Scalar(right.atan2(below)))
     }
 
     /// A vector by its components in the axes of stability, which turn with the angle of attack, or of wind,
     /// which turn with the sideslip, too: forward along the velocity, right, down (Etkin and Reid, *Dynamics
     /// of Flight*, 1996, § 1.6 and appendix A.7).
-    pub fn in_flight_axes(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let [body, velocity, list] = arguments else { return wrong_count(function, 3, cx) };
+    pub fn in_flight_axes(&self, call: &Call<'_>, of_wind: bool, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [body, velocity, list] = call.take(cx)?;
         let ExprKind::Array(items) = &list.kind else {
             cx.error(list.place.clone(), "expected the three components in a list")
-                .help(format!("as in `{}(airframe, velocity, [-drag, side, -lift])`", function.text));
+                .help(format!("as in `{}(airframe, velocity, [-drag, side, -lift])`", call.name()));
             return None;
         };
         let [ahead, aside, below] = items.as_slice() else { return self.value(list, cx) };
@@ -101,13 +101,13 @@ impl<'g> Scope<'_, 'g> {
         let plane = length(forward, down);
         let (cosine, sine) = (forward / plane, down / plane);
         // In the plane of symmetry along the velocity, then to the right.
-        let (along, across) = match function.text.as_str() {
-            "wind_axes" => {
+        let (along, across) = match of_wind {
+            true => {
                 let speed = length(plane, right);
                 let (straight, slip) = (plane / speed, right / speed);
                 (ahead * straight - aside * slip, ahead * slip + aside * straight)
             }
-            _ => (ahead, aside),
+            false => (ahead, aside),
         };
         let in_body = [along * cosine - below * sine, across, along * sine + below * cosine];
         let mut total = Vec::new();
@@ -138,13 +138,8 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// The length of two perpendicular components.
-fn length<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
-    (a.square() + b.square()).sqrt()
-}
-
-fn named(name: &str, place: &crate::diag::Place) -> syntax::Expr {
-    syntax::Expr { kind: ExprKind::Name(name.to_string()), place: place.clone() }
+fn ground(place: &crate::diag::Place) -> syntax::Expr {
+    syntax::Expr { kind: ExprKind::Name(GROUND.to_string()), place: place.clone() }
 }
 
 /// An axis of a body.

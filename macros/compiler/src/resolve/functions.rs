@@ -1,99 +1,278 @@
-//! The functions of the language.
+//! Calls of functions of expressions, and their values: one arm for each function.
 
-use crate::expr::Function;
+use super::momenta::Sum;
+use super::quantities::flatten;
+use super::scope::{Axes, Scope, Value};
+use super::slips::{DOMAIN, check_angle, degrees};
+use crate::diag::{Diagnostics, Place};
+use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
+use crate::kinematics::unit;
+use crate::language::{Callable, FunctionId, Solid};
+use crate::syntax::{self, Callee, words};
 
-/// The quantities that the value of a function depends on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dependence {
-    /// The configuration, and the quantities that its arguments depend on.
-    Arguments,
-    /// Velocities.
-    Motion,
-    /// Accelerations.
-    Acceleration,
-    /// Velocities, and accelerations where an argument is a motion itself.
-    Rate,
-    /// Velocities, and inputs where an argument is a contact.
-    Power,
-    /// Velocities and inputs, which determine the forces of joints and contacts.
-    Reaction,
+/// A call of a function of the language.
+#[derive(Clone, Copy)]
+pub struct Call<'a> {
+    /// The function.
+    pub id: FunctionId,
+    /// Position of its name.
+    pub place: &'a Place,
+    /// The arguments as written.
+    pub arguments: &'a [syntax::Expr],
 }
 
-/// Functions of the language other than the elementary ones, each with the quantities that its value depends
-/// on.
-pub const FUNCTIONS: [(&str, Dependence); 57] = [
-    ("atan2", Dependence::Arguments),
-    ("degrees", Dependence::Arguments),
-    ("pow", Dependence::Arguments),
-    ("min", Dependence::Arguments),
-    ("max", Dependence::Arguments),
-    ("dot", Dependence::Arguments),
-    ("cross", Dependence::Arguments),
-    ("norm", Dependence::Arguments),
-    ("unit", Dependence::Arguments),
-    ("r", Dependence::Arguments),
-    ("v", Dependence::Motion),
-    ("a", Dependence::Acceleration),
-    ("omega", Dependence::Motion),
-    ("alpha", Dependence::Acceleration),
-    ("rate", Dependence::Rate),
-    ("angle", Dependence::Arguments),
-    ("project", Dependence::Arguments),
-    ("momentum", Dependence::Motion),
-    ("angular_momentum", Dependence::Motion),
-    ("kinetic_energy", Dependence::Motion),
-    ("moment_of_inertia", Dependence::Arguments),
-    ("center_of_mass", Dependence::Arguments),
-    ("center_of_percussion", Dependence::Arguments),
-    ("instant_center", Dependence::Motion),
-    ("acceleration_center", Dependence::Acceleration),
-    ("screw_axis", Dependence::Motion),
-    ("screw_pitch", Dependence::Motion),
-    ("projector", Dependence::Arguments),
-    ("skew", Dependence::Arguments),
-    ("outer", Dependence::Arguments),
-    ("rotation", Dependence::Arguments),
-    ("inertia", Dependence::Arguments),
-    ("identity", Dependence::Arguments),
-    ("transpose", Dependence::Arguments),
-    ("trace", Dependence::Arguments),
-    ("curvature", Dependence::Arguments),
-    ("torsion", Dependence::Arguments),
-    ("cable", Dependence::Arguments),
-    ("gradient", Dependence::Arguments),
-    ("power", Dependence::Power),
-    ("reaction_force", Dependence::Reaction),
-    ("reaction_torque", Dependence::Reaction),
-    ("contact_force", Dependence::Reaction),
-    ("contact_moment", Dependence::Reaction),
-    ("density", Dependence::Arguments),
-    ("pressure", Dependence::Arguments),
-    ("temperature", Dependence::Arguments),
-    ("speed_of_sound", Dependence::Arguments),
-    ("angle_of_attack", Dependence::Arguments),
-    ("sideslip", Dependence::Arguments),
-    ("heading", Dependence::Arguments),
-    ("elevation", Dependence::Arguments),
-    ("bank", Dependence::Arguments),
-    ("course", Dependence::Arguments),
-    ("flight_path", Dependence::Arguments),
-    ("stability_axes", Dependence::Arguments),
-    ("wind_axes", Dependence::Arguments),
-];
+impl<'a> Call<'a> {
+    /// Returns the name of the function.
+    pub fn name(&self) -> &'static str {
+        self.id.name()
+    }
 
-/// Returns the names of the functions of the language, without the elementary ones.
-pub fn names<'a>() -> impl Iterator<Item = &'a str> {
-    FUNCTIONS.iter().map(|(name, _)| *name)
+    /// Reports wrong arguments.
+    pub fn reject<T>(&self, cx: &mut Diagnostics) -> Option<T> {
+        let row = self.id.row();
+        cx.error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes)).help(row.usage);
+        None
+    }
+
+    /// Returns the arguments, or reports a wrong number of them.
+    pub fn take<const N: usize>(&self, cx: &mut Diagnostics) -> Option<&'a [syntax::Expr; N]> {
+        self.arguments.try_into().ok().or_else(|| self.reject(cx))
+    }
+
+    /// Returns the parts between the slashes of the only argument, `y / x / A`; nothing if there are several
+    /// arguments.
+    pub fn parts(&self) -> Vec<&'a syntax::Expr> {
+        if let [one] = self.arguments { flatten(one) } else { Vec::new() }
+    }
 }
 
-/// Returns the quantities that the value of a function of this name depends on; those of its arguments for an
-/// elementary function or a name that is unknown.
-pub fn dependence(name: &str) -> Dependence {
-    let known = FUNCTIONS.iter().find(|(known, _)| *known == name);
-    known.map_or(Dependence::Arguments, |(_, dependence)| *dependence)
+impl<'g> Scope<'_, 'g> {
+    /// Returns the value of a call: of a function of the language, a table of the user's, or a law in two
+    /// pieces.
+    pub fn call(
+        &self,
+        callee: &Callee,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        if let Some(Callable::Elementary(f)) = callee.id {
+            return self.elementary(f, callee, arguments, cx);
+        }
+        if let Some(k) = self.tables.iter().position(|table| table.name.text == callee.text) {
+            return self.lookup(k, callee, arguments, cx);
+        }
+        match callee.id {
+            Some(Callable::Function(id)) => self.function(&Call { id, place: &callee.place, arguments }, cx),
+            Some(Callable::If) => self.pieces(arguments, cx).map(Value::Scalar),
+            other => {
+                let solid = if let Some(Callable::Solid(solid)) = other { Some(solid) } else { None };
+                self.report_function(callee, solid, cx);
+                None
+            }
+        }
+    }
+
+    /// Returns the value of a function of the language.
+    fn function(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        use FunctionId as F;
+        match call.id {
+            F::Degrees => self.scalars(call, cx).map(|[angle]| Value::Scalar(degrees(angle))),
+            F::Atan2 => self.scalars(call, cx).map(|[y, x]| Value::Scalar(y.atan2(x))),
+            F::Pow => {
+                let [base, exponent] = self.scalars(call, cx)?;
+                check_power(call.place, base, exponent, cx).then(|| Value::Scalar(base.pow(exponent)))
+            }
+            F::Min => self.scalars(call, cx).map(|[a, b]| Value::Scalar(a.extreme(Extreme::Min, b))),
+            F::Max => self.scalars(call, cx).map(|[a, b]| Value::Scalar(a.extreme(Extreme::Max, b))),
+            F::Dot => {
+                let (_, v) = self.common_axes(&call.take::<2>(cx)?.each_ref(), cx)?;
+                Some(Value::Scalar(v[0].dot(v[1])))
+            }
+            F::Cross => {
+                let (axes, v) = self.common_axes(&call.take::<2>(cx)?.each_ref(), cx)?;
+                Some(Value::Vector(vec![(axes, v[0].cross(v[1]))]))
+            }
+            F::Project => {
+                let (axes, v) = self.common_axes(&call.take::<2>(cx)?.each_ref(), cx)?;
+                let (a, b) = (v[0], v[1]);
+                Some(Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]))
+            }
+            F::Norm => {
+                let (_, v) = self.only_vector(call, "the size of a scalar is `abs(a)`", cx)?;
+                Some(Value::Scalar(v.length()))
+            }
+            F::Unit => {
+                let (axes, v) = self.only_vector(call, "a scalar has no direction", cx)?;
+                if v.is_zero() {
+                    cx.error(call.arguments[0].place.clone(), "the zero vector has no direction")
+                        .help("a direction is a vector of some length");
+                    return None;
+                }
+                Some(Value::Vector(vec![(axes, unit(v))]))
+            }
+            F::Angle => self.angle(call, cx),
+            F::Position => self.relative_position(call, cx),
+            F::Velocity => self.relative_velocity(call, cx),
+            F::Acceleration => self.relative_acceleration(call, cx),
+            F::Omega => self.angular_velocity(call, cx),
+            F::Alpha => self.angular_acceleration(call, cx),
+            F::ReactionForce => self.reaction(call, 0, cx),
+            F::ReactionTorque => self.reaction(call, 3, cx),
+            F::ContactForce => self.contact_force(call, cx),
+            F::ContactMoment => self.contact_moment(call, cx),
+            F::Momentum => self.momentum(call, Sum::Momentum, cx),
+            F::AngularMomentum => self.momentum(call, Sum::AngularMomentum, cx),
+            F::KineticEnergy => self.momentum(call, Sum::Energy, cx),
+            F::MomentOfInertia => self.moment_of_inertia(call, cx),
+            F::CenterOfMass => self.center_of_mass(call, cx),
+            F::CenterOfPercussion => self.center_of_percussion(call, cx),
+            F::InstantCenter => self.instant_center(call, cx),
+            F::AccelerationCenter => self.acceleration_center(call, cx),
+            F::ScrewAxis => self.screw_axis(call, cx),
+            F::ScrewPitch => self.screw_pitch(call, cx),
+            F::Projector => self.projector(call, cx),
+            F::Skew => self.skew(call, cx),
+            F::Outer => self.outer(call, cx),
+            F::Transpose => self.transpose(call, cx),
+            F::Trace => self.trace(call, cx),
+            F::Rotation => self.physical_rotation(call, cx),
+            F::Inertia => self.inertia_matrix(call, cx),
+            F::Identity => self.identity(call, cx),
+            F::Curvature => self.curvature(call, cx),
+            F::Torsion => self.torsion(call, cx),
+            F::Cable => self.cable(call, cx),
+            F::Gradient => self.gradient(call, cx),
+            F::Power => self.power(call, cx),
+            F::Rate => self.rate_of(call, cx),
+            F::Temperature => self.air(call, |air| air.temperature, cx),
+            F::Pressure => self.air(call, |air| air.pressure, cx),
+            F::Density => self.air(call, |air| air.density(), cx),
+            F::SpeedOfSound => self.air(call, |air| air.speed_of_sound(), cx),
+            F::AngleOfAttack => self.flight_angle(call, cx, |[forward, _, down]| down.atan2(forward)),
+            F::Sideslip => self.flight_angle(call, cx, |[f, right, d]| right.atan2(length(f, d))),
+            F::Course => self.velocity_angle(call, cx, |[north, east, _]| east.atan2(north)),
+            F::FlightPath => self.velocity_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e))),
+            F::Heading => self.attitude_angle(call, cx, |[north, east, _]| east.atan2(north)),
+            F::Elevation => self.attitude_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e))),
+            F::Bank => self.bank(call, cx),
+            F::StabilityAxes => self.in_flight_axes(call, false, cx),
+            F::WindAxes => self.in_flight_axes(call, true, cx),
+        }
+    }
+
+    /// Returns the values of arguments that are scalars.
+    pub fn scalars<const N: usize>(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<[Expr<'g>; N]> {
+        let values: Vec<Option<Expr<'g>>> =
+            call.take::<N>(cx)?.iter().map(|argument| self.scalar(argument, cx)).collect();
+        values.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
+    }
+
+    /// Returns the value of an elementary function of a number or an angle.
+    fn elementary(
+        &self,
+        f: Function,
+        callee: &Callee,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let [argument] = arguments else {
+            let text = &callee.text;
+            let help = match f {
+                Function::Atan => "of two arguments is `atan2(y, x)`: did you mean `atan2`?".to_string(),
+                _ => format!("write `{text}(a)`"),
+            };
+            cx.error(callee.place.clone(), format!("`{text}` takes 1 argument")).help(help);
+            return None;
+        };
+        let turns = matches!(f, Function::Sin | Function::Cos | Function::Tan);
+        if turns && !check_angle(argument, cx) {
+            return None;
+        }
+        let s = self.scalar(argument, cx)?.call(f);
+        if let crate::expr::Node::Call(f, inner) = s.node()
+            && let Some(number) = self.graph.expr(inner).value()
+        {
+            let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
+            cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name())).help(DOMAIN);
+            return None;
+        }
+        Some(Value::Scalar(s))
+    }
+
+    /// Returns the vector that a function takes alone, in common axes; `help` is for a scalar in its place.
+    fn only_vector(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
+        let [a] = call.take(cx)?;
+        let vector = self.vector_or(a, help, cx)?;
+        let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
+        Some((axes, v[0]))
+    }
+
+    /// Reports a function that is not known, with the one that is most likely meant.
+    fn report_function(&self, callee: &Callee, solid: Option<Solid>, cx: &mut Diagnostics) {
+        let text = callee.text.as_str();
+        let own = self.tables.iter().map(|table| table.name.text.as_str());
+        let known = Function::ALL.iter().map(|(name, _)| *name).chain(FunctionId::names()).chain(own);
+        let known: Vec<&str> = known.collect();
+        let error = cx.error(callee.place.clone(), format!("unknown function `{text}`"));
+        let greek = words::spelt_otherwise(text, &known);
+        match (greek, solid) {
+            (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
+            (_, Some(_)) => drop(error.help(format!("`{text}` is a solid: it stands in `inertia = …`"))),
+            _ => words::point(error, &words::functions(), text, &known),
+        }
+        if error.is_bare() {
+            error.help("known are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, `dot`, `cross`, `norm`, …");
+        }
+    }
+
+    /// Returns the value of a table.
+    fn lookup(
+        &self,
+        k: usize,
+        callee: &Callee,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
+        let table = self.tables.get(k)?;
+        let (found, expected) = (arguments.len(), table.variables);
+        if found != expected {
+            let plural = if expected == 1 { "" } else { "s" };
+            cx.error(
+                callee.place.clone(),
+                format!(
+                    "`{}` is a table of {expected} variable{plural}, but {found} stand here",
+                    callee.text
+                ),
+            )
+            .help(format!("it is declared as `Table<{expected}>`"));
+            return None;
+        }
+        let values: Vec<Option<Expr<'g>>> = arguments.iter().map(|a| self.scalar(a, cx)).collect();
+        let values = values.into_iter().collect::<Option<Vec<_>>>()?;
+        if let Some(used) = self.used_tables.borrow_mut().get_mut(k) {
+            *used = true;
+        }
+        let x = std::array::from_fn(|k| values.get(k).copied().unwrap_or(self.graph.zero()));
+        Some(Value::Scalar(self.graph.lookup(Lookup::new(k, expected), x)))
+    }
 }
 
-/// True for a function of the language that has a value.
-pub fn is_function(name: &str) -> bool {
-    names().any(|known| known == name) || Function::ALL.iter().any(|(known, _)| *known == name)
+/// Reports a power that is not a number in any state.
+fn check_power(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
+    let Some(x) = base.value() else { return true };
+    let what = match exponent.value() {
+        Some(n) if x.powf(n).is_finite() => return true,
+        Some(n) if x.powf(n).is_nan() => format!("`pow` is not defined at {x} and {n}"),
+        Some(n) => format!("`pow` is infinite at {x} and {n}"),
+        None if x >= 0.0 => return true,
+        None => format!("powers of {x} are defined for whole exponents alone"),
+    };
+    let help = "the first argument of `pow` is the base, the second the exponent: a base that may be negative takes a whole number";
+    cx.error(place.clone(), what).help(help);
+    false
+}
+
+/// Returns the length of a vector with two perpendicular components.
+pub fn length<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
+    (a.square() + b.square()).sqrt()
 }

@@ -2,58 +2,10 @@
 
 use super::scope::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::{Expr, Mat3, Sym3, Vec3};
+use crate::expr::{Expr, Sym3, Vec3};
+use crate::language::{Argument, Callable, Solid};
 use crate::mechanism::Rule;
-use crate::syntax::{self, BinaryOp, ExprKind, Name, words};
-
-/// A kind of homogeneous solid, or moments given one by one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Solid {
-    /// A thin rod.
-    Rod,
-    /// A thin ring.
-    Ring,
-    /// A thin disk.
-    Disk,
-    /// A cylinder.
-    Cylinder,
-    /// A cylinder with a hole.
-    Tube,
-    /// A cone.
-    Cone,
-    /// A cylinder between two half balls.
-    Capsule,
-    /// A ball.
-    Sphere,
-    /// A thin hollow ball.
-    Shell,
-    /// A cuboid.
-    Cuboid,
-    /// A thin rectangle.
-    Plate,
-    /// An ellipsoid.
-    Ellipsoid,
-    /// Three principal moments.
-    Diagonal,
-}
-
-/// The solids by name, with the names of their arguments.
-pub const SOLIDS: [(&str, Solid, &[&str]); 14] = [
-    ("rod", Solid::Rod, &["mass", "length", "axis"]),
-    ("ring", Solid::Ring, &["mass", "radius", "axis"]),
-    ("disk", Solid::Disk, &["mass", "radius", "axis"]),
-    ("cylinder", Solid::Cylinder, &["mass", "radius", "height", "axis"]),
-    ("tube", Solid::Tube, &["mass", "inner radius", "outer radius", "height", "axis"]),
-    ("cone", Solid::Cone, &["mass", "radius", "height", "axis"]),
-    ("capsule", Solid::Capsule, &["mass", "radius", "height", "axis"]),
-    ("sphere", Solid::Sphere, &["mass", "radius"]),
-    ("shell", Solid::Shell, &["mass", "radius"]),
-    ("cuboid", Solid::Cuboid, &["mass", "x length", "y length", "z length"]),
-    ("box", Solid::Cuboid, &["mass", "x length", "y length", "z length"]),
-    ("plate", Solid::Plate, &["mass", "x length", "y length"]),
-    ("ellipsoid", Solid::Ellipsoid, &["mass", "x radius", "y radius", "z radius"]),
-    ("diagonal", Solid::Diagonal, &["xx", "yy", "zz"]),
-];
+use crate::syntax::{self, BinaryOp, Callee, ExprKind, words};
 
 /// Moments below this, kg·m², are zero: what exporters leave of a body without inertia.
 const NOTHING: f64 = 1e-18;
@@ -164,71 +116,63 @@ impl<'g> Scope<'_, 'g> {
         Some(Sym3::from_upper(&m))
     }
 
-    fn solid(&self, solid: &Name, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Sym3<'g>> {
-        let text = solid.text.as_str();
-        let Some((_, kind, names)) = SOLIDS.iter().find(|(name, ..)| *name == text) else {
-            let known = SOLIDS.iter().map(|(name, ..)| *name);
-            let known: Vec<&str> = known.collect();
-            let error = cx.error(solid.place.clone(), format!("unknown solid `{text}`"));
-            words::point(error, words::SOLIDS, text, &known);
-            let meant = words::meant(words::SOLIDS, text, &known);
-            if let Some((solid, _, names)) = SOLIDS.iter().find(|(name, ..)| Some(*name) == meant) {
-                error.help(format!("it is written `{solid}({})`", names.join(", ")));
+    fn solid(&self, callee: &Callee, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+        let text = callee.text.as_str();
+        let Some(Callable::Solid(solid)) = callee.id else {
+            let known: Vec<&str> = Solid::names().collect();
+            let error = cx.error(callee.place.clone(), format!("unknown solid `{text}`"));
+            let said = words::solids();
+            words::point(error, &said, text, &known);
+            if let Some(solid) = words::meant(&said, text, &known).and_then(Solid::of_name) {
+                error.help(format!("it is written `{}`", solid.usage()));
             }
             if error.is_bare() {
                 error.help("the solids are `rod`, `ring`, `disk`, `cylinder`, `tube`, `cone`, `capsule`, `sphere`, `shell`, `cuboid`, `plate` and `ellipsoid`, or `diagonal(xx, yy, zz)`");
             }
             return None;
         };
-        if arguments.len() != names.len() {
-            cx.error(solid.place.clone(), format!("`{text}` takes {} arguments", names.len()))
-                .help(format!("write `{text}({})`", names.join(", ")));
+        let row = solid.row();
+        if arguments.len() != row.arguments.len() {
+            cx.error(callee.place.clone(), format!("`{text}` takes {} arguments", row.arguments.len()))
+                .help(format!("write `{}`", solid.usage()));
             return None;
         }
-        let has_axis = names.last() == Some(&"axis");
-        if self.confused(solid, names, arguments, cx) {
+        if self.confused(solid, arguments, cx) {
             return None;
         }
-        let mut numbers = Vec::new();
-        let mut complete = true;
-        for (argument, name) in arguments[..arguments.len() - usize::from(has_axis)].iter().zip(*names) {
-            match self.scalar(argument, cx) {
+        let (mut numbers, mut axis, mut complete) = (Vec::new(), Vec3::zero(self.graph), true);
+        for (e, argument) in arguments.iter().zip(row.arguments) {
+            if argument.kind.is_direction() {
+                axis = self.unit_vector(e, false, cx)?;
+                continue;
+            }
+            match self.scalar(e, cx) {
                 Some(s) => {
-                    complete &= self.check_not_negative(s, argument, cx);
-                    self.require(Rule::NotNegative, || format!("the {name} of a `{text}`"), &[s]);
+                    complete &= self.check_not_negative(s, e, cx);
+                    self.require(Rule::NotNegative, || format!("the {} of a `{text}`", argument.name), &[s]);
                     numbers.push(s);
                 }
                 None => complete = false,
             }
         }
-        let axis = match arguments.last() {
-            Some(axis) if has_axis => Some(self.unit_vector(axis, false, cx)?),
-            _ => None,
-        };
-        complete.then(|| self.solid_inertia(*kind, &numbers, axis))
+        complete.then(|| (row.inertia)(&numbers, axis))
     }
 
     /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely
     /// the arguments stand in another order.
-    fn confused(
-        &self,
-        solid: &Name,
-        names: &[&str],
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> bool {
-        for (name, argument) in names.iter().zip(arguments) {
+    fn confused(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
+        for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
             let mut silent = Diagnostics::unread();
-            let found = match (self.value(argument, &mut silent), *name == "axis") {
+            let found = match (self.value(argument, &mut silent), kind.is_direction()) {
                 (Some(Value::Vector(_)), false) => "a vector",
                 (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",
                 _ => continue,
             };
             cx.error(
                 argument.place.clone(),
-                format!("expected the {name} of the {}, found {found}", solid.text),
+                format!("expected the {name} of the {}, found {found}", solid.name()),
             )
-            .help(format!("write `{}({})`", solid.text, names.join(", ")));
+            .help(format!("write `{}`", solid.usage()));
             return true;
         }
         false
@@ -244,77 +188,11 @@ impl<'g> Scope<'_, 'g> {
             _ => true,
         }
     }
-
-    /// Moments of inertia of homogeneous solids about their centres of mass (any table of mechanics).
-    fn solid_inertia(&self, solid: Solid, n: &[Expr<'g>], axis: Option<Vec3<'g>>) -> Sym3<'g> {
-        let g = self.graph;
-        let square = |k: usize| n[k].square();
-        let about = |axial: Expr<'g>, transverse: Expr<'g>| match axis {
-            Some(axis) => axisymmetric(axial, transverse, axis),
-            None => Sym3::scalar(axial),
-        };
-        let diagonal = |d: [Expr<'g>; 3]| Sym3 { diagonal: d, off: [g.zero(); 3] };
-        match solid {
-            Solid::Rod => about(g.zero(), n[0] * square(1) * (1.0 / 12.0)),
-            Solid::Ring => about(n[0] * square(1), n[0] * square(1) * 0.5),
-            Solid::Disk => about(n[0] * square(1) * 0.5, n[0] * square(1) * 0.25),
-            Solid::Cylinder => {
-                about(n[0] * square(1) * 0.5, n[0] * (square(1) * 0.25 + square(2) * (1.0 / 12.0)))
-            }
-            Solid::Tube => {
-                let radii = square(1) + square(2);
-                about(n[0] * radii * 0.5, n[0] * (radii * 0.25 + square(3) * (1.0 / 12.0)))
-            }
-            Solid::Cone => about(n[0] * square(1) * 0.3, n[0] * (square(1) * 0.15 + square(2) * 0.0375)),
-            Solid::Capsule => self.capsule(n, axis),
-            Solid::Sphere => Sym3::scalar(n[0] * square(1) * 0.4),
-            Solid::Shell => Sym3::scalar(n[0] * square(1) * (2.0 / 3.0)),
-            Solid::Cuboid | Solid::Ellipsoid => {
-                let factor = if solid == Solid::Ellipsoid { 0.2 } else { 1.0 / 12.0 };
-                let m = n[0] * factor;
-                diagonal([
-                    m * (square(2) + square(3)),
-                    m * (square(1) + square(3)),
-                    m * (square(1) + square(2)),
-                ])
-            }
-            Solid::Plate => {
-                let m = n[0] * (1.0 / 12.0);
-                diagonal([m * square(2), m * square(1), m * (square(1) + square(2))])
-            }
-            Solid::Diagonal => diagonal([n[0], n[1], n[2]]),
-        }
-    }
-
-    /// A cylinder of the given height between two half balls.
-    fn capsule(&self, n: &[Expr<'g>], axis: Option<Vec3<'g>>) -> Sym3<'g> {
-        let (m, r, h) = (n[0], n[1], n[2]);
-        // Volumes over π r²: h of the cylinder, 4 r / 3 of the two halves of the ball.
-        let ball = r * (4.0 / 3.0);
-        let (m_cylinder, m_ball) = (m * h / (h + ball), m * ball / (h + ball));
-        let axial = m_cylinder * r.square() * 0.5 + m_ball * r.square() * 0.4;
-        let transverse = m_cylinder * (r.square() * 0.25 + h.square() * (1.0 / 12.0))
-            + m_ball * (r.square() * 0.4 + h.square() * 0.25 + h * r * 0.375);
-        axis.map_or(Sym3::zero(self.graph), |axis| axisymmetric(axial, transverse, axis))
-    }
 }
 
 /// True for a solid with its arguments.
 fn is_solid(e: &syntax::Expr) -> bool {
-    matches!(&e.kind, ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, ..)| *solid == word.text))
-}
-
-/// `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, `t` about all normals.
-fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
-    if let Some(k) = (0..3).find(|k| n[*k].value().is_some_and(|c| c.abs() == 1.0)) {
-        let diagonal = std::array::from_fn(|i| if i == k { axial } else { transverse });
-        return Sym3 { diagonal, off: [axial.zero(); 3] };
-    }
-    let extra = axial - transverse;
-    Sym3::from_upper(&Mat3::from_fn(|i, j| {
-        let term = extra * n[i] * n[j];
-        if i == j { transverse + term } else { term }
-    }))
+    matches!(&e.kind, ExprKind::Call(Callee { id: Some(Callable::Solid(_)), .. }, _))
 }
 
 /// Reports an inertia that no real body of this mass can have, if it is given by numbers. `hint` says how to

@@ -2,12 +2,13 @@
 
 use super::builder::Builder;
 use super::figures::Range;
-use super::inertia::{SOLIDS, check_inertia};
+use super::inertia::check_inertia;
 use super::scope::{MassProperties, Placed};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Sym3, Vec3};
+use crate::language::{Callable, Solid};
 use crate::mechanism::{Inertia, LinkId, Pose, Rule};
-use crate::syntax::{self, Body, ExprKind, Inertias, Particle};
+use crate::syntax::{self, Body, Callee, ExprKind, Inertias, Particle};
 
 impl<'g> Builder<'_, 'g> {
     /// Adds the masses of all bodies and particles to their links.
@@ -96,12 +97,12 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Sym3<'g>> {
         let solid = body.inertia.as_ref().and_then(|e| {
             e.parts().into_iter().find_map(|part| match &part.kind {
-                ExprKind::Call(word, _) if SOLIDS.iter().any(|(solid, ..)| *solid == word.text) => Some(word),
+                ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, _) => Some(*solid),
                 _ => None,
             })
         });
-        if let Some(solid) = solid.filter(|solid| solid.text != "diagonal") {
-            cx.error(about.place.clone(), format!("the inertia of a `{}` is about its centre", solid.text))
+        if let Some(solid) = solid.filter(|solid| *solid != Solid::Diagonal) {
+            cx.error(about.place.clone(), format!("the inertia of a `{}` is about its centre", solid.name()))
                 .help("remove `about`, and say by `com` where the centre is; `about` goes with `diagonal(xx, yy, zz)` or a matrix");
             return None;
         }

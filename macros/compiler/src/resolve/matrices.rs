@@ -1,15 +1,15 @@
 //! Physical matrices, which take vectors to vectors: projectors, rotations, cross products, inertias, with
 //! their products, transposes and rates.
 
+use super::functions::Call;
 use super::quantities::{flatten, in_links, vector};
 use super::resolved::Resolved;
 use super::scope::{Allowed, Axes, Kinematics, Placed, Scope, Terms, Value};
-use super::slips::wrong_count;
-use crate::diag::Diagnostics;
+use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
 use crate::kinematics::change_axes;
 use crate::mechanism::LinkId;
-use crate::syntax::{self, BinaryOp, GROUND, Name};
+use crate::syntax::{self, BinaryOp, GROUND};
 
 impl<'g> Kinematics<'g> {
     /// A matrix in the axes of another link.
@@ -45,72 +45,69 @@ impl<'g> Scope<'_, 'g> {
     /// A matrix by its rows, in the axes at hand.
     pub fn matrix_by_rows(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let entries = self.matrix(e, cx)?;
-        let Some((link, pose)) = self.context.borrow().axes.clone() else { return self.no_matrix(e, cx) };
+        let Some((link, pose)) = self.context.borrow().axes.clone() else {
+            return self.no_matrix(&e.place, cx);
+        };
         let own = Resolved { link, entries };
         Some(Value::Matrix(own.turned(link, |v| pose.rotation.to_parent(v))))
     }
 
-    fn no_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        cx.error(e.place.clone(), "a matrix cannot stand here")
+    /// Reports a matrix where none can stand.
+    fn no_matrix<T>(&self, place: &Place, cx: &mut Diagnostics) -> Option<T> {
+        cx.error(place.clone(), "a matrix cannot stand here")
             .help("matrices stand in definitions, outputs and forces: `#[define(projector(n))]`");
         None
     }
 
-    /// `projector(n)`: `n nᵀ / n·n`, the projection onto a line; `skew(a)`, with `skew(a) * b = cross(a, b)`;
-    /// `outer(a, b)`: `a bᵀ`; `rotation(B / A)`: `Σ bₖ aₖᵀ`, which turns the axes of A into those of B;
-    /// `inertia(body / point)`: the physical inertia matrix; `identity()`, `transpose(M)`, `trace(M)`.
-    pub fn matrix_function(
+    /// Returns the arguments of a function of matrices, or reports that there are no matrices here.
+    fn take_matrix<'e, const N: usize>(
         &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
+        call: &Call<'e>,
         cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let text = function.text.as_str();
-        if self.context.borrow().axes.is_none() {
-            let e = syntax::Expr {
-                kind: syntax::ExprKind::Name(text.to_string()),
-                place: function.place.clone(),
-            };
-            return self.no_matrix(&e, cx);
-        }
-        match (text, arguments) {
-            ("identity", []) => {
-                Some(Value::Matrix(Resolved { link: None, entries: Mat3::identity(self.graph) }))
-            }
-            ("projector" | "skew", [a]) => {
-                let (link, [a]) = self.vectors([a], cx)?;
-                Some(Value::Matrix(Resolved {
-                    link,
-                    entries: match text {
-                        "skew" => Mat3::skew(a),
-                        _ => {
-                            let square = a.dot(a);
-                            Mat3::from_fn(|i, j| a[i] * a[j] / square)
-                        }
-                    },
-                }))
-            }
-            ("outer", [a, b]) => {
-                let (link, [a, b]) = self.vectors([a, b], cx)?;
-                Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
-            }
-            ("transpose", [m]) => {
-                let m = self.physical_matrix(m, cx)?;
-                Some(Value::Matrix(Resolved { entries: m.entries.transpose(), ..m }))
-            }
-            ("trace", [m]) => {
-                let m = self.physical_matrix(m, cx)?.entries.0;
-                Some(Value::Scalar(m[0][0] + m[1][1] + m[2][2]))
-            }
-            ("rotation", [of]) => self.physical_rotation(function, of, cx),
-            ("inertia", [of]) => self.inertia_matrix(function, of, cx),
-            ("outer", _) => wrong_count(function, 2, cx),
-            ("identity", _) => {
-                cx.error(function.place.clone(), "`identity` takes no argument").help("write `identity()`");
-                None
-            }
-            _ => wrong_count(function, 1, cx),
-        }
+    ) -> Option<&'e [syntax::Expr; N]> {
+        if self.context.borrow().axes.is_none() { self.no_matrix(call.place, cx) } else { call.take(cx) }
+    }
+
+    /// `identity()`
+    pub fn identity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [] = self.take_matrix(call, cx)?;
+        Some(Value::Matrix(Resolved { link: None, entries: Mat3::identity(self.graph) }))
+    }
+
+    /// `projector(n)`: `n nᵀ / n·n`, the projection onto a line.
+    pub fn projector(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [a] = self.take_matrix(call, cx)?;
+        let (link, [a]) = self.vectors([a], cx)?;
+        let square = a.dot(a);
+        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * a[j] / square) }))
+    }
+
+    /// `skew(a)`, with `skew(a) * b = cross(a, b)`.
+    pub fn skew(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [a] = self.take_matrix(call, cx)?;
+        let (link, [a]) = self.vectors([a], cx)?;
+        Some(Value::Matrix(Resolved { link, entries: Mat3::skew(a) }))
+    }
+
+    /// `outer(a, b)`: `a bᵀ`.
+    pub fn outer(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [a, b] = self.take_matrix(call, cx)?;
+        let (link, [a, b]) = self.vectors([a, b], cx)?;
+        Some(Value::Matrix(Resolved { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
+    }
+
+    /// `transpose(M)`
+    pub fn transpose(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [m] = self.take_matrix(call, cx)?;
+        let m = self.physical_matrix(m, cx)?;
+        Some(Value::Matrix(Resolved { entries: m.entries.transpose(), ..m }))
+    }
+
+    /// `trace(M)`
+    pub fn trace(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [m] = self.take_matrix(call, cx)?;
+        let m = self.physical_matrix(m, cx)?.entries.0;
+        Some(Value::Scalar(m[0][0] + m[1][1] + m[2][2]))
     }
 
     /// Vectors in the axes of one link.
@@ -124,19 +121,11 @@ impl<'g> Scope<'_, 'g> {
         Some((link, v.try_into().ok()?))
     }
 
-    fn physical_rotation(
-        &self,
-        function: &Name,
-        of: &syntax::Expr,
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let parts = flatten(of);
-        let [b, a] = parts.as_slice() else {
-            cx.error(function.place.clone(), "`rotation` takes two frames")
-                .help("write `rotation(B / A)`, which turns the axes of A into those of B");
-            return None;
-        };
-        if !self.check_allowed(Allowed::Placement, "`rotation(…)`", &function.place, cx) {
+    /// `rotation(B / A)`: `Σ bₖ aₖᵀ`, which rotates the axes of A into those of B.
+    pub fn physical_rotation(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [of] = self.take_matrix(call, cx)?;
+        let Ok([b, a]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        if !self.check_allowed(Allowed::Placement, "`rotation(…)`", call.place, cx) {
             return None;
         }
         let (link, _) = (self.frame(a, cx), self.frame(b, cx));
@@ -162,15 +151,11 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// The physical inertia matrix of bodies about a point.
-    fn inertia_matrix(&self, function: &Name, of: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let parts = flatten(of);
-        let [of, about] = parts.as_slice() else {
-            cx.error(function.place.clone(), "`inertia` takes bodies and a point")
-                .help("write `inertia(body / point)` or `inertia((first, second) / point)`");
-            return None;
-        };
-        if !self.check_allowed(Allowed::Placement, "`inertia(…)`", &function.place, cx) {
+    /// `inertia(body / point)`: the physical inertia matrix of bodies about a point.
+    pub fn inertia_matrix(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [of] = self.take_matrix(call, cx)?;
+        let Ok([of, about]) = <[_; 2]>::try_from(flatten(of)) else { return call.reject(cx) };
+        if !self.check_allowed(Allowed::Placement, "`inertia(…)`", call.place, cx) {
             return None;
         }
         let bodies = self.heavy_ones(of, cx)?;

@@ -2,46 +2,43 @@
 //! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`,
 //! `moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
 
+use super::functions::Call;
 use super::quantities::{flatten, vector};
 use super::scope::{Allowed, MassProperties, Placed, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::Pose;
-use crate::syntax::{self, ExprKind, Name, words};
+use crate::syntax::{self, ExprKind, words};
+
+/// A sum over bodies.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Sum {
+    /// Of momenta.
+    Momentum,
+    /// Of angular momenta about a point.
+    AngularMomentum,
+    /// Of kinetic energies.
+    Energy,
+}
 
 impl<'g> Scope<'_, 'g> {
-    /// What bodies have by their motion with respect to the ground, each and in sum. With the velocity `v` of
-    /// a centre of mass, the vector `r` there from a point, and the central inertia `I`: `m v`,
-    /// `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
-    pub fn momentum(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let text = function.text.as_str();
-        let parts = if let [one] = arguments { flatten(one) } else { Vec::new() };
-        let (count, form) = match text {
-            "angular_momentum" => (2, "a body and a point: write `angular_momentum(body / point)`"),
-            "momentum" => (1, "a body: write `momentum(body)`"),
-            _ => (1, "a body: write `kinetic_energy(body)`"),
-        };
+    /// The momentum, the angular momentum or the kinetic energy of bodies, by their motion relative to the
+    /// ground. With the velocity `v` of a centre of mass, the vector `r` there from a point, and the central
+    /// inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
+    pub fn momentum(&self, call: &Call<'_>, sum: Sum, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let (text, parts) = (call.name(), call.parts());
+        let (count, point) = if sum == Sum::AngularMomentum { (2, " / point") } else { (1, "") };
         if parts.len() != count {
-            let (what, help) = form.split_once(": ").unwrap_or((form, ""));
-            let error = cx.error(function.place.clone(), format!("`{text}` takes {what}"));
-            match arguments.len() {
-                0 | 1 => error.help(help),
-                _ => error.help(format!(
-                    "several bodies stand in parentheses: `{text}((first, second){})`",
-                    match count {
-                        2 => " / point",
-                        _ => "",
-                    }
-                )),
+            let row = call.id.row();
+            let error = cx.error(call.place.clone(), format!("`{text}` takes {}", row.takes));
+            match call.arguments.len() {
+                0 | 1 => error.help(row.usage),
+                _ => error
+                    .help(format!("several bodies stand in parentheses: `{text}((first, second){point})`")),
             };
             return None;
         }
-        if !self.check_allowed(Allowed::Motion, &format!("`{text}(…)`"), &function.place, cx) {
+        if !self.check_allowed(Allowed::Motion, &format!("`{text}(…)`"), call.place, cx) {
             return None;
         }
         let bodies = self.heavy_ones(parts[0], cx)?;
@@ -51,7 +48,7 @@ impl<'g> Scope<'_, 'g> {
         };
         let kinematics = self.kinematics.borrow();
         let zero = Vec3::zero(self.graph);
-        let (mut energy, mut sum) = (self.graph.zero(), Vec::new());
+        let (mut energy, mut momenta) = (self.graph.zero(), Vec::new());
         for (placed, (mass, com, central)) in bodies {
             let link = placed.link;
             let twist = link.map(|link| &kinematics.twists[link.0]);
@@ -61,31 +58,21 @@ impl<'g> Scope<'_, 'g> {
             let spin = placed.pose.rotation.sym_to_parent(central) * w;
             energy += (v.dot(v) * mass + w.dot(spin)) * 0.5;
             let Some(about) = &about else {
-                sum.push((link, v * mass));
+                momenta.push((link, v * mass));
                 continue;
             };
             let pose = Pose { translation: center, rotation: placed.pose.rotation.clone() };
             let between = kinematics.between(&Placed { pose, ..placed.clone() }, about);
             let r = kinematics.resolve(&between, link, zero);
-            sum.push((link, spin + r.cross(v * mass)));
+            momenta.push((link, spin + r.cross(v * mass)));
         }
-        Some(if text == "kinetic_energy" { Value::Scalar(energy) } else { vector(sum) })
+        Some(if sum == Sum::Energy { Value::Scalar(energy) } else { vector(momenta) })
     }
 
     /// `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of bodies.
-    pub fn center_of_mass(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let parts = if let [one] = arguments { flatten(one) } else { Vec::new() };
-        let [of, from] = parts.as_slice() else {
-            cx.error(function.place.clone(), "`center_of_mass` takes bodies and a point")
-                .help("write `center_of_mass((first, second) / point)`");
-            return None;
-        };
-        if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", &function.place, cx) {
+    pub fn center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let Ok([of, from]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
+        if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", call.place, cx) {
             return None;
         }
         let bodies = self.heavy_ones(of, cx)?;
@@ -110,28 +97,21 @@ impl<'g> Scope<'_, 'g> {
     /// A moment or product of inertia about a point: `a·J b`, with one direction `a·J a`, of the physical
     /// inertia matrix `J = I + m (r·r 1 − r rᵀ)` about a point from which the centre of mass is at `r` (the
     /// parallel-axis theorem); of several bodies the sum.
-    pub fn moment_of_inertia(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let text = function.text.as_str();
-        let (parts, directions) = match arguments {
+    pub fn moment_of_inertia(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let text = call.name();
+        let (parts, directions) = match call.arguments {
             [of, directions @ ..] => (flatten(of), directions),
-            [] => (Vec::new(), arguments),
+            [] => (Vec::new(), call.arguments),
         };
         let ([of, about], [a, others @ ..]) = (parts.as_slice(), directions) else {
-            cx.error(function.place.clone(), format!("`{text}` takes a body, a point and a direction"))
-                .help("write `moment_of_inertia(body / point, direction)`, with a second direction for a product of inertia");
-            return None;
+            return call.reject(cx);
         };
         if others.len() > 1 {
             cx.error(others[1].place.clone(), format!("`{text}` takes one direction or two"))
                 .help("with two it is a product of inertia");
             return None;
         }
-        if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), &function.place, cx) {
+        if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
             return None;
         }
         let bodies = self.heavy_ones(of, cx)?;

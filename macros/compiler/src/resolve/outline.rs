@@ -3,13 +3,13 @@
 //! wrote and checks nothing.
 
 use super::carriers::expressions;
-use super::functions::{self, Dependence};
 use super::joint::{coordinate_names, full_name};
 use crate::diag::Diagnostics;
+use crate::language::{Callable, Dependence, FunctionId};
 use crate::mechanism::{Diagram, Uses};
 use crate::syntax::{
-    Action, ActionKind, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind,
-    Law, Rank,
+    Action, ActionKind, Callee, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint,
+    JointKind, Law, Rank,
 };
 use std::collections::BTreeSet;
 
@@ -128,8 +128,12 @@ fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
     };
     let names_force = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, arguments) => {
-            ["contact_force", "contact_moment", "power"].contains(&function.text.as_str())
-                && arguments.iter().any(|argument| names_contact(d, argument))
+            matches!(
+                function.id,
+                Some(Callable::Function(
+                    FunctionId::ContactForce | FunctionId::ContactMoment | FunctionId::Power
+                ))
+            ) && arguments.iter().any(|argument| names_contact(d, argument))
         }
         _ => false,
     };
@@ -162,7 +166,7 @@ fn uses(d: &Description, e: &Expr) -> Uses {
     let mut uses = Uses::default();
     for part in with_definitions(d, e) {
         match &part.kind {
-            ExprKind::Call(function, arguments) => match functions::dependence(&function.text) {
+            ExprKind::Call(function, arguments) => match dependence(function) {
                 Dependence::Arguments => {}
                 Dependence::Motion => uses.velocities = true,
                 Dependence::Acceleration => uses.accelerations = true,
@@ -186,6 +190,14 @@ fn uses(d: &Description, e: &Expr) -> Uses {
     uses
 }
 
+/// Returns the quantities that the value of a call depends on, beside those of its arguments.
+fn dependence(callee: &Callee) -> Dependence {
+    match callee.id {
+        Some(Callable::Function(function)) => function.row().depends_on,
+        _ => Dependence::Arguments,
+    }
+}
+
 /// Whether an expression is the name of a contact.
 fn names_contact(d: &Description, e: &Expr) -> bool {
     d.contacts.iter().any(|contact| contact.soft.is_none() && e.name() == Some(contact.name.text.as_str()))
@@ -195,7 +207,7 @@ fn names_contact(d: &Description, e: &Expr) -> bool {
 fn names_motion(d: &Description, e: &Expr) -> bool {
     let is_motion = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, _) => {
-            matches!(functions::dependence(&function.text), Dependence::Motion | Dependence::Rate)
+            matches!(dependence(function), Dependence::Motion | Dependence::Rate)
         }
         _ => false,
     };

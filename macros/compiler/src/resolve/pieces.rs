@@ -12,8 +12,9 @@ use crate::expr::replace::{replace, replace_part};
 use crate::expr::sample::sample;
 use crate::expr::{Expr, Extreme, Symbol};
 use crate::kinematics::symbols_in;
+use crate::language::Callable;
 use crate::mechanism::Quantity;
-use crate::syntax::{self, ExprKind, IF};
+use crate::syntax::{self, ExprKind};
 
 /// Symbols for what decides begin here, beyond those of laws and surfaces.
 const FIRST: usize = 64;
@@ -123,7 +124,7 @@ impl<'g> Scope<'_, 'g> {
             for part in piece.parts() {
                 if let ExprKind::Call(name, arguments) = &part.kind
                     && let [a, b, ..] = arguments.as_slice()
-                    && name.text == IF
+                    && name.id == Some(Callable::If)
                 {
                     let border = if a.is_like(written) { b } else { a };
                     if a.is_like(written) != b.is_like(written) {

@@ -3,12 +3,12 @@
 
 use super::builder::Builder;
 use super::carriers::carries;
-use super::curves::FRAMES;
 use super::holders;
 use super::scope::{Allowed, Context, Placed, PlacedKind};
 use super::tree::Order;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Rotation, Vec3};
+use crate::language::Callable;
 use crate::mechanism::{LinkId, NamedFrame, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
@@ -238,14 +238,20 @@ impl<'a, 'g> Builder<'a, 'g> {
         let frame = &self.description.frames[k];
         let start = self.axes_of(&frame.start, cx);
         // Axes that follow from a vector or a curve come before those that are turned from them.
-        let is_natural =
-            |e: &Expr| matches!(&e.kind, ExprKind::Call(word, _) if FRAMES.contains(&word.text.as_str()));
-        let (natural, turned) = match frame.rotations.as_slice() {
-            [first, rest @ ..] if is_natural(first) => (Some(first), rest),
-            all => (None, all),
+        let natural = match frame.rotations.first().map(|first| &first.kind) {
+            Some(ExprKind::Call(word, arguments)) => match word.id {
+                Some(Callable::Rotation(rotation)) if rotation.row().natural => {
+                    Some(((rotation, word), arguments))
+                }
+                _ => None,
+            },
+            _ => None,
         };
+        let turned = &frame.rotations[usize::from(natural.is_some())..];
         let first = match (natural, &start) {
-            (Some(step), Some(start)) => self.scope.natural_axes(step, start, cx),
+            (Some((rotation, arguments)), Some(start)) => {
+                self.scope.natural_axes(rotation, arguments, start, cx)
+            }
             _ => Some(Rotation::identity(self.scope.graph)),
         };
         let context = Context::new(Allowed::Placement, None);

@@ -1,10 +1,12 @@
 //! The power of single force elements, for the outputs that name them: `power(spring)`.
 
 use super::builder::Builder;
+use super::functions::Call;
 use super::scope::{Allowed, Delivered, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::{position_in, rate, symbols_in, time_derivative, velocity_gradient};
+use crate::language::{Callable, FunctionId};
 use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
 use crate::syntax::{self, Description, Name};
 
@@ -42,7 +44,8 @@ pub fn is_asked(d: &Description, element: &Name) -> bool {
     let names = |e: &syntax::Expr| {
         e.parts().iter().any(|part| match &part.kind {
             syntax::ExprKind::Call(function, arguments) => {
-                function.text == "power" && arguments.iter().any(|a| a.name() == Some(element.text.as_str()))
+                function.id == Some(Callable::Function(FunctionId::Power))
+                    && arguments.iter().any(|a| a.name() == Some(element.text.as_str()))
             }
             _ => false,
         })
@@ -138,22 +141,14 @@ impl<'g> Builder<'_, 'g> {
 impl<'g> Scope<'_, 'g> {
     /// `power(element)`: what a force element, an input or a contact that slips delivers to the bodies, W;
     /// negative where it takes energy out.
-    pub fn power(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
+    pub fn power(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let known = || self.actions.iter().map(String::as_str);
-        let [e] = arguments else {
-            cx.error(function.place.clone(), "`power` takes one force element").help("write `power(spring)`");
-            return None;
-        };
+        let [e] = call.take(cx)?;
         let Some(name) = e.name() else {
             cx.error(e.place.clone(), "expected a force element").suggest("", known());
             return None;
         };
-        if !self.check_allowed(Allowed::Reaction, "the power of an element", &function.place, cx) {
+        if !self.check_allowed(Allowed::Reaction, "the power of an element", call.place, cx) {
             return None;
         }
         match self.kinematics.borrow().powers.get(name) {

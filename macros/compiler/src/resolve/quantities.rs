@@ -1,12 +1,14 @@
 //! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and
 //! the kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
 
+use super::functions::Call;
 use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::unit;
+use crate::language::FunctionId;
 use crate::mechanism::{LinkId, Pose};
-use crate::syntax::{self, BinaryOp, ExprKind, GROUND, Name, words};
+use crate::syntax::{self, BinaryOp, ExprKind, GROUND, words};
 
 impl<'g> Scope<'_, 'g> {
     /// A vector as a sum over the axes of links. Only where the links are known.
@@ -38,15 +40,10 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// `rate(coordinate)`, or the rate of what depends on coordinates, velocities and time.
-    pub fn rate_of(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let [argument] = arguments else {
-            let first = arguments.first().map_or("coordinate".to_string(), syntax::Expr::spelt);
-            cx.error(function.place.clone(), "`rate` takes one coordinate")
+    pub fn rate_of(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [argument] = call.arguments else {
+            let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::spelt);
+            cx.error(call.place.clone(), "`rate` takes one coordinate")
                 .help(format!("write `rate({first})`"));
             return None;
         };
@@ -62,13 +59,13 @@ impl<'g> Scope<'_, 'g> {
             && let Some(name) = frame.name()
             && (name == GROUND || self.bodies.iter().any(|body| body == name))
         {
-            return self.rate_in(function, of, frame, cx);
+            return self.rate_in(call.place, of, frame, cx);
         }
         let kinematics = self.kinematics.borrow();
         let Some((_, c, _)) = kinematics.coordinates.iter().find(|(n, ..)| *n == name) else {
             if self.is_moving(argument) {
                 drop(kinematics);
-                return self.rate_of_value(function, argument, cx).map(Value::Scalar);
+                return self.rate_of_value(call.place, argument, cx).map(Value::Scalar);
             }
             if matches!(argument.kind, ExprKind::Name(_)) && !self.is_news(&name, cx) {
                 return None;
@@ -82,27 +79,17 @@ impl<'g> Scope<'_, 'g> {
             }
             return None;
         };
-        if !self.check_allowed(Allowed::Motion, &format!("the rate of `{name}`"), &function.place, cx) {
+        if !self.check_allowed(Allowed::Motion, &format!("the rate of `{name}`"), call.place, cx) {
             return None;
         }
         Some(Value::Scalar(c.v.expr(self.graph) * self.graph.num(c.ratio)))
     }
 
     /// `angle(a, b)` in 0…π, or `angle(a, b, n)` directed about `n` in −π…π.
-    pub fn angle(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let all: Vec<&syntax::Expr> = arguments.iter().collect();
+    pub fn angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let all: Vec<&syntax::Expr> = call.arguments.iter().collect();
         if !(2..=3).contains(&all.len()) {
-            cx.error(
-                function.place.clone(),
-                "`angle` takes two vectors, and a third about which it is directed",
-            )
-            .help("write `angle(a, b)` or `angle(a, b, normal)`");
-            return None;
+            return call.reject(cx);
         }
         let (_, v) = self.common_axes(&all, cx)?;
         let normal = v[0].cross(v[1]);
@@ -213,76 +200,63 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    /// `r(y / x)`, `v(y / x / A)`, `a(y / x / A)`, `omega(B / A)`, `alpha(B / A / C)`.
-    pub fn slash(
+    /// Returns the names between the slashes of a kinematic quantity, or reports an error.
+    fn slashes<'e, const N: usize>(
         &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
+        call: &Call<'e>,
+        allowed: Allowed,
         cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
-        let text = function.text.as_str();
-        let parts: Vec<&syntax::Expr> = match arguments {
-            [one] => flatten(one),
-            _ => Vec::new(),
+    ) -> Option<[&'e syntax::Expr; N]> {
+        let (text, parts) = (call.name(), call.parts());
+        let of_point = matches!(call.id, FunctionId::Velocity | FunctionId::Acceleration);
+        let message = match of_point && parts.len() == 2 {
+            true => format!("`{text}` needs the frame with respect to which it is taken"),
+            false => format!("`{text}` is written with slashes"),
         };
-        let (count, form) = match text {
-            "r" => (2, "r(point / point)"),
-            "v" | "a" => (3, "(point / point / frame)"),
-            "omega" => (2, "omega(frame / frame)"),
-            _ => (3, "alpha(frame / frame / frame)"),
-        };
-        if parts.len() != count {
-            let form =
-                if text.len() == 1 && text != "r" { format!("{text}{form}") } else { form.to_string() };
-            let missing = matches!(text, "v" | "a") && parts.len() == 2;
-            cx.error(
-                function.place.clone(),
-                match missing {
-                    true => format!("`{text}` needs the frame with respect to which it is taken"),
-                    false => format!("`{text}` is written with slashes"),
-                },
-            )
-            .help(format!("write `{form}`"));
+        let Ok(parts) = parts.try_into() else {
+            cx.error(call.place.clone(), message).help(call.id.row().usage);
             return None;
-        }
-        let allowed = match text {
-            "r" => Allowed::Placement,
-            "v" | "omega" => Allowed::Motion,
-            _ => Allowed::Acceleration,
         };
-        if !self.check_allowed(allowed, &format!("`{text}(…)`"), &function.place, cx) {
-            return None;
-        }
-        match text {
-            "omega" | "alpha" => self.turning(text, &parts, cx),
-            _ => self.moving(text, &parts, cx),
-        }
+        self.check_allowed(allowed, &format!("`{text}(…)`"), call.place, cx).then_some(parts)
     }
 
-    /// Relative angular velocity and acceleration.
-    fn turning(&self, text: &str, parts: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let frames: Vec<_> = parts.iter().map(|e| self.frame(e, cx)).collect();
-        let frames = frames.into_iter().collect::<Option<Vec<_>>>()?;
-        let kinematics = self.kinematics.borrow();
-        Some(vector(match text {
-            "omega" => kinematics.turning_in(frames[0], frames[1], self.graph),
-            _ => kinematics.turning_rate(frames[0], frames[1], frames[2], self.graph),
-        }))
+    /// `r(y / x)`
+    pub fn relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [y, x] = self.slashes(call, Allowed::Placement, cx)?;
+        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
+        Some(vector(self.kinematics.borrow().between(&y?, &x?)))
     }
 
-    /// Relative position, velocity and acceleration. Seen from a frame A that turns with `ω` and `α`:
-    /// `v_A = v − ω × r`, `a_A = a − α × r − ω × (ω × r) − 2 ω × v_A`.
-    fn moving(&self, text: &str, parts: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let (y, x) = (self.place_now(parts[0], cx), self.place_now(parts[1], cx));
-        let frame = parts.get(2).map(|e| self.frame(e, cx));
-        let (y, x) = (y?, x?);
-        let kinematics = self.kinematics.borrow();
-        let Some(frame) = frame else { return Some(vector(kinematics.between(&y, &x))) };
-        let frame = frame?;
-        Some(vector(match text {
-            "v" => kinematics.velocity_in(&y, &x, frame, self.graph),
-            _ => kinematics.acceleration_in(&y, &x, frame, self.graph),
-        }))
+    /// `v(y / x / A)`: the velocity of `y` relative to `x`, seen from a frame A that rotates with `ω`:
+    /// `v − ω × r`.
+    pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [y, x, frame] = self.slashes(call, Allowed::Motion, cx)?;
+        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
+        let frame = self.frame(frame, cx);
+        Some(vector(self.kinematics.borrow().velocity_in(&y?, &x?, frame?, self.graph)))
+    }
+
+    /// `a(y / x / A)`: the acceleration of `y` relative to `x`, seen from a frame A that rotates with `ω` and
+    /// `α`: `a − α × r − ω × (ω × r) − 2 ω × v`.
+    pub fn relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [y, x, frame] = self.slashes(call, Allowed::Acceleration, cx)?;
+        let (y, x) = (self.place_now(y, cx), self.place_now(x, cx));
+        let frame = self.frame(frame, cx);
+        Some(vector(self.kinematics.borrow().acceleration_in(&y?, &x?, frame?, self.graph)))
+    }
+
+    /// `omega(B / A)`
+    pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let frames: [_; 2] = self.slashes(call, Allowed::Motion, cx)?;
+        let [b, a] = frames.map(|e| self.frame(e, cx));
+        Some(vector(self.kinematics.borrow().turning_in(b?, a?, self.graph)))
+    }
+
+    /// `alpha(B / A / C)`
+    pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let frames: [_; 3] = self.slashes(call, Allowed::Acceleration, cx)?;
+        let [b, a, c] = frames.map(|e| self.frame(e, cx));
+        Some(vector(self.kinematics.borrow().turning_rate(b?, a?, c?, self.graph)))
     }
 }
 

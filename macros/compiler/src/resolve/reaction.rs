@@ -5,13 +5,14 @@
 //! constraints do.
 
 use super::builder::Builder;
+use super::functions::Call;
 use super::joint::own_coordinate;
 use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{InQ, InV, Inertia, Link, LinkId, Model, Motion, Pose, Quantity};
-use crate::syntax::{self, ExprKind, Name};
+use crate::syntax::ExprKind;
 
 /// Coordinates of an released joint: three along axes, three about them.
 pub const RELEASED: usize = 6;
@@ -70,17 +71,12 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `reaction_force(joint)` or `reaction_torque(joint)`: what the parent exerts on the child, at the
-    /// origin of the joint's frame.
-    pub fn reaction(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
+    /// `reaction_force(joint)` or `reaction_torque(joint)`, whose components follow at `offset`: the load of
+    /// the parent on the child at the origin of the joint's frame.
+    pub fn reaction(&self, call: &Call<'_>, offset: usize, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let kinematics = self.kinematics.borrow();
         let known = || kinematics.transmissions.keys().map(String::as_str);
-        let name = match arguments {
+        let name = match call.arguments {
             [e] => match &e.kind {
                 ExprKind::Name(name) => name,
                 _ => {
@@ -88,26 +84,22 @@ impl<'g> Scope<'_, 'g> {
                     return None;
                 }
             },
-            _ => {
-                cx.error(function.place.clone(), format!("`{}` takes one joint", function.text))
-                    .help(format!("write `{}(hinge)`", function.text));
-                return None;
-            }
+            _ => return call.reject(cx),
         };
-        if !self.check_allowed(Allowed::Reaction, "a reaction", &function.place, cx) {
+        if !self.check_allowed(Allowed::Reaction, "a reaction", call.place, cx) {
             return None;
         }
         let Some((j, link, rotation)) = kinematics.transmissions.get(name) else {
             if self.is_news(name, cx) {
-                let error = cx.error(arguments[0].place.clone(), format!("unknown joint `{name}`"));
+                let error = cx.error(call.arguments[0].place.clone(), format!("unknown joint `{name}`"));
                 error.suggest(name, known());
                 if error.is_bare() {
-                    error.help(format!("name the joint, as in `{}(hinge)`", function.text));
+                    error.help(format!("name the joint, as in `{}(hinge)`", call.name()));
                 }
             }
             return None;
         };
-        let first = RELEASED * j + if function.text == "reaction_torque" { 3 } else { 0 };
+        let first = RELEASED * j + offset;
         let components = Vec3([0, 1, 2].map(|k| Quantity::Reaction(first + k).expr(self.graph)));
         Some(Value::Vector(vec![(Axes::Link(*link), rotation.to_parent(components))]))
     }

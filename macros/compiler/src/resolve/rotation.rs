@@ -1,13 +1,13 @@
 //! Rotations and matrices as written.
 
-use super::curves::FRAMES;
 use super::scope::Scope;
 use super::slips::{MATRIX, check_angle, is_rotation, report_matrix, report_rotation};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::sample::always;
 use crate::expr::{Expr, Mat3, Rotation};
+use crate::language::{self, Callable};
 use crate::mechanism::Rule;
-use crate::syntax::{self, ExprKind};
+use crate::syntax::{self, Callee, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
     /// Successive rotations about carried axes.
@@ -26,18 +26,17 @@ impl<'g> Scope<'_, 'g> {
 
     fn rotation_step(&self, step: &syntax::Expr, cx: &mut Diagnostics) -> Option<Rotation<'g>> {
         match &step.kind {
-            ExprKind::Call(axis, arguments) => {
-                let k = ["x", "y", "z"].iter().position(|a| *a == axis.text);
-                match (k, axis.text.as_str(), arguments.as_slice()) {
-                    (Some(k), _, [angle]) => {
+            ExprKind::Call(Callee { id: Some(Callable::Rotation(id)), .. }, arguments) => {
+                match (id, id.axis(), arguments.as_slice()) {
+                    (_, Some(k), [angle]) => {
                         return Some(Rotation::about_axis(k, self.plane_angle(angle, cx)?));
                     }
-                    (_, "eigenaxis", [n, angle]) => {
+                    (language::Rotation::Eigenaxis, _, [n, angle]) => {
                         let n = self.unit_vector(n, false, cx);
                         let angle = self.plane_angle(angle, cx);
                         return Some(Rotation::eigenaxis(n?, angle?));
                     }
-                    (_, "quaternion", [x, y, z, w]) => {
+                    (language::Rotation::Quaternion, _, [x, y, z, w]) => {
                         let parts: Vec<_> = [x, y, z, w].iter().map(|e| self.scalar(e, cx)).collect();
                         let q = [parts[0]?, parts[1]?, parts[2]?, parts[3]?];
                         let square = q.iter().fold(self.graph.zero(), |sum, c| sum + c.square());
@@ -49,7 +48,8 @@ impl<'g> Scope<'_, 'g> {
                         self.require(Rule::Unit, || "a quaternion".to_string(), &[square]);
                         return Some(Rotation::quaternion(q));
                     }
-                    (_, word, _) if FRAMES.contains(&word) => {
+                    _ if id.row().natural => {
+                        let word = id.name();
                         cx.error(
                             step.place.clone(),
                             format!("`{word}` stands first among the rotations of a `Frame`"),

@@ -1,12 +1,11 @@
 //! What is most likely meant by an expression that has no value: angles in degrees, members and methods of
 //! other languages, arrays that are no matrices.
 
-use super::curves::FRAMES;
-use super::functions::is_function;
 use super::scope::Scope;
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
-use crate::syntax::{self, ExprKind, Name, words};
+use crate::language::{Callable, Rotation};
+use crate::syntax::{self, Callee, ExprKind, Name, words};
 
 impl Scope<'_, '_> {
     /// Says what to write for a method, which expressions do not have.
@@ -20,11 +19,11 @@ impl Scope<'_, '_> {
         let is_coordinate = self.kinematics.borrow().coordinates.iter().any(|(name, ..)| *name == base);
         if is_coordinate && matches!(text, "dot" | "rate" | "diff" | "velocity" | "speed" | "dt") {
             error.help(format!("write `rate({base})`"));
-        } else if is_function(text) {
+        } else if Callable::is_function(text) {
             error.help(format!("write `{text}(…)`"));
         } else if matches!(text, "powi" | "powf" | "powu") {
             error.help("write `pow(a, n)`");
-        } else if !words::explain(error, words::FUNCTIONS, text, &[]) {
+        } else if !words::explain(error, &words::functions(), text, &[]) {
             error.help(
                 "functions stand before what they take, as in `sin(angle)`; `body.at(vector)` is a place",
             );
@@ -64,25 +63,6 @@ impl Scope<'_, '_> {
     }
 }
 
-/// Reports a wrong number of arguments.
-pub fn wrong_count<T>(function: &Name, count: usize, cx: &mut Diagnostics) -> Option<T> {
-    let plural = if count == 1 { "" } else { "s" };
-    let text = function.text.as_str();
-    let help = match text {
-        "atan" => "of two arguments is `atan2(y, x)`: did you mean `atan2`?".to_string(),
-        "dot" => "write `dot(a, b)`; the rate of a coordinate is `rate(coordinate)`".to_string(),
-        "atan2" => "write `atan2(y, x)`".to_string(),
-        "pow" => "write `pow(a, n)`".to_string(),
-        "degrees" => "write `degrees(90)`".to_string(),
-        "stability_axes" | "wind_axes" => format!("write `{text}(body, velocity, [a, b, c])`"),
-        "norm" | "unit" => format!("write `{text}(v)`"),
-        _ if count == 1 => format!("write `{text}(a)`"),
-        _ => format!("write `{text}(a, b)`"),
-    };
-    cx.error(function.place.clone(), format!("`{text}` takes {count} argument{plural}")).help(help);
-    None
-}
-
 /// What a vector looks like.
 pub const VECTOR: &str = "a vector is written `[a, b, c]` or `a * x + b * y + c * z`";
 
@@ -115,12 +95,10 @@ pub fn check_angle(e: &syntax::Expr, cx: &mut Diagnostics) -> bool {
 /// True for what may be a rotation: a call, or a matrix.
 pub fn is_rotation(step: &syntax::Expr) -> bool {
     match &step.kind {
-        ExprKind::Call(word, arguments) => match word.text.as_str() {
-            "x" | "y" | "z" => arguments.len() == 1,
-            "eigenaxis" => arguments.len() == 2,
-            "quaternion" => arguments.len() == 4,
-            word => FRAMES.contains(&word),
-        },
+        ExprKind::Call(Callee { id: Some(Callable::Rotation(rotation)), .. }, arguments) => {
+            let row = rotation.row();
+            row.natural || row.arguments.len() == arguments.len()
+        }
         ExprKind::Array(_) => true,
         _ => false,
     }
@@ -130,7 +108,8 @@ pub fn is_rotation(step: &syntax::Expr) -> bool {
 pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
     let error = cx.error(step.place.clone(), "expected a rotation");
     if let ExprKind::Call(word, _) = &step.kind {
-        words::explain(error, words::ROTATIONS, &word.text, &["x", "y", "z", "eigenaxis", "quaternion"]);
+        let known: Vec<&str> = Rotation::names().collect();
+        words::explain(error, &words::rotations(), &word.text, &known);
     }
     error.help(
         "write `x(angle)`, `y(angle)`, `z(angle)`, `eigenaxis(direction, angle)` or `quaternion(x, y, z, w)`",

@@ -12,8 +12,9 @@ use crate::expr::replace::replace;
 use crate::expr::sample::sample;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol, Vec3};
 use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
+use crate::language::Callable;
 use crate::mechanism::{Coordinate, Inertance, Load, Pose, Quantity, Rule};
-use crate::syntax::{self, ExprKind, IF, Law};
+use crate::syntax::{self, ExprKind, Law};
 use std::collections::BTreeSet;
 
 /// Regularisation speed of friction, unless given.
@@ -159,7 +160,7 @@ impl<'g> Builder<'_, 'g> {
         };
         if let ExprKind::Call(name, arguments) = &e.kind
             && let [left, right, below, above] = arguments.as_slice()
-            && name.text == IF
+            && name.id == Some(Callable::If)
         {
             let found = match (local(left), local(right)) {
                 (Some(x), None) => Some((x, right, [below, above])),

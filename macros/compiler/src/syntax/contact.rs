@@ -3,6 +3,7 @@
 use super::arguments::Arguments;
 use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
 use crate::diag::Diagnostics;
+use crate::language::Callable;
 
 const KEYS: [&str; 9] = [
     "friction",
@@ -85,14 +86,16 @@ pub fn read_contact(
 pub fn take_restitution(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Restitution> {
     let value = arguments.take_expr("restitution", cx)?;
     match value.kind {
-        ExprKind::Call(word, mut list) if word.text == "poisson" => match (list.pop(), list.is_empty()) {
-            (Some(value), true) => Some(Restitution { value, of_impulses: true }),
-            _ => {
-                cx.error(word.place, "`poisson` takes one coefficient")
-                    .help("write `restitution = poisson(e)`");
-                None
+        ExprKind::Call(word, mut list) if word.id == Some(Callable::Poisson) => {
+            match (list.pop(), list.is_empty()) {
+                (Some(value), true) => Some(Restitution { value, of_impulses: true }),
+                _ => {
+                    cx.error(word.place, "`poisson` takes one coefficient")
+                        .help("write `restitution = poisson(e)`");
+                    None
+                }
             }
-        },
+        }
         _ => Some(Restitution { value, of_impulses: false }),
     }
 }
@@ -139,7 +142,9 @@ pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
         ExprKind::Method(link, word, arguments) if word.text == COLLISION && arguments.len() < 2 => {
             Some(Some(link.as_ref()))
         }
-        ExprKind::Call(word, arguments) if word.text == COLLISION && arguments.is_empty() => Some(None),
+        ExprKind::Call(word, arguments) if word.id == Some(Callable::Collision) && arguments.is_empty() => {
+            Some(None)
+        }
         _ => None,
     }
 }

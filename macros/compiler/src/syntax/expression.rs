@@ -1,8 +1,9 @@
 //! Expressions: Rust's own grammar of numbers, names, calls, fields and the four operations, in a parser
 //! whose depth is bounded.
 
-use super::{BinaryOp, Expr, ExprKind, Name, guard};
+use super::{BinaryOp, Callee, Expr, ExprKind, Name, guard};
 use crate::diag::{Place, syn_error};
+use crate::language::callable::IF;
 use proc_macro2::{Span, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
@@ -10,9 +11,6 @@ use syn::{Ident, Lit, Token, braced, bracketed, parenthesized, token};
 
 /// Maximum length of a chain of operators or members.
 const MAX_LENGTH: usize = 400;
-
-/// The name of calls that stand for laws in two pieces, which no function can have.
-pub const IF: &str = "if";
 
 const PIECES: &str = "a law in pieces is written `if stretch < gap { 0 } else { k * (stretch - gap) }`";
 
@@ -198,7 +196,11 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let place = name.place.clone();
         if input.peek(token::Paren) {
             let (arguments, size, close) = parse_arguments(input)?;
-            return node(ExprKind::Call(name, arguments), place.to(&close.into()), size.around());
+            return node(
+                ExprKind::Call(Callee::new(name), arguments),
+                place.to(&close.into()),
+                size.around(),
+            );
         }
         return node(ExprKind::Name(name.text), place, Size::ONE);
     }
@@ -240,7 +242,7 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
         let place = Place::from(keyword);
         let name = Name { text: IF.to_string(), place: place.clone() };
-        last = node(ExprKind::Call(name, arguments), place.to(&end), size)?;
+        last = node(ExprKind::Call(Callee::new(name), arguments), place.to(&end), size)?;
     }
     Ok(last)
 }

@@ -33,13 +33,12 @@ pub mod words;
 
 pub use attribute::parse_mechanism;
 pub use description::{
-    Action, ActionKind, Base, BinaryOp, Body, Collision, Constraint, ConstraintKind, Contact, Definition,
-    Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation, Frame,
-    FreeCoordinate, Inertias, Joint, Law, Limit, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
-    ScalarType, Shape, SlipFriction, Softness, Table, Target, Visual, Wrench,
+    Action, ActionKind, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact,
+    Definition, Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
+    Frame, FreeCoordinate, Inertias, Joint, Law, Limit, Mesh, Mimic, Name, Particle, Point, Rank,
+    Restitution, ScalarType, Shape, SlipFriction, Softness, Table, Target, Term, Visual, Wrench,
 };
 pub use element_kind::{ElementKind, ForceKind, OtherKind};
-pub use expression::IF;
 pub use joint_kind::JointKind;
 pub use mechanism::{
     FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, ROOT_JOINT, Shell,

@@ -3,6 +3,7 @@
 
 use super::{BinaryOp, ElementKind, Expr, ExprKind, ForceKind, JointKind, OtherKind};
 use crate::diag::{Diagnostic, nearest};
+use crate::language::{Callable, FunctionId, Rotation, Solid};
 
 mod tables;
 
@@ -110,13 +111,31 @@ pub fn example(whose: &str) -> &'static str {
     }
 }
 
+/// Words with what is meant by them.
+type Entries<'a> = &'a [(&'static str, &'static str)];
+
+/// Returns the words for functions, with what is meant by them.
+pub fn functions() -> Vec<(&'static str, &'static str)> {
+    FunctionId::synonyms().chain(FUNCTIONS.iter().copied()).collect()
+}
+
+/// Returns the words for solids, with what is meant by them.
+pub fn solids() -> Vec<(&'static str, &'static str)> {
+    Solid::synonyms().chain(SOLIDS.iter().copied()).collect()
+}
+
+/// Returns the words for rotations, with what is meant by them.
+pub fn rotations() -> Vec<(&'static str, &'static str)> {
+    Rotation::synonyms().chain(ROTATIONS.iter().copied()).collect()
+}
+
 /// A word as it is looked up.
 fn key(word: &str) -> String {
     word.chars().filter(|c| *c != '_').flat_map(char::to_lowercase).collect()
 }
 
 /// What a word means, among `known` words if it is one word; none if nothing is known of it.
-pub fn meant(words: Words, word: &str, known: &[&str]) -> Option<&'static str> {
+pub fn meant(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
     let key = key(word);
     let fits = |meant: &str| meant.contains(' ') || known.is_empty() || known.contains(&meant);
     let said = |(said, meant): &&(&str, &str)| fits(meant) && said.split(' ').any(|one| one == key);
@@ -129,7 +148,7 @@ pub fn is_request(word: &str) -> bool {
 }
 
 /// Adds what is meant by a word, if it is known.
-pub fn explain(diagnostic: &mut Diagnostic, words: Words, word: &str, known: &[&str]) -> bool {
+pub fn explain(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) -> bool {
     match meant(words, word, known) {
         Some(meant) if meant.contains(' ') => diagnostic.help(meant),
         Some(meant) => diagnostic.help(format!("did you mean `{meant}`?")),
@@ -139,7 +158,7 @@ pub fn explain(diagnostic: &mut Diagnostic, words: Words, word: &str, known: &[&
 }
 
 /// Adds what is meant by a word, or the nearest of the known ones, or their list.
-pub fn point(diagnostic: &mut Diagnostic, words: Words, word: &str, known: &[&str]) {
+pub fn point(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) {
     if !explain(diagnostic, words, word, known) {
         diagnostic.suggest(word, known.iter().copied());
     }
@@ -244,7 +263,7 @@ fn spell(e: &Expr) -> String {
         ExprKind::Name(name) => name.clone(),
         ExprKind::Field(base, member) => format!("{}.{}", spell(base), member.text),
         ExprKind::Method(base, method, items) => format!("{}.{}({})", spell(base), method.text, list(items)),
-        ExprKind::Call(function, items) if function.text == super::IF => match items.as_slice() {
+        ExprKind::Call(function, items) if function.id == Some(Callable::If) => match items.as_slice() {
             [a, b, below, above] => {
                 format!("if {} < {} {{ {} }} else {{ {} }}", spell(a), spell(b), spell(below), spell(above))
             }
@@ -296,14 +315,12 @@ mod tests {
             OPTIONS,
             REQUESTS,
             FORMULATIONS,
-            FUNCTIONS,
             NAMES,
-            SOLIDS,
             METHODS,
             BODIES,
-            ROTATIONS,
         ];
-        for (said, meant) in all.into_iter().flatten() {
+        let rows = [functions(), solids(), rotations()].concat();
+        for (said, meant) in all.into_iter().flatten().copied().chain(rows) {
             assert!(said.split(' ').all(|word| !word.is_empty() && word == key(word)), "{said}");
             assert!(!meant.is_empty() && (meant.contains(' ') || !meant.contains('`')), "{meant}");
         }

@@ -4,9 +4,10 @@ use super::unilateral::Point;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{symbols_in, velocity_gradient};
-use crate::mechanism::Quantity;
+use crate::mechanism::{LinkId, Quantity};
+use crate::resolve::functions::Call;
 use crate::resolve::scope::{Allowed, Axes, Scope, Value};
-use crate::syntax::{self, Name};
+use crate::syntax;
 
 /// Whether expressions that name forces at contacts name no reactions and accelerations, which are those
 /// without contacts.
@@ -18,30 +19,40 @@ pub fn stands_alone(values: &[Expr<'_>]) -> bool {
 }
 
 impl<'g> Scope<'_, 'g> {
-    /// `contact_force(name)` and `contact_moment(name)`: what the second surface exerts on the first, at all
-    /// points where they touch; of moments those of friction against spin and rolling.
-    pub fn exerted(
-        &self,
-        function: &Name,
-        arguments: &[syntax::Expr],
-        cx: &mut Diagnostics,
-    ) -> Option<Value<'g>> {
+    /// `contact_force(name)`: the force of the second surface on the first, summed over the points of contact.
+    pub fn contact_force(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let name = self.named_contact(call, cx)?;
+        let kinematics = self.kinematics.borrow();
+        Some(sum_by_axes(&kinematics.touches.get(name)?.forces))
+    }
+
+    /// `contact_moment(name)`: the moment of friction of the second surface on the first, against spin and
+    /// rolling.
+    pub fn contact_moment(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let name = self.named_contact(call, cx)?;
+        let kinematics = self.kinematics.borrow();
+        let moments = &kinematics.touches.get(name)?.moments;
+        if moments.is_empty() {
+            cx.error(call.arguments[0].place.clone(), format!("`{name}` has no moments of friction"))
+                .help("`torsional = …` and `rolling = …`, m, are moments by the normal force");
+            return None;
+        }
+        Some(sum_by_axes(moments))
+    }
+
+    /// Returns the name of the contact that a function takes.
+    fn named_contact<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
         let kinematics = self.kinematics.borrow();
         let known = || kinematics.touches.keys().map(String::as_str);
-        let [e] = arguments else {
-            let word = &function.text;
-            cx.error(function.place.clone(), format!("`{word}` takes one contact"))
-                .help(format!("write `{word}(foot)`"));
-            return None;
-        };
+        let [e] = call.take(cx)?;
         let Some(name) = e.name() else {
             cx.error(e.place.clone(), "expected a contact").suggest("", known());
             return None;
         };
-        if !self.check_allowed(Allowed::Reaction, "a force at a contact", &function.place, cx) {
+        if !self.check_allowed(Allowed::Reaction, "a force at a contact", call.place, cx) {
             return None;
         }
-        let Some(exerted) = kinematics.touches.get(name) else {
+        if !kinematics.touches.contains_key(name) {
             if self.is_news(name, cx) {
                 let error = cx.error(e.place.clone(), format!("unknown contact `{name}`"));
                 error.suggest(name, known());
@@ -52,24 +63,22 @@ impl<'g> Scope<'_, 'g> {
                 }
             }
             return None;
-        };
-        let of_moments = function.text == "contact_moment";
-        let forces = if of_moments { &exerted.moments } else { &exerted.forces };
-        if of_moments && forces.is_empty() {
-            cx.error(e.place.clone(), format!("`{name}` has no moments of friction"))
-                .help("`torsional = …` and `rolling = …`, m, are moments by the normal force");
-            return None;
         }
-        let mut terms: Vec<(Axes, Vec3<'g>)> = Vec::new();
-        for (link, force) in forces {
-            let axes = Axes::Link(*link);
-            match terms.iter_mut().find(|(known, _)| *known == axes) {
-                Some((_, sum)) => *sum += *force,
-                None => terms.push((axes, *force)),
-            }
-        }
-        Some(Value::Vector(terms))
+        Some(name)
     }
+}
+
+/// Returns the sum of forces by the axes of links.
+fn sum_by_axes<'g>(forces: &[(Option<LinkId>, Vec3<'g>)]) -> Value<'g> {
+    let mut terms: Vec<(Axes, Vec3<'g>)> = Vec::new();
+    for (link, force) in forces {
+        let axes = Axes::Link(*link);
+        match terms.iter_mut().find(|(known, _)| *known == axes) {
+            Some((_, sum)) => *sum += *force,
+            None => terms.push((axes, *force)),
+        }
+    }
+    Value::Vector(terms)
 }
 
 /// Reports moments of friction against what does not turn.

@@ -7,10 +7,10 @@
 //! terms of a sum have one unit. An argument accepts an expression of coordinates, rates and time alone as a
 //! number of the unit that it needs.
 
-use super::ratio::Ratio;
-use super::si::PLAIN;
-use super::unify::{Dimension, Outcome, System, Variable};
+use super::unify::{Outcome, System};
 use super::value::{Anchor, Value};
+use crate::language::dimension::{Dimension, PLAIN, Variable};
+use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 use std::collections::BTreeMap;
 

@@ -5,7 +5,6 @@
 mod infer;
 mod owner;
 mod places;
-mod ratio;
 mod report;
 mod si;
 mod unify;
@@ -13,13 +12,13 @@ mod value;
 mod walk;
 
 use crate::diag::Diagnostics;
+use crate::language::dimension::{self, Dimension, Variable};
 use crate::mechanism::{Chart, Constraint, Coordinate, Input, Measure, Model, Units};
 use crate::syntax::RATE_OF_STATE;
 use crate::syntax::{Definition, Description, Expr, ExprKind, Rank};
 use infer::{Inference, Meaning, Origin, Reason};
 use places::{Places, Task};
 use std::collections::{BTreeMap, BTreeSet};
-use unify::{Dimension, Variable};
 use value::{Anchor, Value};
 
 /// The coordinates that expressions can name: true for an angle.
@@ -52,7 +51,7 @@ pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: 
     for (name, parameter) in &d.states {
         let rate = format!("{}{RATE_OF_STATE}", name.text);
         let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
-        let Some(dimension) = Dimension::variable(*parameter).over(&si::TIME) else { continue };
+        let Some(dimension) = Dimension::variable(*parameter).over(&dimension::TIME) else { continue };
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals: Vec::new() });
     }
     let sides = std::mem::take(&mut places.sides);
@@ -95,7 +94,7 @@ fn name_everything<'a>(
     inference: &mut Inference<'_>,
 ) -> Vec<&'a Definition> {
     for (name, _, angle) in coordinates {
-        let dimension = if *angle { si::PLAIN } else { si::LENGTH };
+        let dimension = if *angle { dimension::PLAIN } else { dimension::LENGTH };
         inference.names.insert(name.clone(), Meaning::Moving(dimension, Anchor::Motion));
     }
     let acting: BTreeSet<&str> = d.actions.iter().map(|action| action.name.text.as_str()).collect();
@@ -263,7 +262,7 @@ fn moving(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inferenc
         }
         let dimension = match inference.names.get(name) {
             Some(Meaning::Moving(dimension, _)) => dimension.clone(),
-            _ => si::PLAIN,
+            _ => dimension::PLAIN,
         };
         units.inputs.push(of_input(&dimension, inference));
     }
@@ -278,7 +277,7 @@ fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String
         "any" => "any".to_string(),
         "rad" => "rad/s".to_string(),
         _ => {
-            let rate = dimension.over(&si::TIME).and_then(|rate| inference.system.resolve(&rate));
+            let rate = dimension.over(&dimension::TIME).and_then(|rate| inference.system.resolve(&rate));
             rate.map_or("any".to_string(), |rate| si::unit(&rate))
         }
     };
@@ -289,7 +288,7 @@ fn of_coordinate(dimension: Dimension, inference: &mut Inference<'_>) -> (String
 fn of_speed(v: Variable, inference: &mut Inference<'_>) -> String {
     let dimension = Dimension::variable(v);
     match inference.system.resolve(&dimension) {
-        Some(known) if known == si::RATE && !inference.gave_up => "rad/s".to_string(),
+        Some(known) if known == dimension::RATE && !inference.gave_up => "rad/s".to_string(),
         _ => shown(inference, &dimension, v),
     }
 }
@@ -298,8 +297,8 @@ fn of_speed(v: Variable, inference: &mut Inference<'_>) -> String {
 fn of_constraint(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inference<'_>) -> [String; 2] {
     let configurations = c.residual.is_some();
     let (length, angle, work) = match configurations {
-        true => (si::LENGTH, si::PLAIN, si::ENERGY),
-        false => (si::SPEED, si::RATE, si::POWER),
+        true => (dimension::LENGTH, dimension::PLAIN, dimension::ENERGY),
+        false => (dimension::SPEED, dimension::RATE, dimension::POWER),
     };
     let dimension = match c.measure {
         Measure::Length => Some(length),

@@ -1,7 +1,7 @@
 //! Which field an expression belongs to, for notes on what else a mistake has to do with.
 
-use crate::resolve::inertia::SOLIDS;
-use crate::syntax::{Description, Expr, ExprKind, Target};
+use crate::language::Callable;
+use crate::syntax::{Callee, Description, Expr, ExprKind, Target};
 
 /// The argument and the field that an expression stands in, as in ``in `com` of `arm` ``; empty if it is not
 /// known.
@@ -19,10 +19,11 @@ pub fn place_of(d: &Description, e: &Expr) -> String {
 pub fn solid_of<'a>(d: &'a Description, e: &Expr) -> Option<(&'a Expr, String)> {
     let inertias = d.bodies.iter().filter_map(|body| body.inertia.as_ref());
     inertias.flat_map(Expr::parts).find_map(|call| {
-        let ExprKind::Call(word, arguments) = &call.kind else { return None };
-        let (solid, _, names) = SOLIDS.iter().find(|(solid, ..)| *solid == word.text)?;
+        let ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) = &call.kind else {
+            return None;
+        };
         let holds = arguments.iter().any(|a| a.parts().into_iter().any(|part| std::ptr::eq(part, e)));
-        holds.then(|| (call, format!("{solid}({})", names.join(", "))))
+        holds.then(|| (call, solid.usage()))
     })
 }
 

@@ -2,20 +2,18 @@
 //! there.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
-use super::ratio::Ratio;
-use super::si::{
-    ACCELERATION, ATTRACTION, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER, SPEED,
-    STRENGTH, TIME,
-};
-use super::unify::Dimension;
 use super::value::Value;
+use crate::language::dimension::{
+    ACCELERATION, ATTRACTION, Dimension, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER,
+    SPEED, STRENGTH, TIME,
+};
+use crate::language::ratio::Ratio;
+use crate::language::{Argument, Callable};
 use crate::resolve::contact::{PLACE, arguments_of};
-use crate::resolve::curves::FRAMES;
-use crate::resolve::inertia::SOLIDS;
 use crate::syntax::contact::collision;
 use crate::syntax::{
-    Action, ActionKind, Body, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr, ExprKind,
-    Joint, Law, Limit, Target,
+    Action, ActionKind, Body, Callee, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr,
+    ExprKind, Joint, Law, Limit, Target,
 };
 
 /// An expression with the dimension of its place.
@@ -133,6 +131,15 @@ impl<'a> Places<'a> {
         e.into_iter().for_each(|e| self.add(e, dimension, unit));
     }
 
+    /// Adds the arguments of a solid, a surface or a rotation.
+    fn arguments(&mut self, written: &'a [Expr], arguments: &[Argument]) {
+        for (e, argument) in written.iter().zip(arguments) {
+            if let Some((dimension, unit)) = argument.kind.dimension() {
+                self.add(e, &dimension, unit);
+            }
+        }
+    }
+
     fn body(&mut self, body: &'a Body) {
         self.all(&body.mass, &MASS, "kg");
         self.all(body.com.iter().chain(&body.about), &LENGTH, "m");
@@ -158,16 +165,8 @@ impl<'a> Places<'a> {
                 self.inertia(inner);
                 self.rotations(steps);
             }
-            ExprKind::Call(solid, arguments) => {
-                let Some((.., names)) = SOLIDS.iter().find(|(name, ..)| *name == solid.text) else { return };
-                for (argument, name) in arguments.iter().zip(*names) {
-                    match *name {
-                        "mass" => self.add(argument, &MASS, "kg"),
-                        "axis" => self.add(argument, &PLAIN, "1"),
-                        "xx" | "yy" | "zz" => self.add(argument, &INERTIA, "kg·m²"),
-                        _ => self.add(argument, &LENGTH, "m"),
-                    }
-                }
+            ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
+                self.arguments(arguments, solid.row().arguments);
             }
             _ => {}
         }
@@ -177,15 +176,8 @@ impl<'a> Places<'a> {
     fn rotations(&mut self, steps: &'a [Expr]) {
         for step in steps {
             match &step.kind {
-                ExprKind::Call(word, arguments) if FRAMES.contains(&word.text.as_str()) => {
-                    let curve = (word.text == "frenet").then(|| arguments.first()).flatten();
-                    self.all(curve, &LENGTH, "m");
-                }
-                ExprKind::Call(_, arguments) => {
-                    let (angle, axis) =
-                        arguments.split_last().map_or((None, arguments.as_slice()), |(a, n)| (Some(a), n));
-                    self.all(axis, &PLAIN, "1");
-                    self.all(angle, &PLAIN, "rad");
+                ExprKind::Call(Callee { id: Some(Callable::Rotation(rotation)), .. }, arguments) => {
+                    self.arguments(arguments, rotation.row().arguments);
                 }
                 ExprKind::Array(rows) => {
                     for row in rows {

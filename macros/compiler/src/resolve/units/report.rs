@@ -3,8 +3,8 @@
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::owner::{place_of, solid_of};
 use super::si::describe;
-use super::unify::{Dimension, Variable};
 use crate::diag::{Diagnostic, Diagnostics};
+use crate::language::dimension::{Dimension, Variable};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
 /// Most places of other uses that one mistake shows.

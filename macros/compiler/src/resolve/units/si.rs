@@ -1,50 +1,14 @@
 //! The units of SI in words: how a dimension is called, how it is written, and how it is read from
 //! `#[unit(…)]`.
 
-use super::ratio::Ratio;
-use super::unify::Dimension;
 use crate::diag::{Diagnostics, nearest};
+use crate::language::dimension::{
+    ACCELERATION, Dimension, ENERGY, FORCE, INERTIA, LENGTH, MASS, PLAIN, POWER, RATE, RATE_OF_RATE, SPEED,
+    STRENGTH, TIME,
+};
+use crate::language::ratio::Ratio;
 use crate::syntax::{BinaryOp, Expr, ExprKind};
 use std::fmt::Write;
-
-/// Plain numbers and angles.
-pub const PLAIN: Dimension = Dimension::new(0, 0, 0);
-/// Length, m.
-pub const LENGTH: Dimension = Dimension::new(1, 0, 0);
-/// Mass, kg.
-pub const MASS: Dimension = Dimension::new(0, 1, 0);
-/// Time, s.
-pub const TIME: Dimension = Dimension::new(0, 0, 1);
-/// Speed, m/s.
-pub const SPEED: Dimension = Dimension::new(1, 0, -1);
-/// Acceleration, m/s².
-pub const ACCELERATION: Dimension = Dimension::new(1, 0, -2);
-/// Rate of an angle, 1/s.
-pub const RATE: Dimension = Dimension::new(0, 0, -1);
-/// Its rate, 1/s².
-pub const RATE_OF_RATE: Dimension = Dimension::new(0, 0, -2);
-/// Moment of inertia, kg·m².
-pub const INERTIA: Dimension = Dimension::new(2, 1, 0);
-/// Force, N.
-pub const FORCE: Dimension = Dimension::new(1, 1, -2);
-/// Density, kg/m³.
-pub const DENSITY: Dimension = Dimension::new(-3, 1, 0);
-/// Pressure, Pa.
-pub const PRESSURE: Dimension = Dimension::new(-1, 1, -2);
-/// Energy, J, and torque, N·m.
-pub const ENERGY: Dimension = Dimension::new(2, 1, -2);
-/// Momentum, kg·m/s.
-pub const MOMENTUM: Dimension = Dimension::new(1, 1, -1);
-/// Angular momentum, kg·m²/s.
-pub const ANGULAR_MOMENTUM: Dimension = Dimension::new(2, 1, -1);
-/// Power, W.
-pub const POWER: Dimension = Dimension::new(2, 1, -3);
-/// Strength of an attraction by the square of the distance, N·m².
-pub const STRENGTH: Dimension = Dimension::new(3, 1, -2);
-/// Constant of gravity, m³/(kg·s²).
-pub const GRAVITATION: Dimension = Dimension::new(3, -1, -2);
-/// Gravitational parameter, m³/s².
-pub const ATTRACTION: Dimension = Dimension::new(3, 0, -2);
 
 /// Dimensions with a name of their own, and units that are not written in m, kg and s.
 static NAMES: [(Dimension, &str, &str); 17] = [
@@ -224,6 +188,7 @@ fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, S
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::language::dimension::GRAVITATION;
 
     #[test]
     fn dimensions_are_spelt_in_si() {

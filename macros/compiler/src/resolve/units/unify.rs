@@ -1,84 +1,8 @@
 //! Dimensions with unknowns, and the linear equations between them: unification over exponent vectors of
 //! length, mass and time.
 
-use super::ratio::Ratio;
-
-/// An unknown dimension.
-pub type Variable = usize;
-
-/// A dimension: powers of metre, kilogram and second, times powers of unknown dimensions.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Dimension {
-    /// Exponents of length, mass and time.
-    pub base: [Ratio; 3],
-    /// Exponents of the unknowns, by rising number; none is zero.
-    pub unknown: Vec<(Variable, Ratio)>,
-}
-
-impl Dimension {
-    /// Powers of metre, kilogram and second.
-    pub const fn new(length: i64, mass: i64, time: i64) -> Dimension {
-        let base = [Ratio::integer(length), Ratio::integer(mass), Ratio::integer(time)];
-        Dimension { base, unknown: Vec::new() }
-    }
-
-    /// An unknown one.
-    pub fn variable(v: Variable) -> Dimension {
-        Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
-    }
-
-    /// True if nothing in it is unknown.
-    pub fn is_known(&self) -> bool {
-        self.unknown.is_empty()
-    }
-
-    /// True for plain numbers and angles.
-    pub fn is_plain(&self) -> bool {
-        self.is_known() && self.base.iter().all(|e| e.is_zero())
-    }
-
-    /// The exponent of an unknown.
-    pub fn exponent(&self, v: Variable) -> Ratio {
-        self.unknown.iter().find(|(u, _)| *u == v).map_or(Ratio::ZERO, |(_, e)| *e)
-    }
-
-    /// The dimension of a product.
-    pub fn times(&self, other: &Dimension) -> Option<Dimension> {
-        self.times_power(other, Ratio::ONE)
-    }
-
-    /// The dimension of a quotient.
-    pub fn over(&self, other: &Dimension) -> Option<Dimension> {
-        self.times_power(other, Ratio::integer(-1))
-    }
-
-    /// The dimension of a power.
-    pub fn power(&self, exponent: Ratio) -> Option<Dimension> {
-        Dimension::new(0, 0, 0).times_power(self, exponent)
-    }
-
-    /// `self × other^exponent`; nothing if the exponents become too large.
-    pub fn times_power(&self, other: &Dimension, exponent: Ratio) -> Option<Dimension> {
-        let mut base = self.base;
-        for (sum, e) in base.iter_mut().zip(other.base) {
-            *sum = sum.plus(e.times(exponent)?)?;
-        }
-        let mut unknown = Vec::with_capacity(self.unknown.len() + other.unknown.len());
-        let (mut left, mut right) = (self.unknown.iter().peekable(), other.unknown.iter().peekable());
-        loop {
-            let (a, b) = (left.peek().map(|(v, _)| *v), right.peek().map(|(v, _)| *v));
-            let Some(v) = a.into_iter().chain(b).min() else { break };
-            let mut sum = left.next_if(|_| a == Some(v)).map_or(Ratio::ZERO, |(_, e)| *e);
-            if let Some((_, e)) = right.next_if(|_| b == Some(v)) {
-                sum = sum.plus(e.times(exponent)?)?;
-            }
-            if !sum.is_zero() {
-                unknown.push((v, sum));
-            }
-        }
-        Some(Dimension { base, unknown })
-    }
-}
+use crate::language::dimension::{Dimension, Variable};
+use crate::language::ratio::Ratio;
 
 /// What became of an equation.
 #[derive(Debug, PartialEq, Eq)]

@@ -1,8 +1,7 @@
 //! What an expression is as far as units go: a number, a direction or a quantity; and products of them.
 
-use super::ratio::Ratio;
-use super::si::PLAIN;
-use super::unify::Dimension;
+use crate::language::dimension::{Dimension, PLAIN};
+use crate::language::ratio::Ratio;
 
 /// Source of a quantity's unit, in rising order: a product or a sum has the highest source of its factors or
 /// terms.

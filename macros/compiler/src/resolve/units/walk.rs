@@ -1,15 +1,12 @@
 //! The walk over an expression: what its parts are, and what must be alike.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
-use super::ratio::Ratio;
-use super::si::{
-    ACCELERATION, ANGULAR_MOMENTUM, DENSITY, ENERGY, FORCE, INERTIA, LENGTH, MOMENTUM, PLAIN, POWER,
-    PRESSURE, RATE, RATE_OF_RATE, SPEED, TIME,
-};
-use super::unify::{Dimension, Variable};
 use super::value::{Anchor, Value, product};
 use crate::expr::Function;
-use crate::syntax::{BinaryOp, Expr, ExprKind, IF, Name};
+use crate::language::dimension::{Dimension, INERTIA, LENGTH, PLAIN, RATE, TIME, Variable};
+use crate::language::ratio::Ratio;
+use crate::language::{Callable, UnitRule};
+use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
     /// The dimension of an expression.
@@ -160,206 +157,122 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// The value of a function: tables first, then what the language knows, then elementary functions.
-    fn call(&mut self, function: &'a Name, arguments: &'a [Expr]) -> Value {
-        let text = function.text.as_str();
-        if let Some(unknown) = self.tables.get(text).cloned() {
+    /// The value of a call: of a table first, then of what the language has.
+    fn call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> Value {
+        if let Some(unknown) = self.tables.get(&callee.text).cloned() {
             return self.lookup(&unknown, arguments);
         }
-        let known = self
-            .arithmetic(text, arguments)
-            .or_else(|| self.vector_algebra(text, arguments))
-            .or_else(|| self.matrix_algebra(text, arguments))
-            .or_else(|| self.calculus(text, arguments))
-            .or_else(|| self.motion(text, arguments))
-            .or_else(|| self.masses(text, arguments))
-            .or_else(|| self.flight(text, arguments));
-        match (known, arguments) {
-            (Some(value), _) => value,
-            (None, [a]) => self.elementary(text, a),
-            (None, _) => Value::Unknown,
+        match (callee.id, arguments) {
+            (Some(Callable::Elementary(f)), [a]) => self.elementary(f, a),
+            (Some(Callable::Function(function)), _) => {
+                self.function(&function.row().unit, &callee.text, arguments)
+            }
+            (Some(Callable::If), [_, _, _, _]) => {
+                let (compared, pieces) = arguments.split_at(2);
+                self.all_alike(compared, Reason::Alike(&callee.text));
+                self.all_alike(pieces, Reason::Pieces)
+            }
+            _ => Value::Unknown,
         }
     }
 
-    /// Functions of numbers.
-    fn arithmetic(&mut self, text: &'a str, arguments: &'a [Expr]) -> Option<Value> {
-        Some(match (text, arguments) {
-            ("abs", [a]) => self.value(a),
-            ("signum", [a]) => {
-                self.value(a);
-                Value::quantity(PLAIN)
+    /// The value of a function of the language.
+    fn function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> Value {
+        let [first, others @ ..] = arguments else {
+            return match rule {
+                UnitRule::Of(dimension) => Value::quantity(dimension.clone()),
+                _ => Value::Unknown,
+            };
+        };
+        match rule {
+            UnitRule::Unknown => Value::Unknown,
+            UnitRule::Of(dimension) => {
+                self.visit(arguments);
+                Value::quantity(dimension.clone())
             }
-            ("sqrt", [a]) => match self.value(a) {
-                Value::Number(value) => Value::Number(value.sqrt()),
-                other => other.power(Ratio::new(1, 2)),
-            },
-            ("pow", [a, n]) => self.power(a, n),
-            (IF, [_, _, _, _]) => {
-                let (compared, pieces) = arguments.split_at(2);
-                self.all_alike(compared, Reason::Alike(text));
-                self.all_alike(pieces, Reason::Pieces)
+            UnitRule::Direction => {
+                self.visit(arguments);
+                Value::Direction
             }
-            ("min" | "max", _) => self.all_alike(arguments, Reason::Alike(text)),
-            ("atan2", _) => match self.all_alike(arguments, Reason::Alike(text)) {
+            UnitRule::Alike => self.all_alike(arguments, Reason::Alike(name)),
+            UnitRule::Quotient => match self.all_alike(arguments, Reason::Alike(name)) {
                 Value::Quantity { .. } => Value::quantity(PLAIN),
                 _ => Value::Number(f64::NAN),
             },
-            _ => return None,
-        })
-    }
-
-    /// Products, sizes and directions of vectors.
-    fn vector_algebra(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
-        Some(match (text, arguments) {
-            ("dot" | "cross", _) => {
+            UnitRule::LikeFirst => {
+                self.visit(others);
+                self.value(first)
+            }
+            UnitRule::LikeLast => {
+                let values: Vec<Value> = arguments.iter().map(|a| self.value(a)).collect();
+                values.into_iter().last().unwrap_or(Value::Unknown)
+            }
+            UnitRule::Product { scalar } => {
                 let factors: Vec<_> = arguments.iter().map(|a| (false, self.value(a))).collect();
                 match self.multiply(&factors) {
-                    Value::Direction if text == "dot" => Value::quantity(PLAIN),
+                    Value::Direction if *scalar => Value::quantity(PLAIN),
                     product => product,
                 }
             }
-            ("norm", [a]) => match self.value(a) {
+            UnitRule::Magnitude => match self.value(first) {
                 Value::Direction => Value::quantity(PLAIN),
                 other => other,
             },
-            ("project", [a, n]) => {
-                self.value(n);
-                self.value(a)
-            }
-            ("unit", [a]) => {
-                self.value(a);
-                Value::Direction
-            }
-            ("angle", _) => {
-                arguments.iter().for_each(|a| drop(self.value(a)));
-                Value::quantity(PLAIN)
-            }
-            _ => return None,
-        })
-    }
-
-    /// Matrices and what is made of them.
-    fn matrix_algebra(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
-        Some(match (text, arguments) {
-            ("skew" | "transpose" | "trace", [a]) => self.value(a),
-            ("outer", [a, b]) => {
-                let factors = [(false, self.value(a)), (false, self.value(b))];
-                self.multiply(&factors)
-            }
-            ("projector", [a]) => {
-                self.value(a);
-                Value::quantity(PLAIN)
-            }
-            ("rotation", _) | ("identity", _) => Value::quantity(PLAIN),
-            _ => return None,
-        })
-    }
-
-    /// Derivatives by time, by length and along curves.
-    fn calculus(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
-        Some(match (text, arguments) {
-            // Of a vector, as seen from a frame, whose name has no dimension.
-            ("rate", [Expr { kind: ExprKind::Binary(BinaryOp::Div, of, frame, _), .. }])
-                if self.is_frame(frame) =>
-            {
-                match self.value(of) {
-                    Value::Direction => Value::quantity(RATE),
-                    other => quotient(other, &TIME),
-                }
-            }
-            ("rate", [a]) => quotient(self.value(a), &TIME),
-            ("curvature" | "torsion", [curve, _]) => self.value(curve).power(Some(Ratio::integer(-1))),
-            ("gradient", [Expr { kind: ExprKind::Binary(_, field, ..), .. }]) => match self.value(field) {
-                value @ Value::Quantity { .. } => quotient(value, &LENGTH),
+            UnitRule::Power => match others {
+                [exponent] => self.power(first, exponent),
                 _ => Value::Unknown,
             },
-            _ => return None,
-        })
-    }
-
-    /// Places, velocities and accelerations, and what is measured between places.
-    fn motion(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
-        Some(match (text, arguments) {
-            ("r" | "v" | "a" | "omega" | "alpha", [a]) => self.slash(text, a),
-            (
-                "center_of_mass" | "instant_center" | "acceleration_center" | "screw_axis" | "screw_pitch",
-                [of],
-            ) => self.slash("r", of),
-            ("center_of_percussion", [of, axis]) => {
-                self.value(axis);
-                self.slash("r", of)
+            UnitRule::TimeDerivative => match &first.kind {
+                // Of a vector, as seen from a frame, whose name has no dimension.
+                ExprKind::Binary(BinaryOp::Div, of, frame, _) if self.is_frame(frame) => match self.value(of)
+                {
+                    Value::Direction => Value::quantity(RATE),
+                    other => quotient(other, &TIME),
+                },
+                _ => quotient(self.value(first), &TIME),
+            },
+            UnitRule::Inverse => self.value(first).power(Some(Ratio::integer(-1))),
+            UnitRule::Gradient => match &first.kind {
+                ExprKind::Binary(_, field, ..) => match self.value(field) {
+                    value @ Value::Quantity { .. } => quotient(value, &LENGTH),
+                    _ => Value::Unknown,
+                },
+                _ => Value::Unknown,
+            },
+            UnitRule::Places(dimension) => {
+                self.visit(others);
+                self.points(first);
+                Value::quantity(dimension.clone())
             }
-            ("cable", [of, surface]) => {
-                self.slash("r", of);
-                let ExprKind::Method(base, _, arguments) = &surface.kind else {
-                    return Some(Value::Unknown);
-                };
-                self.point(base);
-                let radius =
-                    arguments.first().map(|radius| self.expect(radius, &LENGTH, "m", Reason::Argument));
-                Value::Quantity { dimension: LENGTH, anchor: radius.map_or(Anchor::Motion, |r| r.anchor()) }
-            }
-            _ => return None,
-        })
-    }
-
-    /// Momenta, energies, inertias and forces.
-    fn masses(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
-        Some(match (text, arguments) {
-            ("momentum" | "angular_momentum" | "kinetic_energy", [a]) => {
-                self.slash("r", a);
-                Value::quantity(match text {
-                    "momentum" => MOMENTUM,
-                    "angular_momentum" => ANGULAR_MOMENTUM,
-                    _ => ENERGY,
-                })
-            }
-            ("power", _) => Value::quantity(POWER),
-            ("inertia", [of]) => {
-                self.slash("r", of);
-                Value::quantity(INERTIA)
-            }
-            ("moment_of_inertia", [of, directions @ ..]) => {
-                self.slash("r", of);
-                let directions: Vec<Value> = directions.iter().map(|a| self.value(a)).collect();
+            UnitRule::Moment => {
+                self.points(first);
+                let directions: Vec<Value> = others.iter().map(|a| self.value(a)).collect();
                 match directions.iter().all(|direction| matches!(direction, Value::Direction)) {
                     true => Value::quantity(INERTIA),
                     // Vectors that have a unit count with it.
                     false => Value::Unknown,
                 }
             }
-            ("reaction_force" | "contact_force", _) => Value::quantity(FORCE),
-            ("reaction_torque" | "contact_moment", _) => Value::quantity(ENERGY),
-            _ => return None,
-        })
+            UnitRule::Cable => {
+                self.points(first);
+                let Some(ExprKind::Method(base, _, arguments)) = others.first().map(|e| &e.kind) else {
+                    return Value::Unknown;
+                };
+                self.point(base);
+                let radius =
+                    arguments.first().map(|radius| self.expect(radius, &LENGTH, "m", Reason::Argument));
+                Value::Quantity { dimension: LENGTH, anchor: radius.map_or(Anchor::Motion, |r| r.anchor()) }
+            }
+            UnitRule::OfHeight(dimension) => {
+                self.expect(first, &LENGTH, "m", Reason::Argument);
+                dimension.clone().map_or(Value::Unknown, Value::quantity)
+            }
+        }
     }
 
-    /// The atmosphere, and angles of flight.
-    fn flight(&mut self, text: &str, arguments: &'a [Expr]) -> Option<Value> {
-        Some(match (text, arguments) {
-            ("density" | "pressure" | "temperature" | "speed_of_sound", [height]) => {
-                self.expect(height, &LENGTH, "m", Reason::Argument);
-                match text {
-                    "density" => Value::quantity(DENSITY),
-                    "pressure" => Value::quantity(PRESSURE),
-                    "speed_of_sound" => Value::quantity(SPEED),
-                    // There are no temperatures among the units.
-                    _ => Value::Unknown,
-                }
-            }
-            ("stability_axes" | "wind_axes", [_, velocity, components]) => {
-                self.value(velocity);
-                self.value(components)
-            }
-            (
-                "angle_of_attack" | "sideslip" | "heading" | "elevation" | "bank" | "course" | "flight_path",
-                _,
-            ) => {
-                arguments.iter().filter(|a| a.name().is_none()).for_each(|a| drop(self.value(a)));
-                Value::quantity(PLAIN)
-            }
-            _ => return None,
-        })
+    /// Infers from expressions whose values do not matter.
+    fn visit(&mut self, e: &'a [Expr]) {
+        e.iter().for_each(|e| drop(self.value(e)));
     }
 
     /// True for the name of a body or a frame, which is no quantity.
@@ -381,12 +294,23 @@ impl<'a> Inference<'a> {
         Value::Quantity { dimension: Dimension::variable(*value), anchor: Anchor::Parameter }
     }
 
-    /// A function of a plain number.
-    fn elementary(&mut self, text: &str, a: &'a Expr) -> Value {
-        let Some((_, f)) = Function::ALL.iter().find(|(name, _)| *name == text) else {
-            return Value::Unknown;
-        };
-        let unit = if matches!(text, "sin" | "cos" | "tan") { "rad" } else { "1" };
+    /// An elementary function: magnitudes and roots of any quantity, all others of plain numbers.
+    fn elementary(&mut self, f: Function, a: &'a Expr) -> Value {
+        match f {
+            Function::Abs => return self.value(a),
+            Function::Signum => {
+                self.value(a);
+                return Value::quantity(PLAIN);
+            }
+            Function::Sqrt => {
+                return match self.value(a) {
+                    Value::Number(value) => Value::Number(value.sqrt()),
+                    other => other.power(Ratio::new(1, 2)),
+                };
+            }
+            _ => {}
+        }
+        let unit = if matches!(f, Function::Sin | Function::Cos | Function::Tan) { "rad" } else { "1" };
         match self.expect(a, &PLAIN, unit, Reason::Argument) {
             Value::Number(value) => Value::Number(f.apply(value)),
             Value::Direction => Value::Unknown,
@@ -412,21 +336,14 @@ impl<'a> Inference<'a> {
         }
     }
 
-    /// `r(y / x)` and its kin; the points in it may be placed by vectors.
-    fn slash(&mut self, text: &str, e: &'a Expr) -> Value {
+    /// Infers from the places between slashes, `y / x`, which may be placed by vectors.
+    fn points(&mut self, e: &'a Expr) {
         let mut at = e;
         while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
             self.point(right);
             at = left;
         }
         self.point(at);
-        Value::quantity(match text {
-            "r" => LENGTH,
-            "v" => SPEED,
-            "a" => ACCELERATION,
-            "omega" => RATE,
-            _ => RATE_OF_RATE,
-        })
     }
 
     /// A place: `body.at(vector)`.

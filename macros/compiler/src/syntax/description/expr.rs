@@ -1,6 +1,7 @@
 //! Words and expressions as written.
 
 use crate::diag::Place;
+use crate::language::Callable;
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]
@@ -9,6 +10,28 @@ pub struct Name {
     pub text: String,
     /// Where it stands.
     pub place: Place,
+}
+
+/// A word of the language as written, with its row in the tables.
+#[derive(Clone, Debug)]
+pub struct Term<I> {
+    /// The word.
+    pub text: String,
+    /// Where it stands.
+    pub place: Place,
+    /// The row; `None` for a word that is in no table.
+    pub id: Option<I>,
+}
+
+/// A word before parentheses: a function, a solid, a rotation, or a table of the user's.
+pub type Callee = Term<Callable>;
+
+impl Callee {
+    /// Looks up a word in the tables.
+    pub fn new(name: Name) -> Callee {
+        let id = Callable::of_name(&name.text);
+        Term { text: name.text, place: name.place, id }
+    }
 }
 
 /// An expression as written; names are not yet resolved.
@@ -32,7 +55,7 @@ pub enum ExprKind {
     /// `body.at(vector)`.
     Method(Box<Expr>, Name, Vec<Expr>),
     /// `sin(angle)`, `rod(mass, length, y)`.
-    Call(Name, Vec<Expr>),
+    Call(Callee, Vec<Expr>),
     /// `-e`.
     Neg(Box<Expr>),
     /// `a + b` and its kin, with the operator's place.
@@ -101,7 +124,7 @@ impl Expr {
     /// A function call at a place.
     pub fn call(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
         let name = Name { text: function.to_string(), place: place.clone() };
-        Expr { kind: ExprKind::Call(name, arguments), place: place.clone() }
+        Expr { kind: ExprKind::Call(Callee::new(name), arguments), place: place.clone() }
     }
 
     /// Two expressions with an operator between them, at the place of the first.

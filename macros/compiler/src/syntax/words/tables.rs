@@ -338,13 +338,11 @@ pub const FUNCTIONS: Words = &[
     ("arctan", "atan"),
     ("arcsin", "asin"),
     ("arccos", "acos"),
-    ("arctan2", "atan2"),
     ("log loge", "ln"),
     ("log10 log2", "write `ln(a) / ln(10)`"),
     ("sgn sign", "signum"),
     ("sqr square squared", "write `pow(a, 2)` or `a * a`"),
     ("cube", "write `pow(a, 3)`"),
-    ("power powi powf powr", "pow"),
     ("root squareroot", "sqrt"),
     ("cbrt", "write `pow(a, 1 / 3)`"),
     ("cot", "write `1 / tan(a)`"),
@@ -358,26 +356,7 @@ pub const FUNCTIONS: Words = &[
         "expressions are smooth: steps and remainders are left to your own Rust",
     ),
     ("fabs magnitudeof", "abs"),
-    ("minimum", "min"),
-    ("maximum", "max"),
-    ("ddt dt der derivative diff derive dif speed qdot ratederivative", "rate"),
     ("norm2 norm22 lengthsquared sqnorm squarednorm", "write `dot(v, v)`"),
-    ("length magnitude mag len modulus", "norm"),
-    ("normalize normalise normalized normalised unitvector hat direction", "unit"),
-    ("inner scalarproduct inp", "dot"),
-    ("wedge vectorproduct crossproduct", "cross"),
-    ("proj projection", "project"),
-    ("anglebetween", "angle"),
-    ("radians deg2rad rad2deg degtorad deg degree torad rad radian", "degrees"),
-    ("velocity vel linearvelocity", "v"),
-    ("position pos displacement", "r"),
-    ("acceleration acc accel linearacceleration", "a"),
-    ("angularvelocity angvel w ω", "omega"),
-    ("angularacceleration angacc α", "alpha"),
-    ("force reaction", "reaction_force"),
-    ("contactforce normalforce", "contact_force"),
-    ("contactmoment contacttorque", "contact_moment"),
-    ("torque", "reaction_torque"),
     ("vec vec3 vector vector3 matrix", "a vector is written `[a, b, c]` or `a * x + b * y + c * z`"),
     (
         "rotx roty rotz rx ry rz rpy euler quat",
@@ -444,16 +423,6 @@ pub const GREEK: &[(&str, &str)] = &[
 
 /// Solids of inertias.
 pub const SOLIDS: Words = &[
-    ("cube brick block cuboid3 parallelepiped rectangle", "cuboid"),
-    ("ball", "sphere"),
-    ("bar stick thinrod slenderrod beam line", "rod"),
-    ("hoop", "ring"),
-    ("disc", "disk"),
-    ("pipe hollowcylinder", "tube"),
-    ("hollowsphere sphericalshell", "shell"),
-    ("sheet lamina", "plate"),
-    ("pill", "capsule"),
-    ("diag principal", "diagonal"),
     ("point particle pointmass none zero", "a point has no inertia: leave `inertia` out"),
     ("matrix tensor full", "write the matrix itself, `[[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]`"),
 ];
@@ -471,14 +440,7 @@ pub const BODIES: Words = &[(
 )];
 
 /// Rotations.
-pub const ROTATIONS: Words = &[
-    ("rx rotx rotatex xrot", "x"),
-    ("ry roty rotatey yrot", "y"),
-    ("rz rotz rotatez zrot", "z"),
-    ("axisangle angleaxis about axis", "eigenaxis"),
-    ("quat q", "quaternion"),
-    (
-        "rpy euler rollpitchyaw",
-        "roll, pitch and yaw are turns about carried axes in the opposite order: `z(yaw), y(pitch), x(roll)`",
-    ),
-];
+pub const ROTATIONS: Words = &[(
+    "rpy euler rollpitchyaw",
+    "roll, pitch and yaw are turns about carried axes in the opposite order: `z(yaw), y(pitch), x(roll)`",
+)];

@@ -1,0 +1,78 @@
+//! Arguments of solids, surfaces and rotations.
+
+use super::dimension::{Dimension, INERTIA, LENGTH, MASS, PLAIN};
+
+/// An argument.
+#[derive(Debug)]
+pub struct Argument {
+    /// The name, as messages print it.
+    pub name: &'static str,
+    /// The quantity that stands there.
+    pub kind: ArgumentKind,
+}
+
+/// The quantity that stands at an argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArgumentKind {
+    /// A mass, kg.
+    Mass,
+    /// A length, m.
+    Length,
+    /// A moment of inertia, kg·m².
+    Inertia,
+    /// An angle, rad.
+    Angle,
+    /// A half angle of a cone, rad.
+    HalfAngle,
+    /// A plain number.
+    Number,
+    /// A direction.
+    Direction,
+    /// A vector or a curve that is no length.
+    Vector,
+    /// A coordinate, by its name.
+    Coordinate,
+    /// A height, m, as an expression of the place `u`, `w`.
+    Height,
+}
+
+impl Argument {
+    /// A mass.
+    pub const MASS: Argument = Argument { name: "mass", kind: ArgumentKind::Mass };
+    /// The axis of a body of revolution.
+    pub const AXIS: Argument = Argument { name: "axis", kind: ArgumentKind::Direction };
+
+    /// Returns a length of this name.
+    pub const fn length(name: &'static str) -> Argument {
+        Argument { name, kind: ArgumentKind::Length }
+    }
+
+    /// Returns an argument of this name and kind.
+    pub const fn new(name: &'static str, kind: ArgumentKind) -> Argument {
+        Argument { name, kind }
+    }
+
+    /// Returns the names of arguments, separated by commas.
+    pub fn list(arguments: &[Argument]) -> String {
+        arguments.iter().map(|argument| argument.name).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl ArgumentKind {
+    /// True for a vector in the axes of a body.
+    pub fn is_direction(self) -> bool {
+        self == ArgumentKind::Direction
+    }
+
+    /// Returns the dimension, and how its unit is written; `None` if nothing is known of it.
+    pub fn dimension(self) -> Option<(Dimension, &'static str)> {
+        match self {
+            ArgumentKind::Mass => Some((MASS, "kg")),
+            ArgumentKind::Length | ArgumentKind::Height => Some((LENGTH, "m")),
+            ArgumentKind::Inertia => Some((INERTIA, "kg·m²")),
+            ArgumentKind::Angle | ArgumentKind::HalfAngle => Some((PLAIN, "rad")),
+            ArgumentKind::Number | ArgumentKind::Direction => Some((PLAIN, "1")),
+            ArgumentKind::Vector | ArgumentKind::Coordinate => None,
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! Words that stand before parentheses: `sin(angle)`, `rod(m, l, y)`, `z(angle)`.
+
+use super::{FunctionId, Rotation, Solid};
+use crate::expr::Function;
+
+/// A word of the language that can be called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Callable {
+    /// A law in two pieces: `if a < b { below } else { above }`, with the operands and the pieces.
+    If,
+    /// An elementary function.
+    Elementary(Function),
+    /// Another function.
+    Function(FunctionId),
+    /// A solid, which stands in `inertia = …`.
+    Solid(Solid),
+    /// A rotation.
+    Rotation(Rotation),
+    /// `rolls(surface, surface)`.
+    Rolls,
+    /// `slips(surface, surface)`.
+    Slips,
+    /// `collision()`: the collision geometry of a file.
+    Collision,
+    /// `poisson(e)`: a coefficient of restitution by impulses.
+    Poisson,
+}
+
+/// The name of calls that stand for laws in two pieces, which no function can have.
+pub const IF: &str = "if";
+
+/// The word for the collision geometry of a file's link.
+pub const COLLISION: &str = "collision";
+
+/// The callable words that are in no table.
+const OTHERS: [(&str, Callable); 5] = [
+    (IF, Callable::If),
+    ("rolls", Callable::Rolls),
+    ("slips", Callable::Slips),
+    (COLLISION, Callable::Collision),
+    ("poisson", Callable::Poisson),
+];
+
+impl Callable {
+    /// Returns the word of this name.
+    pub fn of_name(name: &str) -> Option<Callable> {
+        let elementary = Function::ALL.iter().find(|(known, _)| *known == name);
+        let other = || OTHERS.iter().find(|(known, _)| *known == name);
+        elementary
+            .map(|(_, function)| Callable::Elementary(*function))
+            .or_else(|| FunctionId::of_name(name).map(Callable::Function))
+            .or_else(|| Solid::of_name(name).map(Callable::Solid))
+            .or_else(|| Rotation::of_name(name).map(Callable::Rotation))
+            .or_else(|| other().map(|(_, callable)| *callable))
+    }
+
+    /// True for a name of a function of expressions.
+    pub fn is_function(name: &str) -> bool {
+        matches!(Callable::of_name(name), Some(Callable::Elementary(_) | Callable::Function(_)))
+    }
+}

@@ -1,0 +1,119 @@
+//! Dimensions: exponents of length, mass and time, and of unknown dimensions.
+
+use super::ratio::Ratio;
+
+/// An unknown dimension.
+pub type Variable = usize;
+
+/// A dimension: powers of metre, kilogram and second, times powers of unknown dimensions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dimension {
+    /// Exponents of length, mass and time.
+    pub base: [Ratio; 3],
+    /// Exponents of the unknowns, by rising number; none is zero.
+    pub unknown: Vec<(Variable, Ratio)>,
+}
+
+impl Dimension {
+    /// Powers of metre, kilogram and second.
+    pub const fn new(length: i64, mass: i64, time: i64) -> Dimension {
+        let base = [Ratio::integer(length), Ratio::integer(mass), Ratio::integer(time)];
+        Dimension { base, unknown: Vec::new() }
+    }
+
+    /// An unknown one.
+    pub fn variable(v: Variable) -> Dimension {
+        Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
+    }
+
+    /// True if nothing in it is unknown.
+    pub fn is_known(&self) -> bool {
+        self.unknown.is_empty()
+    }
+
+    /// True for plain numbers and angles.
+    pub fn is_plain(&self) -> bool {
+        self.is_known() && self.base.iter().all(|e| e.is_zero())
+    }
+
+    /// The exponent of an unknown.
+    pub fn exponent(&self, v: Variable) -> Ratio {
+        self.unknown.iter().find(|(u, _)| *u == v).map_or(Ratio::ZERO, |(_, e)| *e)
+    }
+
+    /// The dimension of a product.
+    pub fn times(&self, other: &Dimension) -> Option<Dimension> {
+        self.times_power(other, Ratio::ONE)
+    }
+
+    /// The dimension of a quotient.
+    pub fn over(&self, other: &Dimension) -> Option<Dimension> {
+        self.times_power(other, Ratio::integer(-1))
+    }
+
+    /// The dimension of a power.
+    pub fn power(&self, exponent: Ratio) -> Option<Dimension> {
+        Dimension::new(0, 0, 0).times_power(self, exponent)
+    }
+
+    /// `self × other^exponent`; nothing if the exponents become too large.
+    pub fn times_power(&self, other: &Dimension, exponent: Ratio) -> Option<Dimension> {
+        let mut base = self.base;
+        for (sum, e) in base.iter_mut().zip(other.base) {
+            *sum = sum.plus(e.times(exponent)?)?;
+        }
+        let mut unknown = Vec::with_capacity(self.unknown.len() + other.unknown.len());
+        let (mut left, mut right) = (self.unknown.iter().peekable(), other.unknown.iter().peekable());
+        loop {
+            let (a, b) = (left.peek().map(|(v, _)| *v), right.peek().map(|(v, _)| *v));
+            let Some(v) = a.into_iter().chain(b).min() else { break };
+            let mut sum = left.next_if(|_| a == Some(v)).map_or(Ratio::ZERO, |(_, e)| *e);
+            if let Some((_, e)) = right.next_if(|_| b == Some(v)) {
+                sum = sum.plus(e.times(exponent)?)?;
+            }
+            if !sum.is_zero() {
+                unknown.push((v, sum));
+            }
+        }
+        Some(Dimension { base, unknown })
+    }
+}
+
+/// Plain numbers and angles.
+pub const PLAIN: Dimension = Dimension::new(0, 0, 0);
+/// Length, m.
+pub const LENGTH: Dimension = Dimension::new(1, 0, 0);
+/// Mass, kg.
+pub const MASS: Dimension = Dimension::new(0, 1, 0);
+/// Time, s.
+pub const TIME: Dimension = Dimension::new(0, 0, 1);
+/// Speed, m/s.
+pub const SPEED: Dimension = Dimension::new(1, 0, -1);
+/// Acceleration, m/s².
+pub const ACCELERATION: Dimension = Dimension::new(1, 0, -2);
+/// Rate of an angle, 1/s.
+pub const RATE: Dimension = Dimension::new(0, 0, -1);
+/// Its rate, 1/s².
+pub const RATE_OF_RATE: Dimension = Dimension::new(0, 0, -2);
+/// Moment of inertia, kg·m².
+pub const INERTIA: Dimension = Dimension::new(2, 1, 0);
+/// Force, N.
+pub const FORCE: Dimension = Dimension::new(1, 1, -2);
+/// Density, kg/m³.
+pub const DENSITY: Dimension = Dimension::new(-3, 1, 0);
+/// Pressure, Pa.
+pub const PRESSURE: Dimension = Dimension::new(-1, 1, -2);
+/// Energy, J, and torque, N·m.
+pub const ENERGY: Dimension = Dimension::new(2, 1, -2);
+/// Momentum, kg·m/s.
+pub const MOMENTUM: Dimension = Dimension::new(1, 1, -1);
+/// Angular momentum, kg·m²/s.
+pub const ANGULAR_MOMENTUM: Dimension = Dimension::new(2, 1, -1);
+/// Power, W.
+pub const POWER: Dimension = Dimension::new(2, 1, -3);
+/// Strength of an attraction by the square of the distance, N·m².
+pub const STRENGTH: Dimension = Dimension::new(3, 1, -2);
+/// Constant of gravity, m³/(kg·s²).
+pub const GRAVITATION: Dimension = Dimension::new(3, -1, -2);
+/// Gravitational parameter, m³/s².
+pub const ATTRACTION: Dimension = Dimension::new(3, 0, -2);

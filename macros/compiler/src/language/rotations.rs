@@ -1,0 +1,62 @@
+//! Rotations: `z(angle)`, `eigenaxis(direction, angle)`, and the axes that follow from a vector or a curve.
+
+use super::{Argument, ArgumentKind};
+
+/// A row of the table of rotations.
+#[derive(Debug)]
+pub struct RotationRow {
+    /// The name.
+    pub name: &'static str,
+    /// Words of other tools.
+    pub synonyms: &'static str,
+    /// The arguments.
+    pub arguments: &'static [Argument],
+    /// True for axes that follow from a vector or a curve; they stand first in a `Frame`.
+    pub natural: bool,
+}
+
+const fn turn(name: &'static str, synonyms: &'static str, arguments: &'static [Argument]) -> RotationRow {
+    RotationRow { name, synonyms, arguments, natural: false }
+}
+
+const fn natural(name: &'static str, arguments: &'static [Argument]) -> RotationRow {
+    RotationRow { name, synonyms: "", arguments, natural: true }
+}
+
+const ANGLE: Argument = Argument::new("angle", ArgumentKind::Angle);
+const VECTOR: Argument = Argument::new("vector", ArgumentKind::Vector);
+
+const fn number(name: &'static str) -> Argument {
+    Argument::new(name, ArgumentKind::Number)
+}
+
+table! {
+    /// A rotation of the language.
+    Rotation: RotationRow {
+        /// Rotation about the x axis.
+        X = turn("x", "rx rotx rotatex xrot", &[ANGLE]);
+        /// Rotation about the y axis.
+        Y = turn("y", "ry roty rotatey yrot", &[ANGLE]);
+        /// Rotation about the z axis.
+        Z = turn("z", "rz rotz rotatez zrot", &[ANGLE]);
+        /// Rotation about a direction.
+        Eigenaxis = turn("eigenaxis", "axisangle angleaxis about axis",
+            &[Argument::new("direction", ArgumentKind::Direction), ANGLE]);
+        /// Rotation by a unit quaternion.
+        Quaternion = turn("quaternion", "quat q", &[number("x"), number("y"), number("z"), number("w")]);
+        /// Axes of cylindrical coordinates of a vector.
+        Cylindrical = natural("cylindrical", &[VECTOR]);
+        /// Axes of spherical coordinates of a vector.
+        Spherical = natural("spherical", &[VECTOR]);
+        /// Tangent, normal and binormal of a curve (Frenet and Serret).
+        Frenet = natural("frenet",
+            &[Argument::length("curve"), Argument::new("coordinate", ArgumentKind::Coordinate)]);
+    }
+}
+
+impl Rotation {
+    /// The number of the coordinate axis that it is about.
+    pub fn axis(self) -> Option<usize> {
+        [Rotation::X, Rotation::Y, Rotation::Z].iter().position(|about| *about == self)
+    }
+}

@@ -1,0 +1,181 @@
+//! Homogeneous solids with their moments of inertia about the centre of mass (any table of mechanics).
+
+use super::{Argument, ArgumentKind};
+use crate::expr::{Expr, Mat3, Sym3, Vec3};
+use crate::mechanism::PieceKind;
+
+/// A row of the table of solids.
+#[derive(Debug)]
+pub struct SolidRow {
+    /// The name.
+    pub name: &'static str,
+    /// Words of other tools.
+    pub synonyms: &'static str,
+    /// The arguments; a direction comes last, and the masses and lengths are not negative.
+    pub arguments: &'static [Argument],
+    /// How the solid is drawn; `None` for moments given one by one.
+    pub piece: Option<PieceKind>,
+    /// The inertia, by the values of the arguments without the direction, and by the direction.
+    pub inertia: for<'g> fn(&[Expr<'g>], Vec3<'g>) -> Sym3<'g>,
+}
+
+const MASS: Argument = Argument::MASS;
+const AXIS: Argument = Argument::AXIS;
+const RADIUS: Argument = Argument::length("radius");
+const LENGTH: Argument = Argument::length("length");
+const HEIGHT: Argument = Argument::length("height");
+const X: Argument = Argument::length("x length");
+const Y: Argument = Argument::length("y length");
+const Z: Argument = Argument::length("z length");
+
+const fn moment(name: &'static str) -> Argument {
+    Argument::new(name, ArgumentKind::Inertia)
+}
+
+table! {
+    /// A homogeneous solid, or moments of inertia given one by one.
+    Solid: SolidRow {
+        /// A thin rod.
+        Rod = SolidRow {
+            name: "rod", synonyms: "bar stick thinrod slenderrod beam line",
+            arguments: &[MASS, LENGTH, AXIS], piece: Some(PieceKind::Rod),
+            inertia: |n, axis| axisymmetric(n[0].zero(), n[0] * n[1].square() * (1.0 / 12.0), axis),
+        };
+        /// A thin ring.
+        Ring = SolidRow {
+            name: "ring", synonyms: "hoop",
+            arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Ring),
+            inertia: |n, axis| axisymmetric(n[0] * n[1].square(), n[0] * n[1].square() * 0.5, axis),
+        };
+        /// A thin disk.
+        Disk = SolidRow {
+            name: "disk", synonyms: "disc",
+            arguments: &[MASS, RADIUS, AXIS], piece: Some(PieceKind::Disk),
+            inertia: |n, axis| axisymmetric(n[0] * n[1].square() * 0.5, n[0] * n[1].square() * 0.25, axis),
+        };
+        /// A cylinder.
+        Cylinder = SolidRow {
+            name: "cylinder", synonyms: "",
+            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cylinder),
+            inertia: |n, axis| {
+                let transverse = n[1].square() * 0.25 + n[2].square() * (1.0 / 12.0);
+                axisymmetric(n[0] * n[1].square() * 0.5, n[0] * transverse, axis)
+            },
+        };
+        /// A cylinder with a coaxial hole.
+        Tube = SolidRow {
+            name: "tube", synonyms: "pipe hollowcylinder",
+            arguments: &[MASS, Argument::length("inner radius"), Argument::length("outer radius"), HEIGHT, AXIS],
+            piece: Some(PieceKind::Tube),
+            inertia: |n, axis| {
+                let radii = n[1].square() + n[2].square();
+                axisymmetric(n[0] * radii * 0.5, n[0] * (radii * 0.25 + n[3].square() * (1.0 / 12.0)), axis)
+            },
+        };
+        /// A cone.
+        Cone = SolidRow {
+            name: "cone", synonyms: "",
+            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cone),
+            inertia: |n, axis| {
+                let transverse = n[1].square() * 0.15 + n[2].square() * 0.0375;
+                axisymmetric(n[0] * n[1].square() * 0.3, n[0] * transverse, axis)
+            },
+        };
+        /// A cylinder of the given height between two half balls.
+        Capsule = SolidRow {
+            name: "capsule", synonyms: "pill",
+            arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Capsule),
+            inertia: |n, axis| {
+                let (m, r, h) = (n[0], n[1], n[2]);
+                // Volumes over π r²: h of the cylinder, 4 r / 3 of the two halves of the ball.
+                let ball = r * (4.0 / 3.0);
+                let (m_cylinder, m_ball) = (m * h / (h + ball), m * ball / (h + ball));
+                let axial = m_cylinder * r.square() * 0.5 + m_ball * r.square() * 0.4;
+                let transverse = m_cylinder * (r.square() * 0.25 + h.square() * (1.0 / 12.0))
+                    + m_ball * (r.square() * 0.4 + h.square() * 0.25 + h * r * 0.375);
+                axisymmetric(axial, transverse, axis)
+            },
+        };
+        /// A ball.
+        Sphere = SolidRow {
+            name: "sphere", synonyms: "ball",
+            arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
+            inertia: |n, _| Sym3::scalar(n[0] * n[1].square() * 0.4),
+        };
+        /// A thin hollow ball.
+        Shell = SolidRow {
+            name: "shell", synonyms: "hollowsphere sphericalshell",
+            arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
+            inertia: |n, _| Sym3::scalar(n[0] * n[1].square() * (2.0 / 3.0)),
+        };
+        /// A cuboid.
+        Cuboid = SolidRow {
+            name: "cuboid", synonyms: "cube brick block cuboid3 parallelepiped rectangle",
+            arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
+            inertia: |n, _| of_three_lengths(n[0] * (1.0 / 12.0), n),
+        };
+        /// A cuboid by its other name.
+        Box = SolidRow {
+            name: "box", synonyms: "",
+            arguments: &[MASS, X, Y, Z], piece: Some(PieceKind::Cuboid),
+            inertia: |n, _| of_three_lengths(n[0] * (1.0 / 12.0), n),
+        };
+        /// A thin rectangle.
+        Plate = SolidRow {
+            name: "plate", synonyms: "sheet lamina",
+            arguments: &[MASS, X, Y], piece: Some(PieceKind::Cuboid),
+            inertia: |n, _| {
+                let m = n[0] * (1.0 / 12.0);
+                diagonal([m * n[2].square(), m * n[1].square(), m * (n[1].square() + n[2].square())])
+            },
+        };
+        /// An ellipsoid.
+        Ellipsoid = SolidRow {
+            name: "ellipsoid", synonyms: "",
+            arguments: &[MASS, Argument::length("x radius"), Argument::length("y radius"), Argument::length("z radius")],
+            piece: Some(PieceKind::Ellipsoid),
+            inertia: |n, _| of_three_lengths(n[0] * 0.2, n),
+        };
+        /// Three principal moments of inertia.
+        Diagonal = SolidRow {
+            name: "diagonal", synonyms: "diag principal",
+            arguments: &[moment("xx"), moment("yy"), moment("zz")], piece: None,
+            inertia: |n, _| diagonal([n[0], n[1], n[2]]),
+        };
+    }
+}
+
+impl Solid {
+    /// Returns how the solid is written: `rod(mass, length, axis)`.
+    pub fn usage(self) -> String {
+        format!("{}({})", self.name(), Argument::list(self.row().arguments))
+    }
+
+    /// True for a solid whose last argument is an axis.
+    pub fn has_axis(self) -> bool {
+        self.row().arguments.last().is_some_and(|last| last.kind.is_direction())
+    }
+}
+
+fn diagonal(moments: [Expr<'_>; 3]) -> Sym3<'_> {
+    Sym3 { diagonal: moments, off: [moments[0].zero(); 3] }
+}
+
+/// Returns moments proportional to the sums of squares of two of three lengths.
+fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
+    let [x, y, z] = [1, 2, 3].map(|k| n[k].square());
+    diagonal([m * (y + z), m * (x + z), m * (x + y)])
+}
+
+/// `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, `t` about all normals.
+fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
+    if let Some(k) = (0..3).find(|k| n[*k].value().is_some_and(|c| c.abs() == 1.0)) {
+        let diagonal = std::array::from_fn(|i| if i == k { axial } else { transverse });
+        return Sym3 { diagonal, off: [axial.zero(); 3] };
+    }
+    let extra = axial - transverse;
+    Sym3::from_upper(&Mat3::from_fn(|i, j| {
+        let term = extra * n[i] * n[j];
+        if i == j { transverse + term } else { term }
+    }))
+}
