@@ -53,12 +53,16 @@ pub mod argument;
 pub mod callable;
 pub mod dimension;
 pub mod functions;
+pub mod methods;
 pub mod ratio;
 pub mod rotations;
 pub mod solids;
+pub mod surfaces;
 
 pub use argument::{Argument, ArgumentKind};
 pub use callable::Callable;
 pub use functions::{Dependence, FunctionId, UnitRule};
+pub use methods::Method;
 pub use rotations::Rotation;
 pub use solids::Solid;
+pub use surfaces::SurfaceId;

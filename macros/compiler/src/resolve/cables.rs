@@ -5,9 +5,14 @@ use super::quantities::flatten;
 use super::scope::{Allowed, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};
+use crate::language::{Method, SurfaceId};
 use crate::mechanism::Rule;
 use crate::syntax::{self, ExprKind};
 use std::f64::consts::PI;
+
+const SPHERE: Option<Method> = Some(Method::Surface(SurfaceId::Sphere));
+const CYLINDER: Option<Method> = Some(Method::Surface(SurfaceId::Cylinder));
+const DRUM: Option<Method> = Some(Method::Surface(SurfaceId::Drum));
 
 impl<'g> Scope<'_, 'g> {
     /// `cable(a / b, drum.cylinder(radius, axis))`, `cable(a / b, ball.sphere(radius))`: the length of a taut
@@ -75,14 +80,14 @@ impl<'g> Scope<'_, 'g> {
                 .help("write `drum.cylinder(radius, axis)` or `ball.sphere(radius)`");
             return None;
         };
-        let (radius, axis) = match (word.text.as_str(), arguments.as_slice()) {
-            ("sphere", [radius]) => (radius, None),
-            ("cylinder", [radius, axis]) => (radius, Some(axis)),
-            ("sphere", _) => {
+        let (radius, axis) = match (word.id, arguments.as_slice()) {
+            (SPHERE, [radius]) => (radius, None),
+            (CYLINDER, [radius, axis]) => (radius, Some(axis)),
+            (SPHERE, _) => {
                 cx.error(word.place.clone(), "`sphere` takes 1 argument").help("write `sphere(a)`");
                 return None;
             }
-            ("cylinder", _) => {
+            (CYLINDER | DRUM, _) => {
                 cx.error(
                     word.place.clone(),
                     "a cylinder that a cable runs around is written `cylinder(radius, axis)`",
@@ -92,8 +97,8 @@ impl<'g> Scope<'_, 'g> {
                 );
                 return None;
             }
-            (text, _) => {
-                cx.error(word.place.clone(), format!("a cable does not run around a `{text}`"))
+            _ => {
+                cx.error(word.place.clone(), format!("a cable does not run around a `{}`", word.text))
                     .help("it runs around a `sphere(radius)` or a `cylinder(radius, axis)`");
                 return None;
             }

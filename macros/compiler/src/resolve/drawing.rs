@@ -7,7 +7,7 @@ use super::scope::{Allowed, Context, Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
-use crate::language::{Callable, Solid};
+use crate::language::{Callable, Method, Solid};
 use crate::mechanism::drawing::{entries, rows};
 use crate::mechanism::{Input, LinkId, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
@@ -177,7 +177,7 @@ impl<'g> Builder<'_, 'g> {
             ExprKind::Binary(BinaryOp::Add, a, b, _) => {
                 self.solids(a, turned, com, found) && self.solids(b, turned, com, found)
             }
-            ExprKind::Method(inner, method, steps) if method.text == "rotated" => {
+            ExprKind::Method(inner, method, steps) if method.id == Some(Method::Rotated) => {
                 let Some(rotation) = self.scope.rotation(steps, &mut silent) else { return false };
                 self.solids(inner, &turned.clone().then(&rotation), com, found)
             }

@@ -3,7 +3,7 @@
 use super::scope::{Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Sym3, Vec3};
-use crate::language::{Argument, Callable, Solid};
+use crate::language::{Argument, Callable, Method, Solid};
 use crate::mechanism::Rule;
 use crate::syntax::{self, BinaryOp, Callee, ExprKind, words};
 
@@ -33,7 +33,7 @@ impl<'g> Scope<'_, 'g> {
         loop {
             let (inner, operation) = match &first.kind {
                 ExprKind::Binary(BinaryOp::Add, left, right, _) => (left, Operation::Add(right)),
-                ExprKind::Method(inner, method, steps) if method.text == "rotated" => {
+                ExprKind::Method(inner, method, steps) if method.id == Some(Method::Rotated) => {
                     (inner, Operation::Rotate(steps))
                 }
                 _ => break,

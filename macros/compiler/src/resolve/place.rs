@@ -8,7 +8,7 @@ use super::scope::{Allowed, Context, Placed, PlacedKind};
 use super::tree::Order;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Rotation, Vec3};
-use crate::language::Callable;
+use crate::language::{Callable, Method};
 use crate::mechanism::{LinkId, NamedFrame, Pose};
 use crate::syntax::{Expr, ExprKind, GROUND, Name, words};
 
@@ -343,7 +343,9 @@ impl<'a, 'g> Builder<'a, 'g> {
                 let place = self.scope.place(e, cx)?;
                 Some((place.link, place.pose))
             }
-            ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {
+            ExprKind::Method(base, method, arguments)
+                if method.id == Some(Method::At) && arguments.len() == 1 =>
+            {
                 let frame = self.scope.place(base, cx)?;
                 self.offset(frame, &arguments[0], free, cx)
             }

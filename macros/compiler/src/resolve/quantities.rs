@@ -6,7 +6,7 @@ use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::unit;
-use crate::language::FunctionId;
+use crate::language::{FunctionId, Method};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, words};
 
@@ -118,7 +118,9 @@ impl<'g> Scope<'_, 'g> {
                     None
                 }
             },
-            ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {
+            ExprKind::Method(base, method, arguments)
+                if method.id == Some(Method::At) && arguments.len() == 1 =>
+            {
                 let base = self.place(base, cx)?;
                 let context = Context::new(Allowed::Constant, None);
                 let at = self.in_context(context, |scope| scope.own_vector(&arguments[0], cx))?;
@@ -155,7 +157,9 @@ impl<'g> Scope<'_, 'g> {
     /// a vector of any axes and coordinates. Its velocity and acceleration are those of the body there.
     pub fn place_now(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
-            ExprKind::Method(base, method, arguments) if method.text == "at" && arguments.len() == 1 => {
+            ExprKind::Method(base, method, arguments)
+                if method.id == Some(Method::At) && arguments.len() == 1 =>
+            {
                 let base = self.place_now(base, cx)?;
                 let axes = Some((base.link, base.pose.clone()));
                 let context = Context::new(Allowed::Placement, axes);

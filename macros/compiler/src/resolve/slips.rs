@@ -5,11 +5,11 @@ use super::scope::Scope;
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
 use crate::language::{Callable, Rotation};
-use crate::syntax::{self, Callee, ExprKind, Name, words};
+use crate::syntax::{self, Callee, ExprKind, Member, Name, words};
 
 impl Scope<'_, '_> {
     /// Says what to write for a method, which expressions do not have.
-    pub fn report_method(&self, e: &syntax::Expr, method: &Name, cx: &mut Diagnostics) {
+    pub fn report_method(&self, e: &syntax::Expr, method: &Member, cx: &mut Diagnostics) {
         let text = method.text.as_str();
         let base = match &e.kind {
             ExprKind::Method(base, ..) => base.spelt(),

@@ -4,6 +4,7 @@ use super::builder::Builder;
 use super::scope::Placed;
 use super::terms::Stretch;
 use crate::diag::{Diagnostics, Place, one_of};
+use crate::language::Method;
 use crate::mechanism::Coordinate;
 use crate::syntax::{Expr, ExprKind, GROUND, Name};
 
@@ -41,7 +42,9 @@ impl<'g> Builder<'_, 'g> {
         match &on.kind {
             ExprKind::Name(name) => self.named_target(on, name, cx),
             ExprKind::Field(joint, coordinate) => self.coordinate_of_joint(on, joint, coordinate, cx),
-            ExprKind::Method(inner, method, arguments) if method.text == "at" && arguments.len() == 1 => {
+            ExprKind::Method(inner, method, arguments)
+                if method.id == Some(Method::At) && arguments.len() == 1 =>
+            {
                 let ExprKind::Name(name) = &inner.kind else {
                     cx.error(on.place.clone(), "expected a body");
                     return None;

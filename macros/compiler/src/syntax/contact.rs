@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
 use crate::diag::Diagnostics;
-use crate::language::Callable;
+use crate::language::{Callable, Method};
 
 const KEYS: [&str; 9] = [
     "friction",
@@ -132,14 +132,13 @@ fn read_softness(
     Some(Softness { stiffness, hertz, dissipation, speed })
 }
 
-/// The word for what a file says of a link's shape.
-pub const COLLISION: &str = "collision";
-
 /// `link.collision()` gives the link, `collision()` nothing: all links of the file. `link.collision(2)` is
 /// the third shape of one.
 pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
     match &surface.kind {
-        ExprKind::Method(link, word, arguments) if word.text == COLLISION && arguments.len() < 2 => {
+        ExprKind::Method(link, word, arguments)
+            if word.id == Some(Method::Collision) && arguments.len() < 2 =>
+        {
             Some(Some(link.as_ref()))
         }
         ExprKind::Call(word, arguments) if word.id == Some(Callable::Collision) && arguments.is_empty() => {

@@ -1,7 +1,7 @@
 //! Expressions: Rust's own grammar of numbers, names, calls, fields and the four operations, in a parser
 //! whose depth is bounded.
 
-use super::{BinaryOp, Callee, Expr, ExprKind, Name, guard};
+use super::{BinaryOp, Callee, Expr, ExprKind, Member, Name, guard};
 use crate::diag::{Place, syn_error};
 use crate::language::callable::IF;
 use proc_macro2::{Span, TokenTree};
@@ -150,7 +150,7 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
             let (arguments, arguments_size, close) = parse_arguments(input)?;
             let place = inner.0.place.to(&close.into());
             node(
-                ExprKind::Method(Box::new(inner.0), member, arguments),
+                ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
                 place,
                 size.max(arguments_size.around()),
             )?

@@ -4,6 +4,7 @@ use super::arguments::Arguments;
 use super::joint_kind::{self, JointKind, kind_word};
 use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
 use crate::diag::Diagnostics;
+use crate::language::Method;
 
 /// Reads a joint.
 pub fn read_joint(
@@ -80,17 +81,17 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
         }
         ExprKind::Method(inner, method, mut arguments) => {
             let mut end = endpoint(*inner, cx)?;
-            match method.text.as_str() {
-                "at" if arguments.len() == 1 && end.at.is_none() && end.rotated.is_empty() => {
+            match method.id {
+                Some(Method::At) if arguments.len() == 1 && end.at.is_none() && end.rotated.is_empty() => {
                     end.at = arguments.pop();
                     Some(end)
                 }
-                "at" if arguments.len() == 1 => {
+                Some(Method::At) if arguments.len() == 1 => {
                     cx.error(method.place, "`.at(…)` stands once, before `.rotated(…)`")
                         .help("write `body.at(a + b).rotated(z(angle))`");
                     None
                 }
-                "at" => {
+                Some(Method::At) => {
                     let help = match arguments.as_slice() {
                         [a, b, c] => format!("write `.at([{}, {}, {}])`", a.spelt(), b.spelt(), c.spelt()),
                         _ => "write `body.at(length * x)`".to_string(),
@@ -98,16 +99,17 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                     cx.error(method.place, "expected one vector in `.at(…)`").help(help);
                     None
                 }
-                "rotated" if !arguments.is_empty() => {
+                Some(Method::Rotated) if !arguments.is_empty() => {
                     end.rotated.extend(arguments);
                     Some(end)
                 }
-                "rotated" => {
+                Some(Method::Rotated) => {
                     cx.error(method.place, "`.rotated()` says no rotation")
                         .help("write `body.rotated(z(angle))`");
                     None
                 }
-                other => {
+                Some(Method::Collision | Method::Surface(_)) | None => {
+                    let other = method.text.as_str();
                     let error = cx.error(method.place, format!("unknown method `.{other}(…)` of a body"));
                     words::point(error, words::METHODS, other, &["at", "rotated"]);
                     None

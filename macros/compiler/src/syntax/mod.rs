@@ -35,7 +35,7 @@ pub use attribute::parse_mechanism;
 pub use description::{
     Action, ActionKind, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact,
     Definition, Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
-    Frame, FreeCoordinate, Inertias, Joint, Law, Limit, Mesh, Mimic, Name, Particle, Point, Rank,
+    Frame, FreeCoordinate, Inertias, Joint, Law, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank,
     Restitution, ScalarType, Shape, SlipFriction, Softness, Table, Target, Term, Visual, Wrench,
 };
 pub use element_kind::{ElementKind, ForceKind, OtherKind};

@@ -93,10 +93,7 @@ impl Touching {
         let at = &self.place;
         let named = |text: &str| Name { text: text.to_string(), place: at.clone() };
         let body = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-        let method = |of: Expr, word: &str, argument: Expr| Expr {
-            kind: ExprKind::Method(Box::new(of), named(word), vec![argument]),
-            place: at.clone(),
-        };
+        let method = |of: Expr, word: &str, argument: Expr| Expr::method(of, word, vec![argument]);
         let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
         let point = method(body(GROUND), "at", Expr::vector(plane.pose.at, at));
         let coefficient = |number: f64| (number != 0.0).then(|| Expr::number(number, at));

@@ -8,7 +8,7 @@ use crate::import::element::{
     Node, check_attributes, check_only, children, elements, name, number, place, required, tag,
 };
 use crate::import::robot::{Origin, bare_link};
-use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
+use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias};
 
 /// Attributes of `<inertia>`: the entries of the inertia matrix.
 const INERTIA: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
@@ -120,7 +120,5 @@ fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr
     if turns.is_empty() {
         return Some(matrix);
     }
-    let place = origin.rpy.place.clone();
-    let method = Name { text: "rotated".to_string(), place: place.clone() };
-    Some(Expr { kind: ExprKind::Method(Box::new(matrix), method, turns), place })
+    Some(Expr { place: origin.rpy.place.clone(), ..Expr::method(matrix, "rotated", turns) })
 }

@@ -18,7 +18,6 @@ mod terrain;
 mod unilateral;
 
 pub use slipping::check_pressed;
-pub use surface::arguments_of;
 pub use terrain::PLACE;
 
 use super::builder::Builder;
@@ -222,28 +221,10 @@ impl<'g> Builder<'_, 'g> {
 }
 
 impl<'g> Form<'g> {
-    /// True for pairs whose contact is known.
+    /// True for a surface that can roll on another.
     fn rolls_on(&self, b: &Form<'g>) -> bool {
-        match b {
-            Form::Plane(_) => {
-                matches!(
-                    self,
-                    Form::Circle(..)
-                        | Form::Torus(..)
-                        | Form::Sphere(_)
-                        | Form::Ellipsoid(_)
-                        | Form::Cone(..)
-                )
-            }
-            Form::Sphere(_) | Form::Bowl(_) | Form::Cylinder(..) | Form::Tube(..) => {
-                matches!(self, Form::Sphere(_))
-            }
-            Form::Sheet(_) => {
-                matches!(self, Form::Circle(..) | Form::Torus(..) | Form::Sphere(_) | Form::Ellipsoid(_))
-            }
-            Form::Cone(..) | Form::Funnel(..) => matches!(self, Form::Sphere(_) | Form::Cone(..)),
-            _ => false,
-        }
+        let rollers = b.id().map_or(&[][..], |id| id.row().rollers);
+        self.id().is_some_and(|id| rollers.contains(&id))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::terrain::Terrain;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Expr, Vec3};
+use crate::language::{Argument, ArgumentKind, Method, SurfaceId};
 use crate::mechanism::Rule;
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context, Placed};
@@ -32,7 +33,7 @@ pub enum Form<'g> {
     Tube(Expr<'g>, Vec3<'g>),
     /// The outside of a cone: half angle, axis from the apex into the cone.
     Cone(Expr<'g>, Vec3<'g>),
-    /// The inside of a cone: half angle, axis from the apex to the releasing.
+    /// The inside of a cone: half angle, axis from the apex to the opening.
     Funnel(Expr<'g>, Vec3<'g>),
     /// A surface given by its points.
     Sheet(Sheet<'g>),
@@ -64,29 +65,28 @@ pub struct Surface<'g> {
     pub form: Form<'g>,
 }
 
-/// The surfaces with their arguments.
-const FORMS: [(&str, &[&str]); 15] = [
-    ("circle", &["radius", "axis"]),
-    ("torus", &["radius", "tube_radius", "axis"]),
-    ("sphere", &["radius"]),
-    ("ellipsoid", &["a", "b", "c"]),
-    ("plane", &["normal"]),
-    ("bowl", &["radius"]),
-    ("cylinder", &["radius", "axis"]),
-    ("cylinder", &["radius", "length", "axis"]),
-    ("tube", &["radius", "axis"]),
-    ("cone", &["half_angle", "axis"]),
-    ("funnel", &["half_angle", "axis"]),
-    ("surface", &["u", "w", "point"]),
-    ("terrain", &["height"]),
-    ("cuboid", &["a", "b", "c"]),
-    ("capsule", &["radius", "length", "axis"]),
-];
-
-/// Names of the arguments of a form, one with as many of them if there is one.
-pub fn arguments_of(word: &str, count: usize) -> Option<&'static [&'static str]> {
-    let named = || FORMS.iter().filter(|(known, _)| *known == word).map(|(_, names)| *names);
-    named().find(|names| names.len() == count).or_else(|| named().next())
+impl Form<'_> {
+    /// Returns the row of the surface; `None` for a point.
+    pub fn id(&self) -> Option<SurfaceId> {
+        match self {
+            Form::Circle(..) => Some(SurfaceId::Circle),
+            Form::Torus(..) => Some(SurfaceId::Torus),
+            Form::Sphere(_) => Some(SurfaceId::Sphere),
+            Form::Ellipsoid(_) => Some(SurfaceId::Ellipsoid),
+            Form::Plane(_) => Some(SurfaceId::Plane),
+            Form::Bowl(_) => Some(SurfaceId::Bowl),
+            Form::Cylinder(..) => Some(SurfaceId::Cylinder),
+            Form::Drum(..) => Some(SurfaceId::Drum),
+            Form::Tube(..) => Some(SurfaceId::Tube),
+            Form::Cone(..) => Some(SurfaceId::Cone),
+            Form::Funnel(..) => Some(SurfaceId::Funnel),
+            Form::Sheet(_) => Some(SurfaceId::Sheet),
+            Form::Terrain(_) => Some(SurfaceId::Terrain),
+            Form::Cuboid(_) => Some(SurfaceId::Cuboid),
+            Form::Capsule(..) => Some(SurfaceId::Capsule),
+            Form::Point => None,
+        }
+    }
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -103,75 +103,83 @@ impl<'g> Builder<'_, 'g> {
             };
             return None;
         };
-        let Some(names) = arguments_of(&word.text, arguments.len()) else {
+        let Some(Method::Surface(id)) = word.id else {
             let error = cx.error(word.place.clone(), format!("unknown surface `{}`", word.text));
-            error.suggest(&word.text, FORMS.iter().map(|(word, _)| *word));
+            error.suggest(&word.text, SurfaceId::names());
             if error.is_bare() {
-                let mut list: Vec<String> = FORMS.iter().map(|(word, _)| format!("`{word}`")).collect();
+                let mut list: Vec<String> = SurfaceId::names().map(|word| format!("`{word}`")).collect();
                 list.dedup();
                 error.help(format!("the surfaces are {}", all_of(&list)));
             }
             return None;
         };
+        let row = id.row();
         let frame = self.scope.place(base, cx);
-        if arguments.len() != names.len() {
-            let usage = format!("this surface is written `{}({})`", word.text, names.join(", "));
+        if arguments.len() != row.arguments.len() {
+            let usage = format!("this surface is written `{}({})`", row.name, Argument::list(row.arguments));
             cx.error(word.place.clone(), usage)
                 .help("lengths are in m, angles in rad, axes in those of the body");
             return None;
         }
-        if let ("surface", [u, w, point]) = (word.text.as_str(), arguments.as_slice()) {
-            let frame = frame?;
-            let form = Form::Sheet(self.sheet(&frame, [u, w, point], cx)?);
-            return Some(Surface { frame, form });
-        }
-        if let ("terrain", [height]) = (word.text.as_str(), arguments.as_slice()) {
-            let terrain = self.terrain(height, cx);
-            return Some(Surface { frame: frame?, form: Form::Terrain(Box::new(terrain?)) });
-        }
-        let (mut numbers, mut axis) = (Vec::new(), None);
-        for (argument, name) in arguments.iter().zip(names) {
-            let context = Context::new(Allowed::Constant, None);
-            match *name {
-                "axis" | "normal" => {
-                    axis = self.scope.in_context(context, |s| s.unit_vector(argument, false, cx));
-                }
-                _ => {
-                    let value = self.scope.in_context(context, |s| s.scalar(argument, cx))?;
-                    if !check_size(name, argument, value, cx) {
-                        return None;
-                    }
-                    let rule = if *name == "half_angle" { Rule::HalfAngle } else { Rule::Positive };
-                    let figure = || format!("the {} of a {}", name.replace('_', " "), word.text);
-                    self.scope.require(rule, figure, &[value]);
-                    numbers.push(value);
-                }
+        match (id, arguments.as_slice()) {
+            (SurfaceId::Sheet, [u, w, point]) => {
+                let frame = frame?;
+                let form = Form::Sheet(self.sheet(&frame, [u, w, point], cx)?);
+                return Some(Surface { frame, form });
             }
+            (SurfaceId::Terrain, [height]) => {
+                let terrain = self.terrain(height, cx);
+                return Some(Surface { frame: frame?, form: Form::Terrain(Box::new(terrain?)) });
+            }
+            _ => {}
         }
-        let form = match (word.text.as_str(), numbers.as_slice(), axis) {
-            ("circle", [r], Some(n)) => Form::Circle(*r, n),
-            ("torus", [r, tube], Some(n)) => Form::Torus(*r, *tube, n),
-            ("sphere", [r], _) => Form::Sphere(*r),
-            ("ellipsoid", [a, b, c], _) => Form::Ellipsoid([*a, *b, *c]),
-            ("plane", _, Some(n)) => Form::Plane(n),
-            ("bowl", [r], _) => Form::Bowl(*r),
-            ("cylinder", [r], Some(n)) => Form::Cylinder(*r, n),
-            ("cylinder", [r, length], Some(n)) => Form::Drum(*r, *length, n),
-            ("tube", [r], Some(n)) => Form::Tube(*r, n),
-            ("cone", [angle], Some(n)) => Form::Cone(*angle, n),
-            ("funnel", [angle], Some(n)) => Form::Funnel(*angle, n),
-            ("cuboid", [a, b, c], _) => Form::Cuboid([*a, *b, *c]),
-            ("capsule", [r, length], Some(n)) => Form::Capsule(*r, *length, n),
-            _ => return None,
-        };
-        Some(Surface { frame: frame?, form })
+        let (mut numbers, mut axis) = (Vec::new(), Some(Vec3::zero(self.scope.graph)));
+        for (e, Argument { name, kind }) in arguments.iter().zip(row.arguments) {
+            let context = Context::new(Allowed::Constant, None);
+            if kind.is_direction() {
+                axis = self.scope.in_context(context, |s| s.unit_vector(e, false, cx));
+                continue;
+            }
+            let value = self.scope.in_context(context, |s| s.scalar(e, cx))?;
+            let is_angle = *kind == ArgumentKind::HalfAngle;
+            if !check_size(is_angle, e, value, cx) {
+                return None;
+            }
+            let rule = if is_angle { Rule::HalfAngle } else { Rule::Positive };
+            let figure = || format!("the {} of a {}", name.replace('_', " "), row.name);
+            self.scope.require(rule, figure, &[value]);
+            numbers.push(value);
+        }
+        Some(Surface { frame: frame?, form: form(id, &numbers, axis?)? })
     }
 }
 
+/// Returns the form of a surface with the values of its lengths and angles, and its direction.
+fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<Form<'g>> {
+    let number = |k: usize| numbers.get(k).copied();
+    Some(match id {
+        SurfaceId::Circle => Form::Circle(number(0)?, n),
+        SurfaceId::Torus => Form::Torus(number(0)?, number(1)?, n),
+        SurfaceId::Sphere => Form::Sphere(number(0)?),
+        SurfaceId::Ellipsoid => Form::Ellipsoid([number(0)?, number(1)?, number(2)?]),
+        SurfaceId::Plane => Form::Plane(n),
+        SurfaceId::Bowl => Form::Bowl(number(0)?),
+        SurfaceId::Cylinder => Form::Cylinder(number(0)?, n),
+        SurfaceId::Drum => Form::Drum(number(0)?, number(1)?, n),
+        SurfaceId::Tube => Form::Tube(number(0)?, n),
+        SurfaceId::Cone => Form::Cone(number(0)?, n),
+        SurfaceId::Funnel => Form::Funnel(number(0)?, n),
+        SurfaceId::Cuboid => Form::Cuboid([number(0)?, number(1)?, number(2)?]),
+        SurfaceId::Capsule => Form::Capsule(number(0)?, number(1)?, n),
+        // These have other arguments than numbers and a direction.
+        SurfaceId::Sheet | SurfaceId::Terrain => return None,
+    })
+}
+
 /// Reports a length that is not positive, and a half angle that is not between zero and a right one.
-fn check_size(name: &str, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) -> bool {
+fn check_size(is_angle: bool, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) -> bool {
     let Some(n) = value.value() else { return true };
-    if name == "half_angle" {
+    if is_angle {
         if n <= 0.0 || n >= FRAC_PI_2 {
             cx.error(e.place.clone(), format!("this half angle is not between 0 and π/2: it is {n}"))
                 .help("it is the angle between the axis and the surface, rad");

@@ -7,6 +7,7 @@ use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
+use crate::language::Method;
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
@@ -301,7 +302,7 @@ impl<'g> Builder<'_, 'g> {
             return self.collisions(e, link, cx);
         }
         let is_place = match &e.kind {
-            ExprKind::Method(_, word, _) => word.text == "at",
+            ExprKind::Method(_, word, _) => word.id == Some(Method::At),
             ExprKind::Name(name) => name != GROUND,
             _ => false,
         };
@@ -465,33 +466,8 @@ pub(super) fn nearest<'g>(
 }
 
 impl<'g> Form<'g> {
-    /// True for pairs whose contact is known.
+    /// True for a surface whose contact with another is known.
     fn touches(&self, b: &Form<'g>) -> bool {
-        match b {
-            Form::Plane(_) => !matches!(
-                self,
-                Form::Plane(_)
-                    | Form::Cone(..)
-                    | Form::Sheet(_)
-                    | Form::Terrain(_)
-                    | Form::Bowl(_)
-                    | Form::Cylinder(..)
-                    | Form::Tube(..)
-                    | Form::Funnel(..)
-            ),
-            Form::Capsule(..) => matches!(self, Form::Sphere(_) | Form::Point | Form::Capsule(..)),
-            Form::Terrain(_) => {
-                matches!(self, Form::Sphere(_) | Form::Point | Form::Capsule(..) | Form::Cuboid(_))
-            }
-            Form::Cuboid(_) => matches!(self, Form::Sphere(_) | Form::Capsule(..) | Form::Cuboid(_)),
-            Form::Drum(..) => matches!(self, Form::Sphere(_)),
-            Form::Sphere(_)
-            | Form::Bowl(_)
-            | Form::Cylinder(..)
-            | Form::Tube(..)
-            | Form::Cone(..)
-            | Form::Funnel(..) => matches!(self, Form::Sphere(_) | Form::Point),
-            _ => false,
-        }
+        b.id().is_some_and(|id| id.row().contacts.contains(&self.id()))
     }
 }

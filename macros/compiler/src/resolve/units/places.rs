@@ -8,12 +8,12 @@ use crate::language::dimension::{
     SPEED, STRENGTH, TIME,
 };
 use crate::language::ratio::Ratio;
-use crate::language::{Argument, Callable};
-use crate::resolve::contact::{PLACE, arguments_of};
+use crate::language::{Argument, ArgumentKind, Callable, Method};
+use crate::resolve::contact::PLACE;
 use crate::syntax::contact::collision;
 use crate::syntax::{
     Action, ActionKind, Body, Callee, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr,
-    ExprKind, Joint, Law, Limit, Target,
+    ExprKind, Joint, Law, Limit, Member, Target,
 };
 
 /// An expression with the dimension of its place.
@@ -360,26 +360,19 @@ impl<'a> Places<'a> {
             self.points.extend(link);
             return;
         }
-        let ExprKind::Method(frame, word, arguments) = &surface.kind else {
-            self.points.push(surface);
-            return;
-        };
-        let Some(names) = arguments_of(&word.text, arguments.len()) else {
+        let ExprKind::Method(frame, Member { id: Some(Method::Surface(id)), .. }, arguments) = &surface.kind
+        else {
             self.points.push(surface);
             return;
         };
         self.points.push(frame);
-        for (argument, name) in arguments.iter().zip(names) {
-            match *name {
-                "axis" | "normal" => self.add(argument, &PLAIN, "1"),
-                "half_angle" => self.add(argument, &PLAIN, "rad"),
-                "u" | "w" => {}
-                "height" => {
-                    let locals = PLACE.map(|name| (name, LENGTH.clone())).into();
-                    self.tasks.push(Task { e: argument, dimension: LENGTH.clone(), unit: "m", locals });
-                }
-                _ => self.add(argument, &LENGTH, "m"),
-            }
+        for (e, argument) in arguments.iter().zip(id.row().arguments) {
+            let Some((dimension, unit)) = argument.kind.dimension() else { continue };
+            let locals = match argument.kind {
+                ArgumentKind::Height => PLACE.map(|name| (name, LENGTH.clone())).into(),
+                _ => Vec::new(),
+            };
+            self.tasks.push(Task { e, dimension, unit, locals });
         }
     }
 

@@ -1,7 +1,7 @@
 //! Words and expressions as written.
 
 use crate::diag::Place;
-use crate::language::Callable;
+use crate::language::{Callable, Method};
 
 /// A word of the user's: an identifier of the source or a name of an imported file.
 #[derive(Clone, Debug)]
@@ -34,6 +34,17 @@ impl Callee {
     }
 }
 
+/// A word behind the dot of a body.
+pub type Member = Term<Method>;
+
+impl Member {
+    /// Looks up a word in the tables, with the number of its arguments.
+    pub fn new(name: Name, count: usize) -> Member {
+        let id = Method::of_call(&name.text, count);
+        Term { text: name.text, place: name.place, id }
+    }
+}
+
 /// An expression as written; names are not yet resolved.
 #[derive(Clone, Debug)]
 pub struct Expr {
@@ -53,7 +64,7 @@ pub enum ExprKind {
     /// `hoop.x`.
     Field(Box<Expr>, Name),
     /// `body.at(vector)`.
-    Method(Box<Expr>, Name, Vec<Expr>),
+    Method(Box<Expr>, Member, Vec<Expr>),
     /// `sin(angle)`, `rod(mass, length, y)`.
     Call(Callee, Vec<Expr>),
     /// `-e`.
@@ -137,7 +148,8 @@ impl Expr {
     pub fn method(of: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
         let place = of.place.clone();
         let name = Name { text: word.to_string(), place: place.clone() };
-        Expr { kind: ExprKind::Method(Box::new(of), name, arguments), place }
+        let member = Member::new(name, arguments.len());
+        Expr { kind: ExprKind::Method(Box::new(of), member, arguments), place }
     }
 
     /// Three numbers as a vector `[a, b, c]` at a place.

@@ -1,0 +1,29 @@
+//! Words behind the dot of a body: `body.at(vector)`, `body.rotated(z(angle))`, `ball.sphere(radius)`.
+
+use super::SurfaceId;
+use super::callable::COLLISION;
+
+/// A word that stands behind the dot of a body or an inertia.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// `body.at(vector)`: a point of a body.
+    At,
+    /// `body.rotated(rotation, …)`: axes, or an inertia, rotated about carried axes.
+    Rotated,
+    /// `link.collision()`: the collision geometry of a file's link.
+    Collision,
+    /// A surface of a body.
+    Surface(SurfaceId),
+}
+
+impl Method {
+    /// Returns the method of a name and a number of arguments.
+    pub fn of_call(name: &str, count: usize) -> Option<Method> {
+        match name {
+            "at" => Some(Method::At),
+            "rotated" => Some(Method::Rotated),
+            COLLISION => Some(Method::Collision),
+            _ => SurfaceId::of_call(name, count).map(Method::Surface),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Surfaces of bodies that touch: `ball.sphere(radius)`, `ground.plane(z)`, and which pairs of them may.
+
+use super::{Argument, ArgumentKind};
+use SurfaceId::{Capsule, Circle, Cone, Cuboid, Drum, Ellipsoid, Sphere, Torus};
+
+/// A row of the table of surfaces.
+#[derive(Debug)]
+pub struct SurfaceRow {
+    /// The name. Surfaces of one name differ in the number of their arguments.
+    pub name: &'static str,
+    /// Words of other tools.
+    pub synonyms: &'static str,
+    /// The arguments.
+    pub arguments: &'static [Argument],
+    /// The surfaces that a contact with this one is known for; `None` stands for a point.
+    pub contacts: &'static [Option<SurfaceId>],
+    /// The surfaces that roll or slip on this one.
+    pub rollers: &'static [SurfaceId],
+}
+
+const NONE: &[Option<SurfaceId>] = &[];
+const ROUND: &[Option<SurfaceId>] = &[None, Some(Sphere)];
+const ON_PLANE: &[Option<SurfaceId>] = &[
+    None,
+    Some(Sphere),
+    Some(Circle),
+    Some(Torus),
+    Some(Ellipsoid),
+    Some(Capsule),
+    Some(Cuboid),
+    Some(Drum),
+];
+const ON_TERRAIN: &[Option<SurfaceId>] = &[None, Some(Sphere), Some(Capsule), Some(Cuboid)];
+
+const RADIUS: Argument = Argument::length("radius");
+const LENGTH: Argument = Argument::length("length");
+const AXIS: Argument = Argument::AXIS;
+const HALF_ANGLE: Argument = Argument::new("half_angle", ArgumentKind::HalfAngle);
+const AXES: &[Argument] = &[Argument::length("a"), Argument::length("b"), Argument::length("c")];
+
+const fn row(
+    name: &'static str,
+    arguments: &'static [Argument],
+    contacts: &'static [Option<SurfaceId>],
+    rollers: &'static [SurfaceId],
+) -> SurfaceRow {
+    SurfaceRow { name, synonyms: "", arguments, contacts, rollers }
+}
+
+table! {
+    /// A surface of a body.
+    SurfaceId: SurfaceRow {
+        /// The rim of a disk.
+        Circle = row("circle", &[RADIUS, AXIS], NONE, &[]);
+        /// A tyre: radius of the centre line, radius of the section.
+        Torus = row("torus", &[RADIUS, Argument::length("tube_radius"), AXIS], NONE, &[]);
+        /// A sphere.
+        Sphere = row("sphere", &[RADIUS], ROUND, &[Sphere]);
+        /// An ellipsoid, by its semi-axes.
+        Ellipsoid = row("ellipsoid", AXES, NONE, &[]);
+        /// A plane, by its normal towards what touches it.
+        Plane = row("plane", &[Argument::new("normal", ArgumentKind::Direction)], ON_PLANE,
+            &[Circle, Torus, Sphere, Ellipsoid, Cone]);
+        /// The inside of a sphere.
+        Bowl = row("bowl", &[RADIUS], ROUND, &[Sphere]);
+        /// The outside of an infinitely long cylinder.
+        Cylinder = row("cylinder", &[RADIUS, AXIS], ROUND, &[Sphere]);
+        /// A cylinder with two ends.
+        Drum = row("cylinder", &[RADIUS, LENGTH, AXIS], &[Some(Sphere)], &[]);
+        /// The inside of a cylinder.
+        Tube = row("tube", &[RADIUS, AXIS], ROUND, &[Sphere]);
+        /// The outside of a cone, with the axis from the apex into the cone.
+        Cone = row("cone", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
+        /// The inside of a cone, with the axis from the apex to the opening.
+        Funnel = row("funnel", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
+        /// A surface given by its points, which depend on two coordinates.
+        Sheet = row("surface",
+            &[Argument::new("u", ArgumentKind::Coordinate), Argument::new("w", ArgumentKind::Coordinate),
+                Argument::length("point")],
+            NONE, &[Circle, Torus, Sphere, Ellipsoid]);
+        /// A height over x and y, as an expression of the place `u`, `w`.
+        Terrain = row("terrain", &[Argument::new("height", ArgumentKind::Height)], ON_TERRAIN, &[]);
+        /// A box, by its edges.
+        Cuboid = row("cuboid", AXES, &[Some(Sphere), Some(Capsule), Some(Cuboid)], &[]);
+        /// A cylinder between two hemispheres, by radius and distance of their centres.
+        Capsule = row("capsule", &[RADIUS, LENGTH, AXIS], &[None, Some(Sphere), Some(Capsule)], &[]);
+    }
+}
+
+impl SurfaceId {
+    /// Returns the surface with a name and a number of arguments; another one of this name if none has as many.
+    pub fn of_call(name: &str, count: usize) -> Option<SurfaceId> {
+        let named = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
+        named().find(|id| id.row().arguments.len() == count).or_else(|| named().next())
+    }
+}
