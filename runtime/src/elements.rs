@@ -82,8 +82,8 @@ macro_rules! derivable {
 mod bodies;
 mod constraints;
 mod expressions;
-mod forces;
-mod joints;
+pub(crate) mod forces;
+pub(crate) mod joints;
 
 pub use bodies::*;
 pub use constraints::*;

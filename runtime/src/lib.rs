@@ -171,11 +171,10 @@ mod trigonometry;
 /// with it.
 pub mod prelude {
     pub use crate::elements::{
-        Attraction, Ball, Body, Collar, Contact, Coordinate, Dashpot, Equilibrium, Force, Frame, Free,
-        FreeBody, Friction, Gravity, Holonomic, Inerter, Input, Limit, Nonholonomic, Particle, Pin, Planar,
-        Potential, Rayleigh, Rolling, Screw, Sleeve, Slipping, Slot, Speed, Spring, Stage, State, Torque,
-        Universal, Weld,
+        Body, Contact, Coordinate, Equilibrium, Frame, FreeBody, Holonomic, Limit, Nonholonomic, Particle,
+        Rolling, Slipping, Speed, State,
     };
+    pub use crate::elements::{forces::*, joints::*};
     pub use crate::integrate::{
         DormandPrince, DormandPrince8, Error, EventDriven, ImplicitMidpoint, Rk4, Rodas, Rosenbrock,
         SemiImplicitEuler, TimeStepping,

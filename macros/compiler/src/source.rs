@@ -286,7 +286,7 @@ pub(crate) fn can_be_a_function(name: &str) -> bool {
 
 /// Returns the documentation line of a joint: its type and the bodies that it connects.
 fn structure_line(joint: &syntax::Joint) -> String {
-    let kind = syntax::joint_kind::kind_word(joint.kind);
+    let kind = joint.kind.name();
     let (parent, child) = (&joint.parent.body.text, &joint.child.body.text);
     format!("`{}`: {kind}, `{parent}` → `{child}`", joint.name.text)
 }

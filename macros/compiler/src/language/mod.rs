@@ -49,9 +49,14 @@ macro_rules! table {
     };
 }
 
+/// Words, separated by spaces, and what is meant by them: a word of the language, or a sentence if it holds a
+/// space. Words are looked up in lower case and without underscores.
+pub type Words = &'static [(&'static str, &'static str)];
+
 pub mod argument;
 pub mod callable;
 pub mod dimension;
+pub mod elements;
 pub mod functions;
 pub mod methods;
 pub mod ratio;
@@ -61,6 +66,7 @@ pub mod surfaces;
 
 pub use argument::{Argument, ArgumentKind};
 pub use callable::Callable;
+pub use elements::{ElementKind, ForceKind, ForceQuantity, JointKind, Key, Locals, OtherKind};
 pub use functions::{Dependence, FunctionId, UnitRule};
 pub use methods::Method;
 pub use rotations::Rotation;

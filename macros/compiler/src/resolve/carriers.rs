@@ -40,7 +40,7 @@ pub fn expressions(d: &Description) -> Vec<&Expr> {
             Target::On(e) => all.push(e),
             Target::Between(a, b) => all.extend([a, b]),
         }
-        all.extend(action.kind.expressions().into_iter().map(|(_, e)| e));
+        all.extend(action.arguments.iter().map(|(_, e)| e));
     }
     all
 }

@@ -11,7 +11,7 @@ use crate::language::{Callable, Method, Solid};
 use crate::mechanism::drawing::{entries, rows};
 use crate::mechanism::{Input, LinkId, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
-    self, Action, ActionKind, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
+    self, Action, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
 };
 use std::collections::BTreeSet;
 
@@ -263,22 +263,11 @@ impl<'g> Builder<'_, 'g> {
     /// Springs, dashpots and inputs.
     fn draw_actions(&self, pieces: &mut Vec<Piece<'g>>) {
         for action in &self.description.actions {
-            match &action.kind {
-                ActionKind::Spring { .. } => {
-                    self.draw_element(action, PieceKind::Coil, PieceKind::Spiral, pieces)
-                }
-                ActionKind::Dashpot { .. } => {
-                    self.draw_element(action, PieceKind::Damper, PieceKind::Brake, pieces)
-                }
-                ActionKind::Force { .. } if matches!(action.on, Target::Between(..)) => {
-                    self.draw_element(action, PieceKind::Bar, PieceKind::Bar, pieces)
-                }
-                // Inputs are arrows, which follow.
-                ActionKind::Force { .. } | ActionKind::Torque { .. } => {}
-                ActionKind::Inerter { .. }
-                | ActionKind::Friction { .. }
-                | ActionKind::Gravity { .. }
-                | ActionKind::Attraction { .. } => {}
+            let row = action.kind.row();
+            if let Some([long, round]) = &row.pieces
+                && (!row.drawn_between || matches!(action.on, Target::Between(..)))
+            {
+                self.draw_element(action, long.clone(), round.clone(), pieces);
             }
         }
         for (k, (name, input)) in self.model.inputs.iter().enumerate() {

@@ -1,14 +1,14 @@
 //! Force elements and inputs of a file: on a weighted sum of coordinates, on a length, at a point of a body.
 
-use super::action::report_lost;
 use super::builder::Builder;
+use super::forces::{Law, report_lost};
 use super::motion::Moving;
 use super::terms::Stretch;
 use crate::diag::Diagnostics;
 use crate::expr::{Extreme, Vec3};
 use crate::kinematics::{time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, CoulombFriction, Dashpot, Input, Spring};
-use crate::syntax::{Description, Drive, DriveLaw, DriveOn, Expr, Law, Wrench};
+use crate::syntax::{Description, Drive, DriveLaw, DriveOn, Expr, Wrench};
 
 /// Inputs among the force elements of a file, in their order in `u`: after the driven joints, before all
 /// others.
@@ -54,18 +54,21 @@ impl<'g> Builder<'_, 'g> {
         let number = |value| Expr::number(value, place);
         match drive.law {
             DriveLaw::Spring { stiffness, free } => {
-                self.add_spring(stretch, &Law::Linear(number(stiffness)), g.num(free), cx);
+                self.add_spring_law(stretch, &Law::Linear(&number(stiffness)), g.num(free), cx);
             }
             DriveLaw::Slack { stiffness, range: [low, high] } => {
                 let short = (stretch.value - g.num(low)).extreme(Extreme::Min, g.zero());
                 let long = (stretch.value - g.num(high)).extreme(Extreme::Max, g.zero());
                 self.model.potentials.push(g.num(stiffness) * 0.5 * (short.square() + long.square()));
             }
-            DriveLaw::Damper(damping) => self.add_dashpot(&stretch, &Law::Linear(number(damping)), cx),
-            DriveLaw::Friction(force) => {
-                self.add_friction(&stretch, [Some(&number(force)), None, None, None, None], place, cx);
+            DriveLaw::Damper(damping) => {
+                let damping = self.scope.scalar(&number(damping), cx);
+                self.push_damping(stretch.rate, damping.map(|damping| damping * stretch.rate));
             }
-            DriveLaw::Inerter(inertance) => self.add_inerter(&stretch, &number(inertance), cx),
+            DriveLaw::Friction(force) => {
+                self.push_friction(stretch.rate, [Some(&number(force)), None, None, None, None], place, cx);
+            }
+            DriveLaw::Inerter(inertance) => self.push_inertance(stretch.rate, &number(inertance), cx),
             DriveLaw::Push(force) => self.add_value_load(stretch.rate, g.num(force), place, cx),
             DriveLaw::Input(_) => {}
         }

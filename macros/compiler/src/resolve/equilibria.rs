@@ -6,7 +6,7 @@ use crate::diag::Diagnostics;
 use crate::expr::Expr as Value;
 use crate::mechanism::{DRY_FRICTION, Equilibrium, RestingState};
 use crate::resolve::scope::{Allowed, Context};
-use crate::syntax::{self, Action, ActionKind, Expr, RATE_OF_STATE};
+use crate::syntax::{self, Action, Expr, ForceKind, RATE_OF_STATE};
 use std::collections::BTreeSet;
 
 /// What can have a value at rest, by index.
@@ -20,7 +20,7 @@ enum Variable {
 impl<'g> Builder<'_, 'g> {
     /// Adds all equilibria to the model.
     pub fn add_equilibria(&mut self, cx: &mut Diagnostics) {
-        let rubs = |action: &Action| matches!(action.kind, ActionKind::Friction { .. });
+        let rubs = |action: &Action| action.kind == ForceKind::Friction;
         let dry = self.description.actions.iter().any(rubs);
         for declared in &self.description.equilibria {
             if dry {

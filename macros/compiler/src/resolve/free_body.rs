@@ -16,7 +16,7 @@ use crate::expr::sample::sample;
 use crate::expr::{Expr, Function, Symbol, Vec3};
 use crate::kinematics::{random_configuration, time_derivative, velocity_gradient};
 use crate::mechanism::{Diagram, LinkId, Origin, OutputValue, Pose, Quantity};
-use crate::syntax::{self, ActionKind, Definition, Endpoint, ExprKind, JointKind, Target};
+use crate::syntax::{self, Definition, Endpoint, ExprKind, JointKind, Target};
 use std::collections::BTreeMap;
 
 /// States in which is looked at what acts.
@@ -284,23 +284,16 @@ impl<'g> Builder<'_, 'g> {
             let placed = self.scope.place_now(e, &mut unread)?;
             (placed.link == body.link).then(|| self.position_of(&placed))
         };
-        match (&action.on, &action.kind) {
-            // Bodies of finite size are turned as well.
-            (_, ActionKind::Gravity { .. } | ActionKind::Torque { .. }) => None,
-            (Target::Between(a, b), _) => here(a).or_else(|| here(b)),
-            (Target::On(e), ActionKind::Force { .. }) => match &e.kind {
+        let row = action.kind.row();
+        match &action.on {
+            _ if !row.at_point => None,
+            Target::Between(a, b) => here(a).or_else(|| here(b)),
+            Target::On(e) if row.on_bodies => match &e.kind {
                 ExprKind::Name(name) if self.joint_coordinates(name).is_some() => None,
                 ExprKind::Name(_) | ExprKind::Method(..) => here(e),
                 _ => None,
             },
-            (
-                Target::On(_),
-                ActionKind::Spring { .. }
-                | ActionKind::Dashpot { .. }
-                | ActionKind::Inerter { .. }
-                | ActionKind::Friction { .. }
-                | ActionKind::Attraction { .. },
-            ) => None,
+            Target::On(_) => None,
         }
     }
 

@@ -3,7 +3,6 @@
 //! or before; knows neither algorithms nor generated code.
 
 mod accelerations;
-mod action;
 mod axis;
 mod build;
 mod builder;
@@ -23,12 +22,12 @@ mod equilibria;
 mod expression;
 mod figures;
 mod flight;
+mod forces;
 mod free_body;
 mod freedom;
 mod functions;
 mod holders;
 mod inertia;
-mod input;
 mod joint;
 mod limit;
 mod masses;

@@ -8,8 +8,8 @@ use crate::diag::Diagnostics;
 use crate::language::{Callable, Dependence, FunctionId};
 use crate::mechanism::{Diagram, Uses};
 use crate::syntax::{
-    Action, ActionKind, Callee, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint,
-    JointKind, Law, Rank,
+    Action, Callee, ConstraintKind, Definition, Description, Expr, ExprKind, GROUND, Joint, JointKind, Key,
+    Rank,
 };
 use std::collections::BTreeSet;
 
@@ -147,17 +147,9 @@ fn diagram(output: &Definition) -> Option<(String, Diagram)> {
     is_one.then(|| (output.name.text.clone(), Diagram { body, actions: Vec::new(), released: Vec::new() }))
 }
 
-/// The value or law of a force element.
+/// Returns the value or the law of a force element.
 fn laws(action: &Action) -> impl Iterator<Item = &Expr> {
-    let law = match &action.kind {
-        ActionKind::Spring { law, .. } | ActionKind::Dashpot { law } => {
-            let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = law;
-            Some(e)
-        }
-        ActionKind::Force { value, .. } | ActionKind::Torque { value, .. } => value.as_ref(),
-        _ => None,
-    };
-    law.into_iter()
+    action.law().map(|(_, e)| e).into_iter().chain(action.get(Key::Value))
 }
 
 /// Returns the quantities that an expression depends on, by the list of functions.

@@ -1,27 +1,17 @@
-//! Force elements that are more than linear springs and dashpots on a coordinate: laws, elements between two
-//! points, gravity towards a point, energies, friction, forces with a value.
+//! The lengths and angles that force elements act on, and energies and dissipation functions given as
+//! expressions.
 
 use super::builder::Builder;
 use super::constraint::Constrained;
 use super::power::Counts;
-use super::scope::{Allowed, Context, Placed};
-use crate::diag::{Diagnostics, Place};
-use crate::expr::diff::Derivative;
+use super::scope::{Allowed, Context};
+use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
-use crate::expr::replace::replace;
 use crate::expr::sample::sample;
-use crate::expr::{Expr, Extreme, Function, Node, Symbol, Vec3};
+use crate::expr::{Expr, Vec3};
 use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
-use crate::language::Callable;
-use crate::mechanism::{Coordinate, Inertance, Load, Pose, Quantity, Rule};
-use crate::syntax::{self, ExprKind, Law};
-use std::collections::BTreeSet;
-
-/// Regularisation speed of friction, unless given.
-const FRICTION_SPEED: f64 = 0.01;
-
-/// Highest power of the stretch in a spring's force that is integrated to its energy.
-const HIGHEST_POWER: usize = 9;
+use crate::mechanism::{Coordinate, Pose, Quantity};
+use crate::syntax::{self, ExprKind};
 
 /// A length or angle that an element works on.
 pub struct Stretch<'g> {
@@ -98,222 +88,6 @@ impl<'g> Builder<'_, 'g> {
         Some(Stretch { value: length, square: r.dot(r), rate, signed: false })
     }
 
-    /// A force along the line of two points, by a value or as an input. It pushes them apart where it is
-    /// positive.
-    pub fn add_force_between(
-        &mut self,
-        action: &syntax::Action,
-        [a, b]: [&syntax::Expr; 2],
-        along: Option<&syntax::Expr>,
-        value: Option<&syntax::Expr>,
-        cx: &mut Diagnostics,
-    ) {
-        if let Some(along) = along {
-            cx.error(along.place.clone(), "a force between two points acts along their line")
-                .help("remove this argument, or let a force act on each of two bodies");
-        }
-        let Some(stretch) = self.distance(a, b, cx) else { return };
-        let rate = match stretch.signed {
-            true => stretch.value.call(Function::Signum) * stretch.rate,
-            false => stretch.rate,
-        };
-        let g = self.scope.graph;
-        let Some(value) = value else {
-            self.add_input_load(&action.name.text, rate);
-            return;
-        };
-        let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(g))));
-        if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
-            self.add_value_load(rate, force, &value.place, cx);
-        }
-    }
-
-    /// A spring with any law.
-    pub fn add_spring(&mut self, stretch: Stretch<'g>, law: &Law, free: Expr<'g>, cx: &mut Diagnostics) {
-        let g = self.scope.graph;
-        let length =
-            if stretch.signed && !free.is_zero() { stretch.value.call(Function::Abs) } else { stretch.value };
-        let value = length - free;
-        let symbol = Quantity::Given(0).symbol();
-        let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
-        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
-        let energy = match law {
-            // Smooth where the points meet.
-            Law::Linear(k) if free.is_zero() => self.scope.scalar(k, cx).map(|k| k * 0.5 * stretch.square),
-            Law::Linear(k) => self.scope.scalar(k, cx).map(|k| k * 0.5 * g.symbol(symbol).square()),
-            Law::Energy(e) => self.scope.in_context(context, |scope| scope.scalar(e, cx)),
-            Law::Force(e) => self.energy_of(e, &context, cx),
-        };
-        if let Some(energy) = energy {
-            self.model.potentials.push(replace(energy, &|s| (s == symbol).then_some(value)));
-        }
-    }
-
-    /// The energy of a force: that of its pieces, if they are told apart by the stretch or the length.
-    fn energy_of(&self, e: &syntax::Expr, context: &Context<'g>, cx: &mut Diagnostics) -> Option<Expr<'g>> {
-        let read = |e: &syntax::Expr, cx: &mut Diagnostics| {
-            self.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
-        };
-        let force = read(e, cx)?;
-        let local = |e: &syntax::Expr| {
-            context.locals.iter().find(|(name, _)| e.name() == Some(name)).map(|(_, value)| *value)
-        };
-        if let ExprKind::Call(name, arguments) = &e.kind
-            && let [left, right, below, above] = arguments.as_slice()
-            && name.id == Some(Callable::If)
-        {
-            let found = match (local(left), local(right)) {
-                (Some(x), None) => Some((x, right, [below, above])),
-                (None, Some(x)) => Some((x, left, [above, below])),
-                _ => None,
-            };
-            if let Some((own, border, pieces)) = found {
-                let symbol = Quantity::Given(0).symbol();
-                let x = self.scope.graph.symbol(symbol);
-                let border = read(border, cx)? - (own - x);
-                let [below, above] = pieces.map(|piece| self.energy_of(piece, context, cx));
-                let with = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
-                let (below, above) = (below?, above?);
-                let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
-                return Some(with(below, low) + with(above, high) - with(above, border));
-            }
-        }
-        self.integral(force, e, cx)
-    }
-
-    /// The energy of a force that is a polynomial in the stretch: its Taylor series, integrated.
-    fn integral(&self, force: Expr<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
-        let g = self.scope.graph;
-        let symbol = Quantity::Given(0).symbol();
-        let x = g.symbol(symbol);
-        let mut d = Derivative::with_respect_to(symbol, g);
-        let (mut energy, mut derivative, mut power, mut factorial) = (g.zero(), force, x, 1.0);
-        for n in 1..=HIGHEST_POWER + 1 {
-            factorial *= n as f64;
-            let at_zero = replace(derivative, &|s| (s == symbol).then_some(g.zero()));
-            energy += at_zero * (1.0 / factorial) * power;
-            power = power * x;
-            derivative = d.of(derivative);
-            // A law with corners is like a polynomial between them.
-            if derivative.is_zero() && !has_corners(force, symbol) {
-                return Some(energy);
-            }
-        }
-        cx.error(e.place.clone(), "the energy of this law is not known: it is no polynomial in `stretch`")
-            .help("give the spring by its energy instead: `energy = …`, and the force follows, as in `energy = k / 2 * pow(min(stretch, 0), 2)`");
-        None
-    }
-
-    /// A dashpot with any law.
-    pub fn add_dashpot(&mut self, stretch: &Stretch<'g>, law: &Law, cx: &mut Diagnostics) {
-        let g = self.scope.graph;
-        let force = match law {
-            Law::Linear(c) => self.scope.scalar(c, cx).map(|c| c * stretch.rate),
-            Law::Force(e) | Law::Energy(e) => {
-                let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))))
-                    .with_locals(vec![("speed", stretch.rate)]);
-                self.scope.in_context(context, |scope| scope.scalar(e, cx))
-            }
-        };
-        if let Some(force) = force {
-            self.model.loads.push(Load { rate: stretch.rate, force: -force, dissipative: true });
-        }
-    }
-
-    /// An inerter.
-    pub fn add_inerter(&mut self, stretch: &Stretch<'g>, inertance: &syntax::Expr, cx: &mut Diagnostics) {
-        if let Some(b) = self.scope.scalar(inertance, cx) {
-            if let Some(n) = b.value().filter(|n| *n < 0.0) {
-                cx.error(inertance.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
-                    .help("it resists accelerations as a mass does: write its size");
-            }
-            self.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[b]);
-            self.model.inertances.push(Inertance { rate: stretch.rate, inertance: b });
-        }
-    }
-
-    /// Dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous friction:
-    /// `(fc + (fs − fc) exp(−(v / vs)²)) tanh(v / v0) + c v`.
-    pub fn add_friction(
-        &mut self,
-        stretch: &Stretch<'g>,
-        [coulomb, stiction, stribeck, viscous, speed]: [Option<&syntax::Expr>; 5],
-        place: &Place,
-        cx: &mut Diagnostics,
-    ) {
-        let g = self.scope.graph;
-        let mut value = |e: Option<&syntax::Expr>, default: f64| match e {
-            Some(e) => self.scope.scalar(e, cx),
-            None => Some(g.num(default)),
-        };
-        let (fc, c, v0) = (value(coulomb, 0.0), value(viscous, 0.0), value(speed, FRICTION_SPEED));
-        let (fs, vs) = (stiction.map(|e| value(Some(e), 0.0)), stribeck.map(|e| value(Some(e), 0.0)));
-        let mut check =
-            |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
-                if let Some(found) = found {
-                    let rule = if positive { Rule::Positive } else { Rule::NotNegative };
-                    self.scope.require(rule, || format!("a {what} of dry friction"), &[found]);
-                }
-                let (Some(written), Some(n)) = (written, found.and_then(|e| e.value())) else { return };
-                if n < 0.0 || positive && n == 0.0 {
-                    let must = if positive { "must be positive" } else { "cannot be negative" };
-                    cx.error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
-                }
-            };
-        for (written, found) in [(coulomb, fc), (stiction, fs.flatten()), (viscous, c)] {
-            check(written, found, false, "friction");
-        }
-        for (written, found) in [(stribeck, vs.flatten()), (speed, v0)] {
-            check(written, found, true, "speed");
-        }
-        let (Some(fc), Some(c), Some(v0)) = (fc, c, v0) else { return };
-        let v = stretch.rate;
-        let dry = match (fs, vs) {
-            (None, None) => fc,
-            (Some(Some(fs)), Some(Some(vs))) => fc + (fs - fc) * (-(v / vs).square()).call(Function::Exp),
-            (Some(None), _) | (_, Some(None)) => return,
-            _ => {
-                cx.error(place.clone(), "`stiction` and `stribeck_speed` go together")
-                    .help("the force falls from `stiction` to `coulomb` at about `stribeck_speed`");
-                return;
-            }
-        };
-        let force = dry * (v / v0).call(Function::Tanh) + c * v;
-        self.model.loads.push(Load { rate: v, force: -force, dissipative: true });
-    }
-
-    /// Attraction `strength / distance²`: potential energy `−strength / distance`. Not finite where the
-    /// points meet, as it has no limit there.
-    pub fn add_attraction(&mut self, stretch: &Stretch<'g>, strength: Expr<'g>) {
-        let distance = stretch.square.sqrt();
-        self.model.potentials.push(-(strength / distance));
-    }
-
-    /// Gravity towards a point on a body with inertia, to second order in its size over its distance
-    /// (MacCullagh): `U = −μ m / r − μ (tr I − 3 n · I n) / (2 r³)`.
-    pub fn add_gravity_gradient(
-        &mut self,
-        body: &Placed<'g>,
-        center: &Placed<'g>,
-        mu: Expr<'g>,
-        index: usize,
-    ) {
-        let Some((_, _, central)) = self.masses.get(index).cloned().flatten() else { return };
-        let tensor = body.pose.rotation.sym_to_parent(central);
-        let zero = Vec3::zero(self.scope.graph);
-        let kinematics = self.scope.kinematics.borrow();
-        let terms = kinematics.between(body, center);
-        let r = kinematics.resolve(&terms, body.link, zero);
-        drop(kinematics);
-        let length = r.norm();
-        let n = r.map(|c| c / length);
-        let trace = tensor.diagonal[0] + tensor.diagonal[1] + tensor.diagonal[2];
-        let shape = trace - n.dot(tensor * n) * 3.0;
-        if !shape.is_zero() {
-            self.model.potentials.push(-(mu * shape * 0.5 / (length * length * length)));
-        }
-    }
-
     /// Potential energies and dissipation functions given as expressions; then the outputs.
     pub fn add_expressions(&mut self, _: Constrained, cx: &mut Diagnostics) {
         let d = self.description;
@@ -376,26 +150,6 @@ impl<'g> Builder<'_, 'g> {
 fn always_zero(r: Vec3<'_>) -> bool {
     r.is_zero()
         || (0..4).all(|seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7).iter().all(|c| c.abs() < 1e-14))
-}
-
-/// True if a sign, a magnitude or an extreme of what depends on the symbol is in an expression.
-fn has_corners(e: Expr<'_>, symbol: Symbol) -> bool {
-    let g = e.graph();
-    let mut seen = BTreeSet::from([e.id()]);
-    let mut todo = vec![e.id()];
-    while let Some(id) = todo.pop() {
-        let node = g.node(id);
-        let corner = matches!(node, Node::Call(Function::Abs | Function::Signum, _) | Node::Extreme(..));
-        if corner && symbols_in(&[g.expr(id)]).contains(&symbol) {
-            return true;
-        }
-        node.operands(|a| {
-            if seen.insert(a) {
-                todo.push(a);
-            }
-        });
-    }
-    false
 }
 
 /// The direction of a vector, if it is the same for all coordinates and parameters.

@@ -1,90 +1,72 @@
 //! Force elements: what they act on, and by which law.
 
 use super::arguments::Arguments;
-use super::{Action, ActionKind, Expr, ExprKind, ForceKind, Law, Name, Target};
+use super::{Action, Expr, ExprKind, Name, Target};
 use crate::diag::Diagnostics;
+use crate::language::{ForceKind, Key};
 
-/// Reads a force element of the type `word`.
+/// Reads a force element by its row.
 pub fn read_action(
     name: &Name,
-    (word, kind): (&str, ForceKind),
+    kind: ForceKind,
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Action> {
-    let keys = kind.arguments();
-    let refused = arguments.place_of("between").is_some() && !keys.contains(&"between");
-    let on = read_target(word, arguments, keys, cx);
+    let (row, keys) = (kind.row(), &kind.keys());
+    let refused = arguments.place_of("between").is_some() && !row.between;
+    let on = read_target(kind, arguments, keys, cx);
     if refused {
         return None;
     }
-    let action = match kind {
-        ForceKind::Spring => read_spring(arguments, keys, cx),
-        ForceKind::Dashpot => {
-            one_law(arguments, &["force", "damping"], cx);
-            let force = arguments.take_expr("force", cx).map(Law::Force);
-            let law =
-                force.or_else(|| arguments.need_expr("damping", "c", "acts", keys, cx).map(Law::Linear));
-            law.map(|law| ActionKind::Dashpot { law })
-        }
-        ForceKind::Inerter => arguments
-            .need_expr("inertance", "b", "acts", keys, cx)
-            .map(|inertance| ActionKind::Inerter { inertance }),
-        ForceKind::Friction => {
-            arguments.need_expr("coulomb", "f", "acts", keys, cx).map(|coulomb| ActionKind::Friction {
-                coulomb,
-                stiction: arguments.take_expr("stiction", cx),
-                stribeck_speed: arguments.take_expr("stribeck_speed", cx),
-                viscous: arguments.take_expr("viscous", cx),
-                speed: arguments.take_expr("speed", cx),
-            })
-        }
-        ForceKind::Gravity => Some(ActionKind::Gravity {
-            constant: arguments.take_expr("constant", cx),
-            mu: arguments.take_expr("mu", cx),
-        }),
-        ForceKind::Attraction => arguments
-            .need_expr("strength", "k", "acts", keys, cx)
-            .map(|strength| ActionKind::Attraction { strength }),
-        ForceKind::Force => Some(ActionKind::Force {
-            along: arguments.take_expr("along", cx),
-            value: arguments.take_expr("value", cx),
-        }),
-        ForceKind::Torque => Some(ActionKind::Torque {
-            about: arguments.take_expr("about", cx),
-            value: arguments.take_expr("value", cx),
-        }),
-    };
-    arguments.finish(&format!("{} {word}", article(word)), keys, cx);
-    Some(Action { name: name.clone(), kind: action?, on: on? })
-}
-
-/// The indefinite article of a word.
-pub fn article(word: &str) -> &'static str {
-    if word.starts_with(['A', 'I']) { "an" } else { "a" }
+    reject_second_law(arguments, row.laws, cx);
+    let second = row.exclusive.and_then(|([_, second], ..)| arguments.place_of(second.name()));
+    let mut given: Vec<(Key, Expr)> = Vec::new();
+    let mut complete = true;
+    let others = row.arguments.iter().filter(|key| !row.laws.contains(key));
+    for key in row.laws.iter().chain(others) {
+        let has_law = row.laws.contains(key) && given.iter().any(|(known, _)| row.laws.contains(known));
+        let value = match row.required.iter().find(|(known, _)| known == key) {
+            Some((_, example)) if !has_law => {
+                let value = arguments.need_expr(key.name(), example, "acts", keys, cx);
+                complete &= value.is_some();
+                value
+            }
+            _ => arguments.take_expr(key.name(), cx),
+        };
+        given.extend(value.map(|value| (*key, value)));
+    }
+    if let (Some((both, message, help)), Some(place)) = (row.exclusive, second)
+        && both.iter().all(|key| given.iter().any(|(known, _)| known == key))
+    {
+        cx.error(place, message).help(help);
+    }
+    arguments.finish(&kind.phrase(), keys, cx);
+    complete.then_some(())?;
+    Some(Action { name: name.clone(), kind, on: on?, arguments: given })
 }
 
 /// Reports ends that are written as those of a joint or without their keys. True if there are any.
-fn unnamed_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> bool {
-    let spans = keys.contains(&"between");
+fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnostics) -> bool {
+    let (on, spans) = (kind.row().on, kind.row().between);
     let between = |a: &Expr, b: &Expr| match spans {
         true => format!("write `between = ({}, {})`", a.spelt(), b.spelt()),
         false => "say what it acts on: `on = …`".to_string(),
     };
     if let Some((a, b)) = arguments.take_arrow() {
-        cx.error(a.place.to(&b.place), format!("{} {kind} is no joint", article(kind))).help(between(&a, &b));
+        cx.error(a.place.to(&b.place), format!("{} is no joint", kind.phrase())).help(between(&a, &b));
         return true;
     }
     if arguments.place_of("on").is_some() || arguments.place_of("between").is_some() {
         return false;
     }
     if let Some((place, a, b)) = arguments.take_ends() {
-        cx.error(place, format!("{} {kind} has no such ends", article(kind))).help(between(&a, &b));
+        cx.error(place, format!("{} has no such ends", kind.phrase())).help(between(&a, &b));
         return true;
     }
     let plain = arguments.plain();
     let (Some(first), Some(last)) = (plain.first(), plain.last()) else { return false };
     let help = match plain {
-        [one] if keys.contains(&"on") => format!("write `on = {}`", one.spelt()),
+        [one] if on => format!("write `on = {}`", one.spelt()),
         [a, b, ..] => between(a, b),
         _ => "write `between = (first, second)`".to_string(),
     };
@@ -94,12 +76,18 @@ fn unnamed_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut
 }
 
 /// `on = …`, or `between = (…, …)` where the element can span two points.
-fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<Target> {
-    if unnamed_target(kind, arguments, keys, cx) {
+fn read_target(
+    kind: ForceKind,
+    arguments: &mut Arguments,
+    keys: &[&str],
+    cx: &mut Diagnostics,
+) -> Option<Target> {
+    let row = kind.row();
+    if unnamed_target(kind, arguments, cx) {
         return None;
     }
     let Some(place) = arguments.place_of("between") else {
-        if !keys.contains(&"on") {
+        if !row.on {
             return arguments.need_expr("between", "(first, second)", "acts", keys, cx).and(None);
         }
         let on = arguments.need_expr("on", "joint", "acts", keys, cx)?;
@@ -107,7 +95,7 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
             return Some(Target::On(on));
         };
         let help = match ends.as_slice() {
-            [a, b] if keys.contains(&"between") => {
+            [a, b] if row.between => {
                 format!("write `between = ({}, {})`", a.spelt(), b.spelt())
             }
             _ => "declare a field for each thing that it acts on".to_string(),
@@ -115,8 +103,8 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
         cx.error(on.place, "`on` names one thing, found a list").help(help);
         return None;
     };
-    if !keys.contains(&"between") {
-        cx.error(place, format!("{} {kind} does not act between two points", article(kind)))
+    if !row.between {
+        cx.error(place, format!("{} does not act between two points", kind.phrase()))
             .help("say what it acts on: `on = …`");
         arguments.forget_all();
         return None;
@@ -141,7 +129,7 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
                 ExprKind::Array(ends) if ends.len() == 2 => {
                     format!("write `between = ({}, {})`", ends[0].spelt(), ends[1].spelt())
                 }
-                ExprKind::Name(name) if keys.contains(&"on") => {
+                ExprKind::Name(name) if row.on => {
                     format!("write `on = {name}`, or `between = (first, second)`")
                 }
                 _ => "write `between = (first, second)`".to_string(),
@@ -153,32 +141,15 @@ fn read_target(kind: &str, arguments: &mut Arguments, keys: &[&str], cx: &mut Di
 }
 
 /// Reports a second law of one element; the first of the keys counts.
-fn one_law(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) {
-    let given: Vec<&&str> = keys.iter().filter(|key| arguments.place_of(key).is_some()).collect();
+fn reject_second_law(arguments: &mut Arguments, keys: &[Key], cx: &mut Diagnostics) {
+    let given: Vec<&str> =
+        keys.iter().map(|key| key.name()).filter(|key| arguments.place_of(key).is_some()).collect();
     for key in given.iter().skip(1) {
         if let Some(place) = arguments.place_of(key) {
-            let list: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();
+            let list: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name())).collect();
             cx.error(place, format!("a second law: `{}` is given already", given[0]))
                 .help(format!("give one of {}", crate::diag::one_of(&list)));
             arguments.forget(key);
         }
     }
-}
-
-fn read_spring(arguments: &mut Arguments, keys: &[&str], cx: &mut Diagnostics) -> Option<ActionKind> {
-    one_law(arguments, &["force", "energy", "stiffness"], cx);
-    let force = arguments.take_expr("force", cx).map(Law::Force);
-    let energy = arguments.take_expr("energy", cx).map(Law::Energy);
-    let law =
-        force.or(energy).or_else(|| arguments.need_expr("stiffness", "k", "acts", keys, cx).map(Law::Linear));
-    let place = arguments.place_of("free_angle");
-    let length = arguments.take_expr("free_length", cx);
-    let angle = arguments.take_expr("free_angle", cx);
-    if let (Some(_), Some(_), Some(place)) = (&length, &angle, place) {
-        cx.error(place, "a spring has one of `free_length` and `free_angle`")
-            .help("`free_length` goes with what slides, `free_angle` with what turns");
-    }
-    let is_angle = angle.is_some();
-    let free = length.or(angle).map(|free| (free, is_angle));
-    Some(ActionKind::Spring { law: law?, free })
 }

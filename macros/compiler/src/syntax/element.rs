@@ -1,18 +1,19 @@
 //! The elements: which attribute goes with which type, and the arguments of each.
 
-use super::action::{article, read_action};
+use super::action::read_action;
 use super::arguments::Arguments;
 use super::constraint::read_constraint;
 use super::contact::read_contact;
-use super::element_kind::{self, ElementKind, OtherKind};
 use super::expression::parse_expr;
 use super::joint::read_joint;
 use super::limit::read_limit;
 use super::{
-    ActionKind, Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate,
-    Name, Particle, Point, Rank, words,
+    Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate, Name, Particle,
+    Point, Rank, words,
 };
 use crate::diag::{Diagnostics, Place, nearest, one_of, syn_error};
+use crate::language::elements::article;
+use crate::language::{ElementKind, OtherKind};
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
 use syn::spanned::Spanned;
@@ -34,10 +35,16 @@ pub const ATTRIBUTES: [&str; 17] = [
     "equilibrium",
     "define",
     "speed",
-    "output",
+    OUTPUT,
     "state",
     "unit",
 ];
+
+/// The attribute of outputs.
+const OUTPUT: &str = "output";
+
+/// The argument of the axes of an output's components.
+const AXES: &str = "resolved_in";
 
 /// Types of Rust that are no parameter.
 const NUMBERS: [&str; 12] =
@@ -78,7 +85,7 @@ pub fn is_element(kind: &str) -> bool {
 
 /// Every element type of the language, and that of parameters.
 fn element_types() -> Vec<&'static str> {
-    ["f64"].into_iter().chain(element_kind::names()).collect()
+    ["f64"].into_iter().chain(ElementKind::names()).collect()
 }
 
 /// Reads the element `name: kind` with its attributes into the description.
@@ -111,19 +118,12 @@ pub fn read_element(
         ElementKind::Particle => description.particles.extend(read_particle(name, &mut arguments, cx)),
         ElementKind::Joint(joint) => description.joints.extend(read_joint(name, joint, &mut arguments, cx)),
         ElementKind::Force(force) => {
-            let action = read_action(name, (&kind_name, force), &mut arguments, cx);
-            if let Some(action) = &action
-                && matches!(
-                    &action.kind,
-                    ActionKind::Force { value: None, .. } | ActionKind::Torque { value: None, .. }
-                )
-            {
-                description.inputs.push(name.clone());
-            }
+            let action = read_action(name, force, &mut arguments, cx);
+            description.inputs.extend(action.iter().filter(|action| action.is_input()).map(|_| name.clone()));
             description.actions.extend(action);
         }
         ElementKind::Other(other) => {
-            read_other(name, (&kind_name, other), word.as_deref(), &mut arguments, description, cx);
+            read_other(name, other, word.as_deref(), &mut arguments, description, cx);
         }
     }
 }
@@ -326,7 +326,7 @@ fn no_arguments(
 /// Frames, points, coordinates, inputs, definitions, energies.
 fn read_other(
     name: &Name,
-    (word, kind): (&str, OtherKind),
+    kind: OtherKind,
     attribute: Option<&str>,
     arguments: &mut Arguments,
     description: &mut Description,
@@ -382,27 +382,63 @@ fn read_other(
         OtherKind::Slipping => read_constraint(name, ConstraintKind::Slipping, arguments, description, cx),
         // `read_state` reads these fields: they are parameters, too.
         OtherKind::State => {}
-        OtherKind::Potential
-        | OtherKind::Rayleigh
-        | OtherKind::Speed
-        | OtherKind::Scalar
-        | OtherKind::Vector
-        | OtherKind::Matrix
-        | OtherKind::FreeBody => read_expression(name, word, attribute, arguments, description, cx),
+        OtherKind::Potential => {
+            let value = read_expression(&name, kind, attribute, arguments, &[], cx);
+            description.energies.extend(value.map(|value| (name, value)));
+        }
+        OtherKind::Rayleigh => {
+            let value = read_expression(&name, kind, attribute, arguments, &[], cx);
+            description.dissipations.extend(value.map(|value| (name, value)));
+        }
+        OtherKind::Speed => {
+            let Some(value) = read_expression(&name, kind, attribute, arguments, &[], cx) else { return };
+            description.speeds.push(name.clone());
+            description.definitions.push(Definition { name, rank: Rank::Scalar, value, resolved_in: None });
+        }
+        OtherKind::Scalar => {
+            read_definition(name, (kind, Rank::Scalar), attribute, arguments, description, cx)
+        }
+        OtherKind::Vector => {
+            read_definition(name, (kind, Rank::Vector), attribute, arguments, description, cx)
+        }
+        OtherKind::Matrix => {
+            read_definition(name, (kind, Rank::Matrix), attribute, arguments, description, cx)
+        }
+        OtherKind::FreeBody => {
+            read_definition(name, (kind, Rank::FreeBody), attribute, arguments, description, cx);
+        }
     }
 }
 
-/// Elements that are one expression.
-fn read_expression(
+/// Reads a name for an expression, or an output.
+fn read_definition(
     name: Name,
-    kind: &str,
+    (kind, rank): (OtherKind, Rank),
     attribute: Option<&str>,
     arguments: &mut Arguments,
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let has_axes = matches!(kind, "Vector" | "Matrix" | "FreeBody");
-    let resolved_in = if has_axes { arguments.take_expr("resolved_in", cx) } else { None };
+    let has_axes = rank != Rank::Scalar;
+    let resolved_in = if has_axes { arguments.take_expr(AXES, cx) } else { None };
+    let keys: &[&str] = if has_axes { &[AXES] } else { &[] };
+    let Some(value) = read_expression(&name, kind, attribute, arguments, keys, cx) else { return };
+    let list = match attribute {
+        Some(OUTPUT) => &mut description.outputs,
+        _ => &mut description.definitions,
+    };
+    list.push(Definition { name, rank, value, resolved_in });
+}
+
+/// Reads the expression of an element that is one; `keys` are its other arguments.
+fn read_expression(
+    name: &Name,
+    kind: OtherKind,
+    attribute: Option<&str>,
+    arguments: &mut Arguments,
+    keys: &[&str],
+    cx: &mut Diagnostics,
+) -> Option<Expr> {
     let mut plain = arguments.take_plain();
     let value = plain.pop();
     let word = attribute.unwrap_or("define");
@@ -413,28 +449,13 @@ fn read_expression(
             format!("`#[{word}(…)]` holds one expression, found {}", plain.len() + 1),
         )
         .help("declare a field for each");
-        return;
+        return None;
     }
     let is_empty = arguments.is_empty();
-    let keys: &[&str] = if has_axes { &["resolved_in"] } else { &[] };
-    arguments.finish(&format!("{} {kind}", article(kind)), keys, cx);
-    let Some(value) = value else {
-        if is_empty {
-            cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
-                .help(format!("write `#[{word}(expression)]`"));
-        }
-        return;
-    };
-    match (kind, word) {
-        ("Potential", _) => description.energies.push((name, value)),
-        ("Rayleigh", _) => description.dissipations.push((name, value)),
-        ("Speed", _) => {
-            description.speeds.push(name.clone());
-            description.definitions.push(Definition { name, rank: Rank::Scalar, value, resolved_in });
-        }
-        (_, "output") => {
-            description.outputs.push(Definition { name, rank: Rank::of(kind), value, resolved_in });
-        }
-        _ => description.definitions.push(Definition { name, rank: Rank::of(kind), value, resolved_in }),
+    arguments.finish(&ElementKind::Other(kind).phrase(), keys, cx);
+    if value.is_none() && is_empty {
+        cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
+            .help(format!("write `#[{word}(expression)]`"));
     }
+    value
 }

@@ -1,10 +1,9 @@
 //! Joints: their ends, axes and figures.
 
 use super::arguments::Arguments;
-use super::joint_kind::{self, JointKind, kind_word};
 use super::{Endpoint, Expr, ExprKind, Joint, Name, words};
 use crate::diag::Diagnostics;
-use crate::language::Method;
+use crate::language::{JointKind, Method};
 
 /// Reads a joint.
 pub fn read_joint(
@@ -19,7 +18,7 @@ pub fn read_joint(
     let pitch = arguments.take_expr("pitch", cx);
     let lead = arguments.take_expr("lead", cx);
     let branch = arguments.take_expr("branch", cx);
-    let allowed = joint_kind::arguments(kind);
+    let allowed = kind.row().arguments;
     for key in ["about", "along", "pitch", "lead"] {
         if let Some(place) = arguments.seen(key)
             && !allowed.contains(&key)
@@ -30,10 +29,10 @@ pub fn read_joint(
             } else {
                 format!("expected {}", crate::diag::one_of(&list))
             };
-            cx.error(place, format!("a {} takes no `{key}`", kind_word(kind))).help(help);
+            cx.error(place, format!("{} takes no `{key}`", kind.phrase())).help(help);
         }
     }
-    arguments.finish(&format!("a {}", kind_word(kind)), allowed, cx);
+    arguments.finish(&kind.phrase(), allowed, cx);
     let (parent, child) = ends?;
     let (about, along) = (about?, along?);
     Some(Joint {

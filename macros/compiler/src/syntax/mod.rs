@@ -10,13 +10,11 @@ pub mod crate_path;
 pub mod declaration;
 pub mod description;
 pub mod element;
-pub mod element_kind;
 pub mod expression;
 mod field;
 pub mod figures;
 pub mod guard;
 pub mod joint;
-pub mod joint_kind;
 pub mod limit;
 mod lists;
 pub mod mechanism;
@@ -31,15 +29,14 @@ mod table;
 mod twice;
 pub mod words;
 
+pub use crate::language::{ElementKind, ForceKind, JointKind, Key, OtherKind};
 pub use attribute::parse_mechanism;
 pub use description::{
-    Action, ActionKind, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact,
-    Definition, Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
-    Frame, FreeCoordinate, Inertias, Joint, Law, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank,
-    Restitution, ScalarType, Shape, SlipFriction, Softness, Table, Target, Term, Visual, Wrench,
+    Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
+    Description, Drive, DriveLaw, DriveOn, Endpoint, Equilibrium, Expr, ExprKind, Formulation, Frame,
+    FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank, Restitution,
+    ScalarType, Shape, SlipFriction, Softness, Table, Target, Term, Visual, Wrench,
 };
-pub use element_kind::{ElementKind, ForceKind, OtherKind};
-pub use joint_kind::JointKind;
 pub use mechanism::{
     FileFormat, FileOptions, GROUND, InputOption, LimitOption, Mechanism, ROOT_JOINT, Shell,
 };

@@ -1,51 +1,20 @@
 //! Words of other tools and of textbooks, and what they mean here: what is said → what is meant. Nothing else
 //! reads these tables but the help of messages.
 
-use super::{BinaryOp, ElementKind, Expr, ExprKind, ForceKind, JointKind, OtherKind};
+use super::{BinaryOp, Expr, ExprKind};
 use crate::diag::{Diagnostic, nearest};
-use crate::language::{Callable, FunctionId, Rotation, Solid};
+use crate::language::{Callable, ElementKind, FunctionId, Rotation, Solid, Words};
 
 mod tables;
 
 pub use tables::*;
 
-/// The words for the arguments of an element; `kind` is the name of its type.
+/// Returns the words for the arguments of an element; `kind` is the name of its type.
 fn arguments(kind: &str) -> Words {
-    let Some(element) = ElementKind::of_name(kind) else {
-        return if kind == ATTRIBUTE { OPTIONS } else { NO_WORDS };
-    };
-    match element {
-        ElementKind::Body => BODY,
-        ElementKind::Particle => PARTICLE,
-        ElementKind::Joint(_) => JOINT,
-        ElementKind::Force(force) => match force {
-            ForceKind::Spring => SPRING,
-            ForceKind::Dashpot => DASHPOT,
-            ForceKind::Inerter => INERTER,
-            ForceKind::Friction => FRICTION,
-            ForceKind::Gravity | ForceKind::Attraction => GRAVITY,
-            ForceKind::Force => FORCE,
-            ForceKind::Torque => TORQUE,
-        },
-        ElementKind::Other(other) => match other {
-            OtherKind::Limit => LIMIT,
-            OtherKind::Contact => CONTACT,
-            OtherKind::Point => POINT,
-            OtherKind::Vector | OtherKind::Matrix | OtherKind::FreeBody => VECTOR,
-            OtherKind::Coordinate
-            | OtherKind::Input
-            | OtherKind::Frame
-            | OtherKind::Potential
-            | OtherKind::Rayleigh
-            | OtherKind::Holonomic
-            | OtherKind::Nonholonomic
-            | OtherKind::Rolling
-            | OtherKind::Slipping
-            | OtherKind::State
-            | OtherKind::Equilibrium
-            | OtherKind::Speed
-            | OtherKind::Scalar => NO_WORDS,
-        },
+    match ElementKind::of_name(kind) {
+        Some(element) => element.words(),
+        None if kind == ATTRIBUTE => OPTIONS,
+        None => &[],
     }
 }
 
@@ -59,56 +28,7 @@ fn kind_of(whose: &str) -> &str {
 
 /// Returns advice that shows how an element is declared; `whose` is its type, with or without an article.
 pub fn example(whose: &str) -> &'static str {
-    let Some(element) = ElementKind::of_name(kind_of(whose)) else {
-        return "#[mechanism(gravity = -9.81 * y)]";
-    };
-    match element {
-        ElementKind::Body => "#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]",
-        ElementKind::Particle => "#[particle(mass = m, at = body.at(l * x))]",
-        ElementKind::Joint(joint) => match joint {
-            JointKind::Sleeve | JointKind::Stage => "#[joint(parent -> child, along = x)]",
-            JointKind::Ball | JointKind::Free | JointKind::Weld => "#[joint(parent -> child)]",
-            JointKind::Pin
-            | JointKind::Screw
-            | JointKind::Collar
-            | JointKind::Slot
-            | JointKind::Universal
-            | JointKind::Planar => "#[joint(parent -> child, about = z)]",
-        },
-        ElementKind::Force(force) => match force {
-            ForceKind::Spring => "#[acts(on = joint, stiffness = k)]",
-            ForceKind::Dashpot => "#[acts(on = joint, damping = c)]",
-            ForceKind::Inerter => "#[acts(on = joint, inertance = b)]",
-            ForceKind::Friction => "#[acts(on = joint, coulomb = f)]",
-            ForceKind::Gravity => "#[acts(between = (sun, planet), constant = g)]",
-            ForceKind::Attraction => "#[acts(between = (first, second), strength = k)]",
-            ForceKind::Force => "#[acts(on = body, along = x)]",
-            ForceKind::Torque => "#[acts(on = joint)]",
-        },
-        ElementKind::Other(other) => match other {
-            OtherKind::Coordinate => "name: Coordinate",
-            OtherKind::Input => "name: Input",
-            OtherKind::Frame => "#[frame(ground, z(angle))]",
-            OtherKind::Point => "#[point(on = body, at = length * x)]",
-            OtherKind::Limit => "#[limit(on = joint, from = a, to = b)]",
-            OtherKind::Potential => "#[energy(expression)]",
-            OtherKind::Rayleigh => "#[dissipation(expression)]",
-            OtherKind::Holonomic => "#[constraint(norm(r(tip / base)) = length)]",
-            OtherKind::Nonholonomic => "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]",
-            OtherKind::Rolling => "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]",
-            OtherKind::Slipping => {
-                "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]"
-            }
-            OtherKind::Contact => {
-                "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]"
-            }
-            OtherKind::State => "#[state(rate = (command - level) / lag)]",
-            OtherKind::Equilibrium => "#[equilibrium(joint = angle)]",
-            OtherKind::Speed => "#[speed(rate(psi) * sin(theta))]",
-            OtherKind::Scalar | OtherKind::Vector | OtherKind::Matrix => "#[output(expression)]",
-            OtherKind::FreeBody => "#[output(body)]",
-        },
-    }
+    ElementKind::of_name(kind_of(whose)).map_or("#[mechanism(gravity = -9.81 * y)]", ElementKind::example)
 }
 
 /// Words with what is meant by them.
@@ -172,7 +92,8 @@ pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) 
         diagnostic.help(format!("did you mean `{same}`?"));
         return true;
     }
-    explain(diagnostic, ELEMENTS, if bare.is_empty() { "joint" } else { bare }, &[])
+    let words: Vec<_> = ElementKind::synonyms().chain(ELEMENTS.iter().copied()).collect();
+    explain(diagnostic, &words, if bare.is_empty() { "joint" } else { bare }, &[])
 }
 
 /// Help for an argument that an element does not have; `whose` is the element with its article.
@@ -298,29 +219,13 @@ mod tests {
 
     #[test]
     fn words_stand_as_they_are_looked_up() {
-        let all = [
-            ELEMENTS,
-            BODY,
-            PARTICLE,
-            JOINT,
-            SPRING,
-            DASHPOT,
-            INERTER,
-            FRICTION,
-            GRAVITY,
-            FORCE,
-            TORQUE,
-            POINT,
-            VECTOR,
-            OPTIONS,
-            REQUESTS,
-            FORMULATIONS,
-            NAMES,
-            METHODS,
-            BODIES,
-        ];
+        let all = [ELEMENTS, OPTIONS, REQUESTS, FORMULATIONS, NAMES, METHODS, BODIES];
+        let elements = ElementKind::names().filter_map(ElementKind::of_name);
+        let of_arguments = elements.flat_map(|element| element.words().iter().copied());
         let rows = [functions(), solids(), rotations()].concat();
-        for (said, meant) in all.into_iter().flatten().copied().chain(rows) {
+        for (said, meant) in
+            all.into_iter().flatten().copied().chain(rows).chain(of_arguments).chain(ElementKind::synonyms())
+        {
             assert!(said.split(' ').all(|word| !word.is_empty() && word == key(word)), "{said}");
             assert!(!meant.is_empty() && (meant.contains(' ') || !meant.contains('`')), "{meant}");
         }

@@ -69,7 +69,7 @@ fn fields(d: &Description) -> Found<'_> {
         if let Target::Between(_, second) = &action.on {
             all.push(("between", name, second));
         }
-        all.extend(action.kind.expressions().into_iter().map(|(word, e)| (word, name, e)));
+        all.extend(action.arguments.iter().map(|(key, e)| (key.name(), name, e)));
     }
     for point in &d.points {
         all.extend(point.at.iter().map(|e| ("at", point.name.text.as_str(), e)));

@@ -4,16 +4,15 @@
 use super::infer::{Inference, Meaning, Origin, Reason};
 use super::value::Value;
 use crate::language::dimension::{
-    ACCELERATION, ATTRACTION, Dimension, ENERGY, FORCE, GRAVITATION, INERTIA, LENGTH, MASS, PLAIN, POWER,
-    SPEED, STRENGTH, TIME,
+    ACCELERATION, Dimension, ENERGY, FORCE, INERTIA, LENGTH, MASS, PLAIN, POWER, SPEED, TIME,
 };
 use crate::language::ratio::Ratio;
-use crate::language::{Argument, ArgumentKind, Callable, Method};
+use crate::language::{Argument, ArgumentKind, Callable, ForceQuantity, Key, Locals, Method};
 use crate::resolve::contact::PLACE;
 use crate::syntax::contact::collision;
 use crate::syntax::{
-    Action, ActionKind, Body, Callee, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr,
-    ExprKind, Joint, Law, Limit, Member, Target,
+    Action, Body, Callee, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr, ExprKind,
+    Joint, Limit, Member, Target,
 };
 
 /// An expression with the dimension of its place.
@@ -242,17 +241,10 @@ impl<'a> Places<'a> {
             _ => ALONG,
         };
         let work = Work { coordinate: on.unwrap_or(LENGTH), units };
-        let force = match action.kind {
-            ActionKind::Torque { .. } if on_point => Some(ENERGY),
-            // A force at a point works on a length.
-            ActionKind::Force { .. }
-            | ActionKind::Torque { .. }
-            | ActionKind::Spring { .. }
-            | ActionKind::Dashpot { .. }
-            | ActionKind::Inerter { .. }
-            | ActionKind::Friction { .. }
-            | ActionKind::Gravity { .. }
-            | ActionKind::Attraction { .. } => ENERGY.over(&work.coordinate),
+        // A force at a point works on a length, a torque on an angle.
+        let force = match on_point && action.kind.row().torque {
+            true => Some(ENERGY),
+            false => ENERGY.over(&work.coordinate),
         };
         if let Some(force) = force {
             self.element(action, &work, &force, inference);
@@ -291,49 +283,38 @@ impl<'a> Places<'a> {
         let [n, stiffness, damping, inertance] = work.units;
         let q = &work.coordinate;
         let per = |times: i64| force.over(q).and_then(|d| d.times(&TIME.power(Ratio::integer(times))?));
-        let speed = || q.over(&TIME);
-        match &action.kind {
-            ActionKind::Spring { law, free } => {
-                let locals = vec![("stretch", q.clone()), ("length", q.clone())];
-                self.law(law, (per(0), stiffness), (force, n), locals);
-                self.all(free.iter().map(|(e, _)| e), q, if q.is_plain() { "rad" } else { "" });
-            }
-            ActionKind::Dashpot { law } => {
-                let locals = speed().map(|speed| ("speed", speed)).into_iter().collect();
-                self.law(law, (per(1), damping), (force, n), locals);
-            }
-            ActionKind::Inerter { inertance: e } => self.maybe(Some(e), per(2), inertance),
-            ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed: regular } => {
-                self.all([coulomb].into_iter().chain(stiction), force, n);
-                self.maybe(stribeck_speed.iter().chain(regular), speed(), "");
-                self.maybe(viscous, per(1), damping);
-            }
-            ActionKind::Gravity { constant, mu } => {
-                self.all(constant, &GRAVITATION, "");
-                self.all(mu, &ATTRACTION, "");
-            }
-            ActionKind::Attraction { strength } => self.add(strength, &STRENGTH, ""),
-            ActionKind::Force { along: direction, value } => {
-                self.acting(action, direction.as_ref(), value.as_ref(), (force, "N"), inference);
-            }
-            ActionKind::Torque { about: direction, value } => {
-                self.acting(action, direction.as_ref(), value.as_ref(), (force, "N·m"), inference);
-            }
+        let row = action.kind.row();
+        for (key, e) in &action.arguments {
+            let (dimension, unit) = match &key.row().quantity {
+                ForceQuantity::Stiffness => (per(0), stiffness),
+                ForceQuantity::Damping => (per(1), damping),
+                ForceQuantity::Inertance => (per(2), inertance),
+                ForceQuantity::Force => (Some(force.clone()), n),
+                ForceQuantity::Energy => (Some(ENERGY), "J"),
+                ForceQuantity::Coordinate => (Some(q.clone()), if q.is_plain() { "rad" } else { "" }),
+                ForceQuantity::Speed => (q.over(&TIME), ""),
+                ForceQuantity::Fixed(dimension) => (Some(dimension.clone()), ""),
+                ForceQuantity::Load => (Some(force.clone()), if row.torque { "N·m" } else { "N" }),
+                // It belongs to an input, which gets its unit below.
+                ForceQuantity::Direction => continue,
+            };
+            let Some(dimension) = dimension else { continue };
+            // Coefficients are no expressions of the stretch or the speed.
+            let locals = match (row.locals, key) {
+                (Locals::Stretch, Key::Force | Key::Energy) => {
+                    vec![("stretch", q.clone()), ("length", q.clone())]
+                }
+                (Locals::Speed, Key::Force | Key::Energy) => {
+                    q.over(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
+                }
+                _ => Vec::new(),
+            };
+            self.tasks.push(Task { e, dimension, unit, locals });
         }
-    }
-
-    /// Adds the value of a force or a torque; without one it is an input, which gets its unit.
-    fn acting(
-        &mut self,
-        action: &'a Action,
-        direction: Option<&'a Expr>,
-        value: Option<&'a Expr>,
-        (force, unit): (&Dimension, &'static str),
-        inference: &mut Inference<'a>,
-    ) {
-        match value {
-            Some(value) => self.add(value, force, unit),
-            None => input(action, direction, force, inference),
+        if action.is_input() {
+            let is_direction = |key: &Key| matches!(key.row().quantity, ForceQuantity::Direction);
+            let direction = action.arguments.iter().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
+            input(action, direction, force, inference);
         }
     }
 
@@ -384,21 +365,6 @@ impl<'a> Places<'a> {
     ) {
         if let Some(dimension) = dimension {
             self.all(e, &dimension, unit);
-        }
-    }
-
-    /// A law: its coefficient, its force or its energy.
-    fn law(
-        &mut self,
-        law: &'a Law,
-        (coefficient, unit): (Option<Dimension>, &'static str),
-        (force, force_unit): (&Dimension, &'static str),
-        locals: Vec<(&'static str, Dimension)>,
-    ) {
-        match law {
-            Law::Linear(e) => self.maybe(Some(e), coefficient, unit),
-            Law::Force(e) => self.tasks.push(Task { e, dimension: force.clone(), unit: force_unit, locals }),
-            Law::Energy(e) => self.tasks.push(Task { e, dimension: ENERGY, unit: "J", locals }),
         }
     }
 }

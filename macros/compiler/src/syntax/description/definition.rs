@@ -34,16 +34,6 @@ pub enum Rank {
 }
 
 impl Rank {
-    /// That of an element's type.
-    pub fn of(kind: &str) -> Rank {
-        match kind {
-            "Vector" => Rank::Vector,
-            "Matrix" => Rank::Matrix,
-            "FreeBody" => Rank::FreeBody,
-            _ => Rank::Scalar,
-        }
-    }
-
     /// The element's type.
     pub fn kind(self) -> &'static str {
         match self {

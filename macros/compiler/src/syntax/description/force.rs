@@ -2,16 +2,19 @@
 
 use super::{BinaryOp, Expr, Name};
 use crate::diag::Place;
+use crate::language::{ForceKind, Key};
 
 /// A force element or an input.
 #[derive(Clone, Debug)]
 pub struct Action {
     /// Its name; an input's name is its entry in `INPUTS`.
     pub name: Name,
-    /// What it is, with its parameters.
-    pub kind: ActionKind,
+    /// Its row in the table of force elements.
+    pub kind: ForceKind,
     /// What it acts on.
     pub on: Target,
+    /// The arguments that are given.
+    pub arguments: Vec<(Key, Expr)>,
 }
 
 /// What a file says of springs, dampers, rotors and motors.
@@ -124,122 +127,20 @@ impl Target {
     }
 }
 
-/// How a spring or a dashpot answers.
-#[derive(Clone, Debug)]
-pub enum Law {
-    /// In proportion, with this coefficient.
-    Linear(Expr),
-    /// With this force, an expression of `stretch` (spring) or `speed` (dashpot).
-    Force(Expr),
-    /// With the force that follows from this energy, an expression of `stretch`.
-    Energy(Expr),
-}
+impl Action {
+    /// Returns the expression of an argument.
+    pub fn get(&self, key: Key) -> Option<&Expr> {
+        self.arguments.iter().find(|(known, _)| *known == key).map(|(_, e)| e)
+    }
 
-/// The force elements of the language.
-#[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there are few of them, and they are not moved")]
-pub enum ActionKind {
-    /// A spring: on a coordinate, or between two points.
-    Spring {
-        /// Stiffness, force or energy.
-        law: Law,
-        /// Coordinate or length at which the force is zero; true if it is given as an angle.
-        free: Option<(Expr, bool)>,
-    },
-    /// A dashpot: on a coordinate, or between two points.
-    Dashpot {
-        /// Damping coefficient or force.
-        law: Law,
-    },
-    /// An inerter: a force in proportion to the relative acceleration.
-    Inerter {
-        /// Inertance.
-        inertance: Expr,
-    },
-    /// Dry and viscous friction on a coordinate.
-    Friction {
-        /// Force of sliding friction.
-        coulomb: Expr,
-        /// Force at breakaway.
-        stiction: Option<Expr>,
-        /// Speed at which the force has fallen from breakaway to sliding.
-        stribeck_speed: Option<Expr>,
-        /// Viscous coefficient.
-        viscous: Option<Expr>,
-        /// Speed of the regularisation.
-        speed: Option<Expr>,
-    },
-    /// Central gravity between two bodies, or towards a fixed point.
-    Gravity {
-        /// Gravitational constant, for two bodies with mass.
-        constant: Option<Expr>,
-        /// Gravitational parameter of the attracting one.
-        mu: Option<Expr>,
-    },
-    /// Inverse-square attraction of the given strength (repulsion if negative).
-    Attraction {
-        /// Force times distance squared.
-        strength: Expr,
-    },
-    /// A force: on a sliding coordinate, or on a body; without a value an input.
-    Force {
-        /// Direction of an input on a body.
-        along: Option<Expr>,
-        /// Its value.
-        value: Option<Expr>,
-    },
-    /// A torque: on a turning coordinate, or on a body; without a value an input.
-    Torque {
-        /// Direction of an input on a body.
-        about: Option<Expr>,
-        /// Its value.
-        value: Option<Expr>,
-    },
-}
+    /// Returns the law that is given, with its argument.
+    pub fn law(&self) -> Option<(Key, &Expr)> {
+        let laws = self.kind.row().laws;
+        self.arguments.iter().find(|(key, _)| laws.contains(key)).map(|(key, e)| (*key, e))
+    }
 
-impl ActionKind {
-    /// The expressions of a force element, with the names of their arguments.
-    pub fn expressions(&self) -> Vec<(&'static str, &Expr)> {
-        let law = |law: &Law, linear: &'static str| match law {
-            Law::Linear(_) => linear,
-            Law::Force(_) => "force",
-            Law::Energy(_) => "energy",
-        };
-        match self {
-            ActionKind::Spring { law: given, free } => {
-                let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
-                let free =
-                    free.iter().map(|(e, angle)| (if *angle { "free_angle" } else { "free_length" }, e));
-                [(law(given, "stiffness"), e)].into_iter().chain(free).collect()
-            }
-            ActionKind::Dashpot { law: given } => {
-                let (Law::Linear(e) | Law::Force(e) | Law::Energy(e)) = given;
-                vec![(law(given, "damping"), e)]
-            }
-            ActionKind::Inerter { inertance } => vec![("inertance", inertance)],
-            ActionKind::Friction { coulomb, stiction, stribeck_speed, viscous, speed } => {
-                let others = [
-                    ("stiction", stiction),
-                    ("stribeck_speed", stribeck_speed),
-                    ("viscous", viscous),
-                    ("speed", speed),
-                ];
-                let others = others.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?)));
-                [("coulomb", coulomb)].into_iter().chain(others).collect()
-            }
-            ActionKind::Gravity { constant, mu } => {
-                let both = [("constant", constant), ("mu", mu)];
-                both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
-            }
-            ActionKind::Attraction { strength } => vec![("strength", strength)],
-            ActionKind::Force { along: direction, value } => {
-                let both = [("along", direction), ("value", value)];
-                both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
-            }
-            ActionKind::Torque { about: direction, value } => {
-                let both = [("about", direction), ("value", value)];
-                both.into_iter().filter_map(|(word, e)| Some((word, e.as_ref()?))).collect()
-            }
-        }
+    /// True for a force or a torque without a value: an entry of `u` commands it.
+    pub fn is_input(&self) -> bool {
+        self.kind.row().arguments.contains(&Key::Value) && self.get(Key::Value).is_none()
     }
 }

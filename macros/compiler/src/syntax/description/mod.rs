@@ -12,7 +12,7 @@ mod structure;
 pub use constraint::{Constraint, ConstraintKind, Contact, Limit, Restitution, SlipFriction, Softness};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
-pub use force::{Action, ActionKind, Drive, DriveLaw, DriveOn, Law, Target, Wrench};
+pub use force::{Action, Drive, DriveLaw, DriveOn, Target, Wrench};
 pub use geometry::{Collision, Mesh, Shape, Visual};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particle, Point};
 

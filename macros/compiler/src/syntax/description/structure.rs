@@ -1,7 +1,7 @@
 //! What a mechanism is built of: bodies, particles, joints, frames, points, coordinates.
 
 use super::{Expr, Name};
-use crate::syntax::JointKind;
+use crate::language::JointKind;
 
 /// A generalized coordinate that belongs to no joint.
 #[derive(Clone, Debug)]

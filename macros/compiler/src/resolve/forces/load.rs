@@ -1,17 +1,31 @@
 //! Forces and torques from outside: with a value, or as inputs.
 
-use super::builder::Builder;
-use super::scope::{Allowed, Context, Placed, PlacedKind};
-use super::target::Target;
 use crate::diag::Diagnostics;
-use crate::expr::Vec3;
+use crate::expr::{Function, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{Direction, Input, Load, Pose, Quantity};
-use crate::syntax::{Action, Expr, ExprKind};
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::{Allowed, Context, Placed, PlacedKind};
+use crate::resolve::target::Target;
+use crate::syntax::{Action, Expr, ExprKind, Key, Target as On};
 
 impl<'g> Builder<'_, 'g> {
-    /// A force or torque with a value.
-    pub fn add_value(
+    /// Adds a force or a torque: with a value, or as an input.
+    pub(super) fn add_acting(&mut self, action: &Action, cx: &mut Diagnostics) {
+        let torque = action.kind.row().torque;
+        let direction = action.get(if torque { Key::About } else { Key::Along });
+        match (&action.on, action.get(Key::Value)) {
+            (On::On(on), None) => {
+                let target = self.target(on, cx);
+                self.add_input(action, on, target, direction, torque, cx);
+            }
+            (On::On(on), Some(value)) => self.add_value(on, direction, value, torque, cx),
+            (On::Between(a, b), value) => self.add_force_between(action, [a, b], direction, value, cx),
+        }
+    }
+
+    /// Adds a force or torque with a value.
+    fn add_value(
         &mut self,
         on: &Expr,
         direction: Option<&Expr>,
@@ -70,8 +84,38 @@ impl<'g> Builder<'_, 'g> {
         self.add_load(rate, force, &value.place, cx);
     }
 
+    /// Adds a force along the line of two points, by a value or as an input. It pushes them apart where it is
+    /// positive.
+    fn add_force_between(
+        &mut self,
+        action: &Action,
+        [a, b]: [&Expr; 2],
+        along: Option<&Expr>,
+        value: Option<&Expr>,
+        cx: &mut Diagnostics,
+    ) {
+        if let Some(along) = along {
+            cx.error(along.place.clone(), "a force between two points acts along their line")
+                .help("remove this argument, or let a force act on each of two bodies");
+        }
+        let Some(stretch) = self.distance(a, b, cx) else { return };
+        let rate = match stretch.signed {
+            true => stretch.value.call(Function::Signum) * stretch.rate,
+            false => stretch.rate,
+        };
+        let g = self.scope.graph;
+        let Some(value) = value else {
+            self.add_input_load(&action.name.text, rate);
+            return;
+        };
+        let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(g))));
+        if let Some(force) = self.scope.in_context(context, |scope| scope.scalar(value, cx)) {
+            self.add_value_load(rate, force, &value.place, cx);
+        }
+    }
+
     /// Adds an input on a coordinate, an expression, or a point of a body.
-    pub fn add_input(
+    fn add_input(
         &mut self,
         action: &Action,
         on: &Expr,

@@ -1,0 +1,324 @@
+//! Force elements: springs, dashpots, inerters, friction, gravity, forces and torques.
+
+use super::super::Words;
+use super::super::dimension::{ATTRACTION, Dimension, GRAVITATION, STRENGTH};
+use super::words::{AT, NO_INERTANCE, ON, SATURATION};
+use crate::mechanism::PieceKind;
+use ForceQuantity::{Coordinate, Damping, Energy, Inertance, Speed, Stiffness};
+use Key::{
+    About, Along, Constant, Coulomb, FreeAngle, FreeLength, Mu, Stiction, Strength, StribeckSpeed, Value,
+    Viscous,
+};
+
+/// A row of the table of arguments of force elements.
+#[derive(Debug)]
+pub struct KeyRow {
+    /// The name.
+    pub name: &'static str,
+    /// Words of other tools; they stand with the elements.
+    pub synonyms: &'static str,
+    /// The quantity that the argument gives.
+    pub quantity: ForceQuantity,
+}
+
+/// A quantity of a force element, whose dimension follows from the coordinate or the distance that the element
+/// acts on.
+#[derive(Debug)]
+pub enum ForceQuantity {
+    /// Force by displacement.
+    Stiffness,
+    /// Force by velocity.
+    Damping,
+    /// Force by acceleration.
+    Inertance,
+    /// A force or a torque.
+    Force,
+    /// An energy.
+    Energy,
+    /// The coordinate or the distance itself.
+    Coordinate,
+    /// Its rate.
+    Speed,
+    /// This dimension.
+    Fixed(Dimension),
+    /// The direction of an input.
+    Direction,
+    /// The value of a force or a torque; without it the element is an input.
+    Load,
+}
+
+const fn key(name: &'static str, quantity: ForceQuantity) -> KeyRow {
+    KeyRow { name, synonyms: "", quantity }
+}
+
+table! {
+    /// An argument of a force element.
+    Key: KeyRow {
+        /// Stiffness of a spring.
+        Stiffness = key("stiffness", Stiffness);
+        /// Force, as an expression of the stretch or the speed.
+        Force = key("force", ForceQuantity::Force);
+        /// Energy, as an expression of the stretch.
+        Energy = key("energy", Energy);
+        /// Length at which the force of a spring is zero.
+        FreeLength = key("free_length", Coordinate);
+        /// Angle at which the torque of a spring is zero.
+        FreeAngle = key("free_angle", Coordinate);
+        /// Coefficient of a dashpot.
+        Damping = key("damping", Damping);
+        /// Inertance of an inerter.
+        Inertance = key("inertance", Inertance);
+        /// Force of sliding friction.
+        Coulomb = key("coulomb", ForceQuantity::Force);
+        /// Force at breakaway.
+        Stiction = key("stiction", ForceQuantity::Force);
+        /// Speed at which the force has fallen from breakaway to sliding.
+        StribeckSpeed = key("stribeck_speed", Speed);
+        /// Viscous coefficient.
+        Viscous = key("viscous", Damping);
+        /// Speed of the regularisation.
+        Speed = key("speed", Speed);
+        /// Gravitational constant, for two bodies with mass.
+        Constant = key("constant", ForceQuantity::Fixed(GRAVITATION));
+        /// Gravitational parameter of the attracting one.
+        Mu = key("mu", ForceQuantity::Fixed(ATTRACTION));
+        /// Force times the square of the distance.
+        Strength = key("strength", ForceQuantity::Fixed(STRENGTH));
+        /// Direction of a force on a body.
+        Along = key("along", ForceQuantity::Direction);
+        /// Direction of a torque on a body.
+        About = key("about", ForceQuantity::Direction);
+        /// Value of a force or a torque.
+        Value = key("value", ForceQuantity::Load);
+    }
+}
+
+/// A row of the table of force elements.
+#[derive(Debug)]
+pub struct ForceRow {
+    /// The name of the type.
+    pub name: &'static str,
+    /// Words of other tools for the type.
+    pub synonyms: &'static str,
+    /// It can act on a coordinate, a body or a length: `on = …`.
+    pub on: bool,
+    /// It can act between two points: `between = (…, …)`.
+    pub between: bool,
+    /// The other arguments, in the order in which messages list them.
+    pub arguments: &'static [Key],
+    /// The alternatives of its law, of which one is given; the last one is asked for if none is.
+    pub laws: &'static [Key],
+    /// Arguments that must be given, with an example each.
+    pub required: &'static [(Key, &'static str)],
+    /// Arguments of which one at most is given, with the error and the help for two.
+    pub exclusive: Option<([Key; 2], &'static str, &'static str)>,
+    /// Names that stand for the stretch or the speed in its law.
+    pub locals: Locals,
+    /// It can act on a body, not only on a coordinate or a length.
+    pub on_bodies: bool,
+    /// It loads a body by a torque, not by a force.
+    pub torque: bool,
+    /// It loads a body by a force at one point alone.
+    pub at_point: bool,
+    /// Pieces that show it: on a length, and on an angle.
+    pub pieces: Option<[PieceKind; 2]>,
+    /// It is drawn between two points alone.
+    pub drawn_between: bool,
+    /// Words of other tools for its arguments.
+    pub words: Words,
+    /// How it is declared.
+    pub example: &'static str,
+}
+
+/// The names that a law may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Locals {
+    /// None.
+    None,
+    /// `stretch` and `length`.
+    Stretch,
+    /// `speed`.
+    Speed,
+}
+
+/// A row with the fields that most elements leave as they are.
+const PLAIN: ForceRow = ForceRow {
+    name: "",
+    synonyms: "",
+    on: true,
+    between: true,
+    arguments: &[],
+    laws: &[],
+    required: &[],
+    exclusive: None,
+    locals: Locals::None,
+    on_bodies: false,
+    torque: false,
+    at_point: true,
+    pieces: None,
+    drawn_between: false,
+    words: &[],
+    example: "",
+};
+
+table! {
+    /// A force element, or an input that acts.
+    ForceKind: ForceRow {
+        /// A spring.
+        Spring = ForceRow {
+            name: "Spring",
+            synonyms: "torsionspring torsionalspring rotationalspring linearspring coilspring elastic elasticity compliance",
+            arguments: &[Key::Stiffness, Key::Force, Key::Energy, FreeLength, FreeAngle],
+            laws: &[Key::Force, Key::Energy, Key::Stiffness],
+            required: &[(Key::Stiffness, "k")],
+            exclusive: Some((
+                [FreeLength, FreeAngle],
+                "a spring has one of `free_length` and `free_angle`",
+                "`free_length` goes with what slides, `free_angle` with what turns",
+            )),
+            locals: Locals::Stretch,
+            pieces: Some([PieceKind::Coil, PieceKind::Spiral]),
+            words: &[
+                (ON, "on"),
+                ("points ends connects", "between"),
+                ("k stiff springconstant springrate rate constant coefficient", "stiffness"),
+                ("length l l0 x0 restlength naturallength unstretchedlength freelen rest natural free equilibrium", "free_length"),
+                ("angle theta0 phi0 restangle naturalangle q0 rest natural free equilibrium", "free_angle"),
+                ("inertance inerter", NO_INERTANCE),
+                ("damping c d damper", "a spring does not damp: put a `Dashpot` beside it, a field of its own"),
+                ("f law", "force"),
+                ("potential u", "energy"),
+            ],
+            example: "#[acts(on = joint, stiffness = k)]",
+            ..PLAIN
+        };
+        /// A dashpot.
+        Dashpot = ForceRow {
+            name: "Dashpot",
+            synonyms: "damper viscousdamper damping shock shockabsorber resistance drag",
+            arguments: &[Key::Damping, Key::Force],
+            laws: &[Key::Force, Key::Damping],
+            required: &[(Key::Damping, "c")],
+            locals: Locals::Speed,
+            pieces: Some([PieceKind::Damper, PieceKind::Brake]),
+            words: &[
+                (ON, "on"),
+                ("points ends connects", "between"),
+                ("c d b damp dampingcoefficient coefficient viscosity viscous resistance", "damping"),
+                ("inertance inerter", NO_INERTANCE),
+                ("coulomb friction mu dry", "dry friction is a `Friction`, a field of its own"),
+                ("stiffness k", "a dashpot does not spring back: put a `Spring` beside it, a field of its own"),
+                ("f law", "force"),
+            ],
+            example: "#[acts(on = joint, damping = c)]",
+            ..PLAIN
+        };
+        /// An inerter: a force proportional to the relative acceleration.
+        Inerter = ForceRow {
+            name: "Inerter",
+            arguments: &[Key::Inertance],
+            required: &[(Key::Inertance, "b")],
+            words: &[(ON, "on"), ("points ends connects", "between"), ("b mass m inertia i", "inertance")],
+            example: "#[acts(on = joint, inertance = b)]",
+            ..PLAIN
+        };
+        /// Dry and viscous friction.
+        Friction = ForceRow {
+            name: "Friction",
+            synonyms: "coulombfriction dryfriction coulomb stiction brake",
+            between: false,
+            arguments: &[Coulomb, Stiction, StribeckSpeed, Viscous, Key::Speed],
+            required: &[(Coulomb, "f")],
+            words: &[
+                (ON, "on"),
+                ("mu coefficient f friction force torque kinetic dynamic sliding normal",
+                    "did you mean `coulomb`? it is a force or a torque: the coefficient times the normal force"),
+                ("static breakaway stick fs", "stiction"),
+                ("damping c d b", "viscous"),
+                ("stribeck vs", "stribeck_speed"),
+                ("smoothing regularization regularisation velocity eps", "speed"),
+            ],
+            example: "#[acts(on = joint, coulomb = f)]",
+            ..PLAIN
+        };
+        /// Central gravity between two bodies, or towards a point.
+        Gravity = ForceRow {
+            name: "Gravity",
+            arguments: &[Constant, Mu],
+            at_point: false,
+            words: ATTRACTING,
+            example: "#[acts(between = (sun, planet), constant = g)]",
+            ..PLAIN
+        };
+        /// Inverse-square attraction (repulsion if negative).
+        Attraction = ForceRow {
+            name: "Attraction",
+            on: false,
+            arguments: &[Strength],
+            required: &[(Strength, "k")],
+            words: ATTRACTING,
+            example: "#[acts(between = (first, second), strength = k)]",
+            ..PLAIN
+        };
+        /// A force: on a sliding coordinate, on a body or between two points; without a value an input.
+        Force = ForceRow {
+            name: "Force",
+            synonyms: "thruster thrust load push pull wind",
+            arguments: &[Along, Value],
+            on_bodies: true,
+            pieces: Some([PieceKind::Bar, PieceKind::Bar]),
+            drawn_between: true,
+            words: &[
+                (ON, "on"),
+                ("axis direction dir about", "along"),
+                ("magnitude force f vector expression", "value"),
+                ("at point position location", AT),
+                ("max min limit limits saturation", SATURATION),
+                ("points ends connects from to", "between"),
+            ],
+            example: "#[acts(on = body, along = x)]",
+            ..PLAIN
+        };
+        /// A torque: on a rotating coordinate or on a body; without a value an input.
+        Torque = ForceRow {
+            name: "Torque",
+            synonyms: "motor actuator servo moment couple drive servomotor",
+            between: false,
+            arguments: &[About, Value],
+            on_bodies: true,
+            torque: true,
+            at_point: false,
+            words: &[
+                (ON, "on"),
+                ("axis direction dir along", "about"),
+                ("magnitude torque tau moment vector expression", "value"),
+                ("at point position location", "a torque has no point: write `on = body`"),
+                ("max min limit limits saturation", SATURATION),
+            ],
+            example: "#[acts(on = joint)]",
+            ..PLAIN
+        };
+    }
+}
+
+/// Words for the arguments of gravity and of attraction.
+const ATTRACTING: Words = &[
+    ("g constantg gravitationalconstant gamma", "constant"),
+    ("gm standardgravitationalparameter parameter", "mu"),
+    ("k constant charge", "strength"),
+    ("from to bodies points on", "between"),
+];
+
+impl ForceKind {
+    /// Returns the names of all arguments, as messages list them.
+    pub fn keys(self) -> Vec<&'static str> {
+        let row = self.row();
+        let targets = [("on", row.on), ("between", row.between)].into_iter().filter(|(_, takes)| *takes);
+        targets.map(|(word, _)| word).chain(row.arguments.iter().map(|key| key.name())).collect()
+    }
+
+    /// Returns the name with its article: `an Inerter`.
+    pub fn phrase(self) -> String {
+        super::phrase(self.name())
+    }
+}

@@ -1,0 +1,148 @@
+//! The types of elements: their names, their arguments, and how they are declared.
+
+#[macro_use]
+mod joints;
+mod forces;
+mod others;
+pub mod words;
+
+pub use forces::{ForceKind, ForceQuantity, Key, Locals};
+pub use joints::JointKind;
+pub use others::OtherKind;
+
+use super::Words;
+use joints::JOINT_WORDS;
+use words::{ENDS, MATRIX, PLACED};
+
+/// The type of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ElementKind {
+    /// A rigid body.
+    Body,
+    /// A point mass.
+    Particle,
+    /// A joint.
+    Joint(JointKind),
+    /// A force element or an input that acts.
+    Force(ForceKind),
+    /// Any other element.
+    Other(OtherKind),
+}
+
+const BODY: &str = "Body";
+const PARTICLE: &str = "Particle";
+
+/// Words of other tools for a body and a particle.
+const MASSIVE: Words = &[
+    ("link rigidbody body3d part segment solid linkage inertial multibody", BODY),
+    ("pointmass masspoint bob bead", PARTICLE),
+];
+
+/// Words for the arguments of a body.
+const BODY_WORDS: Words = &[
+    ("m weight masse", "mass"),
+    ("cog cm cg centre center centerofmass centreofmass massoffset cofm comoffset", "com"),
+    ("i j ic icm moi momentofinertia inertiatensor inertiamatrix geometry shape solid", "inertia"),
+    ("ixx iyy izz ixy ixz iyz jxx jyy jzz", MATRIX),
+    ("length size l height width", "a size belongs to a solid, as in `inertia = rod(m, l, y)`"),
+    ("radius diameter r", "a size belongs to a solid, as in `inertia = sphere(m, r)`"),
+    ("density rho", "the mass is given itself: `mass = density * volume`"),
+    ("position pos origin xyz translation location", PLACED),
+    ("parent child joint on base", ENDS),
+    ("color colour visual name", "nothing is drawn: remove it"),
+];
+
+/// Words for the arguments of a particle.
+const PARTICLE_WORDS: Words = &[
+    ("m weight", "mass"),
+    ("position pos xyz r where point location place", "at"),
+    ("on body parent", "the body stands before the vector: `at = body.at(length * x)`"),
+    ("com inertia", "a particle is a point; a `Body` has a centre of mass and an inertia"),
+];
+
+impl ElementKind {
+    /// Returns the element with this type name.
+    pub fn of_name(name: &str) -> Option<ElementKind> {
+        match name {
+            BODY => Some(ElementKind::Body),
+            PARTICLE => Some(ElementKind::Particle),
+            _ => JointKind::of_name(name)
+                .map(ElementKind::Joint)
+                .or_else(|| ForceKind::of_name(name).map(ElementKind::Force))
+                .or_else(|| OtherKind::of_name(name).map(ElementKind::Other)),
+        }
+    }
+
+    /// Returns the names of all types of elements.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        [BODY, PARTICLE]
+            .into_iter()
+            .chain(JointKind::names())
+            .chain(ForceKind::names())
+            .chain(OtherKind::names())
+    }
+
+    /// Returns the name of the type.
+    pub fn name(self) -> &'static str {
+        match self {
+            ElementKind::Body => BODY,
+            ElementKind::Particle => PARTICLE,
+            ElementKind::Joint(joint) => joint.name(),
+            ElementKind::Force(force) => force.name(),
+            ElementKind::Other(other) => other.name(),
+        }
+    }
+
+    /// Returns the name with its article: `an Inerter`.
+    pub fn phrase(self) -> String {
+        phrase(self.name())
+    }
+
+    /// Returns the attributes of the language that belong to an element.
+    pub fn attributes(self) -> &'static [&'static str] {
+        match self {
+            ElementKind::Body => &["body"],
+            ElementKind::Particle => &["particle"],
+            ElementKind::Joint(_) => &["joint"],
+            ElementKind::Force(_) => &["acts"],
+            ElementKind::Other(other) => other.row().attributes,
+        }
+    }
+
+    /// Returns the words of other tools for the types of elements, each with the type's name.
+    pub fn synonyms() -> impl Iterator<Item = (&'static str, &'static str)> {
+        let massive = MASSIVE.iter().copied();
+        massive.chain(JointKind::synonyms()).chain(ForceKind::synonyms()).chain(OtherKind::synonyms())
+    }
+
+    /// Returns the words of other tools for the arguments of an element.
+    pub fn words(self) -> Words {
+        match self {
+            ElementKind::Body => BODY_WORDS,
+            ElementKind::Particle => PARTICLE_WORDS,
+            ElementKind::Joint(_) => JOINT_WORDS,
+            ElementKind::Force(force) => force.row().words,
+            ElementKind::Other(other) => other.row().words,
+        }
+    }
+
+    /// Returns how an element is declared.
+    pub fn example(self) -> &'static str {
+        match self {
+            ElementKind::Body => "#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]",
+            ElementKind::Particle => "#[particle(mass = m, at = body.at(l * x))]",
+            ElementKind::Joint(joint) => joint.row().example,
+            ElementKind::Force(force) => force.row().example,
+            ElementKind::Other(other) => other.row().example,
+        }
+    }
+}
+
+/// Returns the indefinite article of a word.
+pub fn article(word: &str) -> &'static str {
+    if word.starts_with(['A', 'I']) { "an" } else { "a" }
+}
+
+fn phrase(word: &str) -> String {
+    format!("{} {word}", article(word))
+}

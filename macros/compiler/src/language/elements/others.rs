@@ -1,0 +1,123 @@
+//! Elements that have no mass, join nothing and do not act.
+
+use super::super::Words;
+use super::words::ON;
+
+/// A row of the table of other elements.
+#[derive(Debug)]
+pub struct OtherRow {
+    /// The name of the type.
+    pub name: &'static str,
+    /// Words of other tools for the type.
+    pub synonyms: &'static str,
+    /// The attributes that belong to it.
+    pub attributes: &'static [&'static str],
+    /// Words of other tools for its arguments.
+    pub words: Words,
+    /// How it is declared.
+    pub example: &'static str,
+}
+
+const fn row(
+    name: &'static str,
+    synonyms: &'static str,
+    attributes: &'static [&'static str],
+    words: Words,
+    example: &'static str,
+) -> OtherRow {
+    OtherRow { name, synonyms, attributes, words, example }
+}
+
+table! {
+    /// An element that has no mass, joins nothing and does not act.
+    OtherKind: OtherRow {
+        /// A generalized coordinate of its own.
+        Coordinate = row("Coordinate",
+            "symbol symbols dynamicsymbol dynamicsymbols generalizedcoordinate generalisedcoordinate variable dof unknown",
+            &[], &[], "name: Coordinate");
+        /// An entry of `u` of its own.
+        Input = row("Input", "control signal command controlinput inputs", &[], &[], "name: Input");
+        /// A frame.
+        Frame = row("Frame", "referenceframe axes coordinatesystem csys basis",
+            &["frame"], &[], "#[frame(ground, z(angle))]");
+        /// A point.
+        Point = row("Point", "site marker location position landmark waypoint",
+            &["point"], POINT, "#[point(on = body, at = length * x)]");
+        /// A limit of a coordinate.
+        Limit = row("Limit", "limits range bounds jointlimit jointlimits",
+            &["limit"], LIMIT, "#[limit(on = joint, from = a, to = b)]");
+        /// A potential energy.
+        Potential = row("Potential", "potentialenergy energy", &["energy"], &[], "#[energy(expression)]");
+        /// A Rayleigh dissipation function.
+        Rayleigh = row("Rayleigh", "dissipation dissipationfunction rayleighdissipation",
+            &["dissipation"], &[], "#[dissipation(expression)]");
+        /// A constraint on the configuration.
+        Holonomic = row("Holonomic", "holonomicconstraint equation loop closure distance",
+            &["constraint"], &[], "#[constraint(norm(r(tip / base)) = length)]");
+        /// A constraint on the velocity.
+        Nonholonomic = row("Nonholonomic", "nonholonomicconstraint skate noslip",
+            &["constraint"], &[], "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]");
+        /// Two surfaces that roll on each other.
+        Rolling = row("Rolling", "",
+            &["constraint"], &[], "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]");
+        /// Two surfaces that slip on each other, with friction.
+        Slipping = row("Slipping",
+            "",
+            &["constraint"], &[], "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]");
+        /// A contact that opens and closes.
+        Contact = row("Contact",
+            "",
+            &["contact"], CONTACT, "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]");
+        /// A state of first order.
+        State = row("State", "", &["state"], &[], "#[state(rate = (command - level) / lag)]");
+        /// An equilibrium.
+        Equilibrium = row("Equilibrium", "", &["equilibrium"], &[], "#[equilibrium(joint = angle)]");
+        /// A generalized speed.
+        Speed = row("Speed",
+            "generalizedspeed generalisedspeed quasivelocity quasicoordinate pseudovelocity motionvariable speeds",
+            &["speed"], &[], "#[speed(rate(psi) * sin(theta))]");
+        /// A scalar with a name.
+        Scalar = row("Scalar", "", &["define", "output"], &[], "#[output(expression)]");
+        /// A vector with a name.
+        Vector = row("Vector", "vector3 vec3 vector3d vec",
+            &["define", "output"], AXES, "#[output(expression)]");
+        /// A matrix with a name.
+        Matrix = row("Matrix", "", &["define", "output"], AXES, "#[output(expression)]");
+        /// A free-body diagram.
+        FreeBody = row("FreeBody", "", &["output"], AXES, "#[output(body)]");
+    }
+}
+
+/// Words for the arguments of a contact.
+const CONTACT: Words = &[
+    ("mu muk coefficient frictioncoefficient coulomb kinetic kineticfriction sliding", "friction"),
+    ("mus static staticfriction breakaway stick fs", "stiction"),
+    ("spinning spin torsion torsionalfriction spinningfriction mutorsion drilling", "torsional"),
+    ("rollingfriction rollingresistance resistance murolling roll", "rolling"),
+    ("e cor bounce bounciness elasticity rebound restitutioncoefficient", "restitution"),
+    ("k compliance rigidity", "stiffness"),
+    ("damping c damper", "dissipation"),
+    (
+        "on between surfaces bodies radius r size",
+        "both surfaces stand first: `ball.sphere(radius), ground.plane(z)`",
+    ),
+];
+
+/// Words for the arguments of a limit.
+const LIMIT: Words = &[
+    (ON, "on"),
+    ("lower low min minimum least start lowerlimit", "from"),
+    ("upper high max maximum most end upperlimit", "to"),
+    ("velocity speed rate maxvelocity vmax maxrate", "max_speed"),
+    ("effort force torque maxforce maxtorque fmax taumax", "max_effort"),
+    (
+        "stiffness damping",
+        "a soft end stop is a `Spring` given by its energy: `energy = k / 2 * pow(min(stretch - low, 0), 2)`",
+    ),
+];
+
+/// Words for the arguments of a point.
+const POINT: Words = &[("body parent frame link", "on"), ("pos position xyz offset location r vector", "at")];
+
+/// Words for the axes of an output's components.
+const AXES: Words = &[("frame axes basis in of expressedin resolved resolvedin", "resolved_in")];

@@ -1,0 +1,139 @@
+//! Force elements and inputs: what they act on, and with which parameters.
+
+mod dashpot;
+mod friction;
+mod gravity;
+mod inerter;
+mod load;
+mod spring;
+
+pub use spring::Law;
+
+use super::builder::Builder;
+use super::motion::Moving;
+use super::power::{Counts, is_asked};
+use super::target::Target;
+use super::terms::Stretch;
+use crate::diag::Diagnostics;
+use crate::mechanism::{Coordinate, Input};
+use crate::syntax::{Action, ExprKind, ForceKind, Key, Name, Target as On};
+
+impl<'g> Builder<'_, 'g> {
+    /// Resolves force elements on coordinates, which need no places.
+    pub fn check_actions(&mut self, cx: &mut Diagnostics) {
+        for action in &self.description.actions {
+            let on_joint = match &action.on {
+                On::On(e) => match &e.kind {
+                    ExprKind::Name(name) => self.joint_coordinates(name).is_some(),
+                    ExprKind::Field(..) => true,
+                    _ => false,
+                },
+                On::Between(..) => false,
+            };
+            if on_joint && !needs_motion(action) {
+                self.add_action(action, cx);
+            }
+        }
+    }
+
+    /// Adds all force elements and inputs.
+    pub fn add_actions(&mut self, _: Moving, cx: &mut Diagnostics) {
+        // Inputs without an element of their own appear in expressions; the others are filled in by their
+        // elements.
+        for input in &self.description.inputs {
+            self.model.inputs.push((input.text.clone(), Input::Named));
+        }
+        for action in &self.description.actions {
+            let before = Counts::of(&self.model);
+            self.add_action(action, cx);
+            // An element without an effect may be zero by its values; an input has an entry of `u` in any case.
+            let is_lost = Counts::of(&self.model) == before && !self.is_input(&action.name.text);
+            if cx.is_empty() && action.is_input() && is_lost {
+                report_lost(&action.name, cx);
+            }
+            self.know_applied(&before, &action.name.text);
+            if is_asked(self.description, &action.name) {
+                let power = self.power_since(&before, &action.name.text);
+                self.scope.kinematics.borrow_mut().powers.insert(action.name.text.clone(), power);
+            }
+        }
+    }
+
+    /// Whether an entry of `u` acts where an element of this name says.
+    fn is_input(&self, name: &str) -> bool {
+        self.model.inputs.iter().any(|(known, input)| known == name && !matches!(input, Input::Named))
+    }
+
+    /// Adds one force element or input to the model.
+    fn add_action(&mut self, action: &Action, cx: &mut Diagnostics) {
+        let add = match action.kind {
+            ForceKind::Gravity => return self.add_gravity(action, cx),
+            ForceKind::Force | ForceKind::Torque => return self.add_acting(action, cx),
+            ForceKind::Spring => Self::add_spring,
+            ForceKind::Dashpot => Self::add_dashpot,
+            ForceKind::Inerter => Self::add_inerter,
+            ForceKind::Friction => Self::add_friction,
+            ForceKind::Attraction => Self::add_attraction,
+        };
+        if let Some(on) = self.acted_on(action, cx) {
+            add(self, action, on, cx);
+        }
+    }
+
+    /// Returns the length or the angle that a force element acts on.
+    fn acted_on(&self, action: &Action, cx: &mut Diagnostics) -> Option<ActedOn<'g>> {
+        match &action.on {
+            On::On(e) => match self.target(e, cx)? {
+                Target::Coordinate(c, angle) => {
+                    Some(ActedOn { stretch: self.coordinate_stretch(&c), angle, coordinate: Some(c) })
+                }
+                Target::Expression(stretch) => Some(ActedOn { stretch, angle: None, coordinate: None }),
+                Target::Point(_) => {
+                    let phrase = action.kind.phrase();
+                    cx.error(
+                        e.place.clone(),
+                        format!("{phrase} acts on the coordinate of a joint, but this is a body"),
+                    )
+                    .help("name a joint, as in `on = hinge`, or two points: `between = (first, second)`");
+                    None
+                }
+            },
+            On::Between(a, b) => {
+                let stretch = self.distance(a, b, cx)?;
+                Some(ActedOn { stretch, angle: Some(false), coordinate: None })
+            }
+        }
+    }
+}
+
+/// The length or the angle that a force element acts on.
+pub struct ActedOn<'g> {
+    /// Its value and its rate.
+    pub stretch: Stretch<'g>,
+    /// True for an angle, nothing if it may be either.
+    pub angle: Option<bool>,
+    /// The coordinate that it is.
+    pub coordinate: Option<Coordinate>,
+}
+
+/// True for an element that needs places and velocities: it is not on a coordinate or a body as a whole, or
+/// has a law or a value.
+fn needs_motion(action: &Action) -> bool {
+    let own = match action.kind {
+        ForceKind::Force | ForceKind::Torque => !action.is_input(),
+        ForceKind::Gravity | ForceKind::Attraction => true,
+        ForceKind::Dashpot => action.get(Key::Force).is_some(),
+        ForceKind::Spring | ForceKind::Inerter | ForceKind::Friction => false,
+    };
+    // A point that a vector says may move on its body.
+    own || match &action.on {
+        On::Between(..) => true,
+        On::On(e) => matches!(e.kind, ExprKind::Method(..)),
+    }
+}
+
+/// Reports an input that is declared and acts nowhere, although no error was reported.
+pub fn report_lost(name: &Name, cx: &mut Diagnostics) {
+    cx.error(name.place.clone(), format!("internal error: the input `{}` acts nowhere", name.text))
+        .help("please report this with the mechanism");
+}

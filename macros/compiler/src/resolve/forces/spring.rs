@@ -1,0 +1,167 @@
+//! Springs: linear ones, and those with a force or an energy of the stretch.
+
+use super::ActedOn;
+use crate::diag::Diagnostics;
+use crate::expr::diff::Derivative;
+use crate::expr::replace::replace;
+use crate::expr::{Expr, Extreme, Function, Node, Symbol};
+use crate::kinematics::symbols_in;
+use crate::language::Callable;
+use crate::mechanism::{Pose, Quantity, Spring};
+use crate::resolve::builder::Builder;
+use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::terms::Stretch;
+use crate::syntax::{self, Action, ExprKind, Key};
+use std::collections::BTreeSet;
+
+/// Highest power of the stretch in a spring's force that is integrated to its energy.
+const HIGHEST_POWER: usize = 9;
+
+/// The law of a spring.
+pub enum Law<'e> {
+    /// Proportional to the stretch, with this stiffness.
+    Linear(&'e syntax::Expr),
+    /// This force, an expression of `stretch`.
+    Force(&'e syntax::Expr),
+    /// The force that follows from this energy, an expression of `stretch`.
+    Energy(&'e syntax::Expr),
+}
+
+impl<'g> Builder<'_, 'g> {
+    /// Adds a spring. A linear one on a coordinate is kept as such.
+    pub(super) fn add_spring(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
+        let law = match action.law() {
+            Some((Key::Force, e)) => Law::Force(e),
+            Some((Key::Energy, e)) => Law::Energy(e),
+            Some((_, e)) => Law::Linear(e),
+            None => return,
+        };
+        if let (Law::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
+            let stiffness = self.scope.scalar(stiffness, cx);
+            let free = self.free_length(action, angle, cx);
+            if let (Some(stiffness), Some(free)) = (stiffness, free) {
+                self.model.springs.push(Spring { on, stiffness, free });
+            }
+        } else if let Some(free) = self.free_length(action, on.angle, cx) {
+            self.add_spring_law(on.stretch, &law, free, cx);
+        }
+    }
+
+    /// Adds a spring with any law.
+    pub fn add_spring_law(
+        &mut self,
+        stretch: Stretch<'g>,
+        law: &Law<'_>,
+        free: Expr<'g>,
+        cx: &mut Diagnostics,
+    ) {
+        let g = self.scope.graph;
+        let length =
+            if stretch.signed && !free.is_zero() { stretch.value.call(Function::Abs) } else { stretch.value };
+        let value = length - free;
+        let symbol = Quantity::Given(0).symbol();
+        let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
+        let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
+        let energy = match law {
+            // Smooth where the points meet.
+            Law::Linear(k) if free.is_zero() => self.scope.scalar(k, cx).map(|k| k * 0.5 * stretch.square),
+            Law::Linear(k) => self.scope.scalar(k, cx).map(|k| k * 0.5 * g.symbol(symbol).square()),
+            Law::Energy(e) => self.scope.in_context(context, |scope| scope.scalar(e, cx)),
+            Law::Force(e) => self.energy_of(e, &context, cx),
+        };
+        if let Some(energy) = energy {
+            self.model.potentials.push(replace(energy, &|s| (s == symbol).then_some(value)));
+        }
+    }
+
+    /// The energy of a force: that of its pieces, if they are told apart by the stretch or the length.
+    fn energy_of(&self, e: &syntax::Expr, context: &Context<'g>, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        let read = |e: &syntax::Expr, cx: &mut Diagnostics| {
+            self.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
+        };
+        let force = read(e, cx)?;
+        let local = |e: &syntax::Expr| {
+            context.locals.iter().find(|(name, _)| e.name() == Some(name)).map(|(_, value)| *value)
+        };
+        if let ExprKind::Call(name, arguments) = &e.kind
+            && let [left, right, below, above] = arguments.as_slice()
+            && name.id == Some(Callable::If)
+        {
+            let found = match (local(left), local(right)) {
+                (Some(x), None) => Some((x, right, [below, above])),
+                (None, Some(x)) => Some((x, left, [above, below])),
+                _ => None,
+            };
+            if let Some((own, border, pieces)) = found {
+                let symbol = Quantity::Given(0).symbol();
+                let x = self.scope.graph.symbol(symbol);
+                let border = read(border, cx)? - (own - x);
+                let [below, above] = pieces.map(|piece| self.energy_of(piece, context, cx));
+                let with = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
+                let (below, above) = (below?, above?);
+                let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
+                return Some(with(below, low) + with(above, high) - with(above, border));
+            }
+        }
+        self.integral(force, e, cx)
+    }
+
+    /// The energy of a force that is a polynomial in the stretch: its Taylor series, integrated.
+    fn integral(&self, force: Expr<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        let g = self.scope.graph;
+        let symbol = Quantity::Given(0).symbol();
+        let x = g.symbol(symbol);
+        let mut d = Derivative::with_respect_to(symbol, g);
+        let (mut energy, mut derivative, mut power, mut factorial) = (g.zero(), force, x, 1.0);
+        for n in 1..=HIGHEST_POWER + 1 {
+            factorial *= n as f64;
+            let at_zero = replace(derivative, &|s| (s == symbol).then_some(g.zero()));
+            energy += at_zero * (1.0 / factorial) * power;
+            power = power * x;
+            derivative = d.of(derivative);
+            // A law with corners is like a polynomial between them.
+            if derivative.is_zero() && !has_corners(force, symbol) {
+                return Some(energy);
+            }
+        }
+        cx.error(e.place.clone(), "the energy of this law is not known: it is no polynomial in `stretch`")
+            .help("give the spring by its energy instead: `energy = …`, and the force follows, as in `energy = k / 2 * pow(min(stretch, 0), 2)`");
+        None
+    }
+
+    /// Returns the length or the angle at which the force of a spring is zero.
+    fn free_length(&self, action: &Action, angle: Option<bool>, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        let free_angle = action.get(Key::FreeAngle);
+        let is_angle = free_angle.is_some();
+        let Some(free) = action.get(Key::FreeLength).or(free_angle) else {
+            return Some(self.scope.graph.zero());
+        };
+        if let Some(angle) = angle.filter(|angle| *angle != is_angle) {
+            let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
+            cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
+                .help(format!("write `{key} = …`"));
+            return None;
+        }
+        if is_angle { self.scope.plane_angle(free, cx) } else { self.scope.scalar(free, cx) }
+    }
+}
+
+/// True if a sign, a magnitude or an extreme of what depends on the symbol is in an expression.
+fn has_corners(e: Expr<'_>, symbol: Symbol) -> bool {
+    let g = e.graph();
+    let mut seen = BTreeSet::from([e.id()]);
+    let mut todo = vec![e.id()];
+    while let Some(id) = todo.pop() {
+        let node = g.node(id);
+        let corner = matches!(node, Node::Call(Function::Abs | Function::Signum, _) | Node::Extreme(..));
+        if corner && symbols_in(&[g.expr(id)]).contains(&symbol) {
+            return true;
+        }
+        node.operands(|a| {
+            if seen.insert(a) {
+                todo.push(a);
+            }
+        });
+    }
+    false
+}
