@@ -54,6 +54,11 @@ impl Callable {
             .or_else(|| other().map(|(_, callable)| *callable))
     }
 
+    /// Returns the word of a pair of surfaces.
+    pub fn verb(self) -> &'static str {
+        OTHERS.iter().find(|(_, callable)| *callable == self).map_or("", |(word, _)| word)
+    }
+
     /// True for a name of a function of expressions.
     pub fn is_function(name: &str) -> bool {
         matches!(Callable::of_name(name), Some(Callable::Elementary(_) | Callable::Function(_)))

@@ -7,7 +7,7 @@ use super::{drive, reaction, units};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Graph, Vec3};
 use crate::kinematics::Partials;
-use crate::language::Callable;
+use crate::language::{Builtin, Callable};
 use crate::mechanism::{Constraint, Freedom, Gradients, Inertia, Model, Released, Rule, Units};
 use crate::syntax::{Description, GROUND, Inertias, Name, ScalarType};
 use std::collections::{BTreeMap, BTreeSet};
@@ -329,7 +329,7 @@ fn check_names(description: &Description, cx: &mut Diagnostics) {
             .help(format!("name the table otherwise, such as `{}_table`", table.name.text));
     }
     for name in written.chain(joints) {
-        if ["x", "y", "z", "t", "pi"].contains(&name.text.as_str()) && name.place.file.is_none() {
+        if Builtin::of_name(&name.text).is_some() && name.place.file.is_none() {
             cx.error(name.place.clone(), format!("the name `{}` is taken", name.text))
                 .help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
         }

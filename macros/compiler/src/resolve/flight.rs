@@ -6,6 +6,7 @@ use super::functions::{Call, length};
 use super::scope::{Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, air};
+use crate::language::names::AXES;
 use crate::syntax::{self, ExprKind, GROUND, Name};
 
 /// The standard atmosphere at a height.
@@ -144,7 +145,7 @@ fn ground(place: &crate::diag::Place) -> syntax::Expr {
 
 /// An axis of a body.
 fn axis(body: &syntax::Expr, k: usize) -> syntax::Expr {
-    let text = ["x", "y", "z"].get(k).unwrap_or(&"x").to_string();
+    let text = AXES.get(k).unwrap_or(&AXES[0]).to_string();
     let member = Name { text, place: body.place.clone() };
     syntax::Expr { kind: ExprKind::Field(Box::new(body.clone()), member), place: body.place.clone() }
 }

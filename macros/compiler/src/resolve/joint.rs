@@ -8,67 +8,29 @@ use crate::expr::eval::eval_one;
 use crate::expr::sample::{always, sample};
 use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::in_plane;
+use crate::language::elements::{CoordinateNames, DrawnAxis};
 use crate::mechanism::{Chart, Coordinate, InQ, InV, PieceKind};
 use crate::syntax::{self, Joint, JointKind};
 
-/// Names of the entries of `q` and `v` of a joint; empty for the joint's own name.
-pub fn coordinate_names(kind: JointKind, along: usize) -> (&'static [&'static str], &'static [&'static str]) {
-    const BALL: [&str; 4] = ["qx", "qy", "qz", "qw"];
-    const FREE: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
-    const STAGE: [&str; 3] = ["x", "y", "z"];
-    let same = |names: &'static [&'static str]| (names, names);
-    match kind {
-        JointKind::Pin | JointKind::Sleeve | JointKind::Screw => same(&[""]),
-        JointKind::Collar | JointKind::Slot => same(&["slide", "turn"]),
-        JointKind::Universal => same(&["first", "second"]),
-        JointKind::Planar => same(&["x", "y", "angle"]),
-        JointKind::Stage => same(&STAGE[..along.clamp(2, 3)]),
-        JointKind::Ball => (&BALL, &["wx", "wy", "wz"]),
-        JointKind::Free => (&FREE, &["vx", "vy", "vz", "wx", "wy", "wz"]),
-        JointKind::Weld => (&[], &[]),
-    }
-}
-
-/// The charts of a joint whose coordinates begin at `q` and `v`.
+/// Returns the charts of a joint whose coordinates begin at `q` and `v`.
 pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
-    match kind {
-        JointKind::Ball => vec![Chart::Ball(q, v)],
-        JointKind::Free => vec![Chart::Free(q, v)],
-        JointKind::Pin
-        | JointKind::Sleeve
-        | JointKind::Screw
-        | JointKind::Collar
-        | JointKind::Slot
-        | JointKind::Universal
-        | JointKind::Planar
-        | JointKind::Stage
-        | JointKind::Weld => {
-            (0..coordinate_names(kind, along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect()
+    match kind.row().coordinates {
+        CoordinateNames::Ball => vec![Chart::Ball(q, v)],
+        CoordinateNames::Free => vec![Chart::Free(q, v)],
+        CoordinateNames::Plain(_) | CoordinateNames::PerAxis(_) => {
+            (0..kind.coordinate_names(along).1.len()).map(|k| Chart::Plain(q + k, v + k)).collect()
         }
     }
 }
 
-/// True if a coordinate of a joint is an angle, false if it is a length.
-pub fn is_angle(kind: JointKind, coordinate: &str) -> bool {
-    match kind {
-        JointKind::Pin | JointKind::Screw | JointKind::Universal => true,
-        JointKind::Collar | JointKind::Slot | JointKind::Planar => matches!(coordinate, "turn" | "angle"),
-        JointKind::Sleeve | JointKind::Stage => false,
-        // Their coordinates are no plain ones.
-        JointKind::Ball | JointKind::Free | JointKind::Weld => false,
-    }
-}
-
-/// How a joint is drawn, if it is, and the axes of which it shows the first.
+/// Returns how a joint is drawn, if it is, and the axes of which it shows the first.
 pub fn drawn(joint: &Joint) -> Option<(PieceKind, Option<&[syntax::Expr]>)> {
-    Some(match joint.kind {
-        JointKind::Pin | JointKind::Screw | JointKind::Collar | JointKind::Planar => {
-            (PieceKind::Hinge, Some(&joint.about))
-        }
-        JointKind::Sleeve | JointKind::Slot | JointKind::Stage => (PieceKind::Slide, Some(&joint.along)),
-        JointKind::Universal | JointKind::Ball => (PieceKind::Ball, None),
-        JointKind::Free | JointKind::Weld => return None,
-    })
+    let (kind, axis) = joint.kind.row().piece.clone()?;
+    let axes = axis.map(|axis| match axis {
+        DrawnAxis::About => joint.about.as_slice(),
+        DrawnAxis::Along => joint.along.as_slice(),
+    });
+    Some((kind, axes))
 }
 
 /// The full name of a coordinate.

@@ -4,11 +4,9 @@ use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
 use crate::kinematics::position_in;
+use crate::language::{Builtin, FunctionId, axis_of_name, names};
 use crate::mechanism::{Pose, Quantity};
 use crate::syntax::{self, ExprKind, GROUND, Name, words};
-
-/// Names with a value in every expression.
-const CONSTANTS: [(&str, f64); 1] = [("pi", std::f64::consts::PI)];
 
 impl<'g> Scope<'_, 'g> {
     /// What a known name stands for, with its article.
@@ -23,9 +21,11 @@ impl<'g> Scope<'_, 'g> {
             _ if self.inputs.iter().any(|i| i.text == name) => Some("an input"),
             _ if self.definitions.iter().any(|d| d.name.text == name) => Some("a definition"),
             _ if is(&self.actions) => Some("a force element"),
-            "x" | "y" | "z" => Some("a direction"),
-            "pi" => Some("a number"),
-            _ => None,
+            _ => match Builtin::of_name(name)? {
+                Builtin::Axis(_) => Some("a direction"),
+                Builtin::Pi => Some("a number"),
+                Builtin::Time => None,
+            },
         }
     }
 
@@ -43,19 +43,19 @@ impl<'g> Scope<'_, 'g> {
             return value;
         }
         // A parameter cannot have the name of an axis, which was told: which of them is meant is not known.
-        let taken = ["x", "y", "z"].contains(&name) && self.parameters.iter().any(|p| p.text == name);
-        if taken {
+        let axis = axis_of_name(name);
+        if axis.is_some() && self.parameters.iter().any(|p| p.text == name) {
             return None;
         }
-        if let Some(k) = ["x", "y", "z"].iter().position(|a| *a == name) {
+        if let Some(k) = axis {
             return Some(self.own_axes(Vec3::axis(self.graph, k)));
         }
         if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
             self.used.borrow_mut()[k] = true;
             return Some(Value::Scalar(Quantity::Parameter(k).expr(self.graph)));
         }
-        if let Some((_, value)) = CONSTANTS.iter().find(|(c, _)| *c == name) {
-            return Some(Value::Scalar(self.graph.num(*value)));
+        if Builtin::of_name(name) == Some(Builtin::Pi) {
+            return Some(Value::Scalar(self.graph.num(std::f64::consts::PI)));
         }
         if let Some(value) = self.moving_name(name, e, cx) {
             return value;
@@ -73,10 +73,13 @@ impl<'g> Scope<'_, 'g> {
         } else if let Some(what) = self.what(name) {
             cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
                 .help("an expression is made of parameters, numbers and directions");
-        } else if ["momentum", "angular_momentum", "kinetic_energy"].contains(&name) {
+        } else if let Some(
+            function @ (FunctionId::Momentum | FunctionId::AngularMomentum | FunctionId::KineticEnergy),
+        ) = FunctionId::of_name(name)
+        {
             let error = cx.error(e.place.clone(), format!("`{name}` is a function of a body"));
             error.help(format!("write `{name}(body)`"));
-            if name == "kinetic_energy" {
+            if function == FunctionId::KineticEnergy {
                 error.help("that of the whole mechanism needs no output: it is the method `kinetic_energy`");
             }
         } else {
@@ -93,7 +96,8 @@ impl<'g> Scope<'_, 'g> {
                 return None;
             }
             let rates: Vec<&str> = kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).collect();
-            known.extend(["x", "y", "z", "pi"]);
+            known.extend(names::AXES);
+            known.push(names::PI);
             let error = cx.error(e.place.clone(), format!("unknown name `{name}`"));
             words::point_name(error, name, &known, &rates);
         }
@@ -109,7 +113,7 @@ impl<'g> Scope<'_, 'g> {
         }
         let ExprKind::Name(body) = &inner.kind else {
             let diagnostic = cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
-            let axis = ["x", "y", "z"].into_iter().find(|axis| *axis == member.text).unwrap_or("x");
+            let axis = names::AXES[axis_of_name(&member.text).unwrap_or(0)];
             diagnostic.help(format!("a component of a vector is `dot(vector, {axis})`"));
             return None;
         };
@@ -133,28 +137,19 @@ impl<'g> Scope<'_, 'g> {
                 return None;
             }
             let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
-            if matches!(body.as_str(), "body" | "this" | "own" | "local" | "frame" | "me") {
+            if words::meant(words::OWN, body, &[]).is_some() {
                 error.help("`x`, `y` and `z` alone are the axes of the frame at hand");
                 return None;
             }
             words::point(error, words::BODIES, body, &known);
             return None;
         }
-        let Some(k) = ["x", "y", "z"].iter().position(|a| *a == member.text) else {
-            let help = match member.text.as_str() {
-                "position" | "pos" | "r" | "origin" | "p" => format!("its place is `r({body} / ground)`"),
-                "velocity" | "vel" | "v" | "speed" => {
-                    format!("its velocity is `v({body} / ground / ground)`")
-                }
-                "acceleration" | "acc" => format!("its acceleration is `a({body} / ground / ground)`"),
-                "omega" | "w" | "angular_velocity" | "rate" if body != GROUND => {
-                    format!("it turns by `omega({body} / ground)`")
-                }
-                "mass" | "m" | "inertia" | "com" | "length" | "radius" | "l" | "I" | "height" | "width" => {
-                    "its figures have no names here: name the parameter that it is".to_string()
-                }
-                _ => "its axes are `x`, `y` and `z`, and `body.at(vector)` is a place".to_string(),
-            };
+        let Some(k) = axis_of_name(&member.text) else {
+            let meant = words::meant(words::MEMBERS, &member.text, &[]);
+            // The ground does not rotate.
+            let meant = meant.filter(|meant| body != GROUND || !meant.contains(FunctionId::Omega.name()));
+            let meant = meant.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a place");
+            let help = meant.replace("NAME", body);
             cx.error(member.place.clone(), format!("a body has no `{}`", member.text)).help(help);
             return None;
         };
@@ -197,7 +192,7 @@ impl<'g> Scope<'_, 'g> {
         if let Some((_, value)) = self.context.borrow().locals.iter().find(|(local, _)| *local == name) {
             return Some(Some(Value::Scalar(*value)));
         }
-        if name == "t" {
+        if Builtin::of_name(name) == Some(Builtin::Time) {
             let here = self.check_allowed(Allowed::Placement, "time", &e.place, cx);
             return Some(here.then(|| Value::Scalar(Quantity::Time.expr(self.graph))));
         }

@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, JointCoordinates};
 use super::holders;
-use super::joint::{charts, coordinate_names, full_name, is_angle, own_coordinate};
+use super::joint::{charts, full_name, own_coordinate};
 use super::reaction::RELEASED;
 use super::{closed_form, tree};
 use crate::diag::Diagnostics;
@@ -20,14 +20,14 @@ impl<'g> Builder<'_, 'g> {
             let mut plain = Vec::new();
             if joint.mimic.is_none() && !closing[j] && self.solving_loop(j).is_none() {
                 self.model.charts.extend(charts(joint.kind, (q, v), joint.along.len()));
-                let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
-                for name in names_q {
+                let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
+                for name in &names_q {
                     self.model.configuration.push(full_name(&joint.name.text, name));
                 }
                 for (k, name) in names_v.iter().enumerate() {
                     let full = full_name(&joint.name.text, name);
                     if names_q == names_v {
-                        plain.push((full.clone(), own_coordinate(q + k, v + k), is_angle(joint.kind, name)));
+                        plain.push((full.clone(), own_coordinate(q + k, v + k), joint.kind.is_angle(name)));
                     }
                     self.model.velocities.push((full, joint.name.place.clone()));
                 }
@@ -46,7 +46,7 @@ impl<'g> Builder<'_, 'g> {
                         offset: mimic.multiplier * c.offset + mimic.offset,
                         ..*c
                     };
-                    let angle = is_angle(joint.kind, "");
+                    let angle = joint.kind.is_angle("");
                     self.scope.kinematics.borrow_mut().coordinates.push((
                         joint.name.text.clone(),
                         coordinate,

@@ -3,8 +3,9 @@
 //! wrote and checks nothing.
 
 use super::carriers::expressions;
-use super::joint::{coordinate_names, full_name};
+use super::joint::full_name;
 use crate::diag::Diagnostics;
+use crate::language::names::TIME;
 use crate::language::{Callable, Dependence, FunctionId};
 use crate::mechanism::{Diagram, Uses};
 use crate::syntax::{
@@ -60,7 +61,7 @@ pub fn outline(d: &Description) -> Outline {
     let used =
         expressions(d).into_iter().filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
     Outline {
-        time: used.chain(rotations).any(|e| names(e).contains("t")),
+        time: used.chain(rotations).any(|e| names(e).contains(TIME)),
         velocity_inputs: d.actions.iter().any(|action| {
             laws(action).any(|e| {
                 let uses = uses(d, e);
@@ -92,7 +93,7 @@ fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
         let own = closing.get(j) == Some(&false) && solved.iter().all(|e| !e.sides.contains(&j));
         let holds = |joint: &&Joint| joint.mimic.is_none() && own;
         let Some(joint) = d.joints.get(j).filter(holds) else { continue };
-        let (names_q, names_v) = coordinate_names(joint.kind, joint.along.len());
+        let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
         q.extend(names_q.iter().map(|n| full_name(&joint.name.text, n)));
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
         u.extend(joint.driven.then(|| joint.name.text.clone()));

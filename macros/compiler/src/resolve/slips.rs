@@ -17,13 +17,13 @@ impl Scope<'_, '_> {
         };
         let error = cx.error(method.place.clone(), format!("`.{text}(…)` has no value here"));
         let is_coordinate = self.kinematics.borrow().coordinates.iter().any(|(name, ..)| *name == base);
-        if is_coordinate && matches!(text, "dot" | "rate" | "diff" | "velocity" | "speed" | "dt") {
-            error.help(format!("write `rate({base})`"));
+        if is_coordinate && let Some(meant) = words::meant(words::RATES, text, &[]) {
+            error.help(meant.replace("NAME", &base));
         } else if Callable::is_function(text) {
             error.help(format!("write `{text}(…)`"));
-        } else if matches!(text, "powi" | "powf" | "powu") {
-            error.help("write `pow(a, n)`");
-        } else if !words::explain(error, &words::functions(), text, &[]) {
+        } else if !words::explain(error, words::NUMBER_METHODS, text, &[])
+            && !words::explain(error, &words::functions(), text, &[])
+        {
             error.help(
                 "functions stand before what they take, as in `sin(angle)`; `body.at(vector)` is a place",
             );

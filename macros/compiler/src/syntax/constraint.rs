@@ -19,26 +19,12 @@ pub fn read_constraint(
         if slips { arguments.need_expr("friction", "mu", "constraint", keys, cx) } else { None };
     let friction = coefficient.map(|coefficient| SlipFriction { coefficient, speed });
     let found = arguments.take_equation();
-    let (whose, example) = match kind {
-        ConstraintKind::Holonomic => {
-            ("a Holonomic constraint", "#[constraint(norm(r(tip / base)) = length)]")
-        }
-        ConstraintKind::Nonholonomic => {
-            ("a Nonholonomic constraint", "#[constraint(dot(v(skate / ground / ground), sled.y) = 0)]")
-        }
-        ConstraintKind::Rolling => {
-            ("a Rolling constraint", "#[constraint(rolls(disk.circle(radius, y), ground.plane(z)))]")
-        }
-        ConstraintKind::Slipping => (
-            "a Slipping constraint",
-            "#[constraint(slips(disk.circle(radius, y), ground.plane(z)), friction = mu)]",
-        ),
-    };
+    let element = kind.element();
+    let (whose, example) = (format!("a {} constraint", element.name()), element.row().example);
     if let (Some((value, None)), [second, ..]) = (&found, arguments.plain()) {
-        let touches = matches!(kind, ConstraintKind::Rolling | ConstraintKind::Slipping);
-        let (message, help) = match touches {
-            true => (format!("expected a pair that {}", kind.verb()), format!("write `{example}`")),
-            false => {
+        let (message, help) = match kind.pair() {
+            Some(pair) => (format!("expected a pair that {}", pair.verb()), format!("write `{example}`")),
+            None => {
                 let help = format!("write `{} = {}`", value.spelt(), second.spelt());
                 ("expected one equation".to_string(), help)
             }
@@ -47,7 +33,7 @@ pub fn read_constraint(
         return;
     }
     let is_empty = arguments.is_empty();
-    arguments.finish(whose, keys, cx);
+    arguments.finish(&whose, keys, cx);
     let Some((value, other)) = found else {
         if is_empty {
             cx.error(name.place.clone(), format!("`{}` says nothing", name.text))
@@ -55,7 +41,7 @@ pub fn read_constraint(
         }
         return;
     };
-    if let (ConstraintKind::Rolling | ConstraintKind::Slipping, Some(other)) = (kind, &other) {
+    if let (Some(_), Some(other)) = (kind.pair(), &other) {
         cx.error(other.place.clone(), "a pair of surfaces is no equation").help(format!("write `{example}`"));
         return;
     }

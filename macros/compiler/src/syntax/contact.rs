@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::{Contact, Description, Expr, ExprKind, Name, Restitution, Softness};
 use crate::diag::Diagnostics;
-use crate::language::{Callable, Method};
+use crate::language::{Callable, Method, OtherKind};
 
 const KEYS: [&str; 9] = [
     "friction",
@@ -16,9 +16,6 @@ const KEYS: [&str; 9] = [
     "dissipation",
     "speed",
 ];
-
-/// How a contact is written.
-pub const EXAMPLE: &str = "#[contact(ball.sphere(radius), ground.plane(z), friction = mu, restitution = e)]";
 
 /// What a contact of a file's links is written as.
 pub const TOUCHES: &str =
@@ -53,6 +50,7 @@ pub fn read_contact(
     let mut surfaces = arguments.take_plain().into_iter();
     let is_empty = arguments.is_empty();
     arguments.finish("a Contact", &KEYS, cx);
+    let example = OtherKind::Contact.row().example;
     match (surfaces.next(), surfaces.next(), surfaces.next()) {
         (Some(first), Some(second), None) => {
             description.contacts.push(Contact {
@@ -69,14 +67,14 @@ pub fn read_contact(
             });
         }
         (Some(only), None, _) => {
-            cx.error(only.place, "expected two surfaces, found one").help(format!("write `{EXAMPLE}`"));
+            cx.error(only.place, "expected two surfaces, found one").help(format!("write `{example}`"));
         }
         (Some(_), Some(_), Some(more)) => {
             cx.error(more.place, "a contact is one of two surfaces").help("declare a field for each pair");
         }
         _ if is_empty => {
             cx.error(name.place.clone(), format!("`{}` does not say what touches", name.text))
-                .help(format!("write `{EXAMPLE}`"));
+                .help(format!("write `{example}`"));
         }
         _ => {}
     }

@@ -219,7 +219,19 @@ mod tests {
 
     #[test]
     fn words_stand_as_they_are_looked_up() {
-        let all = [ELEMENTS, OPTIONS, REQUESTS, FORMULATIONS, NAMES, METHODS, BODIES];
+        let all = [
+            ELEMENTS,
+            OPTIONS,
+            REQUESTS,
+            FORMULATIONS,
+            NAMES,
+            METHODS,
+            BODIES,
+            MEMBERS,
+            OWN,
+            RATES,
+            NUMBER_METHODS,
+        ];
         let elements = ElementKind::names().filter_map(ElementKind::of_name);
         let of_arguments = elements.flat_map(|element| element.words().iter().copied());
         let rows = [functions(), solids(), rotations()].concat();

@@ -2,6 +2,8 @@
 
 use super::super::Words;
 use super::words::{END, LIMITED, RATIO, TURNED};
+use crate::mechanism::PieceKind;
+use CoordinateNames::Plain;
 
 /// A row of the table of joints.
 #[derive(Debug)]
@@ -12,9 +14,43 @@ pub struct JointRow {
     pub synonyms: &'static str,
     /// The arguments beside the two ends.
     pub arguments: &'static [&'static str],
+    /// The coordinates.
+    pub coordinates: CoordinateNames,
+    /// How it is drawn, and the argument whose first axis is shown.
+    pub piece: Option<(PieceKind, Option<DrawnAxis>)>,
     /// How it is declared.
     pub example: &'static str,
 }
+
+/// The coordinates of a joint.
+#[derive(Clone, Copy, Debug)]
+pub enum CoordinateNames {
+    /// Plain coordinates by their names, empty for that of the joint; true for an angle.
+    Plain(&'static [(&'static str, bool)]),
+    /// Plain coordinates along two or three axes, as many as are given.
+    PerAxis(&'static [(&'static str, bool)]),
+    /// A unit quaternion.
+    Ball,
+    /// A position and a unit quaternion.
+    Free,
+}
+
+/// The axis that the drawing of a joint shows.
+#[derive(Clone, Copy, Debug)]
+pub enum DrawnAxis {
+    /// The first rotation axis.
+    About,
+    /// The first translation axis.
+    Along,
+}
+
+const HINGE: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Hinge, Some(DrawnAxis::About)));
+const SLIDE: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Slide, Some(DrawnAxis::Along)));
+const BALL: Option<(PieceKind, Option<DrawnAxis>)> = Some((PieceKind::Ball, None));
+
+const ANGLE: CoordinateNames = Plain(&[("", true)]);
+const LENGTH: CoordinateNames = Plain(&[("", false)]);
+const SLIDE_AND_TURN: CoordinateNames = Plain(&[("slide", false), ("turn", true)]);
 
 const ABOUT: &str = "#[joint(parent -> child, about = z)]";
 const ALONG: &str = "#[joint(parent -> child, along = x)]";
@@ -24,9 +60,11 @@ const fn row(
     name: &'static str,
     synonyms: &'static str,
     arguments: &'static [&'static str],
+    coordinates: CoordinateNames,
+    piece: Option<(PieceKind, Option<DrawnAxis>)>,
     example: &'static str,
 ) -> JointRow {
-    JointRow { name, synonyms, arguments, example }
+    JointRow { name, synonyms, arguments, coordinates, piece, example }
 }
 
 table! {
@@ -35,37 +73,73 @@ table! {
         /// Rotation about an axis (revolute, hinge).
         Pin = row("Pin",
             "revolute hinge continuous rotary rotational rotation rotating pivot axle bearing turn turning swivel",
-            &["about"], ABOUT);
+            &["about"], ANGLE, HINGE, ABOUT);
         /// Translation along an axis (prismatic).
         Sleeve = row("Sleeve",
             "prismatic slider slide sliding translational translation linear rail piston telescopic",
-            &["along"], ALONG);
+            &["along"], LENGTH, SLIDE, ALONG);
         /// Rotation about and translation along one axis, coupled by a pitch (helical).
-        Screw = row("Screw",
-            "helical helix leadscrew ballscrew nut",
-            &["about", "along", "pitch", "lead"], ABOUT);
+        Screw = row("Screw", "helical helix leadscrew ballscrew nut",
+            &["about", "along", "pitch", "lead"], ANGLE, HINGE, ABOUT);
         /// Rotation about and translation along one axis, independent (cylindrical).
-        Collar = row("Collar", "cylindrical cylinder", &["about", "along"], ABOUT);
+        Collar = row("Collar", "cylindrical cylinder",
+            &["about", "along"], SLIDE_AND_TURN, HINGE, ABOUT);
         /// Translation along one axis, then rotation about another.
-        Slot = row("Slot", "", &["about", "along"], ABOUT);
+        Slot = row("Slot", "",
+            &["about", "along"], SLIDE_AND_TURN, SLIDE, ABOUT);
         /// Rotations about two axes in turn.
-        Universal = row("Universal", "cardan hooke gimbal cv", &["about"], ABOUT);
+        Universal = row("Universal", "cardan hooke gimbal cv",
+            &["about"], Plain(&[("first", true), ("second", true)]), BALL, ABOUT);
         /// All rotations (spherical).
-        Ball = row("Ball", "spherical socket ballsocket ballandsocket quaternion", &[], BARE);
+        Ball = row("Ball", "spherical socket ballsocket ballandsocket quaternion",
+            &[], CoordinateNames::Ball, BALL, BARE);
         /// Two translations and a rotation about their normal (dual sleeve-pin).
-        Planar = row("Planar", "dualsleevepin planar2d", &["about", "along"], ABOUT);
+        Planar = row("Planar", "dualsleevepin planar2d",
+            &["about", "along"], Plain(&[("x", false), ("y", false), ("angle", true)]), HINGE, ABOUT);
         /// Two or three translations (x-y and x-y-z stage).
-        Stage = row("Stage", "xystage xyzstage xy xyz cartesian gantry translation3d", &["along"], ALONG);
+        Stage = row("Stage",
+            "xystage xyzstage xy xyz cartesian gantry translation3d",
+            &["along"], CoordinateNames::PerAxis(&[("x", false), ("y", false), ("z", false)]), SLIDE, ALONG);
         /// All motions (six degrees of freedom).
         Free = row("Free",
             "floating floatingbase freebase sixdof 6dof freeflyer freeflying unconstrained bushing",
-            &[], BARE);
+            &[], CoordinateNames::Free, None, BARE);
         /// No motion (fixed).
-        Weld = row("Weld", "fixed rigid weld welded locked lock glue fix", &[], BARE);
+        Weld = row("Weld", "fixed rigid weld welded locked lock glue fix",
+            &[], Plain(&[]), None, BARE);
     }
 }
 
 impl JointKind {
+    /// Returns the plain coordinates of a joint with so many translation axes: names, empty for that of the
+    /// joint, and true for an angle.
+    fn plain(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
+        match self.row().coordinates {
+            Plain(all) => Some(all),
+            CoordinateNames::PerAxis(all) => all.get(..along.clamp(2, all.len())),
+            CoordinateNames::Ball | CoordinateNames::Free => None,
+        }
+    }
+
+    /// Returns the names of the entries of `q` and `v`; empty for the joint's own name.
+    pub fn coordinate_names(self, along: usize) -> (Vec<&'static str>, Vec<&'static str>) {
+        if let Some(plain) = self.plain(along) {
+            let names: Vec<&str> = plain.iter().map(|(name, _)| *name).collect();
+            return (names.clone(), names);
+        }
+        let (q, v): (&[&str], &[&str]) = match self.row().coordinates {
+            CoordinateNames::Ball => (&["qx", "qy", "qz", "qw"], &["wx", "wy", "wz"]),
+            _ => (&["x", "y", "z", "qx", "qy", "qz", "qw"], &["vx", "vy", "vz", "wx", "wy", "wz"]),
+        };
+        (q.to_vec(), v.to_vec())
+    }
+
+    /// True if a plain coordinate is an angle, false if it is a length.
+    pub fn is_angle(self, coordinate: &str) -> bool {
+        let plain = self.plain(usize::MAX).unwrap_or_default();
+        plain.iter().any(|(name, angle)| *name == coordinate && *angle)
+    }
+
     /// Returns the name with its article: `a Pin`.
     pub fn phrase(self) -> String {
         format!("a {}", self.name())

@@ -7,7 +7,7 @@ mod others;
 pub mod words;
 
 pub use forces::{ForceKind, ForceQuantity, Key, Locals};
-pub use joints::JointKind;
+pub use joints::{CoordinateNames, DrawnAxis, JointKind};
 pub use others::OtherKind;
 
 use super::Words;

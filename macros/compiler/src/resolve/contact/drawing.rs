@@ -24,7 +24,8 @@ impl<'g> Builder<'_, 'g> {
         }
         for constraint in &self.description.constraints {
             if let ExprKind::Call(word, pair) = &constraint.value.kind
-                && word.text == constraint.kind.verb()
+                && word.id.is_some()
+                && word.id == constraint.kind.pair()
             {
                 let surfaces = pair.iter().filter_map(|side| self.surface(side, "", &mut silent));
                 found.extend(surfaces.map(|surface| (constraint.name.text.as_str(), surface)));

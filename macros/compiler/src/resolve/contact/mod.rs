@@ -26,6 +26,7 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::jet::{Moving, Relative};
 use crate::kinematics::{perpendicular, time_derivative};
+use crate::language::Callable;
 use crate::mechanism::{FrictionTerm, Measure};
 use crate::syntax::{self, ExprKind};
 use surface::{Form, Surface};
@@ -125,10 +126,12 @@ impl<'g> Builder<'_, 'g> {
 
     /// `rolls(surface, surface)` or `slips(surface, surface)`, what rolls first.
     fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<Pair<'g>> {
-        let (e, known) = (&constraint.value, constraint.kind.verb());
+        let e = &constraint.value;
+        let kind = constraint.kind.pair();
+        let known = kind.map_or("", Callable::verb);
         let example = format!("write `{known}(disk.circle(radius, y), ground.plane(z))`");
         let (first, second) = match &e.kind {
-            ExprKind::Call(word, pair) if word.text == known && pair.len() == 2 => (&pair[0], &pair[1]),
+            ExprKind::Call(word, pair) if word.id == kind && pair.len() == 2 => (&pair[0], &pair[1]),
             _ => {
                 cx.error(e.place.clone(), format!("expected a pair that {known}")).help(example);
                 return None;

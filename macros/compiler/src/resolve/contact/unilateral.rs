@@ -7,13 +7,13 @@ use super::{Contact as Touch, Pair, farthest, perpendicular, sphere_contact};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
-use crate::language::Method;
+use crate::language::{Method, OtherKind};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::motion::Moving;
 use crate::resolve::power::{Counts, is_asked};
 use crate::resolve::scope::{Allowed, Context, Exerted, Terms};
-use crate::syntax::contact::{EXAMPLE, collision};
+use crate::syntax::contact::collision;
 use crate::syntax::{self, ExprKind, GROUND};
 
 /// Most points of all contacts of a mechanism: what is generated grows as their number.
@@ -309,7 +309,7 @@ impl<'g> Builder<'_, 'g> {
         if is_place {
             return Some(vec![Surface { frame: self.scope.place(e, cx)?, form: Form::Point }]);
         }
-        Some(vec![self.surface(e, &format!("write `{EXAMPLE}`"), cx)?])
+        Some(vec![self.surface(e, &format!("write `{}`", OtherKind::Contact.row().example), cx)?])
     }
 
     /// Where a pair touches, at one point or several.

@@ -11,8 +11,8 @@ use crate::language::{Argument, ArgumentKind, Callable, ForceQuantity, Key, Loca
 use crate::resolve::contact::PLACE;
 use crate::syntax::contact::collision;
 use crate::syntax::{
-    Action, Body, Callee, Constraint, ConstraintKind, Definition, Description, Endpoint, Expr, ExprKind,
-    Joint, Limit, Member, Target,
+    Action, Body, Callee, Constraint, Definition, Description, Endpoint, Expr, ExprKind, Joint, Limit,
+    Member, Target,
 };
 
 /// An expression with the dimension of its place.
@@ -322,7 +322,7 @@ impl<'a> Places<'a> {
     fn constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
         let side = Dimension::variable(inference.system.variable());
         self.sides.push(side.clone());
-        if !matches!(constraint.kind, ConstraintKind::Rolling | ConstraintKind::Slipping) {
+        if constraint.kind.pair().is_none() {
             self.add(&constraint.value, &side, "");
             self.all(&constraint.other, &side, "");
             return;

@@ -4,6 +4,7 @@ use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::owner::{place_of, solid_of};
 use super::si::describe;
 use crate::diag::{Diagnostic, Diagnostics};
+use crate::language::Builtin;
 use crate::language::dimension::{Dimension, Variable};
 use crate::syntax::{BinaryOp, Description, Expr, ExprKind};
 
@@ -62,7 +63,7 @@ fn has_number_as_factor(e: &Expr) -> bool {
 /// True for an expression that names nothing but pi.
 fn is_number(e: &Expr) -> bool {
     e.parts().into_iter().all(|part| match &part.kind {
-        ExprKind::Name(name) => name == "pi",
+        ExprKind::Name(name) => Builtin::of_name(name) == Some(Builtin::Pi),
         ExprKind::Number(_) | ExprKind::Neg(_) | ExprKind::Binary(..) | ExprKind::Call(..) => true,
         ExprKind::Field(..) | ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Array(_) => false,
     })

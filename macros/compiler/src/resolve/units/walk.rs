@@ -5,7 +5,7 @@ use super::value::{Anchor, Value, product};
 use crate::expr::Function;
 use crate::language::dimension::{Dimension, INERTIA, LENGTH, PLAIN, RATE, TIME, Variable};
 use crate::language::ratio::Ratio;
-use crate::language::{Callable, UnitRule};
+use crate::language::{Builtin, Callable, UnitRule};
 use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
@@ -28,13 +28,13 @@ impl<'a> Inference<'a> {
         if let Some((_, dimension)) = self.locals.iter().find(|(local, _)| *local == name) {
             return Value::quantity(dimension.clone());
         }
-        match (name, self.names.get(name)) {
+        match (Builtin::of_name(name), self.names.get(name)) {
             (_, Some(Meaning::Named(v, anchor))) => {
                 Value::Quantity { dimension: Dimension::variable(*v), anchor: *anchor }
             }
-            ("x" | "y" | "z", _) => Value::Direction,
-            ("pi", _) => Value::Number(std::f64::consts::PI),
-            ("t", _) => Value::quantity(TIME),
+            (Some(Builtin::Axis(_)), _) => Value::Direction,
+            (Some(Builtin::Pi), _) => Value::Number(std::f64::consts::PI),
+            (Some(Builtin::Time), _) => Value::quantity(TIME),
             (_, Some(Meaning::Moving(dimension, anchor))) => {
                 Value::Quantity { dimension: dimension.clone(), anchor: *anchor }
             }
@@ -279,7 +279,7 @@ impl<'a> Inference<'a> {
     fn is_frame(&self, e: &Expr) -> bool {
         let is_value = |name: &str| {
             self.names.contains_key(name)
-                || matches!(name, "x" | "y" | "z" | "pi" | "t")
+                || Builtin::of_name(name).is_some()
                 || self.locals.iter().any(|(local, _)| *local == name)
         };
         e.name().is_some_and(|name| !is_value(name))

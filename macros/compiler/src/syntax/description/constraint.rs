@@ -1,6 +1,7 @@
 //! What restricts motion: constraints, contacts, limits.
 
 use super::{Expr, Name};
+use crate::language::{Callable, OtherKind};
 
 /// What a constraint restricts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,9 +17,23 @@ pub enum ConstraintKind {
 }
 
 impl ConstraintKind {
-    /// What a pair of surfaces does.
-    pub fn verb(self) -> &'static str {
-        if self == ConstraintKind::Slipping { "slips" } else { "rolls" }
+    /// Returns the word of a pair of surfaces; `None` for an equation.
+    pub fn pair(self) -> Option<Callable> {
+        match self {
+            ConstraintKind::Rolling => Some(Callable::Rolls),
+            ConstraintKind::Slipping => Some(Callable::Slips),
+            ConstraintKind::Holonomic | ConstraintKind::Nonholonomic => None,
+        }
+    }
+
+    /// Returns the row of the element.
+    pub fn element(self) -> OtherKind {
+        match self {
+            ConstraintKind::Holonomic => OtherKind::Holonomic,
+            ConstraintKind::Nonholonomic => OtherKind::Nonholonomic,
+            ConstraintKind::Rolling => OtherKind::Rolling,
+            ConstraintKind::Slipping => OtherKind::Slipping,
+        }
     }
 }
 

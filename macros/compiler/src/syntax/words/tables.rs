@@ -208,6 +208,27 @@ pub const METHODS: Words = &[
     ("rotate rot rotation turned turn tilted rpy", "rotated"),
 ];
 
+/// Members of a body; `NAME` is its name.
+pub const MEMBERS: Words = &[
+    ("position pos r origin p", "its place is `r(NAME / ground)`"),
+    ("velocity vel v speed", "its velocity is `v(NAME / ground / ground)`"),
+    ("acceleration acc", "its acceleration is `a(NAME / ground / ground)`"),
+    ("omega w angularvelocity rate", "it turns by `omega(NAME / ground)`"),
+    (
+        "mass m inertia com length radius l i height width",
+        "its figures have no names here: name the parameter that it is",
+    ),
+];
+
+/// Words for the body at hand.
+pub const OWN: Words = &[("body this own local frame me", "the axes at hand are `x`, `y` and `z` alone")];
+
+/// Methods of numbers and coordinates.
+pub const NUMBER_METHODS: Words = &[("powi powf powu", "write `pow(a, n)`")];
+
+/// Methods of coordinates; `NAME` is the coordinate.
+pub const RATES: Words = &[("dot rate diff velocity speed dt", "write `rate(NAME)`")];
+
 /// Bodies.
 pub const BODIES: Words = &[(
     "world base baselink earth origin inertial fixed n newtonian globe wall floor map odom frame static",
