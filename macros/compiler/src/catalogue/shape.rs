@@ -88,7 +88,8 @@ impl Argument {
                 Some(k - first)
             }
             (Argument::Given(name, ..), Quantity::ContactForce(k)) if name == CONTACT_FORCES => Some(k),
-            (Argument::Standard(_) | Argument::Factors(_) | Argument::Momenta(_), Quantity::Given(k))
+            (Argument::Standard(_) | Argument::Factors(_), Quantity::Given(k))
+            | (Argument::Momenta(_), Quantity::Momentum(k))
             | (Argument::Called(Called::PassiveForces), Quantity::PassiveForce(k))
             | (Argument::Called(Called::PassiveDerivatives), Quantity::PassiveDerivative(k)) => Some(k),
             _ => None,

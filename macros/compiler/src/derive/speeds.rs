@@ -259,21 +259,20 @@ impl<'g> Derivation<'_, 'g> {
     /// `Yᵀ p`.
     fn canonical_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let g = self.model.graph;
-        let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Given(k).expr(g)).collect();
-        let of_joints = speeds.with_given_forces(&momenta);
+        let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
+        let of_joints = speeds.with_momenta(&momenta);
         let at = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
-            let velocity =
-                speeds.speeds_of(&speeds.with_given_forces(&self.canonical(|h| h.velocity.clone())));
+            let velocity = speeds.speeds_of(&speeds.with_momenta(&self.canonical(|h| h.velocity.clone())));
             replace_all(&e, &|s| match Quantity::of(s) {
                 Quantity::Velocity(k) => velocity.get(k).copied(),
                 _ => None,
             })
         };
         Some(match id {
-            Id::Hamiltonian => speeds.with_given_forces(&self.canonical(|h| vec![h.hamiltonian])),
+            Id::Hamiltonian => speeds.with_momenta(&self.canonical(|h| vec![h.hamiltonian])),
             Id::CanonicalVelocity => at(mechanics::velocities(self.model)),
             _ => {
-                let rate = speeds.with_given_forces(&self.canonical(|h| h.momentum_rate.clone()));
+                let rate = speeds.with_momenta(&self.canonical(|h| h.momentum_rate.clone()));
                 at(speeds.momentum_rate_of_written(&rate, &of_joints))
             }
         })

@@ -39,7 +39,7 @@ const COUPLED: usize = 3;
 pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Canonical> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
-    let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Given(k).expr(g)).collect();
+    let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
     let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
     let relative: Vec<Expr<'g>> = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
     let mut normal = Normal::new(g, rank);

@@ -113,7 +113,7 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
     let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
     // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
     let name = |symbol: Symbol| match Quantity::of(symbol) {
-        Quantity::Given(c) => (momenta[c].clone(), 0),
+        Quantity::Momentum(c) => (momenta[c].clone(), 0),
         Quantity::Acceleration(k) if is_cyclic(k).is_some() => {
             (is_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)
         }

@@ -356,12 +356,12 @@ fn check_canonical(model: &Model<'_>) -> String {
         let p = eval(&momenta, &symbol);
         // Determinants contain no other determinants, but the ring evaluates all of its atoms.
         let one = |s: Symbol| match Quantity::of(s) {
-            Quantity::Given(_) | Quantity::Prepared(_) => 1.0,
+            Quantity::Momentum(_) | Quantity::Prepared(_) => 1.0,
             _ => symbol(s),
         };
         let determinants: Vec<f64> = c.determinants.iter().map(|d| c.ring.evaluate(d, &one)).collect();
         let at = |s: Symbol| match Quantity::of(s) {
-            Quantity::Given(k) => p[k],
+            Quantity::Momentum(k) => p[k],
             Quantity::Prepared(k) => determinants[k],
             Quantity::Velocity(_) | Quantity::Acceleration(_) => panic!("a velocity in Hamilton's form"),
             _ => symbol(s),

@@ -80,7 +80,7 @@ pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
     let all = names_with(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
     let name = |symbol| match Quantity::of(symbol) {
-        Quantity::Given(k) => (momenta[k].clone(), 0),
+        Quantity::Momentum(k) => (momenta[k].clone(), 0),
         Quantity::Acceleration(k) => (momenta[k].clone(), 1),
         Quantity::Prepared(k) => (determinants[k].clone(), 0),
         _ => name(model, &rates, symbol),

@@ -24,7 +24,7 @@ pub struct Hamilton<'g> {
 pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Hamilton<'g> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
-    let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Given(k).expr(g)).collect();
+    let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
     let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
     let relative = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
     let velocity = ldl::solve(mass.clone(), relative, joints);

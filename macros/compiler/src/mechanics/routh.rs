@@ -75,7 +75,7 @@ pub fn solved<'g>(
     let g = model.graph;
     let others = with(model, cyclic, &vec![g.zero(); cyclic.len()]);
     let given = with_velocities(&momentum::generalized_momentum(model, joints, &others), &others);
-    let p = cyclic.iter().enumerate().map(|(c, k)| Quantity::Given(c).expr(g) - given[*k]);
+    let p = cyclic.iter().enumerate().map(|(c, k)| Quantity::Momentum(c).expr(g) - given[*k]);
     let p: Vec<Expr<'g>> = p.collect();
     let velocity = solve(p.clone())?;
     let kinetic = energy::kinetic_energy(model, joints, &velocities(model));

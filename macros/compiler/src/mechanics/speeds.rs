@@ -135,13 +135,22 @@ impl<'g> InSpeeds<'g> {
     /// Expresses `e` in speeds, where the first `nv` arguments are generalized forces: the arguments of the
     /// result are the generalized forces of the speeds.
     pub fn with_given_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let n = self.model.nv();
+        self.with_arguments(e, Quantity::Given)
+    }
+
+    /// Expresses `e` in speeds, where its momenta are those of the joints: the momenta of the result are
+    /// those of the speeds.
+    pub fn with_momenta(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.with_arguments(e, Quantity::Momentum)
+    }
+
+    fn with_arguments(&self, e: &[Expr<'g>], argument: fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
-        let given: Vec<Expr<'g>> = (0..n).map(|k| Quantity::Given(k).expr(g)).collect();
-        let native = transposed_times(&self.speeds.of_rates, &given);
-        replace_all(&self.written(e), &|s| match Quantity::of(s) {
-            Quantity::Given(k) => native.get(k).copied(),
-            _ => None,
+        let symbols: Vec<_> = (0..self.model.nv()).map(|k| argument(k).symbol()).collect();
+        let own: Vec<Expr<'g>> = symbols.iter().map(|s| g.symbol(*s)).collect();
+        let native = transposed_times(&self.speeds.of_rates, &own);
+        replace_all(&self.written(e), &|s| {
+            symbols.iter().position(|known| *known == s).and_then(|k| native.get(k)).copied()
         })
     }
 

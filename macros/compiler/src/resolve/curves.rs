@@ -13,9 +13,6 @@ use crate::language;
 use crate::mechanism::{Coordinate, LinkId, Pose, Quantity};
 use crate::syntax::{self, BinaryOp, Callee, ExprKind};
 
-/// The first number that a point is moved by, beyond those of laws such as `stretch`.
-const MOVES: usize = 1 << 19;
-
 impl<'g> Scope<'_, 'g> {
     /// Returns the axes that follow from a vector or a curve, in those of a place: `cylindrical(vector)`,
     /// `spherical(vector)`, `frenet(curve, coordinate)`.
@@ -189,7 +186,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         };
         // The point is moved by three numbers, and the field differentiated by them.
-        let moves = [0, 1, 2].map(|k| Quantity::Given(MOVES + k).symbol());
+        let moves = [0, 1, 2].map(|k| Quantity::Displacement(k).symbol());
         let by = Vec3(moves.map(|s| self.graph.symbol(s)));
         let pose = Pose { translation: placed.pose.translation + by, ..placed.pose.clone() };
         let moved = Placed { pose, ..placed.clone() };

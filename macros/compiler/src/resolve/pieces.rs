@@ -16,8 +16,6 @@ use crate::language::Callable;
 use crate::mechanism::Quantity;
 use crate::syntax::{self, ExprKind};
 
-/// Symbols for what decides begin here, beyond those of laws and surfaces.
-const FIRST: usize = 64;
 /// How far pieces may be apart where they meet, beside their size.
 const ROUNDING: f64 = 1e-9;
 /// Sizes of the numbers with which it is tried whether pieces meet.
@@ -95,7 +93,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         let depth = self.context.borrow().deciding.len();
-        let symbol = Quantity::Given(FIRST + depth).symbol();
+        let symbol = Quantity::Deciding(depth).symbol();
         self.context.borrow_mut().deciding.push((written.clone(), self.graph.symbol(symbol)));
         let read = pieces.map(|piece| self.scalar(piece, cx));
         self.context.borrow_mut().deciding.pop();

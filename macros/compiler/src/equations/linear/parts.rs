@@ -8,7 +8,7 @@ use crate::mechanism::{Equilibrium, Model, Quantity};
 /// Returns the symbol of a deviation: of the coordinate whose rate is velocity `k`; after these, of the
 /// states.
 pub fn deviation(k: usize) -> Quantity {
-    Quantity::Given(k)
+    Quantity::Deviation(k)
 }
 
 /// Returns the symbol of the multiplier of a constraint, at rest or as a deviation.
@@ -17,7 +17,7 @@ pub fn multiplier(k: usize) -> Quantity {
 }
 
 /// Symbol of the roots of the characteristic polynomial.
-pub const ROOT: Quantity = Quantity::Time;
+pub const ROOT: Quantity = Quantity::Laplace;
 
 /// Coefficients of the linear equations, evaluated at rest.
 pub struct Coefficients<'g> {
@@ -39,8 +39,8 @@ pub fn rows<'g>(model: &Model<'g>, balance: &[Expr<'g>], at: &Equilibrium<'g>) -
 /// Returns the rank of a symbol of the linear equations, which determines its position in a printed product.
 pub fn rank(symbol: Symbol) -> Rank {
     match Quantity::of(symbol) {
-        Quantity::Given(_) => Rank::Position,
-        Quantity::Velocity(_) | Quantity::Time => Rank::Rate,
+        Quantity::Deviation(_) => Rank::Position,
+        Quantity::Velocity(_) | Quantity::Laplace => Rank::Rate,
         Quantity::Acceleration(_) => Rank::Acceleration,
         Quantity::Input(_) | Quantity::Force(_) => Rank::Input,
         _ => Rank::Parameter,

@@ -56,11 +56,11 @@ impl<'a, 'g> Words<'a, 'g> {
         };
         let of = |k: usize| self.deviations.get(k).cloned().unwrap_or_else(|| state(k));
         match Quantity::of(symbol) {
-            Quantity::Given(k) => (of(k), 0),
+            Quantity::Deviation(k) => (of(k), 0),
             Quantity::Velocity(k) => (of(k), 1),
             Quantity::Acceleration(k) => (of(k), 2),
             Quantity::Force(k) => (format!("lambda{}", k + 1), 0),
-            Quantity::Time => (self.root.clone(), 0),
+            Quantity::Laplace => (self.root.clone(), 0),
             _ => name_of(self.model, &[], symbol),
         }
     }

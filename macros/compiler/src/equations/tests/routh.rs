@@ -46,7 +46,7 @@ const SPINNING: &str = "struct Spinning { m: f64, k: f64,
 fn at<'a>(model: &Model<'_>, seed: u64, p: &'a [f64], tau: &'a [f64]) -> impl Fn(Symbol) -> f64 + use<'a> {
     let symbol = state(model, seed);
     move |s| match Quantity::of(s) {
-        Quantity::Given(k) => p[k],
+        Quantity::Momentum(k) => p[k],
         Quantity::Force(k) => tau[k],
         _ => symbol(s),
     }

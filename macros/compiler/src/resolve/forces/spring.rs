@@ -59,7 +59,7 @@ impl<'g> Builder<'_, 'g> {
         let length =
             if stretch.signed && !free.is_zero() { stretch.value.call(Function::Abs) } else { stretch.value };
         let value = length - free;
-        let symbol = Quantity::Given(0).symbol();
+        let symbol = Quantity::Stretch.symbol();
         let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
         let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
         let energy = match law {
@@ -93,7 +93,7 @@ impl<'g> Builder<'_, 'g> {
                 _ => None,
             };
             if let Some((own, border, pieces)) = found {
-                let symbol = Quantity::Given(0).symbol();
+                let symbol = Quantity::Stretch.symbol();
                 let x = self.scope.graph.symbol(symbol);
                 let border = read(border, cx)? - (own - x);
                 let [below, above] = pieces.map(|piece| self.energy_of(piece, context, cx));
@@ -109,7 +109,7 @@ impl<'g> Builder<'_, 'g> {
     /// The energy of a force that is a polynomial in the stretch: its Taylor series, integrated.
     fn integral(&self, force: Expr<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
         let g = self.scope.graph;
-        let symbol = Quantity::Given(0).symbol();
+        let symbol = Quantity::Stretch.symbol();
         let x = g.symbol(symbol);
         let mut d = Derivative::with_respect_to(symbol, g);
         let (mut energy, mut derivative, mut power, mut factorial) = (g.zero(), force, x, 1.0);

@@ -110,9 +110,16 @@ impl Values {
             Quantity::Input(k) => get(&self.u, k),
             Quantity::Parameter(k) => get(&self.parameters, k),
             Quantity::Prepared(k) => get(numbers, k),
-            Quantity::Given(k) => get(&self.given, k),
+            Quantity::Given(k) | Quantity::Momentum(k) => get(&self.given, k),
             Quantity::ContactForce(k) => get(&self.contact_forces, k),
-            Quantity::Reaction(_) | Quantity::PassiveForce(_) | Quantity::PassiveDerivative(_) => f64::NAN,
+            Quantity::Reaction(_)
+            | Quantity::PassiveForce(_)
+            | Quantity::PassiveDerivative(_)
+            | Quantity::Deviation(_)
+            | Quantity::Laplace
+            | Quantity::Stretch
+            | Quantity::Displacement(_)
+            | Quantity::Deciding(_) => f64::NAN,
         }
     }
 
