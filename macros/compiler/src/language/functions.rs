@@ -181,12 +181,15 @@ table! {
         InstantCenter = row("instant_center", "", (MOVING, "write `instant_center(body / frame)`"),
             Motion, Places(LENGTH));
         /// The vector from a body's origin to the point without acceleration, for planar motion.
-        AccelerationCenter = row("acceleration_center", "", (MOVING, "write `acceleration_center(body / frame)`"),
+        AccelerationCenter = row("acceleration_center", "",
+            (MOVING, "write `acceleration_center(body / frame)`"),
             Acceleration, Places(LENGTH));
         /// The vector from a body's origin to the nearest point of its screw axis.
-        ScrewAxis = row("screw_axis", "", (MOVING, "write `screw_axis(body / frame)`"), Motion, Places(LENGTH));
+        ScrewAxis = row("screw_axis", "",
+            (MOVING, "write `screw_axis(body / frame)`"), Motion, Places(LENGTH));
         /// The advance of a body along its screw axis per radian.
-        ScrewPitch = row("screw_pitch", "", (MOVING, "write `screw_pitch(body / frame)`"), Motion, Places(LENGTH));
+        ScrewPitch = row("screw_pitch", "",
+            (MOVING, "write `screw_pitch(body / frame)`"), Motion, Places(LENGTH));
         /// The projection onto a line.
         Projector = row("projector", "", (ONE, "write `projector(a)`"), Arguments, Of(PLAIN));
         /// The matrix of a cross product.
@@ -209,10 +212,12 @@ table! {
         Trace = row("trace", "", (ONE, "write `trace(a)`"), Arguments, LikeFirst);
         /// The curvature of a curve.
         Curvature = row("curvature", "",
-            (CURVE, "write `curvature(curve, s)`, a vector that depends on a coordinate `s`"), Arguments, Inverse);
+            (CURVE, "write `curvature(curve, s)`, a vector that depends on a coordinate `s`"),
+            Arguments, Inverse);
         /// The torsion of a curve.
         Torsion = row("torsion", "",
-            (CURVE, "write `torsion(curve, s)`, a vector that depends on a coordinate `s`"), Arguments, Inverse);
+            (CURVE, "write `torsion(curve, s)`, a vector that depends on a coordinate `s`"),
+            Arguments, Inverse);
         /// The length of a taut cable around a surface.
         Cable = row("cable", "",
             ("two points and a surface",
@@ -225,7 +230,8 @@ table! {
         /// The power of a force element, an input or a contact.
         Power = row("power", "", ("one force element", "write `power(spring)`"), Power, Of(POWER));
         /// The force that a joint transmits.
-        ReactionForce = row("reaction_force", "force reaction", ("one joint", "write `reaction_force(hinge)`"),
+        ReactionForce = row("reaction_force", "force reaction",
+            ("one joint", "write `reaction_force(hinge)`"),
             Reaction, Of(FORCE));
         /// The torque that a joint transmits.
         ReactionTorque = row("reaction_torque", "torque", ("one joint", "write `reaction_torque(hinge)`"),
@@ -246,7 +252,8 @@ table! {
         SpeedOfSound = row("speed_of_sound", "", (ONE, "write `speed_of_sound(a)`"),
             Arguments, OfHeight(Some(SPEED)));
         /// The angle of attack of a body with a velocity.
-        AngleOfAttack = row("angle_of_attack", "", (TWO, "write `angle_of_attack(a, b)`"), Arguments, Of(PLAIN));
+        AngleOfAttack = row("angle_of_attack", "",
+            (TWO, "write `angle_of_attack(a, b)`"), Arguments, Of(PLAIN));
         /// The sideslip of a body with a velocity.
         Sideslip = row("sideslip", "", (TWO, "write `sideslip(a, b)`"), Arguments, Of(PLAIN));
         /// The heading of a body.

@@ -1,6 +1,6 @@
-//! The language as data: functions, solids, surfaces, rotations and elements are rows of tables, each with its
-//! name, what other tools call it, its arguments with their dimensions, and what the other stages need to know
-//! of it. The parser turns names into ids of rows; later stages match on ids and read the rows.
+//! The language as data: functions, solids, surfaces, rotations and elements are rows of tables. A row has
+//! the name, its synonyms in other tools, the arguments with their dimensions, and the properties that other
+//! stages need. The parser turns names into ids of rows; later stages match on ids and read the rows.
 
 /// Declares a table: an enum with an id for each row, and the rows. Rows have the fields `name` and
 /// `synonyms`: the words of other tools, lower case without underscores, separated by spaces.

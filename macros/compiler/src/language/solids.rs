@@ -65,7 +65,9 @@ table! {
         /// A cylinder with a coaxial hole.
         Tube = SolidRow {
             name: "tube", synonyms: "pipe hollowcylinder",
-            arguments: &[MASS, Argument::length("inner radius"), Argument::length("outer radius"), HEIGHT, AXIS],
+            arguments: &[
+                MASS, Argument::length("inner radius"), Argument::length("outer radius"), HEIGHT, AXIS,
+            ],
             piece: Some(PieceKind::Tube),
             inertia: |n, axis| {
                 let radii = n[1].square() + n[2].square();
@@ -132,7 +134,9 @@ table! {
         /// An ellipsoid.
         Ellipsoid = SolidRow {
             name: "ellipsoid", synonyms: "",
-            arguments: &[MASS, Argument::length("x radius"), Argument::length("y radius"), Argument::length("z radius")],
+            arguments: &[
+                MASS, Argument::length("x radius"), Argument::length("y radius"), Argument::length("z radius"),
+            ],
             piece: Some(PieceKind::Ellipsoid),
             inertia: |n, _| of_three_lengths(n[0] * 0.2, n),
         };

@@ -88,7 +88,8 @@ table! {
 }
 
 impl SurfaceId {
-    /// Returns the surface with a name and a number of arguments; another one of this name if none has as many.
+    /// Returns the surface with a name and a number of arguments; if none has this number, another surface
+    /// of this name.
     pub fn of_call(name: &str, count: usize) -> Option<SurfaceId> {
         let named = || SurfaceId::ALL.iter().copied().filter(|id| id.name() == name);
         named().find(|id| id.row().arguments.len() == count).or_else(|| named().next())

@@ -147,8 +147,8 @@ impl<'g> Scope<'_, 'g> {
     }
 }
 
-/// Motions of a joint whose own have a mistake.
-pub fn somehow<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g>> {
+/// Returns motions that replace those of a joint with an error.
+pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g>> {
     use Elementary::{Slide, Turn};
     let axis = |k: usize| {
         let mut n = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];

@@ -21,8 +21,8 @@ pub struct KeyRow {
     pub quantity: ForceQuantity,
 }
 
-/// A quantity of a force element, whose dimension follows from the coordinate or the distance that the element
-/// acts on.
+/// A quantity of a force element. Its dimension follows from the coordinate or the distance on which the
+/// element acts.
 #[derive(Debug)]
 pub enum ForceQuantity {
     /// Force by displacement.
@@ -185,7 +185,8 @@ table! {
                 ("length l l0 x0 restlength naturallength unstretchedlength freelen rest natural free equilibrium", "free_length"),
                 ("angle theta0 phi0 restangle naturalangle q0 rest natural free equilibrium", "free_angle"),
                 ("inertance inerter", NO_INERTANCE),
-                ("damping c d damper", "a spring does not damp: put a `Dashpot` beside it, a field of its own"),
+                ("damping c d damper",
+                    "a spring does not damp: put a `Dashpot` beside it, a field of its own"),
                 ("f law", "force"),
                 ("potential u", "energy"),
             ],
@@ -207,7 +208,8 @@ table! {
                 ("c d b damp dampingcoefficient coefficient viscosity viscous resistance", "damping"),
                 ("inertance inerter", NO_INERTANCE),
                 ("coulomb friction mu dry", "dry friction is a `Friction`, a field of its own"),
-                ("stiffness k", "a dashpot does not spring back: put a `Spring` beside it, a field of its own"),
+                ("stiffness k",
+                    "a dashpot does not spring back: put a `Spring` beside it, a field of its own"),
                 ("f law", "force"),
             ],
             example: "#[acts(on = joint, damping = c)]",
