@@ -1,7 +1,6 @@
 //! Cables that run around spheres and cylinders.
 
-use super::functions::Call;
-use super::quantities::flatten;
+use super::call::{Call, flatten};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};

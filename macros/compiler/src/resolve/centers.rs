@@ -1,8 +1,8 @@
 //! Points that a motion singles out: instantaneous centres, the screw axis, the centre of percussion. Each is
 //! a vector from a place of the body.
 
-use super::functions::Call;
-use super::quantities::{flatten, vector};
+use super::call::{Call, flatten};
+use super::quantities::vector;
 use super::scope::{Allowed, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::sample::always;

@@ -30,7 +30,7 @@ impl<'g> Builder<'_, 'g> {
         let motions = self.scope.motions(joint, cx);
         let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
         let start = self.joint_parent(&joint.parent.body, cx);
-        // What has a mistake is placed default_motions, so that what depends on it is read as well.
+        // A joint with an error gets default motions, so that its dependents are checked as well.
         let motions = motions.unwrap_or_else(|| joint::default_motions(self.scope.graph, joint));
         let on_parent = on_parent.unwrap_or_else(|| self.somewhere(false));
         let on_child = on_child.unwrap_or_else(|| self.somewhere(false));

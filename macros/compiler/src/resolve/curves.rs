@@ -1,6 +1,6 @@
 //! Curves and fields: what follows from derivatives of an expression by a coordinate or a place.
 
-use super::functions::Call;
+use super::call::Call;
 use super::quantities::{in_links, vector};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;

@@ -1,8 +1,9 @@
 //! Functions of flight: the standard atmosphere, and the angles of bodies and velocities whose axes are
 //! forward, right and down, the ground's north, east and down.
 
+use super::call::Call;
 use super::expression::sum;
-use super::functions::{Call, length};
+use super::functions::length;
 use super::scope::{Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, air};

@@ -1,7 +1,7 @@
 //! Calls of functions of expressions, and their values: one arm for each function.
 
+use super::call::Call;
 use super::momenta::Sum;
-use super::quantities::flatten;
 use super::scope::{Axes, Scope, Value};
 use super::slips::{DOMAIN, check_angle, degrees};
 use crate::diag::{Diagnostics, Place};
@@ -9,42 +9,6 @@ use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
 use crate::kinematics::unit;
 use crate::language::{Callable, FunctionId, Solid};
 use crate::syntax::{self, Callee, words};
-
-/// A call of a function of the language.
-#[derive(Clone, Copy)]
-pub struct Call<'a> {
-    /// The function.
-    pub id: FunctionId,
-    /// Position of its name.
-    pub place: &'a Place,
-    /// The arguments as written.
-    pub arguments: &'a [syntax::Expr],
-}
-
-impl<'a> Call<'a> {
-    /// Returns the name of the function.
-    pub fn name(&self) -> &'static str {
-        self.id.name()
-    }
-
-    /// Reports wrong arguments.
-    pub fn reject<T>(&self, cx: &mut Diagnostics) -> Option<T> {
-        let row = self.id.row();
-        cx.error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes)).help(row.usage);
-        None
-    }
-
-    /// Returns the arguments, or reports a wrong number of them.
-    pub fn take<const N: usize>(&self, cx: &mut Diagnostics) -> Option<&'a [syntax::Expr; N]> {
-        self.arguments.try_into().ok().or_else(|| self.reject(cx))
-    }
-
-    /// Returns the parts between the slashes of the only argument, `y / x / A`; nothing if there are several
-    /// arguments.
-    pub fn parts(&self) -> Vec<&'a syntax::Expr> {
-        if let [one] = self.arguments { flatten(one) } else { Vec::new() }
-    }
-}
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the value of a call: of a function of the language, a table of the user's, or a law in two

@@ -1,8 +1,8 @@
 //! Physical matrices, which take vectors to vectors: projectors, rotations, cross products, inertias, with
 //! their products, transposes and rates.
 
-use super::functions::Call;
-use super::quantities::{flatten, in_links, vector};
+use super::call::{Call, flatten};
+use super::quantities::{in_links, vector};
 use super::resolved::Resolved;
 use super::scope::{Allowed, Axes, Kinematics, Placed, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};

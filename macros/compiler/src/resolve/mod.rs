@@ -7,6 +7,7 @@ mod axis;
 mod build;
 mod builder;
 mod cables;
+mod call;
 mod carriers;
 mod centers;
 mod chain;

@@ -2,8 +2,8 @@
 //! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`,
 //! `moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
 
-use super::functions::Call;
-use super::quantities::{flatten, vector};
+use super::call::{Call, flatten};
+use super::quantities::vector;
 use super::scope::{Allowed, MassProperties, Placed, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};

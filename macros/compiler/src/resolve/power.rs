@@ -1,7 +1,7 @@
 //! The power of single force elements, for the outputs that name them: `power(spring)`.
 
 use super::builder::Builder;
-use super::functions::Call;
+use super::call::Call;
 use super::scope::{Allowed, Delivered, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};

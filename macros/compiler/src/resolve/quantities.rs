@@ -1,7 +1,7 @@
 //! What names mean once bodies are placed: axes of bodies and frames, points, coordinates, time, inputs, and
 //! the kinematic quantities in slash notation: `r(y / x)`, `v(y / x / A)`, `omega(B / A)`.
 
-use super::functions::Call;
+use super::call::Call;
 use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
@@ -344,17 +344,4 @@ fn link_of(axes: &Axes) -> Option<LinkId> {
         Axes::Link(link) => *link,
         Axes::Own | Axes::Of(_) => None,
     }
-}
-
-/// The parts of `a / b / c`.
-pub(super) fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
-    let mut parts = Vec::new();
-    let mut at = e;
-    while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
-        parts.push(&**right);
-        at = left;
-    }
-    parts.push(at);
-    parts.reverse();
-    parts
 }

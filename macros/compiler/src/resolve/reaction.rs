@@ -5,7 +5,7 @@
 //! constraints do.
 
 use super::builder::Builder;
-use super::functions::Call;
+use super::call::Call;
 use super::joint::own_coordinate;
 use super::scope::{Allowed, Axes, Scope, Value};
 use crate::diag::Diagnostics;

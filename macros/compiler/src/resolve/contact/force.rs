@@ -5,7 +5,7 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{symbols_in, velocity_gradient};
 use crate::mechanism::{LinkId, Quantity};
-use crate::resolve::functions::Call;
+use crate::resolve::call::Call;
 use crate::resolve::scope::{Allowed, Axes, Scope, Value};
 use crate::syntax;
 

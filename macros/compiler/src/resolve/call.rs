@@ -1,0 +1,54 @@
+//! Calls of functions of the language, with their arguments as written.
+
+use crate::diag::{Diagnostics, Place};
+use crate::language::FunctionId;
+use crate::syntax::{self, BinaryOp, ExprKind};
+
+/// A call of a function of the language.
+#[derive(Clone, Copy)]
+pub struct Call<'a> {
+    /// The function.
+    pub id: FunctionId,
+    /// Position of its name.
+    pub place: &'a Place,
+    /// The arguments as written.
+    pub arguments: &'a [syntax::Expr],
+}
+
+impl<'a> Call<'a> {
+    /// Returns the name of the function.
+    pub fn name(&self) -> &'static str {
+        self.id.name()
+    }
+
+    /// Reports wrong arguments.
+    pub fn reject<T>(&self, cx: &mut Diagnostics) -> Option<T> {
+        let row = self.id.row();
+        cx.error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes)).help(row.usage);
+        None
+    }
+
+    /// Returns the arguments, or reports a wrong number of them.
+    pub fn take<const N: usize>(&self, cx: &mut Diagnostics) -> Option<&'a [syntax::Expr; N]> {
+        self.arguments.try_into().ok().or_else(|| self.reject(cx))
+    }
+
+    /// Returns the parts between the slashes of the only argument, `y / x / A`; nothing if there are several
+    /// arguments.
+    pub fn parts(&self) -> Vec<&'a syntax::Expr> {
+        if let [one] = self.arguments { flatten(one) } else { Vec::new() }
+    }
+}
+
+/// Returns the parts of `a / b / c`.
+pub fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
+    let mut parts = Vec::new();
+    let mut at = e;
+    while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &at.kind {
+        parts.push(&**right);
+        at = left;
+    }
+    parts.push(at);
+    parts.reverse();
+    parts
+}
