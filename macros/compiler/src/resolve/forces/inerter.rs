@@ -23,7 +23,7 @@ impl<'g> Builder<'_, 'g> {
                     .help("it resists accelerations as a mass does: write its size");
             }
             self.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[b]);
-            self.model.inertances.push(Inertance { rate: rate, inertance: b });
+            self.model.inertances.push(Inertance { rate, inertance: b });
         }
     }
 }

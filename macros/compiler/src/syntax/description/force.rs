@@ -30,6 +30,7 @@ pub struct Drive {
 
 /// What a force element of a file acts on.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there are few of them, and they are not moved")]
 pub enum DriveOn {
     /// A weighted sum of coordinates: the joints with their weights; each has one coordinate.
     Sum(Vec<(Name, f64)>),
