@@ -58,8 +58,9 @@ table! {
             name: "cylinder", synonyms: "",
             arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cylinder),
             inertia: |n, axis| {
+                let axial = n[0] * n[1].square() * 0.5;
                 let transverse = n[1].square() * 0.25 + n[2].square() * (1.0 / 12.0);
-                axisymmetric(n[0] * n[1].square() * 0.5, n[0] * transverse, axis)
+                axisymmetric(axial, n[0] * transverse, axis)
             },
         };
         /// A cylinder with a coaxial hole.
@@ -79,8 +80,9 @@ table! {
             name: "cone", synonyms: "",
             arguments: &[MASS, RADIUS, HEIGHT, AXIS], piece: Some(PieceKind::Cone),
             inertia: |n, axis| {
+                let axial = n[0] * n[1].square() * 0.3;
                 let transverse = n[1].square() * 0.15 + n[2].square() * 0.0375;
-                axisymmetric(n[0] * n[1].square() * 0.3, n[0] * transverse, axis)
+                axisymmetric(axial, n[0] * transverse, axis)
             },
         };
         /// A cylinder of the given height between two half balls.
@@ -167,8 +169,8 @@ fn diagonal(moments: [Expr<'_>; 3]) -> Sym3<'_> {
 
 /// Returns moments proportional to the sums of squares of two of three lengths.
 fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
-    let [x, y, z] = [1, 2, 3].map(|k| n[k].square());
-    diagonal([m * (y + z), m * (x + z), m * (x + y)])
+    let square = |k: usize| n[k].square();
+    diagonal([m * (square(2) + square(3)), m * (square(1) + square(3)), m * (square(1) + square(2))])
 }
 
 /// `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, `t` about all normals.

@@ -26,25 +26,28 @@ impl<'g> Scope<'_, 'g> {
     /// with the velocity `v` of the origin.
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
+        let square = w.dot(w);
         if !always(w.dot(v), 0.0) {
             cx.error(call.place.clone(), "this body may slide along the axis that it turns about: no point of it rests")
                 .help("the nearest point of that axis is `screw_axis(body / frame)`, and `screw_pitch(body / frame)` tells how it slides");
             return None;
         }
-        Some(nearest_of_axis(link, v, w))
+        Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the screw axis
     /// (Mozzi, Chasles), `ω × v / ω²`.
     pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
-        Some(nearest_of_axis(link, v, w))
+        let square = w.dot(w);
+        Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
     pub fn screw_pitch(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
-        Some(Value::Scalar(w.dot(v) / w.dot(w)))
+        let square = w.dot(w);
+        Some(Value::Scalar(w.dot(v) / square))
     }
 
     /// `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to the point
@@ -52,12 +55,12 @@ impl<'g> Scope<'_, 'g> {
     pub fn acceleration_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let Relative { link, w, rates, .. } = self.relative(call, Allowed::Acceleration, cx)?;
         let [a, alpha] = rates?;
+        let square = w.dot(w);
         if !(vanishes(w.cross(alpha)) && always(w.dot(a), 0.0)) {
             cx.error(call.place.clone(), "this body does not move in a plane")
                 .help("an acceleration centre is that of a motion in a plane; accelerations of points are `a(point / point / frame)`");
             return None;
         }
-        let square = w.dot(w);
         let center = (a * square + alpha.cross(a)).map(|c| c / (square.square() + alpha.dot(alpha)));
         Some(vector(vec![(link, center)]))
     }
@@ -159,12 +162,6 @@ impl<'g> Scope<'_, 'g> {
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
         Some(vector(vec![(link, arm * share)]))
     }
-}
-
-/// Returns the vector from a body's origin to the nearest point of its screw axis.
-fn nearest_of_axis<'g>(link: Option<LinkId>, v: Vec3<'g>, w: Vec3<'g>) -> Value<'g> {
-    let square = w.dot(w);
-    vector(vec![(link, w.cross(v).map(|c| c / square))])
 }
 
 /// True for a vector that is zero for all values of what it depends on.

@@ -140,10 +140,10 @@ impl<'g> Scope<'_, 'g> {
         if self.confused(solid, arguments, cx) {
             return None;
         }
-        let (mut numbers, mut axis, mut complete) = (Vec::new(), Vec3::zero(self.graph), true);
+        let (mut numbers, mut axis, mut complete) = (Vec::new(), None, true);
         for (e, argument) in arguments.iter().zip(row.arguments) {
             if argument.kind.is_direction() {
-                axis = self.unit_vector(e, false, cx)?;
+                axis = Some(self.unit_vector(e, false, cx)?);
                 continue;
             }
             match self.scalar(e, cx) {
@@ -155,7 +155,7 @@ impl<'g> Scope<'_, 'g> {
                 None => complete = false,
             }
         }
-        complete.then(|| (row.inertia)(&numbers, axis))
+        complete.then(|| (row.inertia)(&numbers, axis.unwrap_or_else(|| Vec3::zero(self.graph))))
     }
 
     /// Reports the first argument that is a vector instead of a scalar or the other way round: most likely

@@ -133,11 +133,11 @@ impl<'g> Builder<'_, 'g> {
             }
             _ => {}
         }
-        let (mut numbers, mut axis) = (Vec::new(), Some(Vec3::zero(self.scope.graph)));
+        let (mut numbers, mut axis) = (Vec::new(), None);
         for (e, Argument { name, kind }) in arguments.iter().zip(row.arguments) {
             let context = Context::new(Allowed::Constant, None);
             if kind.is_direction() {
-                axis = self.scope.in_context(context, |s| s.unit_vector(e, false, cx));
+                axis = Some(self.scope.in_context(context, |s| s.unit_vector(e, false, cx))?);
                 continue;
             }
             let value = self.scope.in_context(context, |s| s.scalar(e, cx))?;
@@ -150,7 +150,10 @@ impl<'g> Builder<'_, 'g> {
             self.scope.require(rule, figure, &[value]);
             numbers.push(value);
         }
-        Some(Surface { frame: frame?, form: form(id, &numbers, axis?)? })
+        Some(Surface {
+            frame: frame?,
+            form: form(id, &numbers, axis.unwrap_or_else(|| Vec3::zero(self.scope.graph)))?,
+        })
     }
 }
 

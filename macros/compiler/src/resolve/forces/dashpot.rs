@@ -6,12 +6,13 @@ use crate::expr::Expr;
 use crate::mechanism::{Dashpot, Load, Pose, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::{Allowed, Context};
+use crate::resolve::terms::Stretch;
 use crate::syntax::{Action, Key};
 
 impl<'g> Builder<'_, 'g> {
     /// Adds a dashpot. A linear one on a coordinate is kept as such.
     pub(super) fn add_dashpot(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
-        let (damping, rate) = (action.get(Key::Damping), on.stretch.rate);
+        let damping = action.get(Key::Damping);
         if let (Some(written), Some(on)) = (damping, on.coordinate) {
             let damping = self.scope.scalar(written, cx);
             if let Some(d) = damping.and_then(|d| d.value()).filter(|d| *d < 0.0) {
@@ -23,7 +24,10 @@ impl<'g> Builder<'_, 'g> {
                 self.scope.require(Rule::NotNegative, figure, &[damping]);
                 self.model.dashpots.push(Dashpot { on, damping });
             }
-        } else if let Some(damping) = damping {
+            return;
+        }
+        let Some(Stretch { rate, .. }) = self.stretch_on(on) else { return };
+        if let Some(damping) = damping {
             let force = self.scope.scalar(damping, cx).map(|damping| damping * rate);
             self.push_damping(rate, force);
         } else if let Some(force) = action.get(Key::Force) {

@@ -14,7 +14,8 @@ impl<'g> Builder<'_, 'g> {
     /// Adds a friction element.
     pub(super) fn add_friction(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
         let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
-        self.push_friction(on.stretch.rate, all.map(|key| action.get(key)), action.on.place(), cx);
+        let Some(stretch) = self.stretch_on(on) else { return };
+        self.push_friction(stretch.rate, all.map(|key| action.get(key)), action.on.place(), cx);
     }
 
     /// Adds dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous friction:

@@ -11,9 +11,10 @@ use crate::syntax::{self, Action, ExprKind, Key, Target};
 impl<'g> Builder<'_, 'g> {
     /// Adds an attraction between two points.
     pub(super) fn add_attraction(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
+        let Some(stretch) = self.stretch_on(on) else { return };
         let strength = action.get(Key::Strength).and_then(|e| self.scope.scalar(e, cx));
         if let Some(strength) = strength {
-            self.push_attraction(&on.stretch, strength);
+            self.push_attraction(&stretch, strength);
         }
     }
 

@@ -10,8 +10,8 @@ use crate::syntax::{self, Action, Key};
 impl<'g> Builder<'_, 'g> {
     /// Adds an inerter.
     pub(super) fn add_inerter(&mut self, action: &Action, on: ActedOn<'g>, cx: &mut Diagnostics) {
-        if let Some(inertance) = action.get(Key::Inertance) {
-            self.push_inertance(on.stretch.rate, inertance, cx);
+        if let (Some(inertance), Some(stretch)) = (action.get(Key::Inertance), self.stretch_on(on)) {
+            self.push_inertance(stretch.rate, inertance, cx);
         }
     }
 

@@ -84,10 +84,10 @@ impl<'g> Builder<'_, 'g> {
     fn acted_on(&self, action: &Action, cx: &mut Diagnostics) -> Option<ActedOn<'g>> {
         match &action.on {
             On::On(e) => match self.target(e, cx)? {
-                Target::Coordinate(c, angle) => {
-                    Some(ActedOn { stretch: self.coordinate_stretch(&c), angle, coordinate: Some(c) })
+                Target::Coordinate(c, angle) => Some(ActedOn { stretch: None, angle, coordinate: Some(c) }),
+                Target::Expression(stretch) => {
+                    Some(ActedOn { stretch: Some(stretch), angle: None, coordinate: None })
                 }
-                Target::Expression(stretch) => Some(ActedOn { stretch, angle: None, coordinate: None }),
                 Target::Point(_) => {
                     let phrase = action.kind.phrase();
                     cx.error(
@@ -99,17 +99,22 @@ impl<'g> Builder<'_, 'g> {
                 }
             },
             On::Between(a, b) => {
-                let stretch = self.distance(a, b, cx)?;
+                let stretch = Some(self.distance(a, b, cx)?);
                 Some(ActedOn { stretch, angle: Some(false), coordinate: None })
             }
         }
+    }
+
+    /// Returns the value and the rate of the length or the angle that an element acts on.
+    fn stretch_on(&self, on: ActedOn<'g>) -> Option<Stretch<'g>> {
+        on.stretch.or_else(|| on.coordinate.map(|c| self.coordinate_stretch(&c)))
     }
 }
 
 /// The length or the angle that a force element acts on.
 pub struct ActedOn<'g> {
-    /// Its value and its rate.
-    pub stretch: Stretch<'g>,
+    /// Its value and its rate; `None` for a coordinate.
+    pub stretch: Option<Stretch<'g>>,
     /// True for an angle, nothing if it may be either.
     pub angle: Option<bool>,
     /// The coordinate that it is.

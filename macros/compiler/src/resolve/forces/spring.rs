@@ -42,8 +42,12 @@ impl<'g> Builder<'_, 'g> {
             if let (Some(stiffness), Some(free)) = (stiffness, free) {
                 self.model.springs.push(Spring { on, stiffness, free });
             }
-        } else if let Some(free) = self.free_length(action, on.angle, cx) {
-            self.add_spring_law(on.stretch, &law, free, cx);
+            return;
+        }
+        let angle = on.angle;
+        let Some(stretch) = self.stretch_on(on) else { return };
+        if let Some(free) = self.free_length(action, angle, cx) {
+            self.add_spring_law(stretch, &law, free, cx);
         }
     }
 
