@@ -65,7 +65,14 @@ fn view() -> Command {
             "Motion to show, instead of simulating one: comma-separated values with the columns t and q.…",
         )
         .value_parser(value_parser!(PathBuf))
-        .conflicts_with_all(["duration", "inputs"]),
+        .conflicts_with_all([
+            "duration",
+            "every",
+            "guess",
+            "inputs",
+            "tolerance",
+            "without-contacts",
+        ]),
     )
     .arg(
         text("meshes", "FOLDER", "Folder of the meshes of a robot file [default: next to it]")

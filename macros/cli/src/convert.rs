@@ -11,7 +11,7 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{
     Body, ConstraintKind, Description, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, GROUND, Inertias,
-    Joint, JointKind, Limit, Name, Wrench,
+    Joint, JointKind, Limit, Name, Requests, Wrench,
 };
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -38,6 +38,12 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let source = input.checked(source, cx)?;
     if !source.mechanism.shell.file_fields.is_empty() {
         return Err(Stop::Failure("`parameters` is for structs that go on naming the file".to_string()));
+    }
+    if source.mechanism.requests != Requests::default() {
+        return Err(Stop::Failure(
+            "`convert` takes the options that say how the file is read: write those that ask for functions into the struct"
+                .to_string(),
+        ));
     }
     let description = &source.mechanism.description;
     let mut struct_of = Struct::new(description);
@@ -123,6 +129,12 @@ impl<'a> Struct<'a> {
             self.named(&format!("#[constraint({value}{other})]"), named, kind);
         }
         d.limits.iter().for_each(|limit| self.limit(limit));
+        if d.limits.iter().any(|limit| limit.restitution.is_some()) {
+            self.notes.push("limits are bounds here, and no stops".to_string());
+        }
+        if !d.contacts.is_empty() {
+            self.notes.push(format!("contacts, which `#[contact]` declares: {}", d.contacts.len()));
+        }
         let mut options =
             vec![format!("gravity = {}", d.gravity.as_ref().map_or("0 * z".to_string(), written::gravity))];
         match d.inertias {
@@ -133,8 +145,9 @@ impl<'a> Struct<'a> {
         let file = input.file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let mut text = format!("use linkwork::prelude::*;\n\n/// From `{file}`.\n");
         self.notes.dedup();
-        let aside: Vec<String> =
-            d.left_out.iter().chain(&self.notes).map(|line| line.replace('\n', " ")).collect();
+        let rounded = d.snapped.iter().map(|line| format!("rounded: {line}"));
+        let aside = d.left_out.iter().chain(&self.notes).cloned().chain(rounded);
+        let aside: Vec<String> = aside.map(|line| line.replace('\n', " ")).collect();
         if !aside.is_empty() {
             text.push_str("///\n/// What is different in the file, or left out:\n");
             aside.iter().for_each(|line| {

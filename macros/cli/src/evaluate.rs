@@ -65,7 +65,10 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     pub fn validate(&self) -> Result<(), Stop> {
         use linkwork::__private::{Figure, Rule, validate};
         use linkwork_compiler::mechanism::Rule as Known;
-        let Some(values) = self.called("__figures", Values::default()) else { return Ok(()) };
+        if self.model.requirements.is_empty() {
+            return Ok(());
+        }
+        let values = self.called("__figures", Values::default()).ok_or_else(|| no_function("__figures"))?;
         // Leaking is acceptable, since the process ends soon.
         let kept = |text: &str| -> &'static str { Box::leak(text.to_string().into_boxed_str()) };
         let figures = self.model.requirements.iter().map(|requirement| Figure {
@@ -162,22 +165,32 @@ impl<'a, 'g> Evaluated<'a, 'g> {
         a
     }
 
-    /// Checks that the functions which accelerations are computed with exist.
+    /// Checks that the functions exist with which accelerations and initial states are computed.
     ///
     /// # Errors
     ///
     /// An internal error that names a missing function.
     pub fn require_dynamics(&self) -> Result<(), Stop> {
-        let laws: &[&str] = match self.is_constrained() {
-            false => &["forward_dynamics"],
-            true => &["mass_matrix", "bias_forces", "constraint_jacobian", "constraint_bias"],
+        let mut names = match self.is_constrained() {
+            false => vec!["forward_dynamics"],
+            true => vec![
+                "mass_matrix",
+                "bias_forces",
+                "constraint_jacobian",
+                "constraint_bias",
+                "constraint_rates",
+                "constraint_residuals",
+            ],
         };
+        names.push("generalized_forces");
+        if self.model.speeds.is_some() {
+            names.extend(["rates_of_speeds", "speeds_of_rates"]);
+        }
         let rates: Vec<String> = self.states.iter().map(|(name, _)| rate_of(name)).collect();
-        let names =
-            laws.iter().copied().chain(["generalized_forces"]).chain(rates.iter().map(String::as_str));
+        names.extend(rates.iter().map(String::as_str));
         match names.into_iter().find(|name| self.find(name).is_none()) {
             None => Ok(()),
-            Some(name) => Err(Stop::Failure(format!("internal error of Linkwork: no function `{name}`"))),
+            Some(name) => Err(no_function(name)),
         }
     }
 
@@ -298,11 +311,11 @@ impl<'a, 'g> Evaluated<'a, 'g> {
             self.run(program, Values { t, q, v: &v, x, given, ..Values::default() })
         };
         for link in &self.output.links {
-            let parent = link.parent.and_then(|k| links.get(k)).map_or(&GROUND[..], Vec::as_slice);
+            let parent = link.parent.map_or(&GROUND[..], |k| &links[k][..]);
             let placed = at(&link.placement, parent);
             links.push(placed);
         }
-        let frame = |link: Option<usize>| link.and_then(|k| links.get(k)).map_or(&GROUND[..], Vec::as_slice);
+        let frame = |link: Option<usize>| link.map_or(&GROUND[..], |k| &links[k][..]);
         let placed = self.output.frames.iter().map(|f| at(&f.placement, frame(f.link)));
         placed
             .map(|n| {
@@ -344,6 +357,11 @@ impl<'a, 'g> Evaluated<'a, 'g> {
     }
 }
 
+/// Returns the internal error for a function that does not exist.
+fn no_function(name: &str) -> Stop {
+    Stop::Failure(format!("internal error of Linkwork: no function `{name}`"))
+}
+
 /// Returns the name of the function for the rate of a state of first order.
 fn rate_of(state: &str) -> String {
     format!("{state}{RATE_OF_STATE}")
@@ -374,8 +392,13 @@ mod tests {
             #[acts(on = plane.x)] push: Force,";
         let held = format!("{cart} #[constraint(plane.y = 3 * t)] drive: Holonomic,");
         let free = ["generalized_forces", "forward_dynamics"];
-        let constrained =
-            ["generalized_forces", "mass_matrix", "bias_forces", "constraint_jacobian", "constraint_bias"];
+        let constrained = [
+            "generalized_forces",
+            "mass_matrix",
+            "constraint_bias",
+            "constraint_rates",
+            "constraint_residuals",
+        ];
         for (fields, names) in [(cart, &free[..]), (&held, &constrained)] {
             let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
             let item = format!("struct Machine {{ {fields} }}").parse().unwrap();

@@ -5,7 +5,7 @@ use crate::Stop;
 use crate::commands::given;
 use crate::input::Input;
 use crate::library;
-use crate::motion::parse;
+use crate::motion::values;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::c::{self, Options};
@@ -29,11 +29,10 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
     let kinematic = description.inertias == Inertias::None;
     source.mechanism.requests.derivatives |= !(matches.get_flag("no-derivatives") || kinematic);
     let prefix = given(matches, "prefix").unwrap_or_default().to_string();
-    let fixed: Result<Vec<(String, f64)>, Stop> = (matches.get_many::<String>("set").into_iter().flatten())
-        .map(|given| parse("--set", given).map(|(name, value)| (name.to_string(), value)))
-        .collect();
-    let casadi = if matches.get_flag("casadi") { Some(fixed?) } else { None };
-    let files = export_c(&source, &Options { prefix, single, casadi }, cx);
+    let fixed = values("set", matches)?;
+    let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
+    let casadi = matches.get_flag("casadi").then(|| fixed.collect());
+    let files = export_c(&source, &Options { prefix, single, casadi, ..Options::default() }, cx);
     let files = input.checked(files, cx)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     std::fs::create_dir_all(&folder)

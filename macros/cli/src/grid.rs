@@ -147,7 +147,9 @@ pub fn given(matches: &ArgMatches, tables: &[(String, usize)]) -> Result<Vec<Gri
         }
         let text = text_of(Path::new(file.trim())).map_err(fail)?;
         let grid = Grid::parse(&text, tables[at].1).map_err(|why| fail(format!("{file}: {why}")))?;
-        found[at] = Some(Grid { smooth, extrapolated, ..grid });
+        if found[at].replace(Grid { smooth, extrapolated, ..grid }).is_some() {
+            return Err(fail(format!("the table `{}` is given twice", name.trim())));
+        }
     }
     let missing: Vec<String> = (tables.iter().zip(&found))
         .filter(|(_, grid)| grid.is_none())

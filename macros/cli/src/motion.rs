@@ -77,8 +77,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let empty = Evaluated::new(model, output, Vec::new(), Vec::new(), states.clone());
         let (mut q, mut v, mut u) = (empty.neutral(), vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
-        for given in matches.get_many::<String>("set").into_iter().flatten() {
-            let (name, value) = parse("--set", given)?;
+        for (name, value) in values("set", matches)? {
             let place = |list: &[String]| list.iter().position(|known| known == name);
             if let Some(k) = place(&model.parameters) {
                 parameters[k] = Some(value);
@@ -102,12 +101,14 @@ impl<'a, 'g> Start<'a, 'g> {
             }
         }
         let is_guessed = matches.contains_id("guess");
-        for given in matches.get_many::<String>("guess").into_iter().flatten() {
-            let (name, value) = parse("--guess", given)?;
+        for (name, value) in values("guess", matches)? {
             let Some(k) = configuration.iter().position(|known| known == name) else {
                 let known = configuration.join(", ");
                 return Err(Stop::Failure(format!("`--guess`: there is no `{name}`, but {known}")));
             };
+            if known[0][k] {
+                return Err(Stop::Failure(format!("`{name}` is given by `--set` and by `--guess`")));
+            }
             q[k] = value;
         }
         let missing: Vec<String> = (model.parameters.iter().zip(&parameters))
@@ -318,6 +319,12 @@ impl<'a, 'g> Start<'a, 'g> {
             )));
         }
         let columns: Vec<_> = names.iter().map(|name| table.column(name).map(<[f64]>::to_vec)).collect();
+        let is_column =
+            |(name, _): &(&str, f64)| names.iter().any(|n| n == name) && table.column(name).is_some();
+        if let Some((name, _)) = values("set", matches)?.into_iter().find(is_column) {
+            let path = path.display();
+            return Err(Stop::Failure(format!("{path}: `{name}` is a column here and given by `--set`")));
+        }
         if columns.iter().all(Option::is_none) {
             let expected = match names.is_empty() {
                 true => format!("`{}` has no inputs", self.mechanism.model.name),
@@ -329,8 +336,21 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 }
 
+/// Returns the names with their values that an option gives; a name that is given twice is an error.
+pub fn values<'a>(option: &str, matches: &'a ArgMatches) -> Result<Vec<(&'a str, f64)>, Stop> {
+    let mut found: Vec<(&str, f64)> = Vec::new();
+    for given in matches.get_many::<String>(option).into_iter().flatten() {
+        let one = parse(&format!("--{option}"), given)?;
+        if found.iter().any(|(known, _)| *known == one.0) {
+            return Err(Stop::Failure(format!("`--{option}`: `{}` is given twice", one.0)));
+        }
+        found.push(one);
+    }
+    Ok(found)
+}
+
 /// Parses the `NAME=VALUE` of an option.
-pub fn parse<'a>(option: &str, given: &'a str) -> Result<(&'a str, f64), Stop> {
+fn parse<'a>(option: &str, given: &'a str) -> Result<(&'a str, f64), Stop> {
     let fail =
         |what: &str, found: &str| Stop::Failure(format!("`{option}`: expected {what}, found `{found}`"));
     let (name, value) = given.split_once('=').ok_or_else(|| fail("NAME=VALUE", given))?;

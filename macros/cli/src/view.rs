@@ -103,16 +103,21 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
         found.ok_or_else(|| Stop::Failure(format!("{}: there is no column `{name}`", path.display())))
     };
     let columns = start.mechanism.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
-    // Inputs are used only if the log has all of them.
-    let inputs: Vec<_> =
-        start.mechanism.model.inputs.iter().map(|(name, _)| table.column(&format!("u.{name}"))).collect();
-    let inputs = if inputs.contains(&None) { Vec::new() } else { inputs };
-    let states: Option<Vec<_>> =
-        start.mechanism.states.iter().map(|(name, _)| table.column(&format!("x.{name}"))).collect();
+    // Inputs, and states, are used if the log has all of them; some of them alone are an error.
+    let all_or_none = |names: Vec<String>| {
+        let found: Vec<Option<&[f64]>> = names.iter().map(|name| table.column(name)).collect();
+        match found.iter().position(Option::is_none).filter(|_| found.iter().any(Option::is_some)) {
+            Some(k) => Err(Stop::Failure(format!("{}: there is no column `{}`", path.display(), names[k]))),
+            None => Ok(found.into_iter().collect::<Option<Vec<&[f64]>>>()),
+        }
+    };
+    let inputs = start.mechanism.model.inputs.iter().map(|(name, _)| format!("u.{name}"));
+    let inputs = all_or_none(inputs.collect())?.unwrap_or_default();
+    let states = all_or_none(start.mechanism.states.iter().map(|(name, _)| format!("x.{name}")).collect())?;
     let state = |(k, t): (usize, &f64)| {
         let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
         start.mechanism.normalise(&mut q)?;
-        let u = inputs.iter().filter_map(|column| Some(column.as_ref()?[k])).collect();
+        let u = inputs.iter().map(|column| column[k]).collect();
         let x = states
             .as_ref()
             .map_or(start.x.clone(), |columns| columns.iter().map(|column| column[k]).collect());

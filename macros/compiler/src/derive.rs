@@ -64,6 +64,11 @@ pub fn derive_with<'g>(
         return None;
     }
     if model.kinematic {
+        if !matches!(requests.equations, Printed::Readable | Printed::Structure) {
+            cx.error(model.place.clone(), "without inertia there are no equations of motion to print")
+                .help("remove `equations` or `inertia = none`");
+            return None;
+        }
         // The configuration space, frames, constraints, the forces of inputs, and outputs.
         let asked = Requests { drawing: requests.drawing, ..Requests::default() };
         let own = (model, speeds.as_ref());
@@ -164,7 +169,7 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
 /// Checks the derived output: all coefficients must be finite, no expression may be NaN, and each program
 /// must return as many values as its result has. Returns `None` with the error in `cx` otherwise.
 fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
-    if !output.functions.iter().all(|f| f.program.is_finite()) {
+    if !output.all_functions().all(|f| f.program.is_finite()) {
         cx.error(model.place.clone(), "the figures of this mechanism are too large")
             .help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;

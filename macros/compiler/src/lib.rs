@@ -99,6 +99,14 @@ pub fn export_c(
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
+    let requests = source.mechanism.requests;
+    let rust_only = [
+        (requests.prepare, "the functions of `prepare`"),
+        (requests.batch, "functions of several states at once, of `batch`"),
+        (requests.drawing, "the drawing, of `drawing`"),
+    ];
+    let left_out = rust_only.into_iter().filter(|(asked, _)| *asked).map(|(_, what)| what.to_string());
+    let options = &export::c::Options { left_out: left_out.collect(), ..options.clone() };
     export::c::write(&model, &output, &tables, options)
         .map_err(|unfit| {
             let (what, help) = match unfit {
@@ -117,6 +125,10 @@ pub fn export_c(
                     "functions for CasADi have no declared speeds".to_string(),
                     "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the rates of coordinates: leave `#[speed(…)]` out, or export plain C"
                         .to_string(),
+                ),
+                export::c::Unfit::Missing => (
+                    "internal error: a value of the functions in C is missing".to_string(),
+                    "please report this with the declaration of the mechanism".to_string(),
                 ),
                 export::c::Unfit::Lanes(of) => (
                     format!("Linkwork made a mistake: `{of}` was derived with lanes"),

@@ -47,7 +47,25 @@ pub fn read(
 /// Merges the imported file into the description. Elements of the file precede those of the struct.
 fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
     let Mechanism { description, shell, .. } = mechanism;
-    for field in &imported.fields {
+    // All of it: a part that is not named here does not compile.
+    let import::Imported {
+        bodies,
+        joints,
+        drives,
+        dissipations,
+        constraints,
+        gravity,
+        limits,
+        fields,
+        is_ground,
+        contacts,
+        collisions,
+        visuals,
+        snapped,
+        left_out,
+        files: _,
+    } = imported;
+    for field in &fields {
         if let Some(own) = description.parameters.iter().find(|own| own.text == field.ident) {
             cx.error(own.place.clone(), format!("the name `{}` is used twice", own.text)).help(format!(
                 "the field that holds figures of `{}` has this name: choose another",
@@ -55,15 +73,15 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
             ));
         }
     }
-    for field in &imported.fields {
+    for field in &fields {
         let place = description.name.place.clone();
         let name = |text| syntax::Name { text, place: place.clone() };
         description.parameters.extend(field.members().into_iter().map(name));
         description.file_units.extend(&field.units);
     }
-    shell.file_fields = imported.fields;
-    let own_bodies = std::mem::replace(&mut description.bodies, imported.bodies);
-    let own_joints = std::mem::replace(&mut description.joints, imported.joints);
+    shell.file_fields = fields;
+    let own_bodies = std::mem::replace(&mut description.bodies, bodies);
+    let own_joints = std::mem::replace(&mut description.joints, joints);
     for own in &own_bodies {
         if description.bodies.iter().any(|b| b.name.text == own.name.text) {
             cx.error(own.name.place.clone(), format!("the file has a link `{}` already", own.name.text))
@@ -79,20 +97,20 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     description.bodies.extend(own_bodies);
     description.joints.extend(own_joints);
     // Limits of the file come first.
-    description.limits.splice(0..0, imported.limits);
-    description.collisions = imported.collisions;
-    description.contacts.splice(0..0, imported.contacts);
-    description.visuals = imported.visuals;
-    description.drives = imported.drives;
-    description.dissipations.splice(0..0, imported.dissipations);
-    description.constraints.splice(0..0, imported.constraints);
-    description.snapped = imported.snapped;
-    description.left_out = imported.left_out;
-    description.ground_frame = imported.is_ground;
+    description.limits.splice(0..0, limits);
+    description.collisions = collisions;
+    description.contacts.splice(0..0, contacts);
+    description.visuals = visuals;
+    description.drives = drives;
+    description.dissipations.splice(0..0, dissipations);
+    description.constraints.splice(0..0, constraints);
+    description.snapped = snapped;
+    description.left_out = left_out;
+    description.ground_frame = is_ground;
     if description.gravity.is_none() {
         let place = description.name.place.clone();
         let usual = || syntax::Expr::vector([0.0, 0.0, -9.81], &place);
-        description.gravity = Some(imported.gravity.unwrap_or_else(usual));
+        description.gravity = Some(gravity.unwrap_or_else(usual));
     }
 }
 

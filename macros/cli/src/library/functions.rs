@@ -64,7 +64,8 @@ pub fn read(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
             if !is_public || !of_state || name.starts_with("__") || name == "validate" {
                 continue;
             }
-            if let Some(one) = name.strip_suffix("_lanes") {
+            let in_lanes = name.strip_suffix("_lanes").filter(|_| has_lanes(function));
+            if let Some(one) = in_lanes {
                 names.push(one.to_string());
             } else if let Some(function) = one(&name, function) {
                 found.push(function);
@@ -85,13 +86,19 @@ fn asks(bounds: Option<&syn::WhereClause>) -> bool {
     bounds.is_some_and(|bounds| bounds.to_token_stream().to_string().contains("absent"))
 }
 
+/// Returns true for a function of several states at once: their number is a generic parameter. An output may
+/// have such a name as well.
+fn has_lanes(function: &syn::ImplItemFn) -> bool {
+    function.sig.generics.const_params().next().is_some()
+}
+
 /// Returns whether a function is available under another name.
 fn is_known(name: &str) -> bool {
     name.ends_with("_into") || name.starts_with("frame_")
 }
 
 fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
-    if !function.sig.generics.params.is_empty() || name.ends_with("_into") {
+    if !function.sig.generics.params.is_empty() {
         return None;
     }
     let mut arguments = Vec::new();

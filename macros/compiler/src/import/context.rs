@@ -159,6 +159,12 @@ impl<'a> Cx<'a> {
         self.error(place, message, |d| d.help(help));
     }
 
+    /// Reports something that was read and has no place in the mechanism, although no error was reported.
+    pub(super) fn report_lost(&mut self, name: &Name) {
+        let message = format!("internal error: {} of the file is lost", quote(&name.text));
+        self.error(&name.place, message, |d| d.help("please report this with the file"));
+    }
+
     /// Returns true if an error was reported.
     pub(super) fn failed(&self) -> bool {
         self.mistakes > 0

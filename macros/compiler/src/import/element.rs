@@ -48,7 +48,8 @@ pub(super) fn children<'a, const N: usize>(
     found
 }
 
-fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
+/// Reports an element that occurs twice in another one.
+pub(super) fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
     let first = first.map(|node| position(&place(node, cx))).unwrap_or_default();
     let message = format!("second {} of one element", tag(child));
     cx.error(&place(child, cx), message, |d| d.help(format!("the first is at {first}")));
@@ -101,19 +102,8 @@ pub(super) fn check_only(
     let known = |name: &str| all.contains(&name) || foreign.contains(&name);
     let help = expected(node.tag_name().name(), if required.is_empty() { optional } else { required });
     let unknown = node.attributes().find(|a| a.namespace().is_none() && !known(a.name()));
-    let content = node.children().find(|child| match child.is_text() {
-        true => child.text().is_some_and(|text| !text.trim().is_empty()),
-        false => child.is_element() && child.tag_name().namespace() == node.tag_name().namespace(),
-    });
-    if let Some(child) = content {
-        let text = child.text().unwrap_or_default();
-        let start = child.range().start;
-        let (found, start) = match child.is_text() {
-            true => (format!("text {}", quote(text.trim())), start + text.len() - text.trim_start().len()),
-            false => (tag(child), start),
-        };
-        let message = format!("unexpected {found} in {}", tag(node));
-        cx.error(&cx.place(start), message, |d| d.help(help));
+    if let Some(child) = contents(node).next() {
+        report_unexpected(child, node, help, cx);
     } else if let Some(attribute) = unknown.filter(|a| nearest(a.name(), &all).is_none()) {
         let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
         let place = cx.place(attribute.range().start);
@@ -121,6 +111,26 @@ pub(super) fn check_only(
     } else {
         check_attributes(node, required, optional, cx);
     }
+}
+
+/// Returns the texts that are not blank and the elements of the file's own vocabulary in an element.
+pub(super) fn contents<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+    node.children().filter(move |child| match child.is_text() {
+        true => child.text().is_some_and(|text| !text.trim().is_empty()),
+        false => child.is_element() && child.tag_name().namespace() == node.tag_name().namespace(),
+    })
+}
+
+/// Reports a text or an element that has no meaning in `node`.
+fn report_unexpected(child: Node<'_>, node: Node<'_>, help: impl Into<String>, cx: &mut Cx<'_>) {
+    let text = child.text().unwrap_or_default();
+    let start = child.range().start;
+    let (found, start) = match child.is_text() {
+        true => (format!("text {}", quote(text.trim())), start + text.len() - text.trim_start().len()),
+        false => (tag(child), start),
+    };
+    let message = format!("unexpected {found} in {}", tag(node));
+    cx.error(&cx.place(start), message, |d| d.help(help));
 }
 
 /// Reports attributes other than `known` of an element whose values are text or child elements.
@@ -185,9 +195,16 @@ pub(super) fn numbers<const N: usize>(
     read_numbers(found.value(), found.range_value(), attribute, cx)
 }
 
-/// Returns the `N` finite numbers in the text of an element, separated by spaces.
+/// Returns the `N` finite numbers in the text of an element, separated by spaces. Reports elements among
+/// them, and numbers on both sides of a comment.
 pub(super) fn content<const N: usize>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Placed<[f64; N]>> {
-    match node.children().find(|child| child.is_text()) {
+    let mut all = contents(node);
+    let text = all.next().filter(Node::is_text);
+    if let Some(other) = contents(node).find(Node::is_element).or(all.next()) {
+        report_unexpected(other, node, "expected numbers, and comments before or after them", cx);
+        return None;
+    }
+    match text {
         Some(text) => read_numbers(text.text().unwrap_or_default(), text.range(), node.tag_name().name(), cx),
         None => read_numbers("", node.range(), node.tag_name().name(), cx),
     }
@@ -195,7 +212,7 @@ pub(super) fn content<const N: usize>(node: Node<'_>, cx: &mut Cx<'_>) -> Option
 
 /// Returns the trimmed text of an element with its source position; `None` if it is empty.
 pub(super) fn word(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
-    let found = node.children().find(|child| child.is_text())?;
+    let found = contents(node).find(Node::is_text)?;
     let whole = found.text()?;
     let before = whole.len() - whole.trim_start().len();
     let text = whole.trim().to_string();

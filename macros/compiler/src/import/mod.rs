@@ -14,6 +14,7 @@ mod context;
 mod element;
 mod file;
 mod imported;
+mod misplaced;
 mod mjcf;
 mod pose;
 mod robot;

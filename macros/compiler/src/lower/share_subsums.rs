@@ -335,6 +335,9 @@ struct Writer<'a> {
     written: Vec<Option<Operand>>,
 }
 
+/// Stands for a sum that was not written, which is an internal error: a program with it is refused.
+const LOST: Operand = Operand::Const(f64::NAN);
+
 impl Writer<'_> {
     fn push(&mut self, op: Op) -> Operand {
         self.lanes.push(&op);
@@ -361,7 +364,7 @@ impl Writer<'_> {
                 }
             }
         }
-        self.written[k].unwrap_or(Operand::Const(0.0))
+        self.written[k].unwrap_or(LOST)
     }
 
     fn written_out(&mut self, k: usize) -> Operand {
@@ -370,7 +373,7 @@ impl Writer<'_> {
             terms.push(match *key {
                 Key::One => (Operand::Const(c.abs()), c.signum()),
                 Key::Atom(a) => (self.sums.atoms[a].among(&self.values), *c),
-                Key::Sum(s) => (self.written[s].unwrap_or(Operand::Const(0.0)), *c),
+                Key::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
             });
         }
         // What is there first comes first, but not a negative one if there is another.

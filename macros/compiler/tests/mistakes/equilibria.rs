@@ -112,3 +112,14 @@ fn kinematic_mechanisms_have_no_linear_equations() {
     let found = messages("inertia = none", fields);
     assert!(found.len() == 1 && found[0].starts_with("linear equations of motion need inertia"), "{found:?}");
 }
+
+/// The same holds for other printed equations.
+#[test]
+fn kinematic_mechanisms_have_no_equations_of_motion() {
+    let fields = "#[body] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin";
+    let found = messages("inertia = none, equations = hamilton", fields);
+    assert!(
+        found.len() == 1 && found[0].starts_with("without inertia there are no equations of motion"),
+        "{found:?}"
+    );
+}

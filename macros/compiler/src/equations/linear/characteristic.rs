@@ -15,6 +15,8 @@ use std::collections::BTreeMap;
 const VELOCITIES: usize = 3;
 /// Maximum number of rows, including constraints and states.
 const ROWS: usize = 6;
+/// Maximum degree: the largest power of the root that a monomial can have.
+const DEGREE: usize = 7;
 /// Maximum number of terms of all coefficients.
 const TERMS: usize = 120;
 
@@ -33,8 +35,8 @@ pub struct Characteristic {
 /// A polynomial in the root: its coefficients in ascending powers.
 type OfRoot = Vec<Polynomial>;
 
-/// Returns the characteristic polynomial. `None` if the mechanism has too many velocities or the polynomial
-/// is too long.
+/// Returns the characteristic polynomial. `None` if the mechanism has too many velocities, or the polynomial
+/// is too long or its degree too high.
 pub fn of<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristic> {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let rows = all.inputs.len();
@@ -68,7 +70,8 @@ pub fn of<'g>(model: &Model<'g>, all: &Coefficients<'g>) -> Option<Characteristi
     }
     let terms: usize = coefficients.iter().map(|p| p.terms.len()).sum();
     let positive = positive(model);
-    (terms <= TERMS && coefficients.len() > 1).then_some(Characteristic {
+    let degree = coefficients.len().checked_sub(1)?;
+    (terms <= TERMS && (1..=DEGREE).contains(&degree)).then_some(Characteristic {
         ring: normal.ring,
         coefficients,
         conservative,
@@ -132,6 +135,7 @@ fn determinant(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
         }
         minors = next;
     }
+    // Rows that are zero leave no minor.
     Some(minors.remove(&((1 << n) - 1)).unwrap_or_default())
 }
 

@@ -105,7 +105,8 @@ impl Lines {
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
         let stability = linear.stability.as_ref();
-        let of = |stability: &Stability| Writer::styled(&stability.ring, style).linear(&in_one(stability));
+        let of =
+            |stability: &Stability| Some(Writer::styled(&stability.ring, style).linear(&in_one(stability)?));
         let conditions = |stability: &Stability| match &stability.verdict {
             Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
                 let writer = Writer::styled(&stability.ring, style);
@@ -120,25 +121,28 @@ impl Lines {
         Lines {
             equations: sides.map(|(a, b)| (writer.linear(a), writer.linear(b))).collect(),
             values: values.map(|(what, p)| (style.symbol(what.symbol(), 1), writer.polynomial(p))).collect(),
-            polynomial: stability.map(of),
+            polynomial: stability.and_then(of),
             frequency,
             conditions: stability.map(conditions).unwrap_or_default(),
         }
     }
 }
 
-/// Returns the characteristic polynomial as one polynomial in its root.
-fn in_one(stability: &Stability) -> Polynomial {
+/// Returns the characteristic polynomial as one polynomial in its root; `None` if a power of it is too high.
+fn in_one(stability: &Stability) -> Option<Polynomial> {
     let root = stability.ring.atoms.iter().position(|atom| *atom == Atom::Symbol(ROOT.symbol()));
     let root = root.map_or(Monomial::ONE, Monomial::atom);
     let mut terms: Vec<Term> = Vec::new();
     let mut power = Monomial::ONE;
-    for coefficient in &stability.coefficients {
-        let with = |t: &Term| Some(Term { monomial: t.monomial.times(power)?, ..*t });
-        terms.extend(coefficient.terms.iter().filter_map(with));
-        power = power.times(root).unwrap_or(power);
+    for (k, coefficient) in stability.coefficients.iter().enumerate() {
+        if k > 0 {
+            power = power.times(root)?;
+        }
+        for t in &coefficient.terms {
+            terms.push(Term { monomial: t.monomial.times(power)?, ..*t });
+        }
     }
-    Polynomial::sum(terms)
+    Some(Polynomial::sum(terms))
 }
 
 /// Formats linear equations as plain text, LaTeX and MathML.

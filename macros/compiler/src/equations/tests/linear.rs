@@ -248,3 +248,28 @@ fn a_skate_keeps_its_place_across() {
         }
     });
 }
+
+/// Three oscillators of unit mass with states of first order: the characteristic polynomial is
+/// `(k + s²)³ (s + 1/tau)`, of degree 7; with a second state its degree is 8, more than a printed power has.
+#[test]
+fn high_degrees_are_not_printed_as_lower_ones() {
+    let oscillators = ["x", "y", "z"].map(|axis| {
+        format!(
+            "#[particle(mass = 1)] p{axis}: Particle, #[joint(ground -> p{axis}, along = {axis})] r{axis}: Sleeve,
+            #[acts(on = r{axis}, stiffness = k)] s{axis}: Spring,"
+        )
+    });
+    for (states, degree) in [(1, Some(7)), (2, None)] {
+        let states: String =
+            (0..states).map(|n| format!("#[state(rate = -f{n} / tau)] f{n}: State,")).collect();
+        let item = format!(
+            "struct Three {{ k: f64, tau: f64, {} {states} #[equilibrium] rest: Equilibrium }}",
+            oscillators.concat()
+        );
+        with_linear("0 * x", &item, |_, found, plain, _| {
+            let found = found.stability.as_ref().map(|stability| stability.coefficients.len() - 1);
+            assert_eq!(found, degree, "{plain}");
+            assert_eq!(plain.contains("s⁷"), degree.is_some(), "{plain}");
+        });
+    }
+}

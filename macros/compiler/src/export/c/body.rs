@@ -62,7 +62,7 @@ fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
         match (quantity, named(quantity, scope)) {
             (Quantity::Time, _) => {}
             (Quantity::Parameter(k), Some(name)) => {
-                let _ = writeln!(out, "    const double {name} = self->{};", member(scope, k));
+                let _ = writeln!(out, "    const double {name} = self->{};", scope.parameters[k]);
             }
             (_, Some(name)) => {
                 let found = scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| (a.name(), k)));
@@ -75,15 +75,11 @@ fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
     }
 }
 
-fn member<'a>(scope: &'a Scope<'_>, k: usize) -> &'a str {
-    scope.parameters.get(k).map_or("missing", String::as_str)
-}
-
-/// Returns the name of the local constant of a quantity.
+/// Returns the name of the local constant of a quantity; `None` for a quantity that the scope does not have.
 fn named(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
     match quantity {
         Quantity::Time => Some("t".to_string()),
-        Quantity::Parameter(k) => Some(format!("p_{}", member(scope, k))),
+        Quantity::Parameter(k) => scope.parameters.get(k).map(|name| format!("p_{name}")),
         _ => scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.name()))),
     }
 }
@@ -151,17 +147,24 @@ impl Writer<'_> {
         match o {
             Operand::Const(c) if c.is_sign_negative() => Piece { level: 2, ..Piece::plain(constant(c)) },
             Operand::Const(c) => Piece::plain(constant(c)),
-            Operand::Symbol(s) => {
-                Piece::plain(named(Quantity::of(s), self.scope).unwrap_or_else(|| "missing".to_string()))
-            }
+            Operand::Symbol(s) => match named(Quantity::of(s), self.scope) {
+                Some(name) => Piece::plain(name),
+                None => self.missing(),
+            },
             // Programs without lanes contain neither tuples nor gathers.
-            Operand::Tuple(_) | Operand::Gather(_) => Piece::plain("missing".to_string()),
+            Operand::Tuple(_) | Operand::Gather(_) => self.missing(),
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
                 level: 3,
             }),
         }
+    }
+
+    /// Returns the text for a value that does not exist; the file is then refused.
+    fn missing(&mut self) -> Piece {
+        self.support.missing = true;
+        Piece::plain("missing".to_string())
     }
 
     fn instruction(&mut self, op: Op) -> Piece {
@@ -187,7 +190,7 @@ impl Writer<'_> {
             Op::Extreme(Extreme::Max, a, b) => self.call("fmax", &[a, b]),
             Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c]),
             // Rejected by `check`.
-            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Piece::plain("missing".to_string()),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => self.missing(),
         }
     }
 
@@ -209,7 +212,7 @@ impl Writer<'_> {
         let pieces: Vec<Piece> = x.iter().take(count).map(|o| self.operand(*o)).collect();
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let orders: Vec<String> = lookup.orders().iter().map(ToString::to_string).collect();
-        let table = self.scope.tables.get(lookup.table()).map_or("missing", String::as_str);
+        let Some(table) = self.scope.tables.get(lookup.table()) else { return self.missing() };
         let text = format!(
             "lw_tabulated(&self->{table}, {count}, (const double[]){{{}}}, (const int[]){{{}}})",
             x.join(", "),

@@ -175,6 +175,8 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
                 results.insert(0, ("forces", o.nv, 1));
                 let _ = writeln!(body, "    double forces[{}];", o.nv.max(1));
             }
+            let count: usize = results.iter().map(|(_, rows, columns)| rows * columns).sum();
+            support.missing |= count != f.program.outputs.len();
             write_program(&mut body, &f.program, &scope, &|k| place(&results, k), support);
             if f.id == Id::InputDerivatives {
                 body.push_str("    (void)(forces);\n");

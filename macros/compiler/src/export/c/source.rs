@@ -21,6 +21,8 @@ pub struct Options {
     pub single: bool,
     /// Parameters to fix in an additional source file with CasADi's interface; `None` for no such file.
     pub casadi: Option<Vec<(String, f64)>>,
+    /// Further lines of [`Files::left_out`].
+    pub left_out: Vec<String>,
 }
 
 /// Texts of the files, and functions that they do not contain.
@@ -45,6 +47,8 @@ pub enum Unfit {
     CasadiSpeeds,
     /// The named program contains vector lanes.
     Lanes(String),
+    /// A program reads a value that its function does not have, or has another number of results.
+    Missing,
     /// The parameter to be fixed does not exist.
     NoParameter(String),
     /// CasADi supports only double precision.
@@ -88,7 +92,14 @@ pub fn write(
         derivatives: output.functions.iter().any(|f| f.id == Id::InputDerivatives),
         speeds: model.speeds.is_some(),
     };
-    let chosen = Chosen::of(output);
+    let mut chosen = Chosen::of(output);
+    chosen.left_out.extend(options.left_out.iter().cloned());
+    if options.casadi.is_some() {
+        let reactions = chosen.reactions.iter().filter_map(|f| f.name.strip_prefix(REACTION));
+        let limits = chosen.limits.map(|_| "limits");
+        let names = reactions.chain(limits).map(|name| format!("{name} in the form of CasADi"));
+        chosen.left_out.extend(names.collect::<Vec<_>>());
+    }
     let mut support = Support::new(options.single);
     let mut bodies = String::new();
     for f in &chosen.hidden {
@@ -111,6 +122,9 @@ pub fn write(
         }
         None => None,
     };
+    if support.missing {
+        return Err(Unfit::Missing);
+    }
     let mut header = header(model, output, &chosen, &o);
     header.push_str(&steps.declare(&o));
     header.push_str("#ifdef __cplusplus\n}\n#endif\n\n#endif\n");

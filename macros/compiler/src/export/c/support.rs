@@ -29,6 +29,9 @@ pub struct Support {
     pub jacobians: [bool; 2],
     /// Whether products of matrices with derivatives of a step are needed.
     pub sums: bool,
+    /// True if a program reads a value that its function does not have, or has another number of results:
+    /// an internal error.
+    pub missing: bool,
 }
 
 impl Support {

@@ -71,6 +71,11 @@ impl<'a> Reader<'a> {
         for node in worlds.into_iter().rev() {
             let class = self.defaults.class(node, "childclass", 0, cx);
             let inside = self.inside(node, class, cx);
+            let fixed = inside.jointed.iter().map(|(node, ..)| *node);
+            for node in fixed.chain(inside.inertial.map(|(node, _)| node)) {
+                let message = format!("{} of the world, which does not move", tag(node));
+                cx.error(&place(node, cx), message, |d| d.help("move it into a `<body>`"));
+            }
             self.add_sites(&inside, GROUND, cx);
             self.add_planes(&inside.shapes, cx);
             self.note_shapes(GROUND, &inside.shapes, cx);

@@ -86,9 +86,7 @@ impl<'a> Reader<'a> {
         self.left_out.push("contacts of bodies with each other".to_string());
         let mut names: BTreeSet<String> = self.joint_names.union(&self.link_names).cloned().collect();
         for touching in &self.touching {
-            let Some(link) = self.robot.links.get(touching.link).map(|link| link.name.text.clone()) else {
-                continue;
-            };
+            let link = self.robot.links[touching.link].name.text.clone();
             let shape = touching.name.clone().unwrap_or_else(|| format!("{link}_geom{}", touching.number));
             for plane in self.planes.iter().filter(|plane| touching.law.meets(&plane.law)) {
                 let end = if self.planes.len() > 1 { format!("_{}", plane.name) } else { String::new() };
@@ -96,6 +94,15 @@ impl<'a> Reader<'a> {
                 names.insert(text.clone());
                 self.robot.contacts.push(touching.contact(text, &link, plane));
             }
+        }
+        if self.robot.contacts.is_empty() {
+            let place = &self.options.path.place;
+            cx.error(place, "no body of the file has a shape that may touch a plane of its world", |d| {
+                d.help(
+                    "meshes touch nothing here, nor do shapes whose `contype` and `conaffinity` exclude it",
+                )
+                .help("to leave the contacts of the file out, remove `contacts = file`")
+            });
         }
     }
 

@@ -183,9 +183,13 @@ impl<'a> Reader<'a> {
     }
 
     fn no_limits(&mut self, element: &Element<'a>, name: &Name, cx: &mut Cx<'_>) -> FileLimits {
-        let ball = element.text("type") == Some("ball");
-        if ball && self.range(element, "limited", "range", cx).is_some() {
-            self.left_out.push(format!("the limit of the ball joint `{}`", name.text));
+        let kind = element.text("type").filter(|kind| *kind == "ball").unwrap_or("free");
+        for (limited, range, what) in
+            [("limited", "range", "limit"), ("actuatorfrclimited", "actuatorfrcrange", "largest force")]
+        {
+            if self.range(element, limited, range, cx).is_some() {
+                self.left_out.push(format!("the {what} of the {kind} joint `{}`", name.text));
+            }
         }
         FileLimits::default()
     }

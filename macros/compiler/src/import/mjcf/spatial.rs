@@ -72,6 +72,7 @@ impl<'a> Reader<'a> {
     pub(super) fn read_path(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Path, Refusal>> {
         let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<Spot>, None, 1.0);
         let mut refused = None;
+        check_path(node, cx)?;
         for child in elements(node) {
             match child.tag_name().name() {
                 "site" => {
@@ -207,6 +208,23 @@ impl<'a> Reader<'a> {
 fn seen(poses: &Poses, frame: &Spot, spot: &Spot) -> Vector {
     let world = |spot: &Spot| poses.get(&spot.body).map_or(spot.pose, |body| body.then(&spot.pose));
     world(frame).back().then(&world(spot)).at
+}
+
+/// Reports what adds no length to a path, as MuJoCo does: sites without a neighbour on their part of the
+/// path, pulleys that no site follows, and a path without elements.
+fn check_path(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
+    let parts: Vec<Node<'_>> = elements(node).collect();
+    let is_end = |part: Option<&Node<'_>>| part.is_none_or(|part| part.tag_name().name() == "pulley");
+    let is_alone = |k: &usize| match parts[*k].tag_name().name() {
+        "site" => is_end(k.checked_sub(1).and_then(|k| parts.get(k))) && is_end(parts.get(k + 1)),
+        "pulley" => is_end(parts.get(k + 1)),
+        _ => false,
+    };
+    let found = (0..parts.len()).find(is_alone).map(|k| parts[k]);
+    let Some(found) = found.or(parts.is_empty().then_some(node)) else { return Some(()) };
+    let message = format!("{} adds nothing to the length of the tendon", tag(found));
+    cx.error(&place(found, cx), message, |d| d.help("a tendon and each part behind a pulley has two sites"));
+    None
 }
 
 /// Reports a surface in a path that is not between two sites.

@@ -39,7 +39,14 @@ pub(in crate::import) fn assemble(
     let drives = drives::resolve(robot.drives, &given);
     let constraints = couplings::resolve(robot.constraints, &given, cx);
     let (mut limits, stops) = (Vec::new(), options.limits == LimitOption::Stops);
+    let mut left_out = robot.left_out;
     for (joint, child) in &order.joints {
+        if let Some((joint, Motion::Frozen(_))) = &given[*joint]
+            && joint.mimic.is_some()
+            && options.lock.iter().any(|lock| lock.text == joint.name.text)
+        {
+            left_out.push(format!("the coupling of {}, which is locked", joint.name.text));
+        }
         limits.extend(given[*joint].as_ref().and_then(|(joint, motion)| match motion {
             Motion::Frozen(_) => None,
             Motion::Own => joint.limits.of_joint(&joint.name, false, stops),
@@ -48,6 +55,9 @@ pub(in crate::import) fn assemble(
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
+    // The order has all of them.
+    links.iter().flatten().for_each(|link| cx.report_lost(&link.name));
+    given.iter().flatten().for_each(|(joint, _)| cx.report_lost(&joint.name));
     Imported {
         bodies,
         joints,
@@ -62,7 +72,7 @@ pub(in crate::import) fn assemble(
         collisions,
         visuals,
         snapped: robot.snapped,
-        left_out: robot.left_out,
+        left_out,
         files: Vec::new(),
     }
 }

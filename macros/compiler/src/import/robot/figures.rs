@@ -5,6 +5,7 @@ use super::names::unused;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
 use crate::import::imported::Imported;
+use crate::import::pose::{IDENTITY, Matrix, Vector, about, product, roll_pitch_yaw, transpose};
 use crate::syntax::figures::{DAMPING, FRICTION, FileField, FileFieldKind, FileFigures, INERTIAL, PLACEMENT};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Joint, JointKind, Name};
 
@@ -52,7 +53,10 @@ fn inertials(
             continue;
         }
         found = true;
-        let values = properties(body);
+        let Some(values) = properties(body) else {
+            cx.report_lost(&body.name);
+            continue;
+        };
         let units = ["kg", "m", "m", "m", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²", "kg·m²"].to_vec();
         let about = format!("Mass properties of the {link} `{}`.", body.name.text);
         let of = &body.name.text;
@@ -102,7 +106,10 @@ fn of_joints(
         let of = &joint.name.text;
         let about = |what: &str| format!("{what} of the joint `{of}`.");
         if word == PLACEMENT {
-            let values = placement(joint);
+            let Some(values) = placement(joint) else {
+                cx.report_lost(&joint.name);
+                continue;
+            };
             let units = vec!["m", "m", "m", "rad", "rad", "rad"];
             let about = about(&format!("Place, on the parent {link},"));
             let e = add(FileFieldKind::Placement, of, word, about, (values, units), &name.place, fields);
@@ -121,7 +128,10 @@ fn of_joints(
             _ => (&mut joint.friction, "Dry friction", "N"),
         };
         debug_assert!([DAMPING, FRICTION].contains(&word));
-        let value = slot.as_ref().and_then(Expr::literal).unwrap_or(0.0);
+        let Some(value) = slot.as_ref().map_or(Some(0.0), Expr::literal) else {
+            cx.report_lost(&joint.name);
+            continue;
+        };
         let e =
             add(FileFieldKind::Number, of, word, about(what), (vec![value], vec![unit]), &name.place, fields);
         *slot = e.into_iter().next();
@@ -178,59 +188,75 @@ fn add(
 }
 
 /// Returns mass, centre of mass and the entries xx, xy, xz, yy, yz, zz of the inertia about it, in link axes.
-fn properties(body: &Body) -> Vec<f64> {
-    let mass = body.mass.as_ref().and_then(Expr::literal).unwrap_or(0.0);
-    let com = body.com.as_ref().map_or([0.0; 3], numbers);
-    let inertia = body.inertia.as_ref().map_or([[0.0; 3]; 3], matrix);
+fn properties(body: &Body) -> Option<Vec<f64>> {
+    let mass = body.mass.as_ref().map_or(Some(0.0), Expr::literal)?;
+    let com = body.com.as_ref().map_or(Some([0.0; 3]), numbers)?;
+    let inertia = body.inertia.as_ref().map_or(Some([[0.0; 3]; 3]), matrix)?;
     let entries = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, j)| inertia[i][j]);
-    [mass].into_iter().chain(com).chain(entries).collect()
+    Some([mass].into_iter().chain(com).chain(entries).collect())
 }
 
-fn numbers(e: &Expr) -> [f64; 3] {
-    let ExprKind::Array(items) = &e.kind else { return [0.0; 3] };
-    std::array::from_fn(|k| items.get(k).and_then(Expr::literal).unwrap_or(0.0))
+/// Returns the three numbers of a vector.
+fn numbers(e: &Expr) -> Option<Vector> {
+    let ExprKind::Array(items) = &e.kind else { return None };
+    let numbers: Option<Vec<f64>> = items.iter().map(Expr::literal).collect();
+    numbers?.try_into().ok()
 }
 
 /// Returns the inertia matrix of the file as numbers, including rotations about successive axes.
-fn matrix(e: &Expr) -> [[f64; 3]; 3] {
+fn matrix(e: &Expr) -> Option<Matrix> {
     match &e.kind {
-        ExprKind::Array(rows) => std::array::from_fn(|i| rows.get(i).map_or([0.0; 3], numbers)),
-        ExprKind::Method(inner, _, turns) => {
-            let product = |a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]| -> [[f64; 3]; 3] {
-                std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
-            };
-            let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-            let turn = turns.iter().fold(identity, |whole, turn| product(&whole, &rotation(turn)));
-            let back = std::array::from_fn(|i| std::array::from_fn(|j| turn[j][i]));
-            product(&product(&turn, &matrix(inner)), &back)
+        ExprKind::Array(rows) => {
+            let rows: Option<Vec<Vector>> = rows.iter().map(numbers).collect();
+            rows?.try_into().ok()
         }
-        _ => [[0.0; 3]; 3],
+        ExprKind::Method(inner, _, rotations) => {
+            let axes = rotation(rotations)?;
+            Some(product(&product(&axes, &matrix(inner)?), &transpose(&axes)))
+        }
+        _ => None,
     }
 }
 
-/// Returns axis index and angle of a rotation about a coordinate axis.
-fn turn(e: &Expr) -> (usize, f64) {
-    let ExprKind::Call(axis, arguments) = &e.kind else { return (0, 0.0) };
-    let axis = ["x", "y", "z"].iter().position(|known| *known == axis.text).unwrap_or(0);
-    (axis, arguments.first().and_then(Expr::literal).unwrap_or(0.0))
+/// Returns axis index and angle of a rotation about a coordinate axis; `None` for another axis.
+fn turn(e: &Expr) -> Option<(usize, f64)> {
+    let ExprKind::Call(axis, arguments) = &e.kind else { return None };
+    let axis = ["x", "y", "z"].iter().position(|known| *known == axis.text)?;
+    Some((axis, arguments.first()?.literal()?))
 }
 
-fn rotation(e: &Expr) -> [[f64; 3]; 3] {
-    let (axis, angle) = turn(e);
+/// Returns the matrix of rotations about body-fixed axes, one after the other.
+fn rotation(rotations: &[Expr]) -> Option<Matrix> {
+    rotations.iter().try_fold(IDENTITY, |whole, e| Some(product(&whole, &one_rotation(e)?)))
+}
+
+/// Returns the matrix of one rotation: about a coordinate axis, or about a unit vector.
+fn one_rotation(e: &Expr) -> Option<Matrix> {
+    let Some((axis, angle)) = turn(e) else {
+        let ExprKind::Call(_, arguments) = &e.kind else { return None };
+        let [axis, angle] = arguments.as_slice() else { return None };
+        return Some(about(numbers(axis)?, angle.literal()?));
+    };
     let (s, c) = angle.sin_cos();
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut m = [[0.0; 3]; 3];
     (m[axis][axis], m[p][p], m[q][q], m[p][q], m[q][p]) = (1.0, c, c, -s, s);
-    m
+    Some(m)
 }
 
-/// Returns position, roll, pitch and yaw of the joint's frame.
-fn placement(joint: &Joint) -> Vec<f64> {
-    let mut rpy = [0.0; 3];
-    for e in &joint.parent.rotated {
-        let (axis, angle) = turn(e);
-        rpy[axis] = angle;
-    }
-    let xyz = joint.parent.at.as_ref().map_or([0.0; 3], numbers);
-    xyz.into_iter().chain(rpy).collect()
+/// Returns position, roll, pitch and yaw of the joint's frame. A joint that is held at a coordinate other
+/// than zero has one more rotation than its frame.
+fn placement(joint: &Joint) -> Option<Vec<f64>> {
+    let rotations = &joint.parent.rotated;
+    let turns: Option<Vec<(usize, f64)>> = rotations.iter().map(turn).collect();
+    let rpy = match turns.filter(|turns| turns.windows(2).all(|pair| pair[0].0 > pair[1].0)) {
+        // Yaw, pitch, roll, as the file has them.
+        Some(turns) => turns.into_iter().fold([0.0; 3], |mut rpy, (axis, angle)| {
+            rpy[axis] = angle;
+            rpy
+        }),
+        None => roll_pitch_yaw(&rotation(rotations)?),
+    };
+    let xyz = joint.parent.at.as_ref().map_or(Some([0.0; 3]), numbers)?;
+    Some(xyz.into_iter().chain(rpy).collect())
 }

@@ -29,7 +29,12 @@ fn read_part(
 ) -> Option<FileCollision> {
     let geometry = elements(node).find(|child| child.tag_name().name() == "geometry");
     let geometry = required(geometry, node, "geometry", &[], cx)?;
-    let shape = elements(geometry).find(|child| child.tag_name().name() != "empty")?;
+    let mut shapes = elements(geometry).filter(|child| child.tag_name().name() != "empty");
+    let shape = shapes.next()?;
+    if let Some(second) = shapes.next() {
+        let help = "write a `<collision>` for each shape";
+        cx.error(&place(second, cx), "second shape of one geometry", |d| d.help(help));
+    }
     let origin = origin_in(node, link, frames, cx)?;
     Some(FileCollision { origin, shape: read_shape(shape, cx)?, place: place(node, cx) })
 }

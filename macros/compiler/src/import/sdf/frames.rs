@@ -4,7 +4,9 @@ use super::scope::{Scope, WORLD};
 use super::version::is_before;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Attribute, Node, check_plain, check_radians, content, elements, place};
+use crate::import::element::{
+    Attribute, Node, check_plain, check_radians, content, contents, elements, place, report_second,
+};
 use crate::import::imported::Placed;
 use crate::import::pose::{IDENTITY, Pose, about, of_quaternion, product, roll_pitch_yaw};
 use crate::import::robot::Origin;
@@ -40,9 +42,13 @@ const RELATIVE_TO: (u32, u32) = (1, 7);
 /// attribute, the pose is relative to `base`.
 pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> Frame {
     let own = |at: Place| Name { text: base.to_string(), place: at };
-    let Some(found) = elements(node).find(|child| child.tag_name().name() == "pose") else {
+    let mut poses = elements(node).filter(|child| child.tag_name().name() == "pose");
+    let Some(found) = poses.next() else {
         return Frame { base: own(place(node, cx)), pose: Pose::ZERO, attached: None };
     };
+    if let Some(second) = poses.next() {
+        report_second(second, Some(found), cx);
+    }
     check_plain(found, &["relative_to", "rotation_format", "degrees", "frame"], cx);
     let base = match reference(found, cx) {
         Some(said) => {
@@ -52,8 +58,8 @@ pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<
         }
         None => own(place(found, cx)),
     };
-    let has_text = found.text().is_some_and(|text| !text.trim().is_empty());
-    let pose = if has_text { read_pose(found, cx).unwrap_or(Pose::ZERO) } else { Pose::ZERO };
+    let is_empty = contents(found).next().is_none();
+    let pose = if is_empty { Pose::ZERO } else { read_pose(found, cx).unwrap_or(Pose::ZERO) };
     Frame { base, pose, attached: None }
 }
 

@@ -6,11 +6,12 @@
 use super::version;
 use crate::diag::Diagnostics;
 use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, elements, place, word};
+use crate::import::element::{Node, check_attributes, contents, elements, place, report_second, word};
 use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, plain, report_circle, report_many};
 use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Child elements of `<include>`.
@@ -32,13 +33,14 @@ enum Step {
 }
 
 /// An `<include>` element: index of the including file and byte offset there, URI with its source position,
-/// name and pose, and nesting depth.
+/// name, pose and plug-ins, and nesting depth.
 struct Include {
     by: usize,
     from: usize,
     uri: Name,
     name: Option<Range>,
     pose: Option<Range>,
+    plugins: Vec<Range>,
     depth: usize,
 }
 
@@ -196,9 +198,8 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
         steps.push(put("\""));
     }
     steps.push(put(">"));
-    if let Some(pose) = &include.pose {
-        steps.push(Step::Copy(include.by, pose.clone()));
-    }
+    let parts = include.pose.iter().chain(&include.plugins);
+    steps.extend(parts.map(|part| Step::Copy(include.by, part.clone())));
 }
 
 /// Returns the only model of an included file, or reports that it has no model or several.
@@ -228,13 +229,19 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
         return None;
     }
     let mut uri = None;
-    let (mut own_name, mut pose) = (None, None);
+    let (mut own_name, mut pose, mut plugins) = (None, None, Vec::new());
+    let mut seen: BTreeMap<&str, Node<'_>> = BTreeMap::new();
     for child in elements(node) {
-        let inside = || child.first_child().filter(|text| text.is_text()).map(|text| trimmed(text));
-        match child.tag_name().name() {
+        let inside = || contents(child).find(Node::is_text).map(trimmed);
+        let kind = child.tag_name().name();
+        if let Some(first) = seen.insert(kind, child).filter(|_| kind != "plugin") {
+            report_second(child, Some(first), cx);
+        }
+        match kind {
             "uri" => uri = word(child, cx),
             "name" => own_name = inside(),
             "pose" => pose = Some(child.range()),
+            "plugin" => plugins.push(child.range()),
             "static" if word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) => {
                 if in_world(node) {
                     return None;
@@ -259,7 +266,7 @@ fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mu
     if in_world(node) && candidates(files, by, &uri.text).iter().all(|(path, _)| !path.is_file()) {
         return None;
     }
-    Some(Include { by, from, uri, name: own_name, pose, depth })
+    Some(Include { by, from, uri, name: own_name, pose, plugins, depth })
 }
 
 /// Returns the byte range of a text without surrounding whitespace.

@@ -5,9 +5,11 @@ use super::scope::Scope;
 use super::version::is_before;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{
-    Node, check_attributes, check_plain, children, content, elements, name, place, required, word,
+    Node, check_attributes, check_plain, children, content, contents, elements, name, place, required, tag,
+    word,
 };
 use crate::import::imported::Placed;
+use crate::import::misplaced;
 use crate::import::pose::{Pose, Vector, apply, length};
 use crate::import::robot::{
     FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, bare_link, has_axis, has_coordinate,
@@ -31,6 +33,10 @@ const ENDLESS: f64 = 1e15;
 
 const IGNORE_PASSIVE: &str =
     "to leave springs, damping and friction out, write `#[mechanism(…, passive = ignore)]`";
+
+const JOINT_HELP: &str = "a joint has `<pose>`, `<parent>`, `<child>` and `<axis>`";
+
+const AXIS_HELP: &str = "an axis has `<xyz>`, `<limit>` with `<lower>`, `<upper>`, `<velocity>` and `<effort>`, `<dynamics>` with `<damping>`, `<friction>`, `<spring_stiffness>` and `<spring_reference>`, and `<mimic>`";
 
 /// First version in which an axis is expressed in the axes of its joint. Earlier versions express it in the
 /// axes of the model.
@@ -59,7 +65,12 @@ pub(super) fn read_joint(
     let [_, parent, child, axis, axis2, lead, old] = children(node, known, cx);
     required(parent, node, "parent", &[], cx)?;
     required(child, node, "child", &[], cx)?;
+    misplaced::check(node, &known, JOINT_HELP, cx);
     [parent, child].into_iter().flatten().for_each(|end| check_plain(end, &[], cx));
+    for empty in [parent, child].into_iter().flatten().filter(|end| contents(*end).next().is_none()) {
+        let message = format!("{} without a name", tag(empty));
+        cx.error(&place(empty, cx), message, |d| d.help("expected the name of a link or a frame"));
+    }
     let (parent, child) = (end(node, "parent", scope, cx)?, end(node, "child", scope, cx)?);
     let (word, kind, axes) = read_type(node, cx)?;
     let at = frames.resolve(joint, cx)?;
@@ -69,6 +80,12 @@ pub(super) fn read_joint(
     let anchor = inner.back().then(&at).at;
     let base = outer.back().then(&Pose { at: at.at, axes: inner.axes });
     let number = axes.max(1);
+    for (axis, which) in [(axis, "axis"), (axis2, "second axis")].into_iter().skip(axes) {
+        // Exporters write an axis into fixed joints.
+        if axis.is_some() && kind != JointKind::Weld {
+            robot.left_out.push(format!("the {which} of {}, which is `{word}`", joint.text));
+        }
+    }
     let mut carrier = parent;
     for k in 0..number {
         let last = k + 1 == number;
@@ -194,14 +211,19 @@ impl Said<'_> {
         let parts = ["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"];
         let [xyz, limit, dynamics, mimic, old, _] = children(axis, parts, cx);
         [Some(axis), limit, dynamics].into_iter().flatten().for_each(|node| check_plain(node, &[], cx));
+        misplaced::check(axis, &parts, AXIS_HELP, cx);
         let of_model = Name { text: scope.frame(), place: place(axis, cx) };
         let usual = if is_in_model(axis, old, cx) { frames.resolve(&of_model, cx)? } else { *at };
         joint.axis = read_axis(xyz, axis, (&usual, inner), scope, frames, cx)?;
         if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
             read_dynamics(dynamics, &mut joint, robot, cx);
         }
-        if let Some(limit) = limit.filter(|_| has_coordinate(kind) && options.limits != LimitOption::Ignore) {
+        if let Some(limit) = limit.filter(|_| options.limits != LimitOption::Ignore) {
             joint.limits = read_limits(limit, word == "continuous", cx);
+        }
+        if !has_coordinate(kind) && joint.limits.bounds() {
+            robot.left_out.push(format!("limits of {}, which is `{word}`", named.text));
+            joint.limits = FileLimits::default();
         }
         if let Some(mimic) = mimic.filter(|_| options.follow_mimic) {
             joint.mimic = read_mimic(mimic, scope, cx);
@@ -256,6 +278,7 @@ fn read_axis(
 fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &mut Cx<'_>) {
     let parts = ["damping", "friction", "spring_stiffness", "spring_reference"];
     let found = children(node, parts, cx);
+    misplaced::check(node, &parts, AXIS_HELP, cx);
     let [damping, friction, stiffness, free] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));
     let alone = has_coordinate(joint.kind);
     for (which, found) in [("damping", &damping), ("friction", &friction), ("spring_stiffness", &stiffness)] {
@@ -286,6 +309,7 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
 
 fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits {
     let found = children(node, ["lower", "upper", "velocity", "effort"], cx);
+    misplaced::check(node, &["lower", "upper", "velocity", "effort", "stiffness"], AXIS_HELP, cx);
     let endless = |part: Node<'_>, cx: &Cx<'_>| {
         word(part, cx).is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
     };
@@ -318,6 +342,7 @@ fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
         _ => scope.whole_name(&leader.text),
     };
     let found = children(node, ["multiplier", "offset", "reference"], cx);
+    misplaced::check(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
     let [multiplier, offset, reference] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));
     let of = |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
     let multiplier = of(multiplier, 1.0);

@@ -5,7 +5,10 @@ use super::scope::Scope;
 use super::version::is_before;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_attributes, check_plain, children, content, elements, place, word};
+use crate::import::element::{
+    Node, check_attributes, check_element_name, check_plain, children, content, elements, place, word,
+};
+use crate::import::misplaced;
 use crate::import::pose::{Matrix, Pose, turned};
 use crate::import::robot::bare_link;
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
@@ -13,6 +16,11 @@ use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias, Name};
 /// Entries of the inertia matrix with their defaults, kg·m².
 const INERTIA: [(&str, f64); 6] =
     [("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0)];
+
+/// Elements of a link that are read here.
+const LINK: [&str; 3] = ["inertial", "pose", "velocity_decay"];
+
+const PARTS_HELP: &str = "expected `<pose>`, `<mass>` and `<inertia>` with `<ixx>` and so on";
 
 /// First version in which the pose of an `<inertial>` is always relative to its link.
 const IN_LINK: (u32, u32) = (1, 7);
@@ -30,6 +38,13 @@ pub(super) fn read_link(
     frames.resolve(name, cx)?;
     let mut body = bare_link(name.clone());
     check_motion(node, options, cx);
+    elements(node).for_each(|child| check_element_name(child, &LINK, cx));
+    misplaced::check(
+        node,
+        &LINK,
+        "mass properties belong to `<inertial>`, and what joins links to `<joint>`",
+        cx,
+    );
     if options.inertias == Inertias::None {
         return Some(body);
     }
@@ -39,6 +54,7 @@ pub(super) fn read_link(
         Some(inertial) => {
             check_computed(inertial, &at, cx);
             check_plain(inertial, &["auto"], cx);
+            misplaced::check(inertial, &["pose", "mass", "inertia"], PARTS_HELP, cx);
             children(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
         }
         None => [None; 4],
@@ -81,7 +97,8 @@ fn check_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
             });
         }
         let decays = kind == "velocity_decay"
-            && elements(child).any(|rate| rate.text().unwrap_or_default().trim().parse::<f64>() != Ok(0.0));
+            && elements(child)
+                .any(|rate| word(rate, cx).is_none_or(|word| word.text.parse::<f64>() != Ok(0.0)));
         if decays && options.honour_passive {
             cx.error(&place(child, cx), "`<velocity_decay>` of a link is not supported", |d| {
                 d.help("to leave it out, write `#[mechanism(…, passive = ignore)]`")
@@ -102,6 +119,7 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     let mut entries = INERTIA.map(|(_, usual)| usual);
     if let Some(inertia) = inertia {
         check_plain(inertia, &[], cx);
+        misplaced::check(inertia, &INERTIA.map(|(entry, _)| entry), PARTS_HELP, cx);
         let found = children(inertia, INERTIA.map(|(entry, _)| entry), cx);
         for (to, from) in entries.iter_mut().zip(found) {
             if let Some(found) = from.and_then(|from| content::<1>(from, cx)) {

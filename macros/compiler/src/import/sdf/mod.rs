@@ -4,7 +4,10 @@
 //! models become one mechanism; names of their links and joints contain `::`.
 
 use super::context::{Cx, quote};
-use super::element::{Node, check_attributes, check_element_name, content, elements, name, place, tag, word};
+use super::element::{
+    Node, check_attributes, check_element_name, content, contents, elements, name, place, tag, word,
+};
+use super::misplaced;
 use super::pose::Pose;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
@@ -29,6 +32,8 @@ mod visual;
 /// Child elements of a model.
 const MODEL: [&str; 10] =
     ["link", "joint", "frame", "model", "pose", "static", "include", "plugin", "self_collide", "gripper"];
+
+const MODEL_HELP: &str = "a model holds `<link>`, `<joint>`, `<frame>` and `<model>`";
 
 /// Child elements of a world.
 const WORLD_PARTS: [&str; 20] = [
@@ -59,7 +64,7 @@ const GRAVITY_OF_WORLD: (u32, u32) = (1, 6);
 
 /// Elements that are skipped unless the options request them, with the text that the generated documentation
 /// lists for each.
-const ASIDE: [(&str, &str); 9] = [
+const ASIDE: [(&str, &str); 12] = [
     ("include", "models that the world includes and that are not beside the file"),
     ("visual", "visual geometry of links"),
     ("collision", "geometry of links, for contact"),
@@ -69,6 +74,9 @@ const ASIDE: [(&str, &str); 9] = [
     ("battery", "batteries"),
     ("particle_emitter", "emitters of particles"),
     ("actor", "actors"),
+    ("gripper", "grippers"),
+    ("population", "populations of models"),
+    ("state", "states of the world"),
 ];
 
 /// Elements of a file, collected before they are read.
@@ -149,7 +157,7 @@ fn read<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Opti
     if reader.frames.known.contains_key(&root.text) {
         robot.root = Some(origin(&reader.frames.resolve(&root, cx)?, &root.place));
     }
-    robot.gravity = gravity(root_node, cx);
+    robot.gravity = gravity(top.world.or_else(|| first(root_node, "world")), cx);
     robot.left_out.extend(left_out(root_node, options));
     let standing = standing(&robot, &root.text, options);
     let closing = std::mem::take(&mut robot.closing);
@@ -240,15 +248,14 @@ fn first<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
 
 /// Returns true for a static model.
 fn is_static(model: Node<'_>) -> bool {
-    first(model, "static")
-        .and_then(|said| said.text())
-        .is_some_and(|word| matches!(word.trim(), "true" | "1"))
+    let text = first(model, "static").and_then(|said| contents(said).find_map(|text| text.text()));
+    text.is_some_and(|word| matches!(word.trim(), "true" | "1"))
 }
 
 /// Returns the gravitational acceleration of a world, by default 9.8 m/s² downwards. Returns `None` for a
 /// model without a world.
-fn gravity(root: Node<'_>, cx: &mut Cx<'_>) -> Option<Expr> {
-    let world = first(root, "world")?;
+fn gravity(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
+    let world = world?;
     let said = first(world, "gravity").or_else(|| {
         let of_physics = first(first(world, "physics")?, "gravity")?;
         if !version::is_before(world, GRAVITY_OF_WORLD) {
@@ -273,6 +280,9 @@ impl<'a> Reader<'a> {
         for (model, prefix) in &top.fixed {
             self.read_models((*model, prefix), &world, true, cx)?;
         }
+        if let Some(node) = top.world {
+            misplaced::check(node, &["joint"], "links and their parts belong to a `<model>`", cx);
+        }
         for child in top.world.into_iter().flat_map(elements) {
             match child.tag_name().name() {
                 kind @ ("joint" | "frame") => self.read_part(child, kind, &world, false, cx),
@@ -295,6 +305,7 @@ impl<'a> Reader<'a> {
         while let Some((node, prefix, outer)) = open.pop() {
             let scope = Scope::Model(prefix.clone());
             check_attributes(node, &["name"], &["canonical_link", "placement_frame"], cx);
+            misplaced::check(node, &["link", "joint", "pose"], MODEL_HELP, cx);
             if let Some(frame) =
                 node.attribute_node("placement_frame").filter(|frame| !frame.value().is_empty())
             {

@@ -63,7 +63,7 @@ fn sums_and_polynomials_are_conditions() {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
              </body></body></worldbody><tendon><fixed name='s'><joint joint='j' coef='2'/><joint joint='k' coef='4'/></fixed>\
-             <fixed name='t'><joint joint='k' coef='3'/></fixed><spatial name='u'/></tendon><equality>{equality}</equality>"
+             <fixed name='t'><joint joint='k' coef='3'/></fixed></tendon><equality>{equality}</equality>"
         )
     };
     let start = |follows: &str| {
@@ -100,14 +100,18 @@ fn sums_and_polynomials_are_conditions() {
     for (equality, expected) in [
         (
             "<tendon tendon1='v'/>",
-            "r.xml:2:336: unknown tendon `v`\n= help: expected `s`, `t` or `u`".to_string(),
+            "r.xml:2:403: unknown tendon `v`\n= help: expected `s`, `t` or `u`".to_string(),
         ),
         (
             "<tendon tendon1='u'/>",
-            format!("r.xml:2:336: tendon `u` goes through space, where none is coupled\n{help}"),
+            format!("r.xml:2:403: tendon `u` goes through space, where none is coupled\n{help}"),
         ),
     ] {
-        check_model(&model(equality), &expected);
+        let cable = "<spatial name='u'><site site='o'/><site site='p'/></spatial></tendon>";
+        let sites = "<worldbody><site name='o'/><site name='p'/>";
+        let model =
+            model(equality).replace("<worldbody>", sites).replace("</tendon><eq", &format!("{cable}<eq"));
+        check_model(&model, &expected);
     }
 }
 

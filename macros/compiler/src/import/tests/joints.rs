@@ -1,6 +1,7 @@
 //! Joints: types, frames, axes, damping and friction, `mimic` and locks.
 
 use super::*;
+use crate::syntax::figures::FileFigures;
 
 /// Checks the last joints of a chain.
 fn check_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
@@ -181,7 +182,8 @@ fn a_locked_joint_is_a_weld() {
         "Weld j1: l0.at([1, 0, 0]) -> l1
          Pin j2: l1 -> l2 about [1, 0, 0] driven
          Weld j3: l2 -> l3
-         Weld j4: l3 -> l4",
+         Weld j4: l3 -> l4
+         left out the coupling of j4, which is locked",
     );
     check_with(
         &locked(&["j", "elbow"]),
@@ -364,4 +366,59 @@ fn parts_of_joints_are_attributes_of_their_elements() {
         )],
         "Pin j1: l0 -> l1 about [0, 0, 1] damping=1",
     );
+}
+
+/// Limits of a joint with several coordinates, and the leader of a joint that the user locks, are listed.
+#[test]
+fn what_a_joint_cannot_have_is_listed() {
+    let list = |options: &FileOptions, text: &str| {
+        let imported = import_text(text, options, &mut Diagnostics::new()).expect("a robot");
+        imported.left_out
+    };
+    let limits = chain(&[("planar", "<limit lower='-1' upper='1'/>"), ("floating", "<limit velocity='1'/>")]);
+    assert_eq!(
+        list(&defaults(), &limits),
+        ["limits of j1, which is `planar`", "limits of j2, which is `floating`"]
+    );
+    let follower = chain(&[("revolute", ""), ("revolute", "<mimic joint='j1' multiplier='2'/>")]);
+    assert_eq!(list(&locked(&["j2"]), &follower), ["the coupling of j2, which is locked"]);
+    assert_eq!(list(&locked(&["j1"]), &follower), [""; 0]);
+}
+
+/// A joint that follows a locked one is held at its offset, which its placement as a field contains: turned
+/// by 0.5 rad about the axis after roll, pitch and yaw.
+#[test]
+fn placements_of_held_joints_have_their_rotation() {
+    let figures = FileFigures { word: name("placement"), of: Some(vec![name("j2")]) };
+    for (axis, rpy, expected) in [
+        ("1 0 0", "0.1 0 0", [0.6, 0.0, 0.0]),
+        ("0 0 1", "0 0 0.25", [0.0, 0.0, 0.75]),
+        // About y after x: R_x(π/2) R_y(0.5) = R_z(0.5) R_x(π/2).
+        ("0 1 0", "1.5707963267948966 0 0", [std::f64::consts::FRAC_PI_2, 0.0, 0.5]),
+        // About the diagonal of y and z by half a turn: y and z exchange, x changes its sign.
+        ("0 1 1", "0 0 0", [std::f64::consts::FRAC_PI_2, 0.0, std::f64::consts::PI]),
+    ] {
+        let offset = if axis == "0 1 1" { std::f64::consts::PI } else { 0.5 };
+        let inside = format!(
+            "<origin xyz='1 2 3' rpy='{rpy}'/><axis xyz='{axis}'/><mimic joint='j1' offset='{offset}'/>"
+        );
+        let text = chain(&[("revolute", ""), ("revolute", &inside)]);
+        let options = FileOptions { parameters: vec![figures.clone()], ..locked(&["j1"]) };
+        let imported = import_text(&text, &options, &mut Diagnostics::new()).expect("a robot");
+        let [field] = imported.fields.as_slice() else { panic!("one field") };
+        let rotation = |[roll, pitch, yaw]: [f64; 3]| {
+            let [(sr, cr), (sp, cp), (sy, cy)] = [roll, pitch, yaw].map(f64::sin_cos);
+            [
+                [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+                [-sp, cp * sr, cp * cr],
+            ]
+        };
+        let [x, y, z, angles @ ..] = field.values.as_slice() else { panic!("six values") };
+        assert_eq!([*x, *y, *z], [1.0, 2.0, 3.0]);
+        let found = rotation(angles.try_into().expect("three angles"));
+        for (a, b) in found.as_flattened().iter().zip(rotation(expected).as_flattened()) {
+            assert!((a - b).abs() < 1e-14, "{axis}: {found:?}");
+        }
+    }
 }

@@ -244,6 +244,7 @@ fn parts_of_links_are_attributes_of_their_elements() {
         ("<origin xyz='0 0 1'/>", "r.urdf:2:16: unexpected `<origin>` in `<link>`"),
         ("<pose>0 0 1 0 0 0</pose>", "r.urdf:2:16: unexpected `<pose>` in `<link>`"),
         ("<mass value='1'/>", "r.urdf:2:16: unexpected `<mass>` in `<link>`"),
+        ("<joint name='j' type='fixed'/>", "r.urdf:2:16: unexpected `<joint>` in `<link>`"),
     ] {
         check_robot(&format!("<link name='a'>{inside}</link>"), &format!("{expected}\n{help}"));
     }
@@ -284,4 +285,22 @@ fn strange_blanks_are_blanks() {
         "<robot>\n<link\u{a0}name='a'\u{a0}/>\u{feff}<lnk/></robot>",
         "r.urdf:2:19: unknown element `<lnk>`\n= help: did you mean `<link>`?",
     );
+}
+
+/// A geometry is one shape: a second one would be lost.
+#[test]
+fn second_shapes_of_a_geometry_are_errors() {
+    let help = "= help: write a `<collision>` for each shape";
+    for (format, shapes, column) in [
+        (FileFormat::Urdf, "<sphere radius='1'/><box size='1 1 1'/>", 57),
+        (FileFormat::Sdf, "<sphere><radius>1</radius></sphere><empty/><box><size>1 1 1</size></box>", 80),
+    ] {
+        let options = FileOptions { format, collisions: true, ..defaults() };
+        let link = format!("<link name='a'><collision><geometry>{shapes}</geometry></collision></link>");
+        let text = match format {
+            FileFormat::Urdf => format!("<robot name='r'>\n{link}\n</robot>"),
+            _ => format!("<sdf><model name='m'>\n{link}\n</model></sdf>"),
+        };
+        check_with(&options, &text, &format!("r.urdf:2:{column}: second shape of one geometry\n{help}"));
+    }
 }

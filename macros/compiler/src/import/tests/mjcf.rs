@@ -306,7 +306,7 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
     <joint name="k" type="slide" range="0 1" stiffness="2"/><geom quat="1 1 0 0"/>
     <geom name="g" type="cylinder" size="1 1"/><site name="r"/><frame pos="1 0 0"><body name="c"><joint name="l" type="ball" damping="1"/><site name="s"/>
       <inertial pos="0 0 1" mass="1" fullinertia="1 1 1 0 0 0"/></body></frame></body></worldbody>
-  <tendon><spatial name="u" damping="1"><site site="s"/><geom geom="g"/><site site="r"/><pulley divisor="2"/></spatial>
+  <tendon><spatial name="u" damping="1"><site site="s"/><geom geom="g"/><site site="r"/><pulley divisor="2"/><site site="s"/><site site="r"/></spatial>
     <fixed name="t" stiffness="1"><joint joint="j" coef="2"/><joint joint="k" coef="3"/></fixed></tendon>
   <equality><joint joint1="k" joint2="j" polycoef="1 2"/><tendon tendon1="t" polycoef="1 0 3"/>
     <joint joint1="j" joint2="k" polycoef="0 1 2 -1 .5"/></equality>
@@ -534,4 +534,58 @@ fn what_mujoco_refuses() {
     ] {
         assert!(run(&mjcf(), &format!("<mujoco>\n{text}\n</mujoco>")).contains("the root is"), "{text}");
     }
+}
+
+/// Joints and mass of the world move nothing.
+#[test]
+fn the_world_does_not_move() {
+    let help = "= help: move it into a `<body>`";
+    for (inside, found) in [
+        ("<joint/>", "r.xml:2:12: `<joint>` of the world, which does not move"),
+        ("<frame><freejoint/></frame>", "r.xml:2:19: `<freejoint>` of the world, which does not move"),
+        ("<inertial pos='0 0 0' mass='1'/>", "r.xml:2:12: `<inertial>` of the world, which does not move"),
+    ] {
+        check_model(&format!("<worldbody>{inside}</worldbody>"), &format!("{found}\n{help}"));
+    }
+}
+
+/// As MuJoCo refuses them: sites without a neighbour and pulleys that no site follows.
+#[test]
+fn parts_of_a_path_without_length_are_errors() {
+    let help = "= help: a tendon and each part behind a pulley has two sites";
+    let (a, b, pulley) = ("<site site='a'/>", "<site site='b'/>", "<pulley divisor='2'/>");
+    for (path, element, column) in [
+        (String::new(), "<spatial>", 9),
+        (a.to_string(), "<site>", 34),
+        (format!("{a}{b}{pulley}"), "<pulley>", 66),
+        (format!("{a}{b}{pulley}{a}"), "<site>", 87),
+        (format!("{a}{b}{pulley}{pulley}{a}{b}"), "<pulley>", 66),
+    ] {
+        check_model(
+            &format!(
+                "<tendon><spatial stiffness='100'>{path}</spatial></tendon>\n\
+                 <worldbody><site name='a'/><body><joint/>{BALL}<site name='b' pos='1 0 0'/></body></worldbody>"
+            ),
+            &format!("r.xml:2:{column}: `{element}` adds nothing to the length of the tendon\n{help}"),
+        );
+    }
+}
+
+/// Contacts that were asked for and are none.
+#[test]
+fn planes_that_nothing_touches() {
+    let options = FileOptions { contacts: true, collisions: true, ..mjcf() };
+    let with = |bits: &str| {
+        let text = format!(
+            "<mujoco><worldbody><geom type='plane' size='1 1 1' {bits}/>\
+             <body name='b'><freejoint/>{BALL}</body></worldbody></mujoco>"
+        );
+        run(&options, &text)
+    };
+    assert!(with("").starts_with("the root is the ground\n"));
+    let found = with("contype='2' conaffinity='2'");
+    assert!(
+        found.starts_with("no body of the file has a shape that may touch a plane of its world\n"),
+        "{found}"
+    );
 }

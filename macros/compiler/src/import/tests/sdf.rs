@@ -490,3 +490,121 @@ fn gravity_of_old_worlds_is_that_of_their_physics() {
         run(&sdf(), &text("1.6")).contains("`<gravity>` is an element of the world since version 1.6 of SDF")
     );
 }
+
+/// Numbers and words next to comments are read, or an error where a comment divides them.
+#[test]
+fn comments_do_not_hide_values() {
+    check_model(
+        "<link name='a'><pose><!-- m, rad -->0 0 3 0 0 0</pose><inertial><mass><!-- kg -->2</mass></inertial></link>\
+         <link name='b'/><joint name='j' type='ball'><parent><!-- link --> a</parent><child>b</child></joint>",
+        "body a mass=2 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         Weld root_joint: ground.at([0, 0, 3]) -> a
+         Ball j: a.at([0, 0, -3]) -> b",
+    );
+    let help = "= help: expected numbers, and comments before or after them";
+    for (inside, found) in [
+        ("<pose>0 0 3 0 0 0<!-- --> 1</pose>", "r.sdf:2:42: unexpected text `1` in `<pose>`"),
+        ("<pose>0 0 3 0 0 0<offset/></pose>", "r.sdf:2:33: unexpected `<offset>` in `<pose>`"),
+        ("<inertial><mass>1<!-- -->0</mass></inertial>", "r.sdf:2:41: unexpected text `0` in `<mass>`"),
+    ] {
+        check_model(&format!("<link name='a'>{inside}</link>"), &format!("{found}\n{help}"));
+    }
+}
+
+/// What has a meaning elsewhere in a file is an error, and not taken for the default.
+#[test]
+fn parts_in_the_place_of_others_are_errors() {
+    let model = "= help: a model holds `<link>`, `<joint>`, `<frame>` and `<model>`";
+    let link = "= help: mass properties belong to `<inertial>`, and what joins links to `<joint>`";
+    let inertial = "= help: expected `<pose>`, `<mass>` and `<inertia>` with `<ixx>` and so on";
+    for (inside, found, help) in [
+        ("<mass>5</mass>", "r.sdf:2:1: unexpected `<mass>` in `<model>`", model),
+        ("<link name='a'><mass>5</mass></link>", "r.sdf:2:16: unexpected `<mass>` in `<link>`", link),
+        ("<link name='a' mass='5'/>", "r.sdf:2:16: unknown attribute `mass` of `<link>`", link),
+        ("<link name='a'>5 kg</link>", "r.sdf:2:16: unexpected text `5 kg` in `<link>`", link),
+        ("<link name='a'><link name='b'/></link>", "r.sdf:2:16: unexpected `<link>` in `<link>`", link),
+        (
+            "<link name='a'><inertial><ixx>5</ixx></inertial></link>",
+            "r.sdf:2:26: unexpected `<ixx>` in `<inertial>`",
+            inertial,
+        ),
+        (
+            "<link name='a'><pose>0 0 1 0 0 0</pose><pose>0 0 2 0 0 0</pose></link>",
+            "r.sdf:2:40: second `<pose>` of one element",
+            "= help: the first is at r.sdf:2:16",
+        ),
+    ] {
+        check_model(inside, &format!("{found}\n{help}"));
+    }
+    let joint = |inside: &str| {
+        format!(
+            "<link name='a'/><link name='b'/>\n<joint name='j' type='revolute'><parent>a</parent><child>b</child>{inside}</joint>"
+        )
+    };
+    for (inside, found) in [
+        ("<xyz>0 1 0</xyz><axis/>", "r.sdf:3:71: unexpected `<xyz>` in `<joint>`"),
+        ("<axis><damping>2</damping></axis>", "r.sdf:3:77: unexpected `<damping>` in `<axis>`"),
+        ("<axis><lower>2</lower></axis>", "r.sdf:3:77: unexpected `<lower>` in `<axis>`"),
+        (
+            "<axis><limit><damping>2</damping></limit></axis>",
+            "r.sdf:3:84: unexpected `<damping>` in `<limit>`",
+        ),
+    ] {
+        let actual = run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", joint(inside)));
+        assert!(actual.starts_with(&format!("{found}\n")) && !actual.contains("\nr.sdf"), "{actual}");
+    }
+}
+
+/// A joint that closes a loop is not lost because an end has no name.
+#[test]
+fn ends_without_names_are_errors() {
+    check_model(
+        "<link name='a'/><link name='b'/>\
+         <joint name='i' type='ball'><parent>a</parent><child>b</child></joint>\
+         <joint name='j' type='ball'><parent/><child>b</child></joint>",
+        "r.sdf:2:131: `<parent>` without a name
+         = help: expected the name of a link or a frame",
+    );
+}
+
+#[test]
+fn what_a_joint_cannot_have_is_listed() {
+    check_model(
+        "<link name='a'/><link name='b'/><link name='c'/>\
+         <joint name='i' type='screw'><parent>a</parent><child>b</child><screw_thread_pitch>1</screw_thread_pitch>\
+         <axis><limit><lower>-1</lower><upper>2</upper></limit></axis></joint>\
+         <joint name='j' type='ball'><parent>b</parent><child>c</child><axis/><axis2/></joint>",
+        "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body c mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         Weld root_joint: ground -> a
+         Screw i: a -> b about [0, 0, 1]
+         Ball j: b -> c
+         left out limits of i, which is `screw`
+         left out the axis of j, which is `ball`
+         left out the second axis of j, which is `ball`",
+    );
+}
+
+/// Gravity is that of the world which has the model.
+#[test]
+fn gravity_is_that_of_the_models_world() {
+    let text = "<sdf><world name='a'><gravity>0 0 -1</gravity></world>\
+         <world name='b'><gravity>0 0 -5</gravity><model name='m'><link name='a'/></model></world></sdf>";
+    let imported = import_text(text, &sdf(), &mut Diagnostics::new()).expect("a robot");
+    assert_eq!(imported.gravity.map(|e| render_expr(&e)).as_deref(), Some("[0, 0, -5]"));
+}
+
+/// Plug-ins of an `<include>` are listed like those of its model.
+#[test]
+fn plugins_of_included_models_are_listed() {
+    let arm = "<sdf><model name='arm'><link name='a'/></model></sdf>";
+    let folder = Folder::new("plugins", &[("arm.sdf", arm)]);
+    let text = "<sdf><model name='m'><include><uri>arm.sdf</uri><plugin name='p'/></include></model></sdf>";
+    let answer = folder.answer(&sdf(), text);
+    assert!(answer.contains("left out plug-ins, and what they do to the motion: 1\n"), "{answer}");
+    let twice = text.replace("<plugin name='p'/>", "<uri>leg.sdf</uri>");
+    let answer = folder.answer(&sdf(), &twice);
+    assert!(answer.starts_with("r.sdf:1:49: second `<uri>` of one element\n"), "{answer}");
+}

@@ -117,7 +117,7 @@ fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
     last(cable("<geom geom='bal'/>"), "unknown geom `bal`");
     last(cable("<geom geom='ball'/><geom geom='drum'/>"), "a tendon runs around a shape between two sites");
     last(cable("<site site='x'/>"), "unknown site `x`");
-    last(cable("<pulley divisor='0'/>"), "a pulley with the divisor 0");
+    last(cable("<site site='s'/><pulley divisor='0'/><site site='w'/>"), "a pulley with the divisor 0");
     last(cable("<wheel/>"), "unknown element `<wheel>`");
     last(
         drives("", "<motor site='w' refsite='s'/>"),

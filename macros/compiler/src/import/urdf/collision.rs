@@ -22,6 +22,7 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
     let origin = read_origin(origin, node, cx);
     let geometry = required(geometry, node, "geometry", &[], cx)?;
     let [sphere, cuboid, cylinder, capsule, mesh] = children(geometry, SHAPES, cx);
+    report_several(&[sphere, cuboid, cylinder, capsule, mesh], cx);
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
         (Some(sphere), ..) => {
             check_attributes(sphere, &["radius"], &[], cx);
@@ -53,6 +54,14 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
         }
     };
     Some(FileCollision { origin, shape, place: place(node, cx) })
+}
+
+/// Reports shapes after the first one of a geometry.
+fn report_several(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
+    if let Some(second) = shapes.iter().flatten().nth(1) {
+        let help = "write a `<collision>` for each shape";
+        cx.error(&place(*second, cx), "second shape of one geometry", |d| d.help(help));
+    }
 }
 
 fn length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {

@@ -1,7 +1,6 @@
 //! `<joint>` → [`FileJoint`]: one joint as the file describes it, before locks and `mimic` are resolved.
 
 use super::limit::read_limits;
-use super::misplaced;
 use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::{Cx, quote};
@@ -9,6 +8,7 @@ use crate::import::element::{
     Node, check_attributes, check_only, children, name, number, numbers, place, required,
 };
 use crate::import::imported::Placed;
+use crate::import::misplaced;
 use crate::import::robot::{FileJoint, has_axis, has_coordinate};
 use crate::syntax::{Expr, FileOptions, JointKind, LimitOption, Mimic, Name};
 
@@ -32,7 +32,7 @@ const ELEMENTS: &str = "a joint has elements: `<parent link=\"…\"/>`, `<child 
 const OF_CONTROLLERS: [&str; 4] = ["D", "K", "mu_coulomb", "mu_viscous"];
 
 /// Reads a joint. Returns `None` if its name, parent or child is missing. Adds the `mimic` of a fixed joint
-/// to `left_out`.
+/// and the limits of a joint with several coordinates to `left_out`.
 pub(super) fn read_joint(
     node: Node<'_>,
     options: &FileOptions,
@@ -59,7 +59,11 @@ pub(super) fn read_joint(
             .push(format!("`mimic` of {}: a fixed joint does not follow {}", joint.text, mimic.joint.text));
     }
     let mimic = mimic.filter(|_| moves);
-    let limit = limit.filter(|_| has_coordinate(kind) && options.limits != LimitOption::Ignore);
+    let limit = limit.filter(|_| moves && options.limits != LimitOption::Ignore);
+    if let (Some(joint), Some(_), false) = (&joint, limit, has_coordinate(kind)) {
+        left_out.push(format!("limits of {}, which is `{word}`", joint.text));
+    }
+    let limit = limit.filter(|_| has_coordinate(kind));
     let limits = read_limits(limit, joint.as_ref(), word == "continuous", cx);
     let (name, parent, child) = (joint?, parent?, child?);
     Some(FileJoint {

@@ -1,12 +1,12 @@
 //! `<link>` → [`Body`].
 
-use super::misplaced;
 use super::origin::read_origin;
 use crate::diag::nearest;
 use crate::import::context::Cx;
 use crate::import::element::{
     Node, check_attributes, check_only, children, elements, name, number, place, required, tag,
 };
+use crate::import::misplaced;
 use crate::import::robot::{Origin, bare_link};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Inertias};
 

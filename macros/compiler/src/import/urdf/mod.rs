@@ -6,6 +6,7 @@
 
 use super::context::Cx;
 use super::element::{Node, check_element_name, elements, place, tag};
+use super::misplaced;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
 use crate::syntax::FileOptions;
@@ -14,7 +15,6 @@ mod collision;
 mod joint;
 mod limit;
 mod link;
-mod misplaced;
 mod origin;
 mod standing;
 mod visual;

@@ -1,14 +1,15 @@
-//! Misplaced elements and attributes in robots, links and joints. They are errors, because otherwise they
-//! would be ignored silently. Elements and attributes of other tools are accepted.
+//! Misplaced elements, attributes and texts in robots, links and joints. They are errors, because otherwise
+//! they would be ignored silently. Elements and attributes of other tools are accepted.
 
 use crate::diag::nearest;
 use crate::import::context::{Cx, quote};
 use crate::import::element::{Node, elements, place, tag};
 
-/// Elements and attributes of URDF and of other formats that describe position, mass properties or motion.
-const WORDS: [&str; 38] = [
+/// Elements and attributes of URDF, SDF and other formats that describe position, mass properties or motion.
+const WORDS: [&str; 47] = [
     "armature",
     "axis",
+    "axis2",
     "child",
     "cog",
     "com",
@@ -21,8 +22,12 @@ const WORDS: [&str; 38] = [
     "inertia",
     "inertial",
     "ixx",
+    "ixy",
+    "ixz",
     "iyy",
+    "iyz",
     "izz",
+    "joint",
     "joint_axis",
     "limit",
     "link",
@@ -40,15 +45,19 @@ const WORDS: [&str; 38] = [
     "quat",
     "rotation",
     "rpy",
+    "screw_thread_pitch",
+    "spring_reference",
+    "spring_stiffness",
     "stiffness",
+    "thread_pitch",
     "translation",
     "upper",
     "velocity",
     "xyz",
 ];
 
-/// Reports attributes, text, and elements other than `own` in a robot, a link or a joint, if they have a
-/// meaning elsewhere in the file. Text between links is accepted as a comment.
+/// Reports attributes, text, and elements other than `own` in a robot, a link, a joint or a part of them, if
+/// they have a meaning elsewhere in the file. Text between links is accepted as a comment.
 pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
     for child in elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
         // Misspelt names of elements in `own` are reported by other functions.
@@ -61,7 +70,7 @@ pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
         let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
         cx.error(&cx.place(attribute.range().start), message, |d| d.help(help));
     }
-    let is_robot = node.tag_name().name() == "robot";
+    let is_robot = matches!(node.tag_name().name(), "robot" | "model" | "world");
     let texts = node.children().filter(|child| child.is_text() && !is_robot);
     for text in texts.filter(|text| text.text().is_some_and(|text| text.contains(char::is_alphanumeric))) {
         let words = text.text().unwrap_or_default();
