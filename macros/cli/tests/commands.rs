@@ -91,6 +91,7 @@ fn what_cannot_be_done_is_said() {
     std::fs::write(here.join("robot.usd"), "#usda 1.0\n").unwrap();
     std::fs::write(here.join("image.png"), [0x89, b'P', b'N', b'G', 0xff]).unwrap();
     std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
+    std::fs::write(here.join("leg.urdf"), "<robot name='leg'><link name='a'/></robot>").unwrap();
     std::fs::write(here.join("two.rs"), format!("{PENDULUM}{}", PENDULUM.replace("Pendulum", "Other")))
         .unwrap();
     for (arguments, status, told) in [
@@ -118,6 +119,20 @@ fn what_cannot_be_done_is_said() {
         (&["check"], 2, "FILE"),
         (&["check", "pendulum.rs", "--with", "gravity = ("], 2, "--with"),
         (&["export", "c", "pendulum.rs", "--out", "pendulum.rs"], 2, "pendulum.rs"),
+        // Options of which one would be lost.
+        (
+            &["simulate", "pendulum.rs", "--set", "length=1", "--set", "length=2"],
+            2,
+            "`length` is given twice",
+        ),
+        (&["export", "c", "pendulum.rs", "--casadi", "--set", "length=1", "--set", "length=2"], 2, "twice"),
+        (
+            &["simulate", "pendulum.rs", "--set", "q.theta=1", "--guess", "q.theta=2"],
+            2,
+            "`q.theta` is given by `--set` and by `--guess`",
+        ),
+        (&["view", "pendulum.rs", "--motion", "log.csv", "--every", "0.1"], 2, "cannot be used with"),
+        (&["convert", "leg.urdf", "--with", "derivatives"], 2, "write those that ask for functions"),
     ] {
         let (found, _, error) = linkwork(&here, arguments);
         assert!(found == status && error.contains(told), "{arguments:?}: {found}, {error}");
@@ -249,6 +264,39 @@ fn libraries_contain_the_attribute_or_its_code() {
     let limits =
         serde_json::json!([{ "index": 0, "lower": -1.0, "upper": 2.5, "velocity": 3.0, "effort": null }]);
     assert_eq!(description["limits"], limits);
+}
+
+/// Outputs whose names end like those of other forms of a function are in the library, and what C does not
+/// have is listed.
+#[test]
+fn functions_that_another_language_lacks_are_listed() {
+    let here = folder("forms");
+    let slider = "#[mechanism] pub struct Slider { pub m: f64, #[particle(mass = m)] block: Particle, \
+        #[joint(ground -> block, along = x)] rail: Sleeve, #[limit(on = rail, to = 1)] end: Limit, \
+        #[output(2 * rail)] motor_lanes: Scalar, #[output(3 * rail)] heat_into: Scalar, \
+        #[output(norm(reaction_force(rail)))] load: Scalar }";
+    std::fs::write(here.join("slider.rs"), slider).unwrap();
+    let done = linkwork(&here, &["export", "library", "slider.rs", "--out", "slider"]);
+    assert_eq!((done.0, done.2.as_str()), (0, ""));
+    let text = std::fs::read_to_string(here.join("slider/description.json")).unwrap();
+    let description: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let functions = description["functions"].as_array().unwrap();
+    for name in ["motor_lanes", "heat_into"] {
+        assert!(functions.iter().any(|f| f["name"] == name), "{name} in {text}");
+    }
+    let all =
+        ["export", "c", "slider.rs", "--no-derivatives", "--casadi", "--with", "prepare, batch, drawing"];
+    let (status, _, told) = linkwork(&here, &all);
+    assert_eq!(status, 0);
+    for line in [
+        "the functions of `prepare`",
+        "functions of several states at once, of `batch`",
+        "the drawing, of `drawing`",
+        "load in the form of CasADi",
+        "limits in the form of CasADi",
+    ] {
+        assert!(told.contains(&format!("linkwork: not in C: {line}\n")), "{line} in {told}");
+    }
 }
 
 /// Returns the text of the first code block of a language in the README.

@@ -146,6 +146,17 @@ pub struct Sled {
     assert_eq!(linkwork(&here, &out).0, 0);
     let view = ["view", "sled.rs", "--set", "lag=0.5", "--motion", "sled.csv"];
     assert_eq!(linkwork(&here, &view), (0, "Sled.html\n".to_string(), String::new()));
+    // A log with some of the inputs, or with an input that `--set` gives too.
+    let two = sled
+        .replace("throttle: Input,", "throttle: Input,\n    brake: Input,")
+        .replace("thrust)]", "thrust - brake)]");
+    std::fs::write(here.join("two.rs"), two).unwrap();
+    std::fs::write(here.join("one.csv"), "t,q.rail,u.brake\n0,0,1\n1,0,1\n").unwrap();
+    let (status, _, told) = linkwork(&here, &["view", "two.rs", "--set", "lag=1", "--motion", "one.csv"]);
+    assert!(status == 2 && told.contains("one.csv: there is no column `u.throttle`"), "{told}");
+    let both = ["simulate", "two.rs", "--set", "lag=1", "--set", "u.brake=2", "--inputs", "one.csv"];
+    let (status, _, told) = linkwork(&here, &both);
+    assert!(status == 2 && told.contains("`u.brake` is a column here and given by `--set`"), "{told}");
     let log = [&simulate[..], &["--out", "sled.mcap"]].concat();
     assert_eq!(linkwork(&here, &log).0, 0);
     let states = messages(&std::fs::read(here.join("sled.mcap")).unwrap());

@@ -250,7 +250,7 @@ fn a_skate_keeps_its_place_across() {
 }
 
 /// Three oscillators of unit mass with states of first order: the characteristic polynomial is
-/// `(k + s²)³ (s + 1/tau)`, of degree 7; with a second state its degree is 8, more than a printed power has.
+/// `(k + s²)³ (s + 1/b)`, of degree 7; with a second state its degree is 8, more than a printed power has.
 #[test]
 fn high_degrees_are_not_printed_as_lower_ones() {
     let oscillators = ["x", "y", "z"].map(|axis| {
@@ -261,9 +261,9 @@ fn high_degrees_are_not_printed_as_lower_ones() {
     });
     for (states, degree) in [(1, Some(7)), (2, None)] {
         let states: String =
-            (0..states).map(|n| format!("#[state(rate = -f{n} / tau)] f{n}: State,")).collect();
+            (0..states).map(|n| format!("#[state(rate = -f{n} / b)] f{n}: State,")).collect();
         let item = format!(
-            "struct Three {{ k: f64, tau: f64, {} {states} #[equilibrium] rest: Equilibrium }}",
+            "struct Three {{ k: f64, b: f64, {} {states} #[equilibrium] rest: Equilibrium }}",
             oscillators.concat()
         );
         with_linear("0 * x", &item, |_, found, plain, _| {

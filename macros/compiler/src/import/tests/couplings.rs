@@ -100,11 +100,11 @@ fn sums_and_polynomials_are_conditions() {
     for (equality, expected) in [
         (
             "<tendon tendon1='v'/>",
-            "r.xml:2:403: unknown tendon `v`\n= help: expected `s`, `t` or `u`".to_string(),
+            "r.xml:2:409: unknown tendon `v`\n= help: expected `s`, `t` or `u`".to_string(),
         ),
         (
             "<tendon tendon1='u'/>",
-            format!("r.xml:2:403: tendon `u` goes through space, where none is coupled\n{help}"),
+            format!("r.xml:2:409: tendon `u` goes through space, where none is coupled\n{help}"),
         ),
     ] {
         let cable = "<spatial name='u'><site site='o'/><site site='p'/></spatial></tendon>";

@@ -543,12 +543,12 @@ fn parts_in_the_place_of_others_are_errors() {
         )
     };
     for (inside, found) in [
-        ("<xyz>0 1 0</xyz><axis/>", "r.sdf:3:71: unexpected `<xyz>` in `<joint>`"),
-        ("<axis><damping>2</damping></axis>", "r.sdf:3:77: unexpected `<damping>` in `<axis>`"),
-        ("<axis><lower>2</lower></axis>", "r.sdf:3:77: unexpected `<lower>` in `<axis>`"),
+        ("<xyz>0 1 0</xyz><axis/>", "r.sdf:3:67: unexpected `<xyz>` in `<joint>`"),
+        ("<axis><damping>2</damping></axis>", "r.sdf:3:73: unexpected `<damping>` in `<axis>`"),
+        ("<axis><lower>2</lower></axis>", "r.sdf:3:73: unexpected `<lower>` in `<axis>`"),
         (
             "<axis><limit><damping>2</damping></limit></axis>",
-            "r.sdf:3:84: unexpected `<damping>` in `<limit>`",
+            "r.sdf:3:80: unexpected `<damping>` in `<limit>`",
         ),
     ] {
         let actual = run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", joint(inside)));
