@@ -58,9 +58,9 @@ pub enum State {}
 /// the equations of motion to first order, `M ξ̈ + C ξ̇ + K ξ = B u + Jᵀ λ`, in the parameters of the
 /// mechanism, together with the linearised constraints and first-order states. The deviations `ξ` are those
 /// of coordinates, and for `Ball` and `Free` small rotations (rad) and displacements (m) in body axes. Up to
-/// three velocities come with the characteristic equation, the natural frequency (rad/s) of a single degree
-/// of freedom and the stability conditions: the Routh–Hurwitz criterion with damping, distinct imaginary
-/// roots without (Gantmacher, *The Theory of Matrices*, vol. 2, 1959, ch. XV).
+/// three velocities and degree seven, they come with the characteristic equation, the natural frequency
+/// (rad/s) of a single degree of freedom and the stability conditions: the Routh–Hurwitz criterion with
+/// damping, distinct imaginary roots without (Gantmacher, *The Theory of Matrices*, vol. 2, 1959, ch. XV).
 ///
 /// A configuration that is not an equilibrium does not compile, and the message names the unbalanced force;
 /// nor does an equilibrium at which a force is not differentiable.

@@ -259,7 +259,7 @@ impl Constant {
             ),
             Constant::strings(
                 "LINEAR_EQUATIONS",
-                "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in the parameters of the mechanism: what is at rest, the equations, and of up to three velocities the characteristic equation with the conditions of stability.",
+                "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in the parameters of the mechanism: what is at rest, the equations, and of up to three velocities and degree seven the characteristic equation with the conditions of stability.",
                 &of(|(_, written)| written.plain.clone()),
             ),
             Constant::strings(

@@ -574,13 +574,20 @@ fn what_a_joint_cannot_have_is_listed() {
         "<link name='a'/><link name='b'/><link name='c'/>\
          <joint name='i' type='screw'><parent>a</parent><child>b</child><screw_thread_pitch>1</screw_thread_pitch>\
          <axis><limit><lower>-1</lower><upper>2</upper></limit></axis></joint>\
-         <joint name='j' type='ball'><parent>b</parent><child>c</child><axis/><axis2/></joint>",
+         <joint name='j' type='ball'><parent>b</parent><child>c</child><axis/><axis2/></joint>\
+         <link name='d'/><joint name='k' type='prismatic'><parent>c</parent><child>d</child><axis/></joint>\
+         <link name='e'/><joint name='l' type='prismatic'><parent>d</parent><child>e</child>\
+         <axis><mimic joint='k'><multiplier>2</multiplier></mimic></axis></joint>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          body b mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          body c mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body d mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+         body e mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
          Weld root_joint: ground -> a
          Screw i: a -> b about [0, 0, 1]
          Ball j: b -> c
+         Sleeve k: c -> d along [0, 0, 1]
+         Sleeve l: d -> e along [0, 0, 1] = 2 k + 0
          left out limits of i, which is `screw`
          left out the axis of j, which is `ball`
          left out the second axis of j, which is `ball`",
