@@ -10,8 +10,8 @@ use crate::kinematics::{self, Joint};
 use crate::lower::{Operand, Program, lower};
 use crate::machine::{DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT};
 use crate::mechanics::derivatives::{
-    self, Factor, ForceDerivatives, Inverse, Linearized, Method, Trunk, analytic, divided, invariance,
-    symbolic,
+    self, DerivationMethod, Factor, ForceDerivatives, Inverse, Linearized, Trunk, analytic, divided,
+    invariance, symbolic,
 };
 use crate::mechanics::passive::passive_forces;
 use crate::mechanics::speeds::commutators;
@@ -60,7 +60,7 @@ impl<'a, 'g> Derivatives<'a, 'g> {
             variants.iter().map(|variant| Parts::new(variant, specialisation)).collect();
         if model.nv() <= DIFFERENTIATE {
             parts.extend(variants.iter().map(|variant| Parts {
-                method: Method::Differentiation,
+                method: DerivationMethod::Differentiation,
                 ..Parts::new(variant, specialisation)
             }));
         }
@@ -166,7 +166,7 @@ struct Parts<'a, 'g> {
     /// Effective mass matrix: the mass matrix minus the coefficients of the forces that are linear in
     /// accelerations.
     effective: crba::Matrix<'g>,
-    method: Method,
+    method: DerivationMethod,
     specialisation: Specialisation,
     /// Trunk of a large mechanism, if its tree branches.
     trunk: Option<Trunk>,
@@ -193,7 +193,7 @@ impl<'a, 'g> Parts<'a, 'g> {
             joints: variant.joints.clone(),
             effective: added_mass::effective(&variant.model, &mass),
             mass,
-            method: Method::Recursion(1),
+            method: DerivationMethod::Recursion(1),
             specialisation,
             trunk: None,
             limbs: None,
@@ -225,7 +225,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         self.specialisation.program(&self.force_columns(self.method)).counts.total()
     }
 
-    fn force_columns(&self, method: Method) -> Vec<Expr<'g>> {
+    fn force_columns(&self, method: DerivationMethod) -> Vec<Expr<'g>> {
         let a = mechanics::accelerations(self.model);
         force_columns(&derivatives::inverse_dynamics(self.model, &self.joints, &a, method))
     }
@@ -235,7 +235,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         let wide = self
             .wide
             .iter()
-            .map(|most| self.specialisation.program(&self.force_columns(Method::Recursion(*most))));
+            .map(|most| self.specialisation.program(&self.force_columns(DerivationMethod::Recursion(*most))));
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let a = lanes.limbs.symbols(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
@@ -255,7 +255,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         };
         let wide = self.wide.iter().map(|most| {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
-            program(&mass, Method::Recursion(*most))
+            program(&mass, DerivationMethod::Recursion(*most))
         });
         program(&self.effective, self.method).or_in_lanes(wide)
     }

@@ -46,7 +46,7 @@ pub struct Linearized<'g> {
 
 /// Method for the derivatives of inverse dynamics. The methods give equal results at different cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum DerivationMethod {
     /// Recursion in up to this number of lanes if every motion subspace is constant in link axes, otherwise
     /// differentiation.
     Recursion(usize),
@@ -60,10 +60,10 @@ pub fn inverse_dynamics<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     a: &[Expr<'g>],
-    method: Method,
+    method: DerivationMethod,
 ) -> ForceDerivatives<'g> {
     let v = velocities(model);
-    if let Method::Recursion(most) = method
+    if let DerivationMethod::Recursion(most) = method
         && is_analytic(model)
     {
         let mut found = analytic::inverse_dynamics(model, joints, &v, a, most);
@@ -89,7 +89,7 @@ pub fn forward_dynamics<'g>(
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     tau: &[Expr<'g>],
-    method: Method,
+    method: DerivationMethod,
 ) -> Linearized<'g> {
     let factor = Factor::of(mass, joints);
     let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
@@ -106,7 +106,7 @@ pub fn linearized<'g>(
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     tau: &[Expr<'g>],
-    method: Method,
+    method: DerivationMethod,
 ) -> Linearized<'g> {
     let mut found = forward_dynamics(model, joints, mass, tau, method);
     let by_state = symbolic::derivatives(model, tau);
