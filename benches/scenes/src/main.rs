@@ -188,10 +188,10 @@ impl Random {
         let x = x.wrapping_mul(0xff51afd7ed558ccd);
         (x >> 11) as f64 / (1_u64 << 53) as f64
     }
-    fn within(&mut self, a: f64, b: f64) -> f64 {
+    fn uniform(&mut self, a: f64, b: f64) -> f64 {
         a + (b - a) * self.next()
     }
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
+    fn choose<T: Copy>(&mut self, list: &[T]) -> T {
         list[(self.next() * list.len() as f64) as usize % list.len()]
     }
 }
@@ -270,7 +270,7 @@ fn run<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
 fn report(name: &str, mut tally: Tally) {
     let times = &mut tally.times;
     times.sort_by(f64::total_cmp);
-    let at = |part: f64| times.get((times.len() as f64 * part) as usize).copied().unwrap_or(0.0);
+    let quantile = |part: f64| times.get((times.len() as f64 * part) as usize).copied().unwrap_or(0.0);
     let mean = times.iter().sum::<f64>() / times.len() as f64;
     println!(
         "{name:10} runs {} errors {} NaN {} | steps {} mean {mean:.1} median {:.1} p99.9 {:.1} | gain {:.1e} depth {:.1e} | relaxed {} by {:.1e}",
@@ -278,8 +278,8 @@ fn report(name: &str, mut tally: Tally) {
         tally.errors,
         tally.nans,
         times.len(),
-        at(0.5),
-        at(0.999),
+        quantile(0.5),
+        quantile(0.999),
         tally.gain,
         tally.depth,
         tally.relaxed,
@@ -305,7 +305,7 @@ fn start<const NQ: usize, const NV: usize>(
     half: impl Fn(usize) -> [f64; 3],
 ) -> (SVector<f64, NQ>, SVector<f64, NV>) {
     let (mut q, mut v) = (SVector::<f64, NQ>::zeros(), SVector::<f64, NV>::zeros());
-    let kind = r.of(&[0, 1, 2, 3]);
+    let kind = r.choose(&[0, 1, 2, 3]);
     let mut z = 0.0;
     let mut x = 0.0;
     for k in 0..n {
@@ -316,21 +316,21 @@ fn start<const NQ: usize, const NV: usize>(
                 // in the air
                 z += far;
                 let turn =
-                    [r.within(-1.0, 1.0), r.within(-1.0, 1.0), r.within(-1.0, 1.0), r.within(-1.0, 1.0)];
-                place(&mut q, k, [r.within(-0.5, 0.5) * far, r.within(-0.5, 0.5) * far, z], turn);
+                    [r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0)];
+                place(&mut q, k, [r.uniform(-0.5, 0.5) * far, r.uniform(-0.5, 0.5) * far, z], turn);
                 z += far;
                 for i in 0..6 {
-                    v[6 * k + i] = r.within(-1.0, 1.0) * if i < 3 { 1.0 } else { 5.0 };
+                    v[6 * k + i] = r.uniform(-1.0, 1.0) * if i < 3 { 1.0 } else { 5.0 };
                 }
             }
             1 => {
                 // stacked
                 z += h[2];
-                let yaw = r.within(-0.5, 0.5) * r.of(&[0.0, 1.0]);
+                let yaw = r.uniform(-0.5, 0.5) * r.choose(&[0.0, 1.0]);
                 place(
                     &mut q,
                     k,
-                    [r.within(-0.3, 0.3) * h[0], r.within(-0.3, 0.3) * h[1], z],
+                    [r.uniform(-0.3, 0.3) * h[0], r.uniform(-0.3, 0.3) * h[1], z],
                     [0.0, 0.0, yaw, 1.0],
                 );
                 z += h[2];
@@ -339,9 +339,9 @@ fn start<const NQ: usize, const NV: usize>(
                 // a row, the first falls
                 x += h[0] * 1.01;
                 place(&mut q, k, [x, 0.0, h[2]], [0.0, 0.0, 0.0, 1.0]);
-                x += h[0] + h[2] * r.within(0.1, 1.0);
+                x += h[0] + h[2] * r.uniform(0.1, 1.0);
                 if k == 0 {
-                    let w = r.within(1.0, 5.0) * (0.05 / h[2]).sqrt();
+                    let w = r.uniform(1.0, 5.0) * (0.05 / h[2]).sqrt();
                     v[4] = w;
                     v[0] = w * h[2];
                 }
@@ -349,11 +349,11 @@ fn start<const NQ: usize, const NV: usize>(
             _ => {
                 // leaning, thrown
                 x += h[0] + h[2];
-                let lean = r.within(-0.3, 0.3);
-                place(&mut q, k, [x, r.within(-0.2, 0.2) * h[1], far * 1.01], [0.0, lean, 0.0, 1.0]);
+                let lean = r.uniform(-0.3, 0.3);
+                place(&mut q, k, [x, r.uniform(-0.2, 0.2) * h[1], far * 1.01], [0.0, lean, 0.0, 1.0]);
                 x += h[0] + h[2];
-                v[6 * k] = r.within(-2.0, 2.0);
-                v[6 * k + 4] = r.within(-10.0, 10.0);
+                v[6 * k] = r.uniform(-2.0, 2.0);
+                v[6 * k + 4] = r.uniform(-10.0, 10.0);
             }
         }
     }
@@ -416,14 +416,14 @@ fn random_scenes(count: u64, first: u64, which: &str) {
                     let mut random = Random(seed.wrapping_mul(7919).wrapping_add(13));
                     (0..5).for_each(|_| _ = random.next());
                     let $random = &mut random;
-                    let $mu = $random.of(&[0.0, 0.1, 0.3, 0.5, 0.8, 1.0, 2.0]);
+                    let $mu = $random.choose(&[0.0, 0.1, 0.3, 0.5, 0.8, 1.0, 2.0]);
                     let $e = if $random.next() < 0.6 { 0.0 } else { $random.next() };
-                    let h = 10f64.powf($random.within(-4.0, -2.3));
+                    let h = 10f64.powf($random.uniform(-4.0, -2.3));
                     let step = TimeStepping::step(h);
-                    let method = $random.of(&[step, step.midpoint(), step.euler()]);
+                    let method = $random.choose(&[step, step.midpoint(), step.euler()]);
                     // Masses up to 10⁴ times as large as others.
-                    let grade = $random.within(-1.0, 1.0) * 1e4_f64.ln() / ($n as f64 - 1.0);
-                    let $grade = $random.of(&[0.0, grade]);
+                    let grade = $random.uniform(-1.0, 1.0) * 1e4_f64.ln() / ($n as f64 - 1.0);
+                    let $grade = $random.choose(&[0.0, grade]);
                     let (m, half, size): (_, Box<dyn Fn(usize) -> [f64; 3]>, f64) = $scene;
                     let begin = start::<$nq, $nv>($random, $n, half);
                     let scene = Scene { name: stringify!($name), seed, size, method, h, duration: 150.0 * h };
@@ -435,11 +435,11 @@ fn random_scenes(count: u64, first: u64, which: &str) {
     }
     macro_rules! blocks {
         ($name:ident, $random:ident, $mu:ident, $e:ident, $grade:ident) => {{
-            let mut length = || $random.within(0.02, 0.1);
+            let mut length = || $random.uniform(0.02, 0.1);
             let (a, b, c) = (length(), length(), length());
-            let taper = $random.within(-0.3, 0.3);
-            let taper = $random.of(&[0.0, taper]);
-            let m = $name { mass: $random.within(0.05, 2.0), grade: $grade, a, b, c, taper, mu: $mu, e: $e };
+            let taper = $random.uniform(-0.3, 0.3);
+            let taper = $random.choose(&[0.0, taper]);
+            let m = $name { mass: $random.uniform(0.05, 2.0), grade: $grade, a, b, c, taper, mu: $mu, e: $e };
             (m, Box::new(move |k: usize| [a, b, c].map(|x| x / 2.0 * (taper * k as f64).exp())), a.min(b).min(c))
         }};
     }
@@ -447,16 +447,16 @@ fn random_scenes(count: u64, first: u64, which: &str) {
     family!(Boxes3, 3, 21, 18, |random, mu, e, grade| blocks!(Boxes3, random, mu, e, grade));
     family!(Dominoes, 5, 35, 30, |random, mu, e, grade| blocks!(Dominoes, random, mu, e, grade));
     family!(Balls, 6, 42, 36, |random, mu, e, grade| {
-        let (r, taper) = (random.within(0.02, 0.1), random.within(-0.2, 0.2));
+        let (r, taper) = (random.uniform(0.02, 0.1), random.uniform(-0.2, 0.2));
         let m = Balls { mass: 0.3, grade, r, taper, mu, e };
         (m, Box::new(move |k: usize| [r * (taper * k as f64).exp(); 3]), r)
     });
     family!(Capsules4, 4, 28, 24, |random, mu, e, grade| {
-        let (r, l) = (random.within(0.02, 0.05), random.within(0.05, 0.2));
+        let (r, l) = (random.uniform(0.02, 0.05), random.uniform(0.05, 0.2));
         (Capsules4 { mass: 0.3, grade, r, l, mu, e }, Box::new(move |_: usize| [r + l / 2.0, r, r]), r)
     });
     family!(Mixed, 5, 35, 30, |random, mu, e, grade| {
-        let s = random.within(0.02, 0.1);
+        let s = random.uniform(0.02, 0.1);
         let halves = move |k: usize| match k {
             0 => [s, 0.75 * s, 0.5 * s],
             1 => [1.5 * s, s / 2.0, s / 2.0],
